@@ -48,6 +48,9 @@ class Numbers:
     def number(self, path: str) -> tuple[float, str | None]:
         return self.values[path]
 
+    def words(self, path: str) -> str:
+        return path
+
     def base(self) -> Any:
         return self
 

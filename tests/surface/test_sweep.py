@@ -299,7 +299,8 @@ def test_what_to_go_by() -> None:
     found = best("--by", "torque", "--largest", "links.crank.mass")
     assert found["by"] == {"torque": "smallest", "links.crank.mass": "largest"}
     shown = succeeded(equipoise("best", STORE, "--by", "torque", "--largest", "links.crank.mass"))
-    assert "Designs that no other beats; torque smallest, links.crank.mass largest" in shown
+    assert "Designs that no other beats; torque smallest, mass of the crank largest" in shown
+    assert "\n  mass of the crank: links.crank.mass\n" in shown  # as --by takes it
     assert "Limits: vertical at most 13000 mN" in shown
 
 

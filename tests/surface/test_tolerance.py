@@ -8,6 +8,8 @@ import re
 import pytest
 
 import equipoise as eq
+from equipoise.schema.study_units import units_of
+from equipoise.studies.blocks import named_together
 from surface.running import equipoise, succeeded
 from surface.studies import TOLERANCES, written
 
@@ -44,9 +46,9 @@ def test_figures_in_the_units_of_the_files(shown: str) -> None:
     assert deviation == pytest.approx(one.deviation, rel=1e-3)
     assert own.within is not None
     assert f"Every limit is kept by {100 * own.within.value:.2f} % (" in shown
-    mass = r"^links.coupler.mass, links.coupler.inertia +deviation 15.00 g, cut at 3; deviation "
+    mass = r"^mass \+ inertia of the coupler +deviation 15.00 g, cut at 3; deviation "
     assert re.search(mass, shown, re.MULTILINE)
-    assert re.search(r"^links.coupler.center_of_mass.x +\+- 2.000 mm ", shown, re.MULTILINE)
+    assert re.search(r"^centre of mass of the coupler, x +\+- 2.000 mm ", shown, re.MULTILINE)
 
 
 def test_what_to_tighten_first(shown: str) -> None:
@@ -54,11 +56,12 @@ def test_what_to_tighten_first(shown: str) -> None:
     own = eq.studies.tolerance(eq.schema.load_study(written(TOLERANCES)))
     first = own.causes[0]
     (sentence,) = re.findall(r"^Tighten first: .*$", shown, re.MULTILINE)
-    assert sentence.startswith(f"Tighten first: {' and '.join(first.numbers)}")
+    units = units_of(own.study)
+    assert sentence.startswith(f"Tighten first: {named_together(first.numbers, units)}")
     assert f"takes {100 * first.gain:.0f} % off the variance of vertical" in sentence
-    rows = [line.split()[0] for line in shown.splitlines() if line.startswith("links.")]
-    ranked = [cause.numbers[0] for cause in own.causes]
-    assert [row.strip(",") for row in rows] == [*ranked, *ranked]
+    ranked = [named_together(cause.numbers, units) for cause in own.causes]
+    starts = [next((w for w in ranked if line.startswith(w)), "") for line in shown.splitlines()]
+    assert [words for words in starts if words] == [*ranked, *ranked]
     assert ("links.coupler.mass", "links.coupler.inertia") in [one.numbers for one in own.causes]
 
 

@@ -232,10 +232,10 @@ def _split(option: str, text: str, example: str) -> tuple[str, str]:
 
 def _read(model: Model, option: str, path: str, text: str) -> float:
     """A value of a number of the model, SI units."""
-    from equipoise.studies.objective_map import dimension
+    from equipoise.studies.objective_map import told_as
 
     try:
-        kind = dimension(model, path)
+        kind, _ = told_as(model, path)
     except ModelError as error:
         raise UsageError(f"{option}: {error.what}") from error
     if kind is not None:

@@ -213,10 +213,11 @@ def _in_the_end(last: Progress, units: Mapping[str, Unit]) -> Step:
 
 def _best_and_failures(name: str, progress: Progress, units: Mapping[str, Unit]) -> dict[str, str]:
     from equipoise.quantities import number
+    from equipoise.studies.blocks import unit_in
 
+    told = ((unit_in(units, output), value) for output, value in progress.best.items())
     best = (
-        f"{output} {number(units[output].of_si(value))} {units[output].name}".strip()
-        for output, value in progress.best.items()
+        f"{unit.called} {number(unit.of_si(value))} {unit.name}".strip() for unit, value in told
     )
     failures = (f"{what} {count}" for what, count in progress.failures.items())
     return {name: ", ".join(best), "failed": ", ".join(failures)}

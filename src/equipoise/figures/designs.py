@@ -17,6 +17,7 @@ from equipoise.figures.studies import PERCENT, Units, unit_of
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel
+from equipoise.studies.blocks import unit_in
 
 if TYPE_CHECKING:
     from equipoise.studies.design_space import Make
@@ -75,7 +76,8 @@ class Designs:
 
     def axis(self, name: str, most: int = 40, way: bool = True) -> Axis:
         """Of a number or figure; way : whether it is told which way is good."""
-        label, unit = short(name, most), unit_of(self.units[name])
+        told = unit_in(self.units, name)
+        label, unit = short(told.called, most), unit_of(told)
         if way and name in self.by:
             good = say("large is good") if self.by[name] == "largest" else say("small is good")
             label = f"{label} ({good})"
@@ -141,7 +143,7 @@ def grown(found: Searched, units: Units) -> Chart:
     x = Axis(say("generation"), low=1.0, high=float(max(2, last)))
     y = Axis(say("share that the front dominates"), PERCENT)
     if len(found.objectives) == 1:
-        (name,) = found.objectives
-        y = Axis(say("best {name}", name=short(name, 24)), unit_of(units[name]))
+        best = unit_in(units, *found.objectives)
+        y = Axis(say("best {name}", name=short(best.called, 24)), unit_of(best))
     curve = Curve(np.arange(1.0, last + 1), np.asarray(found.volumes, float), steps=True)
     return Chart("search", found.study.title, what, (Panel(x, y, (curve,)),))

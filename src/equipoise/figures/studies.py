@@ -6,14 +6,13 @@ Numbers and figures are drawn in the units that are given by name, as `schema.st
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from equipoise.figures.shared import by_name, continued, groups, told_speed
 from equipoise.figures.style import short
-from equipoise.i18n import say
+from equipoise.i18n import Note, say
 from equipoise.quantities import Dimension, Display, display, typeset
 from equipoise.results.charts import (
     Array,
@@ -27,6 +26,7 @@ from equipoise.results.charts import (
     shown,
 )
 from equipoise.results.outputs import objective_named
+from equipoise.studies.blocks import named_together, unit_in
 
 if TYPE_CHECKING:
     from equipoise.studies.blocks import Unit
@@ -58,7 +58,7 @@ def tolerance_charts(found: Tolerances, units: Units) -> dict[str, Chart]:
 
     More than ten figures go on in ``scatter-2`` and so on.
     """
-    return by_name([*scatter(found, units), tighten(found), *shares(found)])
+    return by_name([*scatter(found, units), tighten(found, units), *shares(found, units)])
 
 
 def scatter(found: Tolerances, units: Units) -> Iterator[Chart]:
@@ -70,13 +70,13 @@ def scatter(found: Tolerances, units: Units) -> Iterator[Chart]:
     for suffix, names in groups(every):
         what = say("Scatter over {count} machines", count=found.designs) + continued(names, every)
         panels = tuple(
-            _histogram(name, found.scatters[name], units[name], found.designs) for name in names
+            _histogram(found.scatters[name], unit_in(units, name), found.designs) for name in names
         )
         own, columns = f"scatter{suffix}", min(2, len(panels))
         yield Chart(own, found.study.title, what, panels, columns, False, tuple(keys))
 
 
-def _histogram(name: str, one: Scatter, unit: Unit, designs: int) -> Panel:
+def _histogram(one: Scatter, unit: Unit, designs: int) -> Panel:
     edges, shares = np.asarray(one.edges, float), one.counts / designs
     limits = [end for end in _limits(one) if edges[0] < end < edges[-1]]
     cut = np.union1d(edges, limits)  # a bar that a limit goes through is two, just as high
@@ -91,7 +91,7 @@ def _histogram(name: str, one: Scatter, unit: Unit, designs: int) -> Panel:
         lines.append(Line(one.base, "model"))
     held = [*(line.at for line in lines), float(edges[0]), float(edges[-1])]
     room = NARROW * (max(held) - min(held)) or 0.05 * abs(held[0]) or 1.0
-    x = Axis(short(name, 40), unit_of(unit), low=min(held) - room, high=max(held) + room)
+    x = Axis(unit.called, unit_of(unit), low=min(held) - room, high=max(held) + room)
     bars = Bars((edges[:-1] + edges[1:]) / 2, shares, np.diff(edges), roles=roles)
     title = ""
     if one.within is not None:
@@ -105,17 +105,18 @@ def _limits(one: Scatter) -> list[float]:
     return [end for end in ends if end is not None]
 
 
-def tighten(found: Tolerances) -> Chart:
+def tighten(found: Tolerances, units: Units) -> Chart:
     """By how much the scatter falls where one tolerance is halved."""
     gains = np.array([max(cause.gain, 0.0) for cause in found.causes])
     bars = Bars(np.arange(len(gains)), gains, TALL, across="y", told=True)
     most = 1.12 * float(np.max(gains)) or 1.0
-    panel = _bars_of(found.causes, (bars,), Axis(say("variance less"), PERCENT, low=0.0, high=most))
+    x = Axis(say("variance less"), PERCENT, low=0.0, high=most)
+    panel = _bars_of(found.causes, units, (bars,), x)
     what = say("What half of a tolerance does: variance less, in the mean of the figures")
     return Chart("tighten", found.study.title, what, (panel,))
 
 
-def shares(found: Tolerances) -> Iterator[Chart]:
+def shares(found: Tolerances, units: Units) -> Iterator[Chart]:
     """Share of each tolerance in the variance of each figure, each with its 95 % interval."""
     causes = found.causes
     every = [name for name in found.scatters if name in causes[0].effects]
@@ -135,7 +136,7 @@ def shares(found: Tolerances) -> Iterator[Chart]:
                 _shares([getattr(effect, kind) for effect in effects], rows + beside, role)
                 for kind, role, beside in kinds
             )
-            panels.append(_bars_of(causes, bars, x, title=short(name, 50)))
+            panels.append(_bars_of(causes, units, bars, x, title=unit_in(units, name).called))
         what = say("What causes the scatter of each figure") + continued(names, every)
         yield Chart(f"shares{suffix}", found.study.title, what, tuple(panels), keys=keys)
 
@@ -147,22 +148,14 @@ def _shares(estimates: Sequence[Estimate], rows: Array, role: str) -> Bars:
     return Bars(rows, size, THIN, role, across="y", interval=(low, high))
 
 
-def _bars_of(causes: Sequence[Cause], bars: tuple[Bars, ...], x: Axis, **rest: Any) -> Panel:
+def _bars_of(
+    causes: Sequence[Cause], units: Units, bars: tuple[Bars, ...], x: Axis, **rest: Any
+) -> Panel:
     """Lying bars, one for each cause, the first at the top."""
-    names = (short(joined(cause.numbers), 38) for cause in causes)
+    names = (short(named_together(cause.numbers, units), 38) for cause in causes)
     ticks = tuple((float(row), name) for row, name in enumerate(names))
     y = Axis(low=len(causes) - 0.5, high=-0.5, ticks=ticks)
     return Panel(x, y, bars=bars, height=BAR * len(causes), **rest)
-
-
-def joined(names: Sequence[str]) -> str:
-    """Paths that vary together: what they have in common is said once."""
-    if len(names) == 1:
-        return names[0]
-    parts = [name.split(".") for name in names]
-    same = next(k for k, column in enumerate(zip_longest(*parts)) if len({*column}) > 1)
-    ends = [".".join(part[same:]) for part in parts]
-    return ".".join([*parts[0][:same], " + ".join(ends)])
 
 
 # -- an objective over two numbers of a model -----------------------------------------------------
@@ -188,11 +181,17 @@ def told_best(found: Landscape) -> str:
     return f"least {found.objective.name}: {value}, at {' and '.join(places)}"
 
 
+def named(found: Landscape, path: str) -> str:
+    """One of the numbers in words."""
+    words = found.words[path]
+    return words.said() if isinstance(words, Note) else words
+
+
 def landscape(found: Landscape) -> Chart:
     """Lines of equal value with their values, the least of all, and the model as it is."""
     x, y = (
         Axis(
-            short(path, 60),
+            named(found, path),
             number_unit(found.dimensions[path]),
             low=float(values[0]),
             high=float(values[-1]),
@@ -221,7 +220,7 @@ def landscape(found: Landscape) -> Chart:
         "speed": told_speed(found.machine.drive.speed),
     }
     others = [
-        f"{path} = {Axis(path, number_unit(found.dimensions[path])).quantity(value)}"
+        f"{named(found, path)} = {Axis('', number_unit(found.dimensions[path])).quantity(value)}"
         for path, value in found.given.items()
     ]
     what = "; ".join([say("{objective}, {unit}, at {speed}", **values), *others])

@@ -30,6 +30,7 @@ from equipoise.handheld.station import (
     is_damped,
     wrong_station,
 )
+from equipoise.i18n import to_say
 from equipoise.keys import (
     PLANES,
     SCHEMA_VERSION,
@@ -90,6 +91,7 @@ class Excitation(Frozen):
     An unbalance is mass times radius; its force grows with the square of its speed.
     """
 
+    called = to_say("{what} of excitation {number}")
     beside: ClassVar[Keys] = {
         "name": Key(
             "name", Text(), "if left out, that of the station and what it is", default=None
@@ -153,6 +155,8 @@ class Excitation(Frozen):
 class Operation(Frozen):
     """Speeds of the engine."""
 
+    called = to_say("{what} in operation")
+
     speed: float = key("angular speed", "at work", example="7000 rpm", above=0)
     speeds: tuple[float, ...] = key(
         SPEEDS, "lowest and highest at work", default=(), example=["2000 rpm", "9000 rpm"]
@@ -173,6 +177,8 @@ class Operation(Frozen):
 class Work(Frozen):
     """A part of the day."""
 
+    called = to_say("{what} of {name}")
+
     name: str = key(Text(), "of the work", example="mowing")
     speed: float = key("angular speed", "of the engine", example="7000 rpm", above=0)
     duration: float = key("time", "of it in a day", example="2 h", above=0)
@@ -182,6 +188,7 @@ class Work(Frozen):
 class ShaftTable(Frozen):
     """The shaft with what sits on it and holds it; a tool has both apart."""
 
+    called = to_say("{what} of the shaft")
     beside: ClassVar[Keys] = {
         **keys_of(Shaft),
         "stations": Key(

@@ -13,6 +13,7 @@ from math import inf, pi
 from typing import Any, ClassVar, Literal, NamedTuple, Self, get_args
 
 from equipoise.errors import ModelError
+from equipoise.i18n import to_say
 from equipoise.keys import (
     Conditions,
     Frozen,
@@ -243,6 +244,7 @@ class Profiled(Frozen):
 class Segment(Profiled):
     """A part of the shaft with another section, from one place to another."""
 
+    called = to_say("{what} of segment {number}")
     beside: ClassVar[Keys] = PROFILE
     conditions: ClassVar[Conditions] = profile_conditions("mass_per_length")
 

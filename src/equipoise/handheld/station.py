@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.errors import ModelError
+from equipoise.i18n import to_say
 from equipoise.keys import (
     PLANES,
     ROW,
@@ -42,6 +43,8 @@ TURNING_DAMPING = Planes(Quantity(dimension="torsional damping"))
 class Absorber(Frozen):
     """A mass on a spring and damper of its own."""
 
+    called = to_say("{what} of the absorber")
+
     mass: float = key("mass", "of it", example="150 g", at_least=0)
     stiffness: Both = key(STIFFNESS, "between it and the shaft", example="50 kN/m", at_least=0)
     damping: Both = key(DAMPING, "between it and the shaft", default=NOTHING, at_least=0)
@@ -69,6 +72,7 @@ class Hand(Frozen):
     hands : how many hold on here; all else is of one.
     """
 
+    called = to_say("{what} of the hand")
     conditions: ClassVar[Conditions] = {
         "if": {"required": ["impedance"]},
         "then": {"properties": dict.fromkeys(OF_HAND, False)},
@@ -86,12 +90,19 @@ class Hand(Frozen):
         default=(),
         example="hand.csv",
     )
-    hands: int = key(Whole(names=(1, 2)), "that hold on here; all else is of one", default=1)
+    hands: int = key(
+        Whole(names=(1, 2)),
+        "that hold on here; all else is of one",
+        default=1,
+        word=to_say("number of hands"),
+    )
 
 
 @declared
 class Harness(Frozen):
     """The belt that carries the tool, as a spring and damper to the body."""
+
+    called = to_say("{what} of the harness")
 
     stiffness: Both = key(STIFFNESS, "to the body", example="2 kN/m", at_least=0)
     damping: Both = key(DAMPING, "to the body", default=NOTHING, at_least=0)
@@ -100,6 +111,8 @@ class Harness(Frozen):
 @declared
 class Station(Frozen):
     """A place of the shaft and what sits there."""
+
+    called = to_say("{what} of the {name}")
 
     name: str = key(Text(), "by which the other tables call it", example="engine")
     position: float = key("length", "from the left end of the shaft", example="0 mm")

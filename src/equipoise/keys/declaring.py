@@ -48,6 +48,7 @@ class Key:
         better told otherwise.
     at_least, above, below : limits in SI units; `why` is said instead of words made of them.
     endless : it may be infinite, for no limit.  inside : no file has it.
+    word : what its number is called, the name of the key in words where not given.
     """
 
     name: str
@@ -63,6 +64,7 @@ class Key:
     why: str = ""
     endless: bool = False
     inside: bool = False
+    word: str = ""
 
     @property
     def required(self) -> bool:
@@ -125,13 +127,7 @@ def key(
 
 def inside(kind: Kind | str, *, default: Any = REQUIRED, compare: bool = True, **more: Any) -> Any:
     """Declare a field that no file has a key for; it is checked all the same, as of `key`."""
-    kind = Quantity(dimension=kind) if isinstance(kind, str) else kind  # type: ignore[arg-type]
-    given: dict[str, Any] = {} if default is REQUIRED else {"default": default}
-    return field(
-        metadata={_KEY: Key("", kind, default=default, inside=True, **more)},
-        compare=compare,
-        **given,
-    )
+    return key(kind, default=default, compare=compare, inside=True, **more)
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(key, inside, field))
@@ -153,11 +149,14 @@ class Frozen(Record):
     beside : keys of the file that are no fields, by name; `from_table` and `to_table` translate.
     file_order : names of keys in the order of the file, where it is not that of the fields.
     conditions : what the JSON Schema says of keys that go together.
+    called : what a number of such an object is called, around the word of its key in ``{what}``,
+        with ``{name}`` or ``{number}`` of the object, or one of its texts.
     """
 
     beside: ClassVar[Keys] = {}
     file_order: ClassVar[tuple[str, ...]] = ()
     conditions: ClassVar[Conditions] = {}
+    called: ClassVar[str] = ""
     __dataclass_fields__: ClassVar[dict[str, Any]]
 
     def __post_init__(self) -> None:

@@ -11,6 +11,7 @@ from math import degrees, hypot, pi, radians
 from typing import Any, Literal
 
 from equipoise.errors import ModelError
+from equipoise.i18n import to_say
 from equipoise.keys import Frozen, Table, Tables, Text, declared, key
 from equipoise.mechanism.bodies import MATERIALS, material_of
 from equipoise.mechanism.checks import LONGEST_NAME, Bodies, numbered, too_many, wrong_range
@@ -74,6 +75,8 @@ MOST = 200
 class SpringChoice(Frozen):
     """A spring may be set between a point of a link and a point of the frame."""
 
+    called = to_say("{what} of spring {number} to be chosen")
+
     link: str = key(Text(), "name of the link", example="rocker")
     point: str = key(Text(), "its point, not one that is pinned to the frame", example="C")
     to: str = key(Text(), "point of the frame", example="D2")
@@ -91,6 +94,8 @@ class SpringChoice(Frozen):
 class Phases(Frozen):
     """The phases of all rows but the first may be changed."""
 
+    called = to_say("{what} of the phases")
+
     step: float = key(
         "angle",
         "of the grid on which they are looked for before they are polished; 90 deg at most",
@@ -102,6 +107,7 @@ class Phases(Frozen):
 class Balance(Frozen):
     """What may be changed, what is to become small, and what must be kept."""
 
+    called = to_say("{what} of balancing")
     file_order = ("added_mass", "combine", "phases")
 
     moves: tuple[CenterMove, ...] = key(

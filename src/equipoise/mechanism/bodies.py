@@ -111,7 +111,14 @@ def material_key(prefix: str, text: str) -> dict[str, Key]:
 class Hole(Frozen):
     """A round hole, all through."""
 
-    at: Spot = key(Point(named=True), "its centre: a point of the link, or a place", example="B")
+    called = to_say("{what} of hole {number}")
+
+    at: Spot = key(
+        Point(named=True),
+        "its centre: a point of the link, or a place",
+        example="B",
+        word=to_say("centre"),
+    )
     radius: float = key("length", "of the hole", example="8 mm", above=0)
 
 
@@ -131,6 +138,7 @@ class Body(Frozen):
     between : both ends of a bar.  corners : of a plate, in order around it.
     """
 
+    called = to_say("{what} of body {number}")
     beside: ClassVar[Keys] = material_key("", "of the body")
     file_order = ("shape", "between", "overhang", "width", "wall", "outer_diameter",
                   "inner_diameter", "corners", "at", "radius", "inner_radius", "thickness",
@@ -154,6 +162,7 @@ class Body(Frozen):
         "both ends of a bar: points of the link, or places",
         default=(),
         example=["B", "C"],
+        word=to_say("end {number}"),
     )
     overhang: float = key(
         "length", "by which a bar reaches beyond both ends", default=0.0, at_least=0
@@ -177,12 +186,14 @@ class Body(Frozen):
         "of a plate, in order around it: points of the link, or places",
         default=(),
         example=["B", "C", ["20 mm", "-30 mm"]],
+        word=to_say("corner {number}"),
     )
     at: Spot | None = key(
         Point(named=True),
         "centre of a disc, ring or point: a point of the link, or a place",
         default=None,
         example="A",
+        word=to_say("centre"),
     )
     radius: float | None = key(
         "length", "of a disc, and outer one of a ring", default=None, example="60 mm", above=0

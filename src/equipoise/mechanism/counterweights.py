@@ -7,6 +7,7 @@ from math import degrees, hypot
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
+from equipoise.i18n import to_say
 from equipoise.keys import (
     Conditions,
     Frozen,
@@ -71,6 +72,7 @@ class GearedWeight(Frozen):
     have no mass.
     """
 
+    called = to_say("{what} of geared counterweight {number}")
     beside: ClassVar[Keys] = material_key("gear_", "of both gears; goes with `gear_thickness`")
     file_order = ("driver", "ratio", "teeth", "module", "pitch_radius", "axis", "direction",
                   "gear_thickness", "gear_material", "gear_density", "clear_of", "weight",
@@ -98,6 +100,7 @@ class GearedWeight(Frozen):
         "least and most of either gear, instead of `ratio`",
         default=None,
         example=[17, 80],
+        word=to_say("number of teeth"),
     )
     module: float | None = key(
         "length",
@@ -154,6 +157,7 @@ class BalanceShafts(Frozen):
         second, which is geared to the first.
     """
 
+    called = to_say("{what} of balance shafts {number}")
     conditions: ClassVar[Conditions] = {
         "allOf": [*WEIGHT, {"properties": {"shape": {"not": {"const": "ring"}}}}]
     }

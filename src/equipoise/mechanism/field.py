@@ -11,6 +11,7 @@ from math import pi
 from typing import ClassVar, Literal
 
 from equipoise.errors import ModelError
+from equipoise.i18n import to_say
 from equipoise.keys import (
     ROW,
     Conditions,
@@ -54,11 +55,18 @@ class Soil(Frozen):
     speed over ground, `per_depth_and_speed` times both, and the table's value at that depth.
     """
 
+    called = to_say("{what} of the soil")
+
     resistance: float = key(
         "force", "constant part of the force", default=0.0, at_least=0, why=RESISTS
     )
     per_depth: float = key(
-        "stiffness", "force for each unit of depth", default=0.0, at_least=0, why=RESISTS
+        "stiffness",
+        "force for each unit of depth",
+        default=0.0,
+        at_least=0,
+        why=RESISTS,
+        word=to_say("resistance per depth"),
     )
     per_speed: float = key(
         "damping",
@@ -66,6 +74,7 @@ class Soil(Frozen):
         default=0.0,
         at_least=0,
         why=RESISTS,
+        word=to_say("resistance per speed"),
     )
     per_depth_and_speed: float = key(
         "damping per length",
@@ -73,6 +82,7 @@ class Soil(Frozen):
         default=0.0,
         at_least=0,
         why=RESISTS,
+        word=to_say("resistance per depth and speed"),
     )
     table: SoilTable | None = key(
         File("soil"),
@@ -86,6 +96,7 @@ class Soil(Frozen):
 class Planting(Frozen):
     """The planting finger and the field that it works in."""
 
+    called = to_say("{what} of planting")
     file_order = ("tip", "forward_speed", "hill_spacing", "depth", "surface", "release",
              "acceleration_limit", "soil_acceleration_limit", "units_per_turn", "travel",
              "finger_from", "tray", "soil")  # fmt: skip
@@ -145,6 +156,7 @@ class Planting(Frozen):
         Listing(Point(), (2,)),
         "both ends of the edge of the seedling tray, in the frame",
         default=None,
+        word=to_say("point {number} of the tray"),
     )
     acceleration_limit: float | None = key(
         "acceleration", "largest acceleration of the tip that is wanted", default=None, above=0

@@ -8,6 +8,7 @@ from math import ceil, degrees, pi
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
+from equipoise.i18n import to_say
 from equipoise.keys import (
     NO_INERTIA,
     ROW,
@@ -72,6 +73,7 @@ class Load(Frozen):
     Exactly one of force, torque and table.  Without `start` and `stop` it acts always.
     """
 
+    called = to_say("{what} of load {number}")
     file_order = ("link", "point", "force", "torque", "table", "outside", "from", "to")
     conditions: ClassVar[Conditions] = {
         "oneOf": [{"required": [one]} for one in ("force", "torque", "table")],
@@ -119,6 +121,8 @@ class Load(Frozen):
 class Spring(Frozen):
     """A linear spring without mass: it pulls `point` of `link` towards the frame's point `to`."""
 
+    called = to_say("{what} of spring {number}")
+
     link: str = key(Text(), "the link that it pulls", example="rocker")
     point: str = key(
         Text(), "its point on the link, not one that is pinned to the frame", example="C"
@@ -157,6 +161,7 @@ class Motor(Frozen):
     table.
     """
 
+    called = to_say("{what} of the motor")
     file_order = ("no_load_speed", "stall_torque", "table", "ratio", "inertia", "mean_speed")
     conditions: ClassVar[Conditions] = {
         "oneOf": [
@@ -171,6 +176,7 @@ class Motor(Frozen):
         default=None,
         example="3000 rpm",
         above=0,
+        word=to_say("no-load speed"),
     )
     stall_torque: float | None = key(
         "torque", "of the motor at standstill", default=None, example="2 N m", above=0

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
+from equipoise.i18n import to_say
 from equipoise.keys import (
     NO_INERTIA,
     Conditions,
@@ -46,6 +47,7 @@ class Link(Frozen):
     bodies : what it is made of, from which mass, centre of mass and inertia follow.
     """
 
+    called = to_say("{what} of the {name}")
     conditions: ClassVar[Conditions] = {
         "dependentRequired": {
             "mass": ["center_of_mass", "inertia"],
@@ -69,7 +71,10 @@ class Link(Frozen):
         "mass", "needed for forces", default=None, at_least=0, why="a mass cannot be negative"
     )
     center_of_mass: Vector | None = key(
-        Point(), "needed for forces; in the link's own axes", default=None
+        Point(),
+        "needed for forces; in the link's own axes",
+        default=None,
+        word=to_say("centre of mass"),
     )
     inertia: float | None = key(
         "inertia", "about the centre of mass", default=None, at_least=0, why=NO_INERTIA
@@ -90,6 +95,7 @@ class Link(Frozen):
         "origin, the second on the x axis, the third to the left of it",
         factory=dict,
         above=0,
+        word=to_say("side {name}"),
     )
 
     def __post_init__(self) -> None:

@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
+from equipoise.i18n import to_say
 from equipoise.keys import (
     SCHEMA_VERSION,
     VERSION,
@@ -57,13 +58,7 @@ from equipoise.mechanism.links import (
     wrong_link,
     wrong_points,
 )
-from equipoise.mechanism.parts import (
-    Drive,
-    Gear,
-    Slider,
-    wrong_gear,
-    wrong_slider,
-)
+from equipoise.mechanism.parts import Drive, Gear, Slider, wrong_gear, wrong_slider
 from equipoise.mechanism.shown_units import ShownUnits
 from equipoise.mechanism.support import Row, Support, wrong_support
 
@@ -109,6 +104,7 @@ class Position(Frozen):
 class Frame(Frozen):
     """The part that stands still; a machine has its points by name."""
 
+    called = to_say("{what} of the frame")
     wanted = "a mapping of names to two numbers"
 
     points: Mapping[str, Vector] = key(

@@ -7,6 +7,7 @@ from math import cos, hypot, pi, sin
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
+from equipoise.i18n import to_say
 from equipoise.keys import Conditions, Flag, Frozen, Key, Keys, Point, Quantity, Text, declared, key
 from equipoise.keys import Direction as DirectionKind
 
@@ -67,6 +68,7 @@ class Mount(Frozen):
         None where the weight settles.
     """
 
+    called = to_say("{what} of mount {name}")
     beside: ClassVar[Keys] = {
         "torsional_preload": Key(
             "torsional_preload",
@@ -139,6 +141,7 @@ class Gauge(Frozen):
     rotation about an axis.
     """
 
+    called = to_say("{what} of gauge {name}")
     conditions: ClassVar[Conditions] = _point_or_axis()
 
     point: Place | None = key(

@@ -8,6 +8,7 @@ from math import pi
 from typing import ClassVar
 
 from equipoise.errors import ModelError
+from equipoise.i18n import to_say
 from equipoise.keys import (
     Frozen,
     Key,
@@ -49,6 +50,7 @@ MOST_NUMBERS = 200
 class Objective(Frozen):
     """What is to become small: a measure of an output."""
 
+    called = to_say("{what} of objective {number}")
     file_order = ("output", "measure", "orders", "about", "speeds", "weight")
 
     output: str = key(
@@ -82,6 +84,7 @@ class Objective(Frozen):
         "where there are several objectives, each of which counts over its value before",
         default=1.0,
         above=0,
+        word=to_say("weighting"),
     )
     speeds: tuple[float, ...] = key(
         Listing(Quantity("angular speed"), right='a list such as ["150 rpm", "240 rpm"]'),
@@ -109,6 +112,7 @@ class Limit(Frozen):
     at_most : in SI units.  ratio : over the value before, instead.
     """
 
+    called = to_say("{what} of limit {number}")
     beside: ClassVar[Keys] = {
         "at_most": Key(
             "at_most",

@@ -8,6 +8,7 @@ from math import copysign, pi, radians
 from typing import Any, ClassVar, Literal, Protocol
 
 from equipoise.errors import ModelError
+from equipoise.i18n import to_say
 from equipoise.keys import (
     NO_INERTIA,
     Conditions,
@@ -36,6 +37,7 @@ MESHES = ("external", "internal")
 class Drive(Frozen):
     """The link that is driven."""
 
+    called = to_say("{what} of the drive")
     file_order = ("link", "speed", "speeds")
 
     link: str = key(
@@ -77,6 +79,8 @@ class Drive(Frozen):
 class Slider(Frozen):
     """A sliding joint: `point` of `link` stays on a line of the body `on`, without turning."""
 
+    called = to_say("{what} of the guide of the {link}")
+
     link: str = key(Text(), "the sliding link", example="piston")
     point: str = key(Text(), "its point on the line", example="C")
     on: str = key(Text(), 'the guiding link, or `"frame"`', example="frame")
@@ -93,6 +97,7 @@ class Slider(Frozen):
 class Gear(Frozen):
     """A pair of gears, both pinned to the same carrier; either ratio or teeth."""
 
+    called = to_say("{what} of gear {number}")
     beside: ClassVar[Keys] = {
         "between": Key(
             "between",
@@ -122,10 +127,16 @@ class Gear(Frozen):
         "of driver and driven, instead of `ratio`",
         default=None,
         example=[20, 40],
+        word=to_say("number of teeth"),
     )
     mesh: Literal["external", "internal"] = inside(Text(MESHES), default="external")
     carrier: str = key(Text(), "link to which both are pinned", default=FRAME, example="frame")
-    start: float = key("angle", "of the driven link in the frame at crank angle 0", default=0.0)
+    start: float = key(
+        "angle",
+        "of the driven link in the frame at crank angle 0",
+        default=0.0,
+        word=to_say("angle at the start"),
+    )
     pressure_angle: float = key(
         "angle",
         "of the teeth; it sets the radial part of the tooth force",

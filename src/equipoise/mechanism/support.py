@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import ClassVar
 
 from equipoise.errors import ModelError
+from equipoise.i18n import to_say
 from equipoise.keys import (
     Conditions,
     Frozen,
@@ -65,10 +66,12 @@ MOST = {"mounts": 200, "gauges": 200, "rows": 200}
 class Row(Frozen):
     """One of several equal linkages on the support, all driven by one shaft."""
 
+    called = to_say("{what} of row {number}")
+
     phase: float = key(
         "angle", "by which its crank angle is larger than that of the drive", default=0.0
     )
-    lateral: float = key("length", "z of its plane", default=0.0)
+    lateral: float = key("length", "z of its plane", default=0.0, word=to_say("place across"))
     offset: tuple[float, float] = key(
         Listing(Quantity("length"), (2,)),
         "x and y by which it stands beside the linkage of the file",
@@ -80,6 +83,7 @@ class Row(Frozen):
 class Support(Frozen):
     """The rigid body that carries the linkages, without their moving links."""
 
+    called = to_say("{what} of the support")
     conditions: ClassVar[Conditions] = {
         "oneOf": [
             {"required": ["inertia"], "properties": {"pivot_inertia": False}},
@@ -99,7 +103,10 @@ class Support(Frozen):
         above=0,
     )
     center_of_mass: Place = key(
-        Point(space=True), "in the frame's axes", example=["0 mm", "300 mm"]
+        Point(space=True),
+        "in the frame's axes",
+        example=["0 mm", "300 mm"],
+        word=to_say("centre of mass"),
     )
     inertia: tuple[float, ...] = key(
         OneOr(

@@ -7,6 +7,7 @@ from math import inf, isfinite, pi, sqrt
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
+from equipoise.i18n import to_say
 from equipoise.keys import (
     Conditions,
     Frozen,
@@ -119,6 +120,7 @@ class Weight(Frozen):
 class AddedMass(Frozen):
     """Mass may be added to a link, about one of its points."""
 
+    called = to_say("{what} of added mass {number}")
     conditions: ClassVar[Conditions] = {"allOf": [*WEIGHT]}
 
     link: str = key(Text(), "name of the link", example="crank")
@@ -132,6 +134,7 @@ class CenterMove(Frozen):
     inertia about it, are kept.
     """
 
+    called = to_say("{what} of move {number}")
     conditions: ClassVar[Conditions] = {
         "dependentRequired": {"center": ["radius"], "radius": ["center"]},
         "dependentSchemas": {"center": {"properties": {"x": False, "y": False}}},
@@ -149,6 +152,7 @@ class CenterMove(Frozen):
         Point(),
         "of a circle that the centre of mass does not leave, instead of `x` and `y`",
         default=None,
+        word=to_say("centre"),
     )
     radius: float | None = key("length", "of that circle", default=None, example="40 mm", above=0)
 

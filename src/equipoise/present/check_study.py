@@ -14,7 +14,7 @@ from equipoise.errors import lacking
 from equipoise.quantities.numbers import rate_told, time_told
 from equipoise.results.blocks import Block, Cell, Listing, Notes, Table, Text
 from equipoise.signals import Array
-from equipoise.studies.blocks import Units, in_unit, labelled, spread_told
+from equipoise.studies.blocks import Units, in_unit, labelled, spread_told, unit_in
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Outcome, estimated
 from equipoise.studies.run import Route
@@ -37,7 +37,7 @@ def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
     yield Text(f"model: {study.model.base().title}")
     yield Text(f"{study.size} designs, {sampling.method}{seed}")
     varied = _varied(study, units, own)
-    yield Table.of("What varies", ("", "model", "in the study"), varied)
+    yield Table.of("What varies", ("", "path", "model", "in the study"), varied)
     for one in study.correlations:
         yield Text(f"{one.first} goes with {one.second}, coefficient {one.coefficient:g}")
     heads = ("", "of", "model", "at least", "at most", "make")
@@ -65,17 +65,17 @@ def _time(study: Study) -> str:
 
 def _varied(study: Study, units: Units, own: Array) -> Iterator[tuple[Cell, ...]]:
     for one, value in zip(study.vary, own.tolist(), strict=True):
-        unit = units[one.path]
+        unit = unit_in(units, one.path)
         spread = spread_told(one.spread, unit)
-        yield labelled(one.path, unit.name), in_unit(value, unit), spread
+        yield labelled(unit), one.path, in_unit(value, unit), spread
 
 
 def _computed(study: Study, units: Units, outcome: Outcome) -> Iterator[tuple[Cell, ...]]:
     for output, figure in zip(study.outputs, outcome.figures[0].tolist(), strict=True):
-        unit = units[output.name]
+        unit = unit_in(units, output.name)
         ends = (in_unit(end, unit) for end in (output.at_least, output.at_most))
         own = in_unit(figure, unit)
-        yield labelled(output.name, unit.name), output.of, own, *ends, output.make or ""
+        yield labelled(unit), output.of, own, *ends, output.make or ""
 
 
 def _ready(study: Study, file: str) -> Iterator[str]:

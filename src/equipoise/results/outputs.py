@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.i18n import say, to_say
+from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.outputs import DECLARED, GROUPS, Declared, declared
 from equipoise.mechanism.strokes import DeadPosition, Stroke, declared_figures
@@ -229,6 +229,12 @@ MEASURES = {
     "peak_to_peak": to_say("peak to peak"),
     "area": to_say("area in a turn"),
 }
+FIGURES = MEASURES | {
+    "mean": to_say("mean"),
+    "max": to_say("largest"),
+    "min": to_say("smallest"),
+}
+"""What is told of an output by the last word of its path."""
 CAUSES = {
     "translation": to_say("inertia of the centres of mass"),
     "rotation": to_say("inertia of rotation"),
@@ -250,6 +256,15 @@ def output_named(name: str, rows: int = 1) -> str:
     if found is not None:
         return found[0].say(found[1], rows > 1)
     return say("all rows: {what}", what=output_named(rest)) if first == "rows" else name
+
+
+def figure_named(path: str) -> Note | str:
+    """A figure of an output, such as ``joints.A.peak``, in words; its path where it has none."""
+    name, _, figure = path.removeprefix("summary.").rpartition(".")
+    found = declared(name)
+    if found is None or figure not in FIGURES:
+        return path
+    return Note("{what}, {part}", what=found[0].note(found[1]), part=Note(FIGURES[figure]))
 
 
 def objective_named(one: Objective, rows: int = 1) -> str:

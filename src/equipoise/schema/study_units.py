@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,7 @@ from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import UsageError
 from equipoise.quantities import KINDS, chosen_unit
 from equipoise.quantities.units import FACTORS
+from equipoise.results.outputs import figure_named
 from equipoise.schema.files import printable
 from equipoise.schema.finding import SHARE, handy, unit_of
 from equipoise.schema.studies import restore
@@ -103,7 +105,7 @@ def unit_named(name: str) -> Unit:
 
 
 def units_of(study: Study) -> dict[str, Unit]:
-    """Unit of each number and output, by its name.
+    """How each number and output is told, by its name: in which unit, and what it is called.
 
     Units that are chosen go first.  Else numbers are told in the unit in which the model file gives
     them, figures in the one in which the study limits them, and else in one that is usual.
@@ -114,7 +116,12 @@ def units_of(study: Study) -> dict[str, Unit]:
         output.name: unit_named(_of_output(output, given.get(output.name, {})))
         for output in study.outputs
     }
-    return numbers | figures
+    words = {path: study.model.words(path) for path in numbers}
+    words |= {one.name: figure_named(one.value) for one in study.outputs if one.name == one.value}
+    return {
+        name: replace(unit, label=words.get(name, name))
+        for name, unit in (numbers | figures).items()
+    }
 
 
 def owner_of(store: Store) -> Study | None:

@@ -16,6 +16,7 @@ from typing import Any
 
 from equipoise.errors import ModelError
 from equipoise.handheld.model import Impedance, Tool
+from equipoise.i18n import Note
 from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.force_elements import MotorTable
 from equipoise.mechanism.linkage import assemble
@@ -25,6 +26,7 @@ from equipoise.schema.models import Beside, machine_of, parts_of, text_of, tool_
 from equipoise.schema.numbers import Number
 from equipoise.schema.opening import Kind, Opened, in_file, kind_of, model_content, opened
 from equipoise.schema.reading import Place, written_place
+from equipoise.schema.words import words_of
 
 Known = dict[tuple[str, str], Any]
 """What lies beside a model file, by sort and name: tables, and linkages as templates."""
@@ -119,6 +121,18 @@ class Template:
         if found.rest:
             return self._linkage(found.place).unit(found.rest)
         return unit_in(self._content, found)
+
+    def words(self, path: str) -> Note | str:
+        """A number of the file in words, such as ``mass of the crank``; its path where it has none.
+
+        Raises
+        ------
+        ModelError : there is no such number.
+        """
+        found = self._find(path)
+        if found.rest:
+            return self._linkage(found.place).words(found.rest)
+        return words_of(self._content, self.kind, found) or path
 
     def numbers(self) -> dict[str, Number]:
         """Every number that the file has, by its path."""

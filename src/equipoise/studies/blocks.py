@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isnan
 from shlex import quote
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,7 @@ import numpy as np
 
 from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import number
-from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
+from equipoise.results.blocks import Block, Cell, Column, Facts, Listing, Notes, Table, Text, Value
 from equipoise.results.outputs import objective_named
 from equipoise.studies.design_space import Choices, Normal, Range
 from equipoise.studies.outcomes import far_apart, signs_of
@@ -34,14 +34,21 @@ MOST_CHOICES = 5
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit in which a number or a figure of a study is told; SI where no other is known.
+    """How a number or a figure of a study is told: its unit, SI where no other is known, and words.
 
     name : nothing of a plain number.
     factor : of it, in SI units.
+    label : what the number or figure is called, where it is known by more than its path or name.
     """
 
     name: str = ""
     factor: float = 1.0
+    label: Note | str = ""
+
+    @property
+    def called(self) -> str:
+        """The label in the language that is spoken."""
+        return self.label.said() if isinstance(self.label, Note) else self.label
 
     def of_si(self, value: float) -> float:
         """A value in SI units, in this one."""
@@ -52,8 +59,27 @@ Units = Mapping[str, Unit]
 
 
 def unit_in(units: Units | None, name: str) -> Unit:
-    """The unit of a number or figure; SI where none is told."""
-    return (units or {}).get(name, Unit())
+    """How a number or figure is told; by its path or name, in SI units, where nothing is known."""
+    found = (units or {}).get(name, Unit())
+    return found if found.label else replace(found, label=name)
+
+
+def named_together(names: Sequence[str], units: Units | None) -> str:
+    """Numbers that vary together in words; what they are of is said once."""
+    found = _together([unit_in(units, name).label for name in names])
+    return found.said() if isinstance(found, Note) else found
+
+
+def _together(words: Sequence[Note | str]) -> Note | str:
+    first, *rest = words
+    if not rest:
+        return first
+    notes = [one for one in words if isinstance(one, Note) and "what" in one.values]
+    around = [(one.template, {**one.values, "what": ""}) for one in notes]
+    if len(notes) == len(words) and around.count(around[0]) == len(around):
+        inner = _together([one.values["what"] for one in notes])
+        return Note(notes[0].template, **{**notes[0].values, "what": inner})
+    return Note("{first} + {second}", first=first, second=_together(rest))
 
 
 def in_unit(value: float | None, unit: Unit) -> Value | None:
@@ -61,9 +87,9 @@ def in_unit(value: float | None, unit: Unit) -> Value | None:
     return None if value is None else Value(unit.of_si(float(value)))
 
 
-def labelled(name: str, unit: str) -> str:
-    """A name with its unit."""
-    return say(", ").join(filter(None, (name, unit)))
+def labelled(unit: Unit) -> str:
+    """What a number or figure is called, with its unit."""
+    return say(", ").join(filter(None, (unit.called, unit.name)))
 
 
 def spread_told(spread: Spread, unit: Unit) -> str:
@@ -109,15 +135,15 @@ def designs_table(
     """
     names = [*dict.fromkeys((*first, *columns))]
     own = {name: unit_in(units, name) for name in names}
-    heads = (Column(name, unit=own[name].name or None) for name in names)
+    heads = (Column(own[name].called, unit=own[name].name or None) for name in names)
     cells = ([in_unit(one, own[name]) for one in columns[name]] for name in names)
     return Table(title, (Column(say("design")), *heads), tuple(zip(labels, *cells, strict=True)))
 
 
-def wanted(by: Mapping[str, Make]) -> str:
+def wanted(by: Mapping[str, Make], units: Units | None) -> str:
     """Such as ``vertical smallest, swing largest``."""
     ways = {"smallest": say("smallest"), "largest": say("largest")}
-    return say(", ").join(f"{name} {ways[way]}" for name, way in by.items())
+    return say(", ").join(f"{unit_in(units, name).called} {ways[way]}" for name, way in by.items())
 
 
 def limits(outputs: Iterable[Output], units: Units | None) -> list[str]:
@@ -128,7 +154,7 @@ def limits(outputs: Iterable[Output], units: Units | None) -> list[str]:
         for words, limit in ((say("at least"), output.at_least), (say("at most"), output.at_most)):
             if limit is not None:
                 value = number(unit.of_si(limit))
-                told.append(f"{output.name} {words} {value} {unit.name}".strip())
+                told.append(f"{unit.called} {words} {value} {unit.name}".strip())
     return told
 
 
@@ -151,13 +177,17 @@ def best_blocks(
     if len(found.by) > 1:
         yield Text(say("{count} designs that no other beats in everything", count=found.front))
     yield best_table(found, units)
+    labels = {name: unit_in(units, name).called for name in (*found.numbers, *found.outputs)}
+    paths = tuple(f"{label}: {name}" for name, label in labels.items() if label != name)
+    if paths:
+        yield Facts(say("As --by takes them:"), paths)
 
 
 def best_table(found: Best, units: Units | None = None) -> Table:
     """The designs, the best first."""
     columns = columns_of(found.numbers, found.values, found.outputs, found.figures)
     labels = [str(design) for design in found.designs]
-    aims = wanted(found.by)
+    aims = wanted(found.by, units)
     if len(found.by) > 1:
         title = say("Designs that no other beats; {aims}", aims=aims)
     else:
@@ -198,7 +228,7 @@ def _front(found: Searched, units: Units | None, own: tuple[Array, Array] | None
         labels = [say("model"), *labels]
         values, figures = np.vstack([own[0], values]), np.vstack([own[1], figures])
     columns = columns_of(found.study.paths, values, found.study.names, figures)
-    told = {"shown": len(shown), "count": found.front, "aims": wanted(found.objectives)}
+    told = {"shown": len(shown), "count": found.front, "aims": wanted(found.objectives, units)}
     if len(found.objectives) == 1:
         title = say("The best design; {aims}", **told)
     elif len(shown) < found.front:
@@ -299,7 +329,9 @@ def landscape_blocks(found: Landscape) -> Iterator[Block]:
     if found.start is not None:
         rows.append((say("as it is"), *map(Value, (*found.start, found.before))))
     objective = Column(objective_named(found.objective), unit=found.unit)
-    columns = (Column(""), *map(Column, found.paths), objective)
+    words = (found.words[path] for path in found.paths)
+    said = (one.said() if isinstance(one, Note) else one for one in words)
+    columns = (Column(""), *map(Column, said), objective)
     yield Table(say("Least over two numbers, SI units"), columns, tuple(rows))
     values = found.values[np.isfinite(found.values)]
     if isnan(found.least) or not values.size:

@@ -17,6 +17,7 @@ from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
+    from equipoise.i18n import Note
     from equipoise.mechanism.model import Machine
 
 Array = np.ndarray[Any, Any]
@@ -217,6 +218,9 @@ class Model(Protocol):
 
         An `int` where only whole numbers will do.
         """
+
+    def words(self, path: str) -> Note | str:
+        """Number in the file in words, or its path where it has none."""
 
     def base(self) -> Machine | Tool:
         """The model as its file has it."""

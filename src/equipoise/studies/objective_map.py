@@ -23,6 +23,7 @@ from equipoise.balancing.effects import Effects
 from equipoise.balancing.objectives import Near, measured, signals_of, unit_of
 from equipoise.balancing.problem import Problem
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics import massless
@@ -47,8 +48,8 @@ KEYS = {"mass": "mass", "radius": "length", "direction": "angle"}
 """Numbers of a counterweight, which no file has, and what they are."""
 
 
-def dimension(model: Model, path: str) -> str | None:
-    """What a number of the model or of a counterweight is; None of a plain one.
+def told_as(model: Model, path: str) -> tuple[str | None, Note | str]:
+    """Dimension of a number of the model or of a counterweight, None of a plain one; its words.
 
     Raises
     ------
@@ -56,11 +57,12 @@ def dimension(model: Model, path: str) -> str | None:
     """
     weight = COUNTERWEIGHT.fullmatch(path)
     if weight is None:
-        return model.number(path)[1]
+        return model.number(path)[1], model.words(path)
     machine = linkage_of(model.base())
     if weight["link"] not in machine.links:
         raise ModelError(path, unknown(weight["link"], machine.links, "link"))
-    return KEYS[weight["key"]]
+    words = to_say("{what} of the counterweight on the {name}")
+    return KEYS[weight["key"]], Note(words, what=Note(weight["key"]), name=weight["link"])
 
 
 def linkage_of(model: Any) -> Machine:
@@ -178,6 +180,7 @@ class Landscape(Result):
     paths : of the two numbers.
     given : other numbers that were set, by path.
     dimensions : what each of all these is, by path; None of plain numbers.
+    words : what each is called.
     x, y : their values, (X,) and (Y,).
     values : of the objective, (Y, X); NaN where the linkage cannot turn.
     unit : of the values.
@@ -192,6 +195,7 @@ class Landscape(Result):
     paths: tuple[str, str]
     given: Mapping[str, float]
     dimensions: Mapping[str, str | None]
+    words: Mapping[str, Note | str]
     x: Array
     y: Array
     values: Array
@@ -255,7 +259,9 @@ def landscape(
     linkage_of(model.base())
     given = dict(given or {})
     paths, drawn = _checked(over, given)
-    dimensions = {path: dimension(model, path) for path in (*paths, *given)}
+    told = {path: told_as(model, path) for path in (*paths, *given)}
+    dimensions = {path: kind for path, (kind, _) in told.items()}
+    words = {path: one for path, (_, one) in told.items()}
     maker = Variants(model, given)
     base = maker.machine({})
     if missing := massless(base):
@@ -283,7 +289,7 @@ def landscape(
         start = float(model.number(paths[0])[0]), float(model.number(paths[1])[0])
         before = value(dict(zip(paths, start, strict=True)))
     values = found.reshape(len(y), len(x))
-    asked = (of, paths, given, dimensions, x, y, values, unit_of(of, base))
+    asked = (of, paths, given, dimensions, words, x, y, values, unit_of(of, base))
     return Landscape(base.with_balance(None), *asked, best, least, start, before)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import number, percent
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
-from equipoise.studies.blocks import Units, in_unit, labelled, unit_in
+from equipoise.studies.blocks import Units, in_unit, labelled, named_together, unit_in
 from equipoise.studies.design_space import Normal, Uniform
 
 if TYPE_CHECKING:
@@ -35,8 +35,8 @@ def tolerances_blocks(found: Tolerances, units: Units | None = None) -> Iterator
     if any(one.within is not None for one in found.scatters.values()):
         yield _kept(found, units)
     yield _causes(found, units)
-    yield _variances(found)
-    yield Text(advice(found))
+    yield _variances(found, units)
+    yield Text(advice(found, units))
     notes: tuple[Note | str, ...] = (*_outside(found), *found.notes)
     if notes:
         yield Notes(notes)
@@ -50,7 +50,7 @@ def _scatters(found: Tolerances, units: Units | None) -> Table:
     for name, one in found.scatters.items():
         unit = unit_in(units, name)
         told = (one.base, one.mean, one.deviation, *(one.percentiles[p] for p in shared))
-        rows.append((labelled(name, unit.name), *(in_unit(value, unit) for value in told)))
+        rows.append((labelled(unit), *(in_unit(value, unit) for value in told)))
     labels = ("", say("model"), say("mean"), say("deviation"), *(f"{p:g} %" for p in shared))
     title = say("Figures; the columns with % tell below what so many machines lie")
     return Table(title, tuple(map(Column, labels)), tuple(rows))
@@ -65,7 +65,7 @@ def _kept(found: Tolerances, units: Units | None) -> Table:
         ends = (in_unit(end, unit) for end in (one.output.at_least, one.output.at_most))
         beyond = (Value(100 * share, after=2) for share in (one.below, one.above))
         inside = _share(one.within).replace(" %", "")
-        rows.append((labelled(name, unit.name), *ends, *beyond, inside))
+        rows.append((labelled(unit), *ends, *beyond, inside))
     limits = map(Column, ("", say("at least"), say("at most")))
     out = (Column(words, unit="%") for words in (say("below"), say("above")))
     columns = (*limits, *out, Column(f"{say('within')}, %"))
@@ -86,7 +86,7 @@ def _causes(found: Tolerances, units: Units | None) -> Table:
         cells = (None if one is None else Value(100 * one, after=digits) for one in shares)
         given = "; ".join(tolerance_told(found, path, units) for path in cause.numbers)
         gain = Value(100 * cause.gain, after=1)
-        rows.append((say(", ").join(cause.numbers), given, gain, *cells))
+        rows.append((named_together(cause.numbers, units), given, gain, *cells))
     told = [say("variance less by")]
     title = say("What half of a tolerance does, the most first")
     if found.unchanged is not None:
@@ -110,12 +110,14 @@ def tolerance_told(found: Tolerances, path: str, units: Units | None) -> str:
     return say("deviation {size}, cut at {cut}", size=size, cut=f"{spread.cut:g}")
 
 
-def _variances(found: Tolerances) -> Table:
+def _variances(found: Tolerances, units: Units | None) -> Table:
     """The share of each cause in the variance of each figure."""
     names = [name for name in found.scatters if name in found.causes[0].effects]
-    rows = tuple((say(", ").join(cause.numbers), *_effects(cause, names)) for cause in found.causes)
+    causes = ((named_together(one.numbers, units), one) for one in found.causes)
+    rows = tuple((words, *_effects(cause, names)) for words, cause in causes)
     title = say("Share of the variance by cause, with what it does together with others, %")
-    return Table(title, (Column(""), *map(Column, names)), rows)
+    heads = (Column(unit_in(units, name).called) for name in names)
+    return Table(title, (Column(""), *heads), rows)
 
 
 def _effects(cause: Cause, names: Sequence[str]) -> Iterator[str]:
@@ -130,7 +132,7 @@ def _digits(found: Tolerances) -> int:
     return 2 if found.rows >= FINE else 1
 
 
-def advice(found: Tolerances) -> str:
+def advice(found: Tolerances, units: Units | None) -> str:
     """What to tighten first, and what that brings."""
     first = found.causes[0]
     if first.gain < LITTLE:
@@ -140,12 +142,12 @@ def advice(found: Tolerances) -> str:
     limited = [name for name, one in found.scatters.items() if one.within is not None]
     names = limited or [*found.scatters]
     of = say("the figures with limits") if limited else say("the figures")
-    what = say(" and ").join(first.numbers)
+    what = named_together(first.numbers, units)
     text = say(
         "Tighten first: {what}. Half of the tolerance takes {share} % off the variance of {of}",
         what=say("{names} together", names=what) if len(first.numbers) > 1 else what,
         share=f"{100 * first.gain:.0f}",
-        of=names[0] if len(names) == 1 else of,
+        of=unit_in(units, names[0]).called if len(names) == 1 else of,
     )
     if first.halved is None or found.unchanged is None:
         return f"{text}."

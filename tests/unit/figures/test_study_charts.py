@@ -89,8 +89,8 @@ def test_what_to_tighten_first_stands_at_the_top_and_shares_are_of_each() -> Non
     gains = [max(cause.gain, 0.0) for cause in found.causes]
     np.testing.assert_allclose(panel.bars[0].size, gains)
     assert panel.y.low is not None and panel.y.high is not None and panel.y.low > panel.y.high
-    assert panel.y.ticks is not None and panel.y.ticks[0][1] == "drive.speed"
-    assert "links.coupler.mass + inertia" in words(chart)
+    assert panel.y.ticks is not None and panel.y.ticks[0][1] == "speed of the drive"
+    assert "mass + inertia of the coupler" in words(chart)
     for part, name in zip(of_tolerances()["shares"].panels, found.scatters, strict=True):
         effects = [cause.effects[name] for cause in found.causes]
         for bars, kind in zip(part.bars, ("first", "total"), strict=True):
@@ -120,10 +120,14 @@ def test_designs_are_drawn_with_the_model_beside_them() -> None:
     told = words(chart)
     assert "upward (small is good), N" in told and "the model itself" in told
     for number, (panel, label) in enumerate(
-        zip(of_search()["designs"].panels, ("mass, g", "center_of_mass.x, mm"), strict=False)
+        zip(
+            of_search()["designs"].panels,
+            ("mass of the crank, g", "centre of mass of the crank, x, mm"),
+            strict=False,
+        )
     ):
         np.testing.assert_allclose(panel.curves[0].x, found.values[:, number])
-        assert panel.x.text == f"links.crank.{label}"
+        assert panel.x.text == label
     (curve,) = of_search()["search"].panels[0].curves
     np.testing.assert_allclose(curve.y, found.volumes)
 
@@ -212,7 +216,7 @@ def test_lines_go_through_what_was_computed_and_do_not_swing_at_creases() -> Non
 def test_what_cannot_turn_is_hatched_and_what_was_set_is_told() -> None:
     chart = studies.landscape(broken())
     told = words(chart)
-    assert "cannot turn" in told and "counterweights.crank.mass = 300 g" in told
+    assert "cannot turn" in told and "mass of the counterweight on the crank = 300 g" in told
     assert "cannot turn" not in words(studies.landscape(smooth()))
     level = replace(smooth(), values=np.full_like(smooth().values, 3.0))
     for one in (chart, studies.landscape(smooth()), studies.landscape(level)):

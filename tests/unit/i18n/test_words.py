@@ -13,6 +13,24 @@ import pytest
 
 import equipoise
 from equipoise.i18n import LANGUAGES, catalogue, say, speaking
+from equipoise.keys import (
+    Direction,
+    Key,
+    Kind,
+    Listing,
+    Named,
+    Number,
+    OneOr,
+    Planes,
+    Point,
+    Quantity,
+    Table,
+    Tables,
+    Whole,
+    all_keys,
+)
+from equipoise.schema.opening import document_of
+from equipoise.schema.words import plain_word
 
 SOURCES = Path(equipoise.__file__).parent
 TRANSLATED = sorted(set(LANGUAGES) - {"en"})
@@ -35,13 +53,32 @@ def said() -> set[str]:
     return found
 
 
+@cache
+def words_of_keys() -> set[str]:
+    """What numbers of files are called whose keys say nothing else."""
+    found: set[str] = set()
+
+    def look(kind: Kind, key: Key | None) -> None:
+        if isinstance(kind, Table):
+            for one in all_keys(kind.type).values():
+                look(one.kind, one)
+        elif isinstance(kind, Tables | Named | Listing | OneOr | Planes):
+            look(kind.item, key)
+        elif isinstance(kind, Quantity | Number | Whole | Point | Direction) and key is not None:
+            found.update([] if key.word else [plain_word(key)])
+
+    for document in ("linkage", "tool"):
+        look(Table(document_of(document)), None)
+    return found - {"points", "schema"}
+
+
 def placeholders(text: str) -> set[str]:
     return {name for _, name, _, _ in Formatter().parse(text) if name is not None}
 
 
 @pytest.mark.parametrize("language", TRANSLATED)
 def test_every_text_is_translated_and_none_is_left_over(language):
-    texts, held = said(), catalogue(language)
+    texts, held = said() | words_of_keys(), catalogue(language)
     assert texts - held.keys() == set()
     assert held.keys() - texts == set()
     assert {text for text in texts if placeholders(text) != placeholders(held[text])} == set()

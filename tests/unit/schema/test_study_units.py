@@ -79,7 +79,10 @@ def test_a_study_made_in_python() -> None:
         Sampling("sobol", 8),
     )
     units = units_of(study)
-    assert units == {"links.crank.mass": Unit("g", 0.001), "shaking_force.y.rms": Unit("N", 1.0)}
+    mass, force = units.values()
+    assert [*units] == ["links.crank.mass", "shaking_force.y.rms"]
+    assert (mass.name, mass.factor, force.name, force.factor) == ("g", 0.001, "N", 1.0)
+    assert (mass.called, force.called) == ("mass of the crank", "shaking force y, RMS")
     assert units["links.crank.mass"].of_si(0.1995) == pytest.approx(199.5)
 
 

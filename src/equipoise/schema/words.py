@@ -1,0 +1,141 @@
+"""Numbers of a model file in words, such as ``mass of the crank``, from what their keys are called.
+
+A key says what its number is called (`Key.word`), a kind of object what a number of such an object
+is (`Frozen.called`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from string import Formatter
+from typing import Any
+
+from equipoise.i18n import Note, to_say
+from equipoise.keys import Key, Listing, Named, OneOr, Planes, Point, Table, Tables, all_keys
+from equipoise.keys import Kind as KeyKind
+from equipoise.schema.finding import Content, Found
+from equipoise.schema.numbers import vector_of
+from equipoise.schema.opening import Kind, document_of
+from equipoise.schema.reading import Place
+
+PARTS = {
+    "distance": to_say("distance"),
+    "direction": to_say("direction"),
+    "vertical": to_say("vertical"),
+    "lateral": to_say("lateral"),
+}
+"""Parts of vectors and pairs of planes; x, y and z are called so everywhere."""
+
+
+POINT = to_say("point {name}")
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A key on the way to a number.
+
+    held : kind of what stands there.  names : for placeholders: ``name``, or ``number`` and the
+    texts of the entry of a list.
+    """
+
+    key: Key
+    held: KeyKind
+    names: Mapping[str, str]
+
+    @property
+    def word(self) -> str:
+        """Of a number that stands here."""
+        point = isinstance(self.key.kind, Named) and isinstance(self.held, Point)
+        return self.key.word or (POINT if point else plain_word(self.key))
+
+    @property
+    def called(self) -> str:
+        """Around a number in what stands here; nothing where that is no table."""
+        return self.held.type.called if isinstance(self.held, Table) else ""
+
+
+def plain_word(key: Key) -> str:
+    """What a key is called that says nothing else."""
+    return (key.field or key.name).replace("_", " ")
+
+
+def words_of(content: Content, kind: Kind, found: Found) -> Note | None:
+    """The number that stands at a place in words; None where its keys have none.
+
+    Of a point on the x axis of a body, or told by its distance, it is the length from the point in
+    the origin of that body, where there is one.
+    """
+    layers = _layers(content, kind, found.place)
+    if not layers:
+        return None
+    *around, last = layers
+    length = _length(content, found)
+    what = length or Note(last.word, **last.names)
+    for above, layer in enumerate(reversed(around)):
+        alone = isinstance(layer.key.kind, Table)
+        if not layer.called and not (alone and above):
+            return None
+        if not (alone and above):  # a table tells what stands in it, not what is further down
+            what = Note(layer.called, **layer.names, what=what)
+    for part in () if length else (_number(last), found.part or last.names.get("part")):
+        if part:
+            named = Note(PARTS[part]) if part in PARTS else part
+            what = Note("{what}, {part}", what=what, part=named)
+    return what
+
+
+def _number(layer: Layer) -> str:
+    """Which number of several it is, where its word does not say that."""
+    told = any(name == "number" for _, name, _, _ in Formatter().parse(layer.word))
+    return "" if told else layer.names.get("number", "")
+
+
+def _layers(content: Content, kind: Kind, place: Place) -> list[Layer]:
+    """Keys on the way to a place; none where they are not known."""
+    held: KeyKind = Table(document_of(kind))
+    here: Any = content
+    layers: list[Layer] = []
+    for step in place:
+        here = _below(here, step)
+        if isinstance(held, Table):
+            one = all_keys(held.type).get(str(step))
+            if one is None:
+                return []
+            held, names = one.kind, {}
+        elif isinstance(held, Named):
+            one, held, names = layers.pop().key, held.item, {"name": str(step)}
+        elif isinstance(held, Planes):
+            one, held, names = layers.pop().key, held.item, {"part": str(step)}
+        elif isinstance(held, Tables | Listing | OneOr):
+            entry = here if isinstance(here, dict) else {}
+            names = {name: text for name, text in entry.items() if isinstance(text, str)}
+            names["number"] = str(int(step) + 1)
+            one, held = layers.pop().key, held.item
+        else:
+            return []
+        layers.append(Layer(one, held, names))
+    return layers
+
+
+def _below(here: Any, step: str | int) -> Any:
+    if isinstance(here, dict):
+        return here.get(step)
+    return here[step] if isinstance(here, list) and isinstance(step, int) else None
+
+
+def _length(content: Content, found: Found) -> Note | None:
+    """The length of a body from the point in its origin to one whose distance from there it is."""
+    if found.place[-2:-1] != ("points",) or found.part not in ("x", "distance"):
+        return None
+    points: Any = content
+    for step in found.place[:-1]:
+        points = _below(points, step)
+    places = {name: vector_of(one) for name, one in points.items()}
+    name = str(found.place[-1])
+    own = places.pop(name)
+    origins = [other for other, one in places.items() if one and not any(one.components)]
+    along = own is not None and own.components[0] > 0 and not any(own.components[1:])
+    if not origins or not (along or found.part == "distance"):
+        return None
+    return Note("length {first}–{second}", first=origins[0], second=name)
