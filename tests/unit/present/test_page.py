@@ -95,7 +95,7 @@ def test_a_tool_has_its_report():
     told = " ".join(one for answer in document.summary for one in answer.sentences)
     worst = max(grip.a_hv[0] for grip in shorter.exposure.named["working"].values())
     assert f"a_hv of {worst:.2f}" in told.replace("\xa0", " ")
-    assert {section.name for section in document.sections} >= {"model", "tool", "file"}
+    assert {section.name for section in document.sections} >= {"model", "tool", "settings"}
 
 
 EVIL = 'A <script>alert("x")</script> & #image("/etc/passwd") \\ {{ 1 }} $x$ `'
