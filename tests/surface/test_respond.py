@@ -256,7 +256,7 @@ def test_from_rest(extra: tuple[str, ...]) -> None:
 CSV = {
     "one speed": (("respond", RIG), 360, ["time [s]", "crank_angle [rad]"]),
     "motor": (("respond", RIG, "--drive"), 360, ["time [s]", "gauges.gauge.displacement [m]"]),
-    "range": (("respond", RIG, "--speed", "150:200 rpm", "--speeds", "7"), 7, ["speed [rad/s]"]),
+    "range": (("respond", RIG, "--speed", "150:200 rpm", "--speeds", "7"), 8, ["speed [rad/s]"]),
     "from rest": (("simulate", RIG, "0.2 s"), 2001,
                   ["time [s]", "crank_angle [rad]", "crank_speed [rad/s]"]),
 }  # fmt: skip

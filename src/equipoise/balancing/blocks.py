@@ -19,7 +19,19 @@ from equipoise.balancing.told import (
 from equipoise.balancing.workshop import sentences
 from equipoise.i18n import say, to_say
 from equipoise.quantities import Dimension, display, number
-from equipoise.results.blocks import Block, Cell, Change, Column, Facts, Notes, Table, Text, Value
+from equipoise.results.blocks import (
+    Block,
+    Cell,
+    Change,
+    Column,
+    Facts,
+    Notes,
+    Table,
+    Text,
+    Value,
+    broken_if,
+    worse_if,
+)
 from equipoise.results.machine_blocks import driven, rows_table
 from equipoise.results.outputs import DIMENSIONS, objective_named
 
@@ -60,7 +72,7 @@ def outcome_blocks(found: Balanced) -> Iterator[Block]:
         yield objectives_table(found)
     lines = tuple(line for change in found.changes for line in sentences(change))
     yield Facts(say("Changes; places and directions in the axes of each link"), lines)
-    yield from (Text(line, strong=True) for line in worse_told(found))
+    yield from (Text(line, "worse") for line in worse_told(found))
     if found.phasing is not None:
         yield from phasing_blocks(found.phasing)
     yield Text(proof_told(found))
@@ -74,7 +86,7 @@ def outcome_blocks(found: Balanced) -> Iterator[Block]:
     if found.planting_kept is not None:
         kept = say("The planting figures stay as they are.")
         changed = say("The planting figures have changed.")
-        yield Text(kept if found.planting_kept else changed, strong=not found.planting_kept)
+        yield Text(kept if found.planting_kept else changed, worse_if(not found.planting_kept))
     if found.notes:
         yield Notes(found.notes)
 
@@ -89,7 +101,7 @@ def objectives_table(found: Balanced) -> Table:
         unit = si_unit(one, found.original)
         name = objective_named(one, len(found.original.rows))
         pair = (quantity(before, unit), quantity(after, unit, before))
-        rows.append((name, *pair, Change(before, after, after > (1 + WORSE) * before)))
+        rows.append((name, *pair, Change(before, after, worse_if(after > (1 + WORSE) * before))))
     if len(rows) > 1:
         share = found.cost / found.whole
         rows.append((f"{say('together')}, %", Value(100.0), Value(100 * share), Change(1.0, share)))
@@ -117,7 +129,7 @@ def before_after(found: Balanced) -> Table:
         changed: Cell = say("new")
         if old is not None:
             worse = new > (1 + WORSE) * old and name != "mass"
-            changed = None if old <= 1e-10 * least else Change(old, new, worse)
+            changed = None if old <= 1e-10 * least else Change(old, new, worse_if(worse))
         rows.append((figure_named(name, len(found.original.rows)), *cells, changed))
     columns = (Column(""), *(Column(say(label)) for label in BEFORE_AFTER))
     return Table(say("Before and after"), columns, tuple(rows))
@@ -133,7 +145,8 @@ def _prices(found: Balanced) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for name, price in found.prices.items():
         unit = found.units[name]
-        used = replace(quantity(price.used, unit), broken=price.used > price.at_most * (1 + 1e-6))
+        over = broken_if(price.used > price.at_most * (1 + 1e-6))
+        used = replace(quantity(price.used, unit), emphasis=over)
         most = quantity(price.at_most, unit)
         rows.append((named.get(name, name), most, used, _saved(found, price, unit)))
     labels = ("", say("at most"), say("used"), say("more of it saves"))

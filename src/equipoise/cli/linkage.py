@@ -176,8 +176,9 @@ def respond(
     speed
         Speed of the crank instead of the file's: "193 rpm", or a range: "20 rpm : 400 rpm".
     speeds
-        With a range: number of speeds, 200 if not given; more are added about resonances.  Without
-        --speed the range is that of speeds in [drive].
+        With a range: number of speeds, 200 if not given; more are added about resonances, where
+        curves bend, and at that of the file.  Without --speed the range is that of speeds in
+        [drive].
     drive
         Let the speed follow from the motor in [drive.motor], by the model exact.
     """

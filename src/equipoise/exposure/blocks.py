@@ -8,7 +8,17 @@ from typing import TYPE_CHECKING, Any
 from equipoise.exposure.daily import ACTION, DAY, LIMIT, LONGEST, WorkingTimes, limit_time
 from equipoise.i18n import say, to_say
 from equipoise.quantities import number
-from equipoise.results.blocks import Block, Cell, Column, Notes, Section, Table, Text, Value
+from equipoise.results.blocks import (
+    Block,
+    Cell,
+    Column,
+    Notes,
+    Section,
+    Table,
+    Text,
+    Value,
+    broken_if,
+)
 
 if TYPE_CHECKING:
     from equipoise.exposure.daily import Exposure
@@ -105,7 +115,7 @@ def told_blocks(
 def exposure_blocks(day: Exposure) -> Iterator[Block]:
     """A day's exposure, and what it means in plain words."""
     yield _tasks(day)
-    above = day.verdict != "below the action value"
+    above = broken_if(day.verdict != "below the action value")
     yield Text(
         say(
             "A(8) = {a8} m/s², {verdict}; action value {action} m/s², limit value {limit} m/s²",
@@ -114,9 +124,9 @@ def exposure_blocks(day: Exposure) -> Iterator[Block]:
             action=f"{ACTION:g}",
             limit=f"{LIMIT:g}",
         ),
-        strong=above,
+        emphasis=above,
     )
-    yield Text(say(MEANING[day.verdict]), strong=above)
+    yield Text(say(MEANING[day.verdict]), above)
     yield from map(Text, _helps(day))
     if day.a8 > 0:
         yield Text(_white_fingers(day))
@@ -157,7 +167,7 @@ def _tasks(day: Exposure) -> Table:
         for task in day.tasks
     ]
     if len(rows) > 1:
-        whole = Value(day.a8, broken=day.verdict == "above the limit value")
+        whole = Value(day.a8, emphasis=broken_if(day.verdict == "above the limit value"))
         cells = (Value(day.a_hv), Value(day.duration / 3600), whole, Value(100.0, after=0))
         rows.append((say("all of them"), *cells, *_hours(day.times)))
     columns = (

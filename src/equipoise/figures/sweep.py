@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import pi
@@ -131,6 +131,24 @@ def peaks(axis: Axis, speed: Array, found: Sequence[Named]) -> tuple[Mark, ...]:
     return tuple(mark for mark in marks if mark.text)
 
 
+def own_speed(sweep: Sweep) -> tuple[Line, ...]:
+    """A line at the speed of the machine, where that is in the range."""
+    at, (low, high) = abs(sweep.machine.drive.speed), sorted(np.abs(sweep.speed[[0, -1]]))
+    told = say("work, {speed} rpm", speed=shown(at * RPM.factor))
+    return (Line(at, "work", told),) if low <= at <= high else ()
+
+
+def at_work(axis: Axis, sweep: Sweep, found: Sequence[Named]) -> Iterator[Mark]:
+    """Value of the named curves at the speed of the machine."""
+    for line in own_speed(sweep):
+        k = int(np.argmin(np.abs(np.abs(sweep.speed) - line.at)))
+        for number, one in enumerate(found[: len(KINDS)]):
+            value = float(one.values[k])
+            if value > 0:
+                text, role = axis.told(value), f"kind {number}"
+                yield Mark(line.at, value, text, role, 30.0, optional=True)
+
+
 # -- a range of speeds -----------------------------------------------------------------------------
 
 
@@ -183,14 +201,15 @@ def _panel(
     if quantity:
         usual = np.quantile(heard, MOST_SPEEDS) if heard.size else 0.0
         y = read_axis(label, quantity, rotation, usual)
-    lines = (Line(abs(r.speed), "loud" if r.share >= LOUD else "quiet") for r in sweep.resonances)
-    parts: dict[str, Any] = {"bands": bands(sweep), "lines": tuple(lines), "keyed": True}
+    lines = [Line(abs(r.speed), "loud" if r.share >= LOUD else "quiet") for r in sweep.resonances]
+    parts: dict[str, Any] = {"bands": bands(sweep), "keyed": True}
+    parts["lines"] = (*lines, *own_speed(sweep))
     if not np.any(heard > 0):
         y = replace(y, low=0.0, high=1.0 / y.unit.factor, ticks=())
         return Panel(speed_axis(sweep), y, message=say("nothing moves"), **parts)
     low, high = log_ends(found, 1.6, 3.0)
     y = replace(y, low=low, high=high, scale="log")
-    marks = peaks(y, speed, found) if quantity else ()
+    marks = (*(peaks(y, speed, found) if quantity else ()), *at_work(y, sweep, found))
     return Panel(speed_axis(sweep), y, curves_of(speed, found, sweep.stable), marks, **parts)
 
 
@@ -254,7 +273,7 @@ def resonance_map(sweep: Sweep) -> Chart:
         tuple(curves),
         marks,
         bands(sweep),
-        tuple(lines),
+        (*lines, *own_speed(sweep)),
         flags=tuple(above),
         flag_words=(say("order"),),
         asides=tuple(asides),

@@ -24,7 +24,17 @@ from equipoise.handheld.model import PLANES
 from equipoise.handheld.studies import number_of
 from equipoise.i18n import say, to_say
 from equipoise.quantities import number
-from equipoise.results.blocks import Block, Cell, Change, Column, Section, Table, Text, Value
+from equipoise.results.blocks import (
+    Block,
+    Cell,
+    Change,
+    Column,
+    Section,
+    Table,
+    Text,
+    Value,
+    worse_if,
+)
 from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
@@ -135,7 +145,7 @@ def design_blocks(found: ToolDesign) -> Iterator[Block]:
 def _pair(one: Before, told: bool = False) -> tuple[Cell, ...]:
     worse = told and one.dimension != "mass" and one.after > 1.001 * one.before
     pair = (cell(one.before, one.dimension), cell(one.after, one.dimension))
-    return (*pair, Change(one.before, one.after, worse))
+    return (*pair, Change(one.before, one.after, worse_if(worse)))
 
 
 def figure_named(one: Before) -> str:

@@ -308,7 +308,7 @@ def _goals(fit: Fit) -> Table:
         wanted = (None if value is None else _figure(value, name) for value in limits)
         before, after = _told(fit.before, name), _told(fit.after, name)
         if met is False and isinstance(after, Value):  # stands out
-            after = replace(after, broken=True)
+            after = replace(after, emphasis="broken")
         rows.append((figure_named(name), goal.make or "", *wanted, before, after, words[met]))
     labels = (
         *("", say("make"), say("wanted"), say("at least"), say("at most")),

@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import compress
 from math import isfinite, isnan
 
 from equipoise.i18n import Note, say, spoken
 from equipoise.quantities import Dimension, Display, change, display, fixed, typeset
 from equipoise.quantities.numbers import ROUNDING
-from equipoise.results.blocks import Cell, Change, Column, Many, Span, Table, Value
+from equipoise.results.blocks import Cell, Change, Column, Emphasis, Many, Span, Table, Value
 
 Kind = tuple[Dimension | None, str | None]
 """Dimension and unit of a number; those of one kind have one unit in a table."""
@@ -25,19 +26,18 @@ UNCHANGED = change(1.0, 1.0)
 class Text:
     """A cell as text.
 
-    at : where the value holds.  number : whether it is set to the right.  strong : whether a limit
-    is broken, or something got worse.
+    at : where the value holds.  number : whether it is set to the right.
     """
 
     text: str = ""
     at: str = ""
     number: bool = False
-    strong: bool = False
+    emphasis: Emphasis | None = None
 
     @property
     def told(self) -> str:
         """As print has it: the value, and behind it where it holds."""
-        return f"{self.text} ({self.at})" if self.at else self.text
+        return f"{self.text}\N{NO-BREAK SPACE}({self.at})" if self.at else self.text
 
 
 @dataclass(frozen=True)
@@ -67,16 +67,28 @@ class Grid:
         """Whether the cells of a column are words, which are set to the left."""
         return not any(row[column].number for row in self.rows)
 
+    @property
+    def leading(self) -> int:
+        """How many columns tell the rows: the first, and the second where that is words too."""
+        words = [self.is_words(column) for column in range(len(self.heads))]
+        return 2 if all(words[:2]) and not all(words) else 1
+
 
 def grid(table: Table) -> Grid:
-    """A table as texts; a unit of a row stands behind its first words."""
+    """A table as texts; a unit of a row stands behind its first words.  What no row has has no
+    column.
+    """
     sizes = _sizes(table)
     shown = _displays(table, sizes)
     rows = tuple(tuple(_row(table, row, shown, sizes)) for row in table.rows)
     if not rows:
         return Grid(table.title, tuple(Head(column.label) for column in table.columns), ())
     columns = zip(table.columns, zip(*table.rows, strict=True), strict=True)
-    return Grid(table.title, tuple(_head(*pair, shown) for pair in columns), rows)
+    heads = (_head(*pair, shown) for pair in columns)
+    kept = [any(cell.text for cell in cells) for cells in zip(*rows, strict=True)]
+    return Grid(
+        table.title, tuple(compress(heads, kept)), tuple(tuple(compress(row, kept)) for row in rows)
+    )
 
 
 def _row(
@@ -87,7 +99,8 @@ def _row(
         least = {kind: size for (at, kind), size in sizes.items() if at == place}
         text = _text(cell, column, shown, least)
         if place == 0 and unit:
-            text = replace(text, text=say(", ").join(filter(None, (text.text, unit))))
+            comma = say(", ").replace(" ", "\N{NO-BREAK SPACE}")
+            text = replace(text, text=comma.join(filter(None, (text.text, unit))))
         yield text
 
 
@@ -161,12 +174,12 @@ def _text(
         return Text(cell or "")
     if isinstance(cell, Change):
         share = change(cell.before, cell.after)
-        return Text(say("same") if share == UNCHANGED else share, "", True, cell.worse)
+        return Text(say("same") if share == UNCHANGED else share, "", True, cell.emphasis)
     if isinstance(cell, Many):
         told = [_text(value, column, shown, sizes) for value in cell.values]
         more = [say("and {count} more", count=cell.more)] if cell.more else []
         words = say(", ").join([*(one.told for one in told), *more])
-        return Text(words, strong=any(one.strong for one in told))
+        return Text(words, emphasis=next((one.emphasis for one in told if one.emphasis), None))
     if isinstance(cell, Span):
         kind = column.dimension, column.unit
         unit, size = shown[kind], sizes[kind]
@@ -181,7 +194,7 @@ def _text(
     if cell.at is not None:
         place = Value(cell.at, after=1 if column.at[0] == "angle" else None)
         at = _number(place, shown[column.at], column.at[0])
-    return Text(text, at, number=True, strong=cell.broken or cell.worse)
+    return Text(text, at, number=True, emphasis=cell.emphasis)
 
 
 def _number(cell: Value, unit: Display, dimension: Dimension | None, size: float = 0.0) -> str:
@@ -201,7 +214,7 @@ _POWER = re.compile(r"[0-9]e[+-][0-9]+")
 _RAISED = re.compile(r"(?<=[a-z])\^[23]")
 _UNIT = re.compile(r"(?<![A-Za-z])(k?N|k?g) (mm?|s)(?![A-Za-z])")
 _VALUE = re.compile(
-    r"(?<=[0-9)]) (?=(?:k?N|k?g|k?J|[cm]?m|m?rad|m?s|min|h|rpm|Hz|[%°])[²³]?(?![A-Za-z0-9]))"
+    r"(?<=[0-9)]) (?=(?:k?N|k?g|k?J|[cm]?m|m?rad|m?s|min|h|rpm|Hz|deg|[%°])[²³]?(?![A-Za-z0-9]))"
 )
 
 
@@ -210,8 +223,12 @@ def printed(text: str) -> str:
     text = _POWER.sub(lambda found: typeset(f"{found[0]}"), text)
     text = _MINUS.sub("\N{MINUS SIGN}", text)
     text = _RAISED.sub(lambda found: typeset(found[0]), text)
-    bound = _UNIT.sub("\\1\N{NO-BREAK SPACE}\\2", text)
-    return _VALUE.sub("\N{NO-BREAK SPACE}", bound)
+    return bound(text)
+
+
+def bound(text: str) -> str:
+    """A text with spaces at which no line is broken before a unit and in it."""
+    return _VALUE.sub("\N{NO-BREAK SPACE}", _UNIT.sub("\\1\N{NO-BREAK SPACE}\\2", text))
 
 
 def sign_of(unit: str) -> str:
@@ -226,14 +243,3 @@ def noted(note: Note | str) -> str:
     if spoken() == "en":
         return say("Note: {note}", note=note)
     return say("Note, in its original wording: {note}", note=note)
-
-
-_PLAIN = str.maketrans(
-    {"²": "^2", "³": "^3", "°": " deg", "→": "->", "…": "...", "µ": "u", "λ": "lambda"}
-    | {"±": "+-", "−": "-", "\xa0": " "}
-)
-
-
-def plain(text: str) -> str:
-    """A text in signs that any terminal has."""
-    return text.translate(_PLAIN)

@@ -30,8 +30,6 @@ Part = TypeVar("Part")
 
 ANGLES = 720
 """Crank angles in a turn."""
-SPEEDS = 60
-"""Speeds in the range, besides those about resonances."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,12 +113,13 @@ class Findings(_Found):
     def sweep(self) -> Sweep | None:
         """Vibration over speeds around that of the machine."""
         from equipoise.vibration.resonance import around
+        from equipoise.vibration.sampling import COARSE
         from equipoise.vibration.sweep import sweep_speed
 
         if self.response is None:
             return None
         ends = around(self.machine.drive, self.response.speed)
-        return sweep_speed(self.machine, *ends, speeds=SPEEDS)
+        return sweep_speed(self.machine, *ends, speeds=COARSE)
 
     @part("natural frequencies")
     def modes(self) -> FreeVibration | None:

@@ -172,6 +172,7 @@ def _environment() -> jinja2.Environment:
     environment = jinja2.Environment(
         loader=jinja2.FunctionLoader(text_of), autoescape=True, trim_blocks=True, lstrip_blocks=True
     )
+    environment.globals["stress"] = LIGHT["stress"]
     environment.filters |= {**FILTERS, "inlined": _inlined, "classes": _classes}
     return environment
 
@@ -188,7 +189,7 @@ def printed_grid(table: Table) -> Grid:
 
 
 def _classes(cell: Text) -> Markup:
-    names = [*(["strong"] if cell.strong else []), *([] if cell.number else ["word"])]
+    names = [*(["strong"] if cell.emphasis else []), *([] if cell.number else ["word"])]
     return Markup(f' class="{" ".join(names)}"' if names else "")  # names of this package
 
 
@@ -319,6 +320,7 @@ def _families(language: str) -> list[str]:
 @cache
 def _template() -> jinja2.Template:
     environment = jinja2.Environment(autoescape=False, trim_blocks=True, lstrip_blocks=True)
+    environment.globals["stress"] = LIGHT["stress"]
     environment.filters |= {**FILTERS, "flowed": flowed, "text": _text, "width": _width}
     return environment.from_string(text_of("report.typ.j2"))
 

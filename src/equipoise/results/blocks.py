@@ -10,11 +10,25 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import takewhile
 from math import isclose
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 from equipoise.i18n import Note, say
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Chart
+
+Emphasis = Literal["broken", "worse"]
+"""Why something has to stand out: a limit is broken, or a figure has got worse."""
+
+
+def broken_if(so: bool) -> Emphasis | None:
+    """The emphasis of what breaks a limit, if it does."""
+    return "broken" if so else None
+
+
+def worse_if(so: bool) -> Emphasis | None:
+    """The emphasis of what got worse, if it did."""
+    return "worse" if so else None
+
 
 # -- cells of tables -------------------------------------------------------------------------------
 
@@ -26,7 +40,7 @@ class Value:
     scale : beside which a smaller value is rounding, and is shown as 0.
     at : where it holds, such as a crank angle, rad; not shown where None.
     digits : significant ones; after : digits behind the point instead, where given.
-    broken : whether it breaks a limit.  worse : whether it got worse.
+    emphasis : why it stands out, if it does.
     dimension, unit : as of `Column`, where the numbers of a column are not all alike.
     """
 
@@ -35,8 +49,7 @@ class Value:
     at: float | None = None
     digits: int = 4
     after: int | None = None
-    broken: bool = False
-    worse: bool = False
+    emphasis: Emphasis | None = None
     dimension: Dimension | None = None
     unit: str | None = None
 
@@ -54,14 +67,11 @@ class Span:
 
 @dataclass(frozen=True)
 class Change:
-    """By how much a figure has changed, in per cent; nothing where it came from 0.
-
-    worse : whether a reader has to be told that it got worse.
-    """
+    """By how much a figure has changed, in per cent; nothing where it came from 0."""
 
     before: float
     after: float
-    worse: bool = False
+    emphasis: Emphasis | None = None
 
 
 @dataclass(frozen=True)
@@ -100,11 +110,11 @@ class Column:
 
 @dataclass(frozen=True)
 class Text:
-    """Running text.  strong : whether a limit is broken by what it tells."""
+    """Running text.  emphasis : why it stands out, if it does."""
 
     kind: ClassVar[str] = "text"
     text: str
-    strong: bool = False
+    emphasis: Emphasis | None = None
 
 
 @dataclass(frozen=True)

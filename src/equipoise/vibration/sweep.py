@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, cast, get_args
 
 import numpy as np
@@ -28,13 +28,12 @@ from equipoise.vibration.forced import (
 from equipoise.vibration.linear import Linear, Step
 from equipoise.vibration.resonance import Resonance, resonances
 from equipoise.vibration.response import Mode, Model, Response, Values, range_shown
+from equipoise.vibration.sampling import about, answered
 from equipoise.vibration.small_motion import respond_coupled, respond_linear
 
 SPEEDS = 200
-"""In a sweep, besides those about resonances."""
+"""In a sweep, besides those about resonances and where curves bend."""
 MOST_SPEEDS = 20_000
-NEAR = (-8.0, -4.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0)
-"""Speeds about a resonance, in damping ratios of its mode: a peak is as wide as two."""
 MOST_RESONANCES = 60
 TOLD = ("peak_to_peak", "rms")
 PREFIXES = {"displacement": "", "velocity": "velocity_", "acceleration": "acceleration_"}
@@ -170,8 +169,8 @@ def sweep_speed(
     ----------
     slowest, fastest : of the crank, rad/s, of the same sign.
     model, drive : as in `respond`.
-    speeds : how many, equally spaced; more are added about each resonance.
-    progress : called with the number of speeds that are done, and of all.
+    speeds : how many, equally spaced; more are added about each resonance and where curves bend.
+    progress : called with the number of speeds that are done, and of all that are wanted so far.
 
     Raises
     ------
@@ -194,43 +193,20 @@ def sweep_speed(
     step = cast(Step, model) if model in get_args(Step) else usual_step(machine, model)
     linear = Linear.of(machine, step)
     met = resonances(linear, slowest, fastest)[:MOST_RESONANCES]
-    grid = _speeds(slowest, fastest, speeds, met, linear)
-    told = progress if progress is not None else (lambda done, total: None)
-    if model == "exact":
+    told = progress or _silent
+    respond = respond_coupled if model == "coupled" else respond_linear
+    first = about(slowest, fastest, speeds, met, linear)
+    by_speed = answered(partial(respond, linear), first, _silent if model == "exact" else told)
+    grid, answers = np.array([*by_speed]), [*by_speed.values()]
+    found: list[str] = []
+    if model == "exact":  # one speed after the other, where that by orders bends
         answers, found = follow_speeds(machine, grid.tolist(), drive, told)
-    else:
-        answers, found = _by_orders(linear, model, grid.tolist(), told), []
     notes = (*left_out(machine), *found, *_missing(grid, answers))
     return _gathered(machine, model, grid, answers, linear, met, notes)
 
 
-def _speeds(
-    slowest: float, fastest: float, count: int, met: list[Resonance], linear: Linear
-) -> Array:
-    """Equally spaced, and closer about resonances."""
-    grid = [np.linspace(slowest, fastest, count)]
-    for resonance in met:
-        damping = np.clip(linear.modes[resonance.mode - 1].damping_ratio, 1e-5, 0.05)
-        grid.append(resonance.speed * (1 + np.array(NEAR) * damping))
-    low, high = sorted((slowest, fastest))
-    speeds = np.concatenate(grid)
-    inside = np.unique(speeds[(speeds >= low) & (speeds <= high)])
-    return inside if fastest > 0 else inside[::-1]
-
-
-def _by_orders(
-    linear: Linear, model: Model, speeds: list[float], progress: Progress
-) -> list[Response | None]:
-    """The response at every speed by a model whose speeds do not depend on each other."""
-    answers: list[Response | None] = []
-    respond = respond_coupled if model == "coupled" else respond_linear
-    for speed in speeds:
-        try:
-            answers.append(respond(linear, speed))
-        except ResponseError:
-            answers.append(None)
-        progress(len(answers), len(speeds))
-    return answers
+def _silent(done: int, total: int) -> None:
+    """Of what is done tell nothing."""
 
 
 def _missing(grid: Array, answers: list[Response | None]) -> list[Note]:

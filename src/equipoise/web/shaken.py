@@ -20,14 +20,13 @@ from equipoise.results.analysis import Analysis
 from equipoise.vibration.forced import respond
 from equipoise.vibration.resonance import around
 from equipoise.vibration.response import Response
+from equipoise.vibration.sampling import COARSE
 from equipoise.vibration.sweep import sweep_speed
 from equipoise.web.edits import Solved
 from equipoise.web.figures import chart, gauge_choice, text_of
 from equipoise.web.state import Block
 
 Values = dict[str, Any]
-SPEEDS = 60
-"""Over which a response is told, besides those at resonances."""
 SAMPLES = 360
 """In a turn."""
 
@@ -60,7 +59,7 @@ def swept(machine: Machine, progress: Callable[[int, int], None]) -> tuple[Value
     try:
         found = respond(machine)
         ends = around(machine.drive, found.speed)
-        curves = sweep_speed(machine, *ends, speeds=SPEEDS, progress=progress)
+        curves = sweep_speed(machine, *ends, speeds=COARSE, progress=progress)
     except EquipoiseError:  # of which `response_of` has told
         return None
     block = Block()

@@ -169,10 +169,23 @@ def test_resonances_are_marked_and_named() -> None:
     sweep = swept()
     panel = pictures("rig")["sweep response"].panels[0]
     named = sorted(sweep.resonances, key=lambda r: r.speed)
-    assert sorted(line.at for line in panel.lines) == pytest.approx([r.speed for r in named])
+    met = [line.at for line in panel.lines if line.role != "work"]
+    assert sorted(met) == pytest.approx([r.speed for r in named])
     assert [flag.texts for flag in panel.flags] == [(fraction(r.order), str(r.mode)) for r in named]
     assert panel.flag_words == ("order", "mode")
     assert fraction(4 / 3) == "4/3" and fraction(2.0) == "2"
+
+
+def test_speed_of_work_is_marked_with_what_is_read_there() -> None:
+    machine = rig()
+    found = respond(machine).gauges["tip"].displacement.peak_to_peak
+    chart = pictures("rig")["sweep response"]
+    line = next(line for line in chart.panels[0].lines if line.role == "work")
+    assert line.at == pytest.approx(machine.drive.speed)
+    assert line.label == f"work, {machine.drive.speed * RPM:.4g} rpm"
+    mark = next(mark for mark in chart.panels[0].marks if mark.x == line.at)
+    assert mark.y == pytest.approx(float(found))
+    assert f"{1e3 * mark.y:.4g}" in words(chart)
 
 
 @pytest.mark.parametrize("sense", [1, -1])

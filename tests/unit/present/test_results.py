@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 from collections.abc import Callable
 from functools import cache
@@ -9,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from rich.console import Console
 
 import equipoise as eq
 from equipoise.balancing.linear_conditions import conditions
@@ -26,10 +26,11 @@ from equipoise.mechanism.balance import Objective
 from equipoise.planting.summary import plant
 from equipoise.present import html_of, terminal
 from equipoise.present.cells import grid, printed
-from equipoise.present.pages import Document, pdf, printed_grid
+from equipoise.present.layout import plain
+from equipoise.present.pages import Document, page, pdf, printed_grid
 from equipoise.quantities import showing
 from equipoise.results.analysis import Analysis
-from equipoise.results.blocks import Change, Column, Section, Span, Table, Value
+from equipoise.results.blocks import Change, Column, Section, Span, Table, Text, Value
 from equipoise.schema.models import load_tool
 from support.printing import printed as shown
 from support.printing import words
@@ -94,7 +95,7 @@ def test_no_number_is_cut_and_page_and_terminal_tell_the_same(name: str) -> None
         for row, in_print in zip(grid(table).rows, printed_grid(table).rows, strict=True):
             for cell, other in zip(row, in_print, strict=True):
                 if cell.number and cell.text:
-                    assert terminal.plain(cell.text) in text
+                    assert plain(cell.text) in text
                     assert other.text == printed(cell.text)
                     assert other.told in page
 
@@ -206,22 +207,56 @@ def test_units_and_digits() -> None:
     mixed = table_of(
         Value(2.0, dimension="force"), Value(3e-3, dimension="torque"), column=Column("")
     )
-    assert [row[0].text for row in grid(mixed).rows] == ["row 0, N", "row 1, N m"]
+    assert [row[0].text for row in grid(mixed).rows] == ["row 0,\xa0N", "row 1,\xa0N m"]
     turned = grid(table_of(Value(1.0, at=np.pi / 2), Value(np.nan)))
-    assert turned.rows[0][1].told == "1000 (90.0)" and turned.heads[1].heading == "value, mm (deg)"
+    assert (
+        turned.rows[0][1].told == "1000\xa0(90.0)" and turned.heads[1].heading == "value, mm (deg)"
+    )
     assert turned.rows[1][1].text == "none"
 
 
 def test_what_breaks_a_limit_stands_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    table = table_of(Value(7.0, broken=True), Value(1.0), Change(1.0, 2.0, worse=True))
-    assert [line.endswith(" !") for line in shown([table]).splitlines()[-3:]] == [True, False, True]
-    assert [row[1].strong for row in grid(table).rows] == [True, False, True]
-
-    def coloured(**options: Any) -> Console:
-        return Console(**{**options, "force_terminal": True}, color_system="standard")
-
-    monkeypatch.setattr(terminal, "Console", coloured)
-    text = shown([table])
-    assert re.search(r"\x1b\[1;31m *7000", text) and " !" not in text
+    """By a word, or by colour where there is colour; numbers stay below each other."""
+    table = table_of(Value(7.0, emphasis="broken"), Value(1.0), Change(1.0, 2.0, "worse"))
+    sentence = Text("Nobody may be exposed to this.", "broken")
+    assert shown([table, sentence]).splitlines()[-5:] == [
+        "row 0      7000 broken",
+        "row 1      1000",
+        "row 2  +100.0 % worse",
+        "",
+        "! Nobody may be exposed to this.",
+    ]
+    assert [row[1].emphasis for row in grid(table).rows] == ["broken", None, "worse"]
+    html = page(Document("en", "", "", "", (), (), "", (Section("s", "", (table, sentence)),)))
+    assert '<td class="strong">+100.0' in html and '<p class="strong">Nobody' in html
+    assert re.search(r"\n\.strong\{color:[^}]*font-weight", html)
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    text = shown([table, sentence])
+    assert "\x1b[1;31m    7000\x1b[0m\n" in text and "\x1b[1;31m+100.0 %\x1b[0m\n" in text
+    assert "\x1b[1;31mNobody may" in text and not re.search("broken|worse|!", text)
     day = words(result("exposure").blocks())
     assert "above the limit value of 5 m/s^2 (2002/44/EC)" in day and "nobody may be exposed" in day
+
+
+@pytest.mark.parametrize(
+    ("told", "a_terminal", "colour"),
+    [
+        ({}, True, True),
+        ({}, False, False),
+        ({"TERM": "dumb"}, True, False),
+        ({"NO_COLOR": "1"}, True, False),
+        ({"NO_COLOR": ""}, True, True),
+        ({"FORCE_COLOR": "1"}, False, True),
+        ({"FORCE_COLOR": "1", "NO_COLOR": "1"}, True, False),
+    ],
+)
+def test_colours_are_for_terminals_that_want_them(
+    told: dict[str, str], a_terminal: bool, colour: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("NO_COLOR", "FORCE_COLOR"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in {"TERM": "xterm", **told}.items():
+        monkeypatch.setenv(name, value)
+    stream = io.StringIO()
+    monkeypatch.setattr(stream, "isatty", lambda: a_terminal, raising=False)
+    assert terminal.coloured(stream) is colour

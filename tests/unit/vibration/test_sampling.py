@@ -1,0 +1,103 @@
+"""Speeds of a response: no more than a smooth picture takes, and none less."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import ResponseError
+from equipoise.vibration.forced import respond
+from equipoise.vibration.linear import Linear
+from equipoise.vibration.resonance import around
+from equipoise.vibration.response import Response
+from equipoise.vibration.sampling import ACROSS, COARSE, UP, answered, between
+from equipoise.vibration.small_motion import respond_linear
+from equipoise.vibration.sweep import Sweep, sweep_speed
+
+SUPPORTED = ("yamashita-rig", "exudyn-slider-crank", "sieve", "walking-transplanter")
+FEWEST, MOST = 40, 125
+"""Speeds beside resonances that such a curve takes."""
+
+
+def drawn(name: str) -> tuple[Sweep, Linear]:
+    """The response as reports and the live page draw it."""
+    machine = eq.load(name)
+    found = respond(machine)
+    sweep = sweep_speed(machine, *around(machine.drive, found.speed), speeds=COARSE)
+    return sweep, Linear.of(machine, "linear" if sweep.model == "linear" else "moment")
+
+
+@pytest.mark.parametrize("name", SUPPORTED)
+def test_curves_between_speeds_are_where_they_are_drawn(name: str) -> None:
+    """Whatever is computed between two speeds lies within a point of the line that joins them."""
+    sweep, linear = drawn(name)
+    middles = (sweep.speed[1:] + sweep.speed[:-1]) / 2
+    assert FEWEST < len(sweep.speed) < MOST
+    answers = [respond_linear(linear, speed) for speed in middles.tolist()]
+    rate = ACROSS / np.ptp(sweep.speed)
+    for gauge, curve in sweep.gauges.items():
+        for quantity, drawn_curve in (
+            ("displacement", curve.rms),
+            ("acceleration", curve.acceleration_rms),
+        ):
+            true = [getattr(one.gauges[gauge], quantity).vibration_rms for one in answers]
+            places = rate * sweep.speed + 1j * UP / 3 * np.log10(drawn_curve)
+            there = rate * middles + 1j * UP / 3 * np.log10(true)
+            ways = np.diff(places)
+            off = np.abs(((there - places[:-1]) * ways.conj()).imag / np.abs(ways))
+            assert np.max(off) < 1.0, (gauge, quantity, float(middles[np.argmax(off)]))
+
+
+@pytest.mark.parametrize("name", SUPPORTED)
+def test_speed_of_the_machine_is_one_of_them(name: str) -> None:
+    sweep, _ = drawn(name)
+    assert np.min(np.abs(sweep.speed - sweep.machine.drive.speed)) < 1e-9
+
+
+def of_rig() -> tuple[Callable[[float], Response], Response]:
+    machine = eq.load("yamashita-rig")
+    linear = Linear.of(machine, "linear")
+    return lambda speed: respond_linear(linear, speed), respond_linear(linear, 20.0)
+
+
+def test_a_straight_curve_takes_no_more() -> None:
+    _, one = of_rig()
+    assert between(dict.fromkeys((1.0, 2.0, 3.0), one)) == []
+    assert between({1.0: one, 2.0: None, 3.0: one, 4.0: None}) == []
+    assert between({1.0: None, 2.0: None, 3.0: None}) == []
+
+
+def test_a_corner_is_halved_on_both_sides() -> None:
+    _, one = of_rig()
+    gauges = {
+        name: replace(gauge, displacement=10 * gauge.displacement)
+        for name, gauge in one.gauges.items()
+    }
+    louder = replace(one, gauges=gauges)
+    answers = {1.0: one, 2.0: one, 3.0: louder, 4.0: one, 5.0: one, 6.0: one}
+    assert between(answers) == [1.5, 2.5, 3.5, 4.5]
+    assert between({-speed: answer for speed, answer in answers.items()}) == [
+        -1.5,
+        -2.5,
+        -3.5,
+        -4.5,
+    ]
+
+
+def test_speeds_without_a_response_are_kept_and_told_done() -> None:
+    found, _ = of_rig()
+    done: list[tuple[int, int]] = []
+
+    def some(speed: float) -> Response:
+        if speed == 10.0:
+            raise ResponseError("none")
+        return found(speed)
+
+    answers = answered(some, np.array([5.0, 10.0, 11.0]), lambda *told: done.append(told))
+    assert answers[10.0] is None
+    assert [*answers] == sorted(answers)
+    assert done[-1] == (len(answers), len(answers))
