@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.told import capital, figure_named, figure_unit, good_already
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs import joint_named, named
@@ -21,6 +22,7 @@ from equipoise.results.outputs import CAUSES, objective_named, output_named, sho
 from equipoise.signals import Figures
 
 if TYPE_CHECKING:
+    from equipoise.balancing.balanced import Balanced
     from equipoise.planting.summary import PlantingFigures
     from equipoise.present.findings import Findings
     from equipoise.results.analysis import Analysis
@@ -239,11 +241,24 @@ def compared(found: Findings, picture: str) -> str:
     assert balanced is not None
     if name not in balanced.before:
         return ""
-    before, after = balanced.before[name], balanced.after[name]
-    unit = shown_in(figure_unit(balanced, name), [before, after])
+    pair = balanced.before[name], balanced.after[name]
+    what = figure_named(name, len(found.machine.rows))
+    return _changed(what, pair, figure_unit(balanced, name))
+
+
+def reached(balanced: Balanced) -> str:
+    """The first of what was to become small, before and after."""
+    one, pair = next(iter(balanced.aims.items()))
+    what = objective_named(one, len(balanced.original.rows))
+    return _changed(what, pair, unit_of(one, balanced.original))
+
+
+def _changed(what: str, pair: tuple[float, float], si_unit: str) -> str:
+    before, after = pair
+    unit = shown_in(si_unit, pair)
     return say(
         "{what}: {before} → {after} {unit} ({change})",
-        what=capital(figure_named(name, len(found.machine.rows))),
+        what=capital(what),
         before=unit.text(before, digits=3),
         after=unit.text(after, before, 3),
         unit=unit.name,

@@ -254,18 +254,12 @@ def _balance(found: Findings) -> Iterator[Entry]:
     from equipoise.figures.balancing import phases, signals, together
     from equipoise.figures.changes import changes
 
-    if any(change.kind != "phases" for change in balanced.changes):
-        yield Entry(
-            "changes",
-            to_say("What to change, to scale."),
-            partial(changes, balanced),
-            partial(seen.added, found),
-        )
     of_linkage = any(change.kind != "phases" for change in balanced.changes)
     if of_linkage:
-        yield "changes", to_say("What to change, to scale."), partial(changes, balanced)
+        caption, draw = to_say("What to change, to scale."), partial(changes, balanced)
+        yield Entry("changes", caption, draw, partial(seen.added, found))
     caption = to_say("What was made small or limited, before and after, by crank angle and order.")
-    yield from pages("aims", caption, partial(aims, balanced))
+    yield from pages("aims", caption, partial(aims, balanced), partial(seen.reached, balanced))
     if of_linkage:
         captions = {
             "force": to_say("Shaking force, before and after."),
@@ -280,9 +274,6 @@ def _balance(found: Findings) -> Iterator[Entry]:
                 partial(made, chart),
                 partial(seen.compared, found, name),
             )
-    caption = to_say("Orders of what was made small, before and after.")
-    yield from pages("balanced-orders", caption, partial(orders, balanced))
-            yield f"balanced-{name}", captions[name], partial(_made, chart)
     if balanced.phasing is not None:
         both = balanced.original, balanced.machine
         yield Entry("phases", to_say("Phases of the rows."), partial(phases, *both))
