@@ -104,7 +104,7 @@ def test_what_helps_is_told_before_and_after_at_once() -> None:
     peak = tiles["shaking force, peak"]
     later = found.after.analysis.summary["shaking_force"].peak
     assert (peak.value, peak.after) == ("23.2", f"{later:.1f}")
-    assert tiles["shaking moment, peak"].after == ""  # is the same
+    assert tiles["drive torque, peak"].after == ""  # is the same
 
 
 @pytest.mark.parametrize(("name", "most"), [("yamashita-1", 7), ("yamashita-rig", 10)])
