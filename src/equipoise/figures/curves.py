@@ -13,7 +13,8 @@ from equipoise.figures.style import Look, look_of
 from equipoise.figures.view import View, corners_of
 from equipoise.results.charts import Area, Bars, Curve, Panel
 from equipoise.symbols import looks
-from equipoise.symbols.shapes import PIN, Shape, circle, gauge, mass, sign
+from equipoise.symbols.carrier import gauge
+from equipoise.symbols.shapes import PIN, Shape, circle, mass, sign, zigzag
 
 CAP = 2.2
 """Points: half the line across the end of an interval."""
@@ -223,6 +224,10 @@ def _keep_clear(
             labels.avoid(inside, WEIGHTS[one.role])
 
 
+SPRINGS = ("spring", "planned", "added")
+"""That there are, that are to be found, and that were found."""
+
+
 def sample_of(role: str) -> list[Shape]:
     """Shapes that stand for a role in a legend."""
     look = looks.LOOKS[role]
@@ -230,6 +235,8 @@ def sample_of(role: str) -> list[Shape]:
         return mass(0)
     signs = {"gauge": gauge(0, 0), "foot": [circle("foot", 0, grown=PIN)]}
     signs |= {name: [circle(name, 0, grown=3.0)] for name in ("dot", "float", "pin")}
+    spring = zigzag(-15, 15, 4)
+    signs |= {name: [sign(name, 0, spring.places + spring.offsets)] for name in SPRINGS}
     if role in signs:
         return signs[role]
     box = np.array([-12 - 6j, 12 - 6j, 12 + 6j, -12 + 6j])

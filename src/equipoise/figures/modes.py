@@ -17,7 +17,7 @@ from equipoise.mechanism.motion import move
 from equipoise.mechanism.support import AXES, Gauge, Mount, unit_vector
 from equipoise.quantities import typeset
 from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, shown
-from equipoise.symbols import shapes
+from equipoise.symbols import carrier, shapes
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape, hull
 from equipoise.vibration.linkages import rows_of
@@ -300,16 +300,28 @@ def _items(shape: ModeShape, view: View) -> Iterator[tuple[str, complex, list[Sh
         gauge = isinstance(item, Gauge)
         if item.point is None:
             if item.axis == VIEWS[view].axis:
+<<<<<<< HEAD
                 yield name, reference, shapes.turning(reference, ring, gauge)
+=======
+                yield from carrier.turning(reference, ring, gauge)
+>>>>>>> main
                 ring += 1
             continue
         place = complex(seen(item.point, view))
         way = complex(seen(unit_vector(item.direction), view))
         if isinstance(item, Gauge):
+<<<<<<< HEAD
             yield name, place, shapes.gauge(place, way)
         else:
             sprung = bool(item.stiffness)
             yield name, place, shapes.mount(place, way, center, sprung, item.one_sided)
+=======
+            yield from carrier.gauge(place, way)
+        else:
+            to = carrier.to_ground(way, place - center, item.one_sided)
+            yield from carrier.mount(item, place, to)
+    yield from shapes.mass(complex(seen(support.center_of_mass, view)))
+>>>>>>> main
 
 
 def _names(shape: ModeShape, view: View, named: Collection[str], size: float) -> Iterator[Mark]:

@@ -14,12 +14,12 @@ from equipoise.handheld.duals import Dual
 from equipoise.handheld.exposed import (
     Band,
     BandFigures,
-    Number,
     grips,
     mean_over_band,
     values_of,
 )
 from equipoise.handheld.model import Tool
+from equipoise.handheld.reciprocal import Number
 from equipoise.handheld.response import respond_tool, rms_over_time
 from equipoise.handheld.studies import changed
 from equipoise.handheld.sweep import speeds_between

@@ -10,8 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.signals import Array
-
 
 class Dual:
     """A value with its derivatives.
@@ -69,31 +67,6 @@ class Dual:
         return Dual(np.conj(self.value), np.conj(self.slopes))
 
 
-def variables(values: Array, axes: int, slopes: bool = True) -> list[Dual]:
-    """Variables (P,), each with a slope of 1 by itself, for arrays of so many axes.
-
-    slopes : without them each has a slope by none, and all that follows costs next to nothing.
-    """
-    count = len(values)
-    one = np.eye(count).reshape(count, count, *[1] * axes)[:, : count if slopes else 0]
-    shape = (1,) * axes
-    return [Dual(np.full(shape, value), one[k]) for k, value in enumerate(values)]
-
-
 def value_of(number: Any) -> Any:
     """The value of a number with or without derivatives."""
     return number.value if isinstance(number, Dual) else number
-
-
-def stacked(numbers: list[Any]) -> Any:
-    """Numbers of one element each as one (K, 1, 1), with slopes (P, K, 1, 1) if any has them."""
-    value = np.array([np.reshape(value_of(number), ()) for number in numbers]).reshape(-1, 1, 1)
-    with_slopes = [number.slopes for number in numbers if isinstance(number, Dual)]
-    if not with_slopes:
-        return value
-    count = len(with_slopes[0])
-    slopes = np.zeros((count, len(numbers), 1, 1))
-    for k, number in enumerate(numbers):
-        if isinstance(number, Dual):
-            slopes[:, k, 0, 0] = number.slopes.reshape(count)
-    return Dual(value, slopes)

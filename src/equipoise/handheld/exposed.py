@@ -13,17 +13,19 @@ import numpy as np
 from equipoise.errors import ModelError
 from equipoise.exposure.daily import Exposure, Task, daily_exposure, equivalent
 from equipoise.exposure.weighting import squared_factor
+from equipoise.handheld.chain import carry, solve
 from equipoise.handheld.design_plan import KEYS
-from equipoise.handheld.duals import Dual, variables
-from equipoise.handheld.layout import Layout, check_coverage
+from equipoise.handheld.duals import Dual
+from equipoise.handheld.layout import Field, Layout, check_coverage
 from equipoise.handheld.model import PLANES, Tool, Work
+from equipoise.handheld.reciprocal import Number, Reciprocal
 from equipoise.handheld.response import (
     NOTHING,
     ToolResponse,
+    loads_on,
     loud,
     orders_of,
     respond_tool,
-    shaken,
     shakes,
 )
 from equipoise.handheld.studies import has, number_of
@@ -184,12 +186,6 @@ def _days(tool: Tool, work: tuple[Work, ...]) -> dict[str, Exposure]:
     }
 
 
-TOGETHER = 24
-"""Numbers of whose derivatives memory has to hold at once."""
-Number = tuple[str, str]
-"""Station and key of a number of the tool."""
-
-
 class BandFigures(NamedTuple):
     """Squares over a band of speeds (S,), with their derivatives by the numbers (P,) asked for.
 
@@ -236,25 +232,20 @@ class Band:
         held : stations at which the force on the body is asked for too.
         slopes : whether the derivatives are asked for.
         """
-        start = values_of(self.tool, numbers) if values is None else values
-        changed = dict(zip(numbers, variables(start, 2, slopes), strict=True))
-        if values is None:  # a number as (1, 1), a pair as (2, 1)
-            for (station, key), variable in changed.items():
-                own = np.atleast_1d(self.tool.station(station).number(key))
-                variable.value = own[:, None]
-        layout = Layout(self.tool, self.highest, changed)
-        field = shaken(layout, self.shakes, self.orders, self.speed)
-
-        def moved(name: str) -> Any:
-            return field.states.motion[layout.node_of[name]].across
-
-        hands = {
-            one.name: self._over_orders(weighted_squares(self.frequency, moved(one.name)))
-            for one in self.tool.grips
-        }
+        own = Layout(self.tool, self.highest)
+        given = (own.of(self.tool.station(one), key) for one, key in numbers)
+        changed = dict(zip(numbers, given if values is None else values.tolist(), strict=True))
+        layout, s = Layout(self.tool, self.highest, changed), 1j * self.frequency
+        carried = carry(layout.chain(s))
+        loads = loads_on(layout, self.shakes, self.orders, self.speed)
+        field = Field(layout, s, solve(carried, loads))
+        names = [one.name for one in self.tool.grips]
+        by = Reciprocal(field, carried, [*names, *held], numbers if slopes else ())
+        squares = {name: weighted_squares(self.frequency, by.moved(name)) for name in names}
+        hands = {name: self._over_orders(one) for name, one in squares.items()}
         forces = {}
         for name in held:  # mean square of the force on all that holds the station
-            force = sum(layout.on_body(self.tool.station(name), field.s).values()) * moved(name)
+            force = by.holding(name) * by.moved(name)
             forces[name] = self._over_orders(force * force.conj() * 0.5)
         return BandFigures(hands, forces)
 
@@ -262,9 +253,8 @@ class Band:
         """Sum over planes and orders: from (2, K S) to (S,)."""
         shape = (2, len(self.orders), len(self.speed))
         value = squares.value.real.reshape(shape).sum(axis=(0, 1))
-        count = len(squares.slopes)
-        full = np.broadcast_to(squares.slopes.real, (count, *squares.value.shape))
-        return Dual(value, full.reshape(count, *shape).sum(axis=(1, 2)))
+        slopes = squares.slopes.real.reshape(-1, *shape).sum(axis=(1, 2))
+        return Dual(value, slopes)
 
 
 def values_of(tool: Tool, numbers: Sequence[Number]) -> Array:
@@ -286,9 +276,7 @@ def tool_sensitivities(tool: Tool, speed: Array) -> dict[Number, float]:
     In m/s2 for each SI unit; of a pair of numbers, by both together.
     """
     numbers = [(one.name, key) for one in tool.stations for key in KEYS if has(one, key)]
-    band = Band(tool, speed)
-    parts = [band.felt(numbers[k : k + TOGETHER]) for k in range(0, len(numbers), TOGETHER)]
-    means = {name: mean_over_band(one).value[0] for name, one in parts[0].hands.items()}
-    worst = max(means, key=lambda name: float(means[name]))
-    slopes = np.concatenate([mean_over_band(part.hands[worst]).slopes[:, 0] for part in parts])
-    return dict(zip(numbers, (slopes / (2 * np.sqrt(means[worst]))).tolist(), strict=True))
+    means = [mean_over_band(one) for one in Band(tool, speed).felt(numbers).hands.values()]
+    worst = max(means, key=lambda one: float(one.value[0]))
+    slopes = worst.slopes[:, 0] / (2 * np.sqrt(worst.value))
+    return dict(zip(numbers, slopes.tolist(), strict=True))

@@ -20,7 +20,7 @@ from equipoise.handheld.chain import (
     shear_transfer,
     transfer,
 )
-from equipoise.handheld.duals import Dual, stacked, value_of
+from equipoise.handheld.duals import Dual, value_of
 from equipoise.handheld.model import Impedance, Station, Tool
 from equipoise.handheld.shaft import Section
 from equipoise.signals import Array
@@ -41,12 +41,13 @@ def impedance(tables: Sequence[Impedance], s: Any) -> Array:
 
 
 def check_coverage(tool: Tool, lowest: float, highest: float) -> None:
-    """Every table of a hand must reach from the lowest to the highest frequency, rad/s.
+    """What is known of a tool must reach from the lowest to the highest frequency, rad/s.
 
     Raises
     ------
-    ModelError : says where a table begins or ends.
+    ModelError : says where a hand's table begins or ends; as `check_waves`.
     """
+    check_waves(tool, highest)
     low, high = lowest / (2 * pi), highest / (2 * pi)
     for number, station in enumerate(tool.stations, 1):
         for table in station.hand.impedance if station.hand is not None else ():
@@ -64,8 +65,8 @@ def check_coverage(tool: Tool, lowest: float, highest: float) -> None:
 Kind = Literal["undamped", "free", "forced"]
 """What counts: masses and springs; all that is known at any complex frequency; tables of hands too,
 which are known at real frequencies alone."""
-MOST_CELLS = 1000
-"""Between two stations; far beyond any tool."""
+MOST_CELLS, MOST_SHAKEN = 1000, 100
+"""Cells of a shaft, some four of each wave, and of one that is shaken: far beyond any tool."""
 TUNED, NEARLY_NOTHING = 1e-15, 1e-200
 """Share of its stiffness by which an undamped absorber misses its own frequency, and what one
 without mass and spring is divided by."""
@@ -75,16 +76,49 @@ class Cell(NamedTuple):
     """A segment between two nodes."""
 
     start: float
-    length: Any
+    length: float
     section: Section
+
+
+class Beam(NamedTuple):
+    """Coefficients of the equations of `chain`: 1 / EI, 1 / kGA, rho A s^2 and rho I s^2."""
+
+    flexibility: Any
+    shear: Any
+    mass: Any
+    rotary: Any
+
+
+def check_waves(tool: Tool, highest: float, most: int = MOST_SHAKEN) -> None:
+    """At the highest frequency, rad/s, the shaft must not need more than so many cells.
+
+    Raises
+    ------
+    ModelError : says how short its waves are.
+    """
+    pieces = tool.shaft.pieces
+    if sum((stop - start) / _longest(one, highest) for start, stop, one in pieces) > most:
+        wave = 4 * min(_longest(one, highest) for *_, one in pieces)
+        raise ModelError(
+            "shaft",
+            f"at {highest / (2 * pi):.4g} Hz its waves are some {wave:.2g} m long, too short for "
+            f"{tool.shaft.length:.4g} m; check its length, stiffness and mass, and the speeds",
+        )
+
+
+def _longest(section: Section, frequency: float) -> float:
+    """Length of a cell at most, m."""
+    flexibility, shear = 1 / section.bending_stiffness, 1 / section.shear_stiffness
+    return longest(frequency, flexibility, shear, section.mass_per_length, section.rotary_inertia)
 
 
 @dataclass(frozen=True, eq=False)
 class Layout:
     """The nodes of a tool, fine enough for all frequencies up to `highest`, rad/s.
 
-    changed : numbers of stations that stand in the place of the tool's, by name and key, with or
-        without derivatives.
+    changed : numbers of stations that stand in the place of the tool's, by name and key; all but
+        positions with or without derivatives.  A position here has a cell on both sides, if without
+        length, by whose length it moves.
     """
 
     tool: Tool
@@ -102,42 +136,31 @@ class Layout:
     def _laid(self) -> tuple[list[list[Station]], list[Cell]]:
         """Stations of each node, and the cells between the nodes."""
         shaft = self.tool.shaft
-        points: list[tuple[Any, Station | None]] = [(0.0, None)]
+        check_waves(self.tool, self.highest, MOST_CELLS)
+        points: list[tuple[float, Station | None]] = [(0.0, None)]
         points += [(stop, None) for _, stop, _ in shaft.pieces]
         points += [(self.of(station, "position"), station) for station in self.tool.stations]
         points.sort(key=_order)
         nodes: list[list[Station]] = [[]]
         cells: list[Cell] = []
-        before: Any = 0.0
+        before, moved = 0.0, False
         for at, station in points:
-            gap = at - before
-            if isinstance(gap, Dual) or gap > 0:
-                new = self._cells(before, gap)
+            moves = station is not None and (station.name, "position") in self.changed
+            if at > before or moves or moved:
+                new = self._cells(before, at - before)
                 cells += new
                 nodes += [[] for _ in new]
             if station is not None:
                 nodes[-1].append(station)
-            before = at
+            before, moved = at, moves
         return nodes, cells
 
-    def _cells(self, start: Any, gap: Any) -> list[Cell]:
+    def _cells(self, left: float, length: float) -> list[Cell]:
         """Segments of one section, none of which is too long."""
-        left, length = (float(np.squeeze(value_of(number))) for number in (start, gap))
         pieces, middle = self.tool.shaft.pieces, left + length / 2
         section = next((one for _, stop, one in pieces if middle <= stop), pieces[-1][2])
-        flexibility, shear = 1 / section.bending_stiffness, 1 / section.shear_stiffness
-        most = longest(
-            self.highest, flexibility, shear, section.mass_per_length, section.rotary_inertia
-        )
-        parts = max(1, ceil(min(length / most, MOST_CELLS + 1)))
-        if parts > MOST_CELLS:
-            raise ModelError(
-                "shaft",
-                f"at {self.highest / (2 * pi):.4g} Hz its waves are some {4 * most:.2g} m long, "
-                f"too short for {self.tool.shaft.length:.4g} m; check its length, stiffness and "
-                "mass, and the speeds",
-            )
-        return [Cell(left + k * length / parts, gap / parts, section) for k in range(parts)]
+        parts = max(1, ceil(length / _longest(section, self.highest)))
+        return [Cell(left + k * length / parts, length / parts, section) for k in range(parts)]
 
     @property
     def nodes(self) -> list[list[Station]]:
@@ -160,10 +183,10 @@ class Layout:
         Without damping s^2 is negative, and all is real.
         """
         square = np.real(s * s) if kind == "undamped" else s * s
-        stations = [self._station(stations, s, square, kind) for stations in self.nodes]
+        stations = [self.sitting(stations, s, square, kind) for stations in self.nodes]
         if isinstance(square, Dual):  # the cells come before the planes
             square = Dual(square.value[None], square.slopes[:, None])
-        lengths = stacked([cell.length for cell in self.cells])
+        lengths = _column([cell.length for cell in self.cells])
         whole = self._transfers(self.cells, lengths, square, kind)
         return Chain([whole.part(k) for k in range(len(self.cells))], stations)
 
@@ -174,17 +197,24 @@ class Layout:
 
     def _transfers(self, cells: list[Cell], length: Any, square: Any, kind: Kind) -> Transfer:
         """Transfer matrices (C, 1 or 2, F) from the left end of cells over lengths (C, 1, 1), m."""
+        beam = self.beam(cells, square, kind)
+        if self.tool.shaft.theory != "timoshenko":
+            return transfer(length, beam.flexibility, beam.mass)
+        return shear_transfer(length, *beam)
+
+    def beam(self, cells: list[Cell], square: Any, kind: Kind) -> Beam:
+        """The coefficients (C, 1 or 2, F) of cells (C)."""
         sections, factor = [cell.section for cell in cells], self.tool.shaft.loss_factor
         loss = 1 + 1j * factor if factor and kind != "undamped" else 1.0
-        flexibility = _column([1 / one.bending_stiffness for one in sections]) / loss
-        mass = _column([one.mass_per_length for one in sections]) * square
-        if self.tool.shaft.theory != "timoshenko":
-            return transfer(length, flexibility, mass)
-        shear = _column([1 / one.shear_stiffness for one in sections]) / loss
-        rotary = _column([one.rotary_inertia for one in sections]) * square
-        return shear_transfer(length, flexibility, shear, mass, rotary)
+        return Beam(
+            _column([1 / one.bending_stiffness for one in sections]) / loss,
+            _column([1 / one.shear_stiffness for one in sections]) / loss,
+            _column([one.mass_per_length for one in sections]) * square,
+            _column([one.rotary_inertia for one in sections]) * square,
+        )
 
-    def _station(self, stations: Sequence[Station], s: Any, square: Any, kind: Kind) -> Pair:
+    def sitting(self, stations: Sequence[Station], s: Any, square: Any, kind: Kind) -> Pair:
+        """Dynamic stiffness of what sits at a node."""
         across: Any = np.zeros((2, 1))
         turning: Any = np.zeros((2, 1))
         for one in stations:
@@ -244,10 +274,10 @@ class Layout:
         ]
 
 
-def _order(point: tuple[Any, Station | None]) -> tuple[float, bool]:
+def _order(point: tuple[float, Station | None]) -> tuple[float, bool]:
     """By place; a station at the right end stands before it, so that it can move inward."""
-    place = float(np.squeeze(value_of(point[0])))
-    return place, point[1] is None and place > 0
+    place, station = point
+    return place, station is None and place > 0
 
 
 def _column(numbers: list[float]) -> Array:

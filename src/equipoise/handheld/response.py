@@ -296,6 +296,14 @@ def checked_speeds(speed: float | Iterable[float] | Array) -> Array:
 def shaken(layout: Layout, all_shakes: Sequence[Shake], orders: Array, speeds: Array) -> Field:
     """The field of a layout under what shakes, at all orders and speeds."""
     s = 1j * np.multiply.outer(orders, speeds).reshape(1, -1)
+    loads = loads_on(layout, all_shakes, orders, speeds)
+    return Field(layout, s, solve(carry(layout.chain(s)), loads))
+
+
+def loads_on(
+    layout: Layout, all_shakes: Sequence[Shake], orders: Array, speeds: Array
+) -> list[Pair | None]:
+    """What shakes, on the nodes of a layout: forces (2, K S)."""
     loads: list[Any] = [None] * len(layout.nodes)
     for shake in all_shakes:
         force = np.zeros((2, len(orders), len(speeds)), complex)
@@ -303,4 +311,4 @@ def shaken(layout: Layout, all_shakes: Sequence[Shake], orders: Array, speeds: A
         node = layout.node_of[shake.station]
         load = Pair(force.reshape(2, -1), 0.0)
         loads[node] = load if loads[node] is None else Pair(loads[node].across + load.across, 0.0)
-    return Field(layout, s, solve(carry(layout.chain(s)), loads))
+    return loads

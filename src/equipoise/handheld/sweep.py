@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from equipoise.errors import ModelError
+from equipoise.handheld.layout import check_waves
 from equipoise.handheld.model import PLANES, Excitation, Station, Tool
 from equipoise.handheld.modes import swinging_below
 from equipoise.handheld.response import (
@@ -331,8 +332,12 @@ def default_speeds(tool: Tool) -> tuple[float, float] | None:
 
 
 def speeds_between(tool: Tool, low: float, high: float, count: int = SPEEDS) -> Array:
-    """Equally spaced speeds, rad/s, and more of them about the resonances of loud orders."""
+    """Equally spaced speeds, rad/s, and more of them about the resonances of loud orders.
+
+    Raises `ModelError` as `layout.check_waves`.
+    """
     orders = {shake.order for shake in loud(shakes(tool), high, LOUD)} | {1.0}
+    check_waves(tool, max(orders) * high)
     found = swinging_below(tool, max(orders) * high)
     wide = np.abs(found.real) > NARROW * found.imag
     about = [

@@ -9,7 +9,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from equipoise.handheld.duals import Dual, stacked, variables
+from equipoise.handheld.duals import Dual
 
 OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
     "x + y": lambda x, y: x + y,
@@ -94,33 +94,3 @@ def test_parts() -> None:
     np.testing.assert_array_equal(part.slopes, np.arange(24.0).reshape(4, 2, 3)[:, 1])
     part = number[:, 2]
     np.testing.assert_array_equal(part.slopes, np.arange(24.0).reshape(4, 2, 3)[:, :, 2])
-
-
-def test_variables_have_a_slope_by_themselves_alone() -> None:
-    found = variables(np.array([2.0, 3.0, 5.0]), 2)
-    assert [one.value.shape for one in found] == [(1, 1)] * 3
-    assert [float(np.squeeze(one.value)) for one in found] == [2, 3, 5]
-    slopes = np.array([np.broadcast_to(one.slopes, (3, 1, 1))[:, 0, 0] for one in found])
-    np.testing.assert_array_equal(slopes, np.eye(3))
-    product = found[0] * found[1] / found[2]
-    np.testing.assert_allclose(np.squeeze(product.slopes), [3 / 5, 2 / 5, -6 / 25], rtol=1e-15)
-
-
-def test_stacked() -> None:
-    """Numbers with and without derivatives side by side."""
-    one, other = variables(np.array([2.0, 3.0]), 2)
-    found = stacked([1.5, one, one - other])
-    assert np.shape(found.value) == (3, 1, 1)
-    np.testing.assert_array_equal(np.ravel(found.value), [1.5, 2, -1])
-    np.testing.assert_array_equal(found.slopes[..., 0, 0], [[0, 1, 1], [0, 0, -1]])
-    plain = stacked([1.5, 2.5])
-    assert not isinstance(plain, Dual)
-    assert plain.tolist() == [[[1.5]], [[2.5]]]
-
-
-def test_variables_without_slopes() -> None:
-    """The same values, and no derivative that is carried along."""
-    one, other = variables(np.array([2.0, 3.0]), 2, slopes=False)
-    found = np.array([4.0]) / (one * other)
-    assert float(np.squeeze(found.value)) == 4 / 6
-    assert found.slopes.shape[0] == 0

@@ -14,6 +14,8 @@ import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.exposure.spectra import weigh_signal
 from equipoise.exposure.weighting import weighting
+from equipoise.handheld import exposed, reciprocal
+from equipoise.handheld.chain import carry, solve
 from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.duals import Dual
 from equipoise.handheld.exposed import (
@@ -299,6 +301,22 @@ def test_slopes_of_many_numbers_are_those_of_each() -> None:
             np.testing.assert_allclose(whole.hands[name].slopes[k], part.slopes[0], rtol=1e-8)
         for name, part in one.forces.items():
             np.testing.assert_allclose(whole.forces[name].slopes[k], part.slopes[0], rtol=1e-8)
+
+
+def test_slopes_cost_one_more_run_along_the_shaft(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However many numbers there are."""
+    runs: list[int] = []
+    for module, run in ((exposed, solve), (reciprocal, solve), (exposed, carry)):
+
+        def counted(*given: Any, run: Callable[..., Any] = run) -> Any:
+            runs.append(1)
+            return run(*given)
+
+        monkeypatch.setattr(module, run.__name__, counted)
+    tool = alike(random_tool(2))
+    numbers = numbers_of(tool)
+    Band(tool, SPEEDS).felt(numbers, values_of(tool, numbers), HELD)
+    assert len(numbers) > 20 and len(runs) == 3
 
 
 def test_without_slopes() -> None:
