@@ -300,28 +300,16 @@ def _items(shape: ModeShape, view: View) -> Iterator[tuple[str, complex, list[Sh
         gauge = isinstance(item, Gauge)
         if item.point is None:
             if item.axis == VIEWS[view].axis:
-<<<<<<< HEAD
-                yield name, reference, shapes.turning(reference, ring, gauge)
-=======
-                yield from carrier.turning(reference, ring, gauge)
->>>>>>> main
+                yield name, reference, carrier.turning(reference, ring, gauge)
                 ring += 1
             continue
         place = complex(seen(item.point, view))
         way = complex(seen(unit_vector(item.direction), view))
         if isinstance(item, Gauge):
-<<<<<<< HEAD
-            yield name, place, shapes.gauge(place, way)
-        else:
-            sprung = bool(item.stiffness)
-            yield name, place, shapes.mount(place, way, center, sprung, item.one_sided)
-=======
-            yield from carrier.gauge(place, way)
+            yield name, place, carrier.gauge(place, way)
         else:
             to = carrier.to_ground(way, place - center, item.one_sided)
-            yield from carrier.mount(item, place, to)
-    yield from shapes.mass(complex(seen(support.center_of_mass, view)))
->>>>>>> main
+            yield name, place, carrier.mount(item, place, to)
 
 
 def _names(shape: ModeShape, view: View, named: Collection[str], size: float) -> Iterator[Mark]:

@@ -27,12 +27,7 @@ from unit.figures.checks import Laid, check
 EXAMPLES = (*eq.examples("linkage"), *eq.examples("tool"))
 TRANSLATED = ("transplanter", "walking-transplanter", "brush-cutter")
 NOT_YET = {
-<<<<<<< HEAD
     "text shortened": ("brush-cutter/design",),
-=======
-    "text shortened": ("kim-chung-[bc]/joints", "brush-cutter/design"),
-    "cut by its axes": ("scotch-yoke/changes",),
->>>>>>> main
 }
 """What is not kept -> pictures that do not keep it yet."""
 ODD = {
