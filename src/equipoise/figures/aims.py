@@ -105,18 +105,29 @@ class Aim:
         """A measure before and after, and its limit."""
         pair = [measured(self.pair[when], one.measure) for when in ("before", "after")]
         axis = Axis("", shown_in(unit_of(one, self.machine), pair))
-        values = {"before": axis.told(pair[0]), "after": axis.quantity(pair[1])}
-        told = say("{what}: {before} → {after}", what=say(MEASURES[one.measure]), **values)
+        what, both = say(MEASURES[one.measure]), f"{axis.told(pair[0])} → {axis.quantity(pair[1])}"
+        told = say("{what}: {value}", what=what, value=_whole(both))
         if most is None:
             return told
-        return say("{what}, at most {limit}", what=told, limit=axis.quantity(most))
+        return say("{what}, at most {limit}", what=told, limit=_whole(axis.quantity(most)))
+
+
+def _whole(text: str) -> str:
+    """A text that is not broken between its lines."""
+    return text.replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def aims_of(found: Balanced) -> Iterator[Aim]:
-    """Each signal that a plan asks for, by itself at each speed."""
+    """Each signal that a plan asks for, by itself at each speed.
+
+    Of the limits of a remedy, which nobody asked for, those that stand in the way.
+    """
     asked: dict[Objective, list[tuple[Objective, float | None]]] = {}
     wanted: list[tuple[Objective, float | None]] = [(one, None) for one in found.plan.objectives]
-    wanted += [(one.objective, found.prices[one.name].at_most) for one in found.plan.limits]
+    for limit in found.plan.limits:
+        price = found.prices[limit.name]
+        if price.active or not found.tried:
+            wanted.append((limit.objective, price.at_most))
     for one, most in wanted:
         for speed in one.speeds or (found.original.drive.speed,):
             own = replace(one, speeds=(speed,), weight=1.0)
