@@ -144,9 +144,10 @@ def _settle(cell: Cell, width: float, most: float, small: bool) -> None:
     x, y = (np.array(ends) for ends in (cell.x_ends, cell.y_ends))
     fixed = cell.panel.height
     if small and not fixed:
-        cell.height = min(width, most)
-        inner = cell.height * (1 - 2 * SMALL_ROOM)
-        point = max(np.ptp(x), np.ptp(y), cell.least_span) / inner or 1.0
+        side = min(width, most)
+        room = SMALL_ROOM * side
+        point = max(np.ptp(x), np.ptp(y), cell.least_span) / (side - 2 * room) or 1.0
+        cell.height = side if cell.panel.held is None else np.ptp(y) / point + 2 * room
     else:
         high, room = fixed or most, 0.0 if cell.panel.bare else ROOM
         point = max(np.ptp(x) / (width - 2 * room), np.ptp(y) / (high - 2 * room)) or 1.0
