@@ -16,7 +16,7 @@ from equipoise.mechanism.motion import move
 from equipoise.mechanism.support import AXES, Gauge, Mount, unit_vector
 from equipoise.quantities import typeset
 from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, shown
-from equipoise.symbols import shapes
+from equipoise.symbols import carrier, shapes
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape, hull
 from equipoise.vibration.linkages import rows_of
@@ -279,15 +279,16 @@ def _signs(shape: ModeShape, view: View) -> Iterator[Shape]:
         gauge = isinstance(item, Gauge)
         if item.point is None:
             if item.axis == VIEWS[view].axis:
-                yield from shapes.turning(reference, ring, gauge)
+                yield from carrier.turning(reference, ring, gauge)
                 ring += 1
             continue
         place = complex(seen(item.point, view))
         way = complex(seen(unit_vector(item.direction), view))
         if isinstance(item, Gauge):
-            yield from shapes.gauge(place, way)
+            yield from carrier.gauge(place, way)
         else:
-            yield from shapes.mount(place, way, center, bool(item.stiffness), item.one_sided)
+            to = carrier.to_ground(way, place - center, item.one_sided)
+            yield from carrier.mount(item, place, to)
     yield from shapes.mass(complex(seen(support.center_of_mass, view)))
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import ceil, floor, log10
+from typing import Any
 
 import numpy as np
 
@@ -11,8 +13,10 @@ from equipoise.figures.curves import (
     draw_area,
     draw_arrow,
     draw_bars,
+    draw_cells,
     draw_curve,
     draw_machine,
+    draw_rule,
     signs_at,
 )
 from equipoise.figures.sheet import MIDDLE, Array, Stroke, Text, Words, spread, width_of
@@ -42,8 +46,14 @@ def draw(view: View) -> None:
         view.area(look_of(band.role), corners_of(box))
     if panel.surface is not None:
         draw_surface(view, panel.surface)
-    for area in panel.areas:
-        draw_area(view, area)
+    behind: list[tuple[Any, Sequence[Any]]] = [
+        (draw_cells, panel.cells),
+        (draw_area, panel.areas),
+        (draw_rule, panel.rules),
+    ]
+    for draw_one, parts in behind:
+        for part in parts:
+            draw_one(view, part)
     for outline in panel.outlines:
         look = look_of(outline.role)
         lines = tuple(view.places(one.real, one.imag) for one in (outline.places, *outline.holes))

@@ -26,10 +26,7 @@ from unit.figures.checks import Laid, check
 
 EXAMPLES = (*eq.examples("linkage"), *eq.examples("tool"))
 TRANSLATED = ("transplanter", "walking-transplanter", "brush-cutter")
-NOT_YET = {
-    "text shortened": ("balance-rig/*", "kim-chung-[bc]/joints", "brush-cutter/design"),
-    "cut by its axes": ("scotch-yoke/changes",),
-}
+NOT_YET = {"text shortened": ("brush-cutter/design",)}
 """What is not kept -> pictures that do not keep it yet."""
 ODD = {
     **{f"planting: {kind}": kind for kind in samples.odd_machines()},
