@@ -104,9 +104,10 @@ AROUND: tuple[tuple[complex, Literal["start", "middle", "end"]], ...] = (
 
 def _of_gauges(stage: Stage) -> Iterator[list[Label]]:
     """Beside each place of gauges that is seen, nearer or farther."""
-    carrier, low, high = stage.scene.carrier, *stage.scene.box
-    for place, names in carrier.gauges.items() if carrier is not None else ():
-        if low.real <= place.real <= high.real and low.imag <= place.imag <= high.imag:
+    carrier = stage.scene.carrier
+    gauges = {} if carrier is None else carrier.named(carrier.support.gauges)
+    for place, names in gauges.items():
+        if stage.scene.shows(place):
             at, words = complex(stage.at(place)), ", ".join(names)
             yield [
                 Label(words, at + off * stage.unit * way, anchor)

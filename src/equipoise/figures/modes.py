@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from equipoise.figures.linkage import support_keys
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.motion import move
@@ -318,10 +319,4 @@ def _keys(shape: ModeShape) -> Iterator[tuple[str, str]]:
     yield "rest", say("support at rest")
     yield "dot", say("joint of the linkages")
     yield "mass", say("centre of mass")
-    if any(gauge.point is not None for gauge in support.gauges.values()):
-        yield "gauge", say("gauge")
-    pushing = {mount.one_sided for mount in support.mounts.values() if mount.point is not None}
-    if False in pushing:
-        yield "foot", say("mount")
-    if True in pushing:
-        yield "float", say("pushing mount")
+    yield from support_keys(support)

@@ -12,7 +12,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.i18n import say
-from equipoise.results.charts import quantity
+from equipoise.results.charts import Axis, quantity
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import FOOT, Array
@@ -164,9 +164,10 @@ class Stage:
 
     @cached_property
     def told(self) -> list[tuple[str, str]]:
-        """What is to be said of the support's movement and of the force, and its colour."""
+        """What is to be said of the support, its movement and the force, and its colour."""
         swing = self.scene.swing
-        found = [(words, "ink") for words in (() if swing is None else swing.told)]
+        said = (*beyond(self.scene), *(() if swing is None else swing.told))
+        found = [(words, "ink") for words in said]
         if self.arrow is not None:
             peak = quantity(float(abs(self.arrow.force).max()), "force")
             words = say("shaking force, at most {peak}", peak=peak)
@@ -249,6 +250,26 @@ class Moves:
     place: Array
     angle: Array
     stretch: Array
+
+
+def beyond(scene: Scene) -> list[str]:
+    """What a support has too far from the linkage to be in its picture, and where."""
+    carrier = scene.carrier
+    if carrier is None:
+        return []
+    places = {carrier.center: [say("centre of mass")]}
+    if carrier.support.pivot is not None:
+        places = {carrier.reference: [say("pivot")]} | places
+    for items in (carrier.support.mounts, carrier.support.gauges):
+        for place, names in carrier.named(items).items():
+            places[place] = places.get(place, []) + names
+    told = []
+    for place, names in places.items():
+        if not scene.shows(place):
+            axis = Axis.of("", "length", [place])
+            at = f"({axis.told(place.real)}, {axis.told(place.imag)}) {axis.unit_name}"
+            told.append(f"{', '.join(names)} {at}")
+    return [say("Beyond the drawing: {items}", items="; ".join(told))] if told else []
 
 
 def width_of(text: str, size: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,11 +65,10 @@ class Carrier:
         """Mounts, then gauges."""
         return {**self.support.mounts, **self.support.gauges}
 
-    @property
-    def gauges(self) -> dict[complex, list[str]]:
-        """Names of gauges by their places, of those that are seen from the side."""
+    def named(self, items: Mapping[str, Mount] | Mapping[str, Gauge]) -> dict[complex, list[str]]:
+        """Names of mounts or gauges by their places, of those that are seen from the side."""
         found: dict[complex, list[str]] = {}
-        for name, item in self.support.gauges.items():
+        for name, item in items.items():
             if item.point is None and item.axis != "pitch":
                 continue
             place = self.reference if item.point is None else complex(*item.point[:2])
@@ -89,12 +89,17 @@ class Carrier:
         around = hull(np.array([*corners, center, reference]))
         return cls(support, tuple(map(complex, around)), center, reference)
 
-    def way(self, mount: Mount) -> complex:
-        """Direction, 1 long, from a mount to its ground; 0 where it turns or is seen end on."""
-        if mount.point is None:
+    def way(self, item: Mount | Gauge) -> complex:
+        """Direction, 1 long, from a mount to its ground, or in which a gauge reads.
+
+        0 of one that turns or is seen end on.
+        """
+        if item.point is None:
             return 0j
-        place, along = (complex(*z[:2]) for z in (mount.point, unit_vector(mount.direction)))
-        return to_ground(along, place - self.center, mount.one_sided)
+        place, along = (complex(*z[:2]) for z in (item.point, unit_vector(item.direction)))
+        if isinstance(item, Gauge):
+            return along / abs(along) if abs(along) >= SEEN else 0j
+        return to_ground(along, place - self.center, item.one_sided)
 
 
 # -- signs -----------------------------------------------------------------------------------------

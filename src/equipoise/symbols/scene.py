@@ -234,6 +234,11 @@ class Scene:
                 low, high = grown
         return low, high
 
+    def shows(self, place: complex) -> bool:
+        """Whether a place, m, is in the box."""
+        low, high = self.box
+        return low.real <= place.real <= high.real and low.imag <= place.imag <= high.imag
+
     @property
     def swept_box(self) -> tuple[complex, complex]:
         """The same with all that it holds as the support swings."""

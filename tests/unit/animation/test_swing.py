@@ -12,6 +12,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.figures.animation import Moving, Part, animated_svg, laid_out
+from equipoise.figures.stage import beyond
 from equipoise.figures.swing import SEEN, in_mode, swinging
 from equipoise.mechanism.support import unit_vector
 from equipoise.symbols.carrier import MOUNT
@@ -170,7 +171,9 @@ def test_the_motion_of_a_response_is_what_gauges_read(model: str) -> None:
 def test_names_of_gauges_stand_where_no_link_passes() -> None:
     for name in ("walking-transplanter", "riding-transplanter", "yamashita-rig"):
         drawn = laid_out(scene_of(name))
-        names = [", ".join(names) for names in scene_of(name).carrier.gauges.values()]
+        carrier = scene_of(name).carrier
+        named = carrier.named(carrier.support.gauges)
+        names = [", ".join(names) for names in named.values()]
         (label,) = (label for label in drawn.labels if label.text in names)
         left, top, right, bottom = label.box(drawn.stage.size_of_type)
         x, y = drawn.stage.links.real, drawn.stage.links.imag
@@ -183,5 +186,5 @@ def test_what_is_told_is_told_whole_in_pictures_of_any_width(width: int) -> None
     scene = scene_of("riding-transplanter")
     drawn = laid_out(scene, ["P"], width=width)
     lines = [line for line, _ in drawn.stage.lines if line]
-    assert " ".join(lines[::-1]) == " ".join(scene.swing.told)
+    assert " ".join(lines[::-1]) == " ".join((*beyond(scene), *scene.swing.told))
     assert set(lines) <= {label.text for label in drawn.labels}
