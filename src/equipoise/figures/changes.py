@@ -260,7 +260,8 @@ def grams(mass: float) -> str:
 
 
 def _panel(scene: Scene, k: int, new: list[Addition]) -> Panel:
-    shapes, machine = drawn(scene, k), scene.corners_at(k)
+    shapes = drawn(scene, k)
+    machine = np.concatenate([scene.corners_at(k), *(one.places for one in shapes["signs"])])
     size = _size(machine)
     held = [one.outline for one in new if one.kind != "room" or _size(one.outline) <= FAR * size]
     every = np.concatenate([machine, *held])
