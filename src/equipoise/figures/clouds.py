@@ -127,7 +127,7 @@ def keys_for(designs: Designs, pairs: Iterable[Pair] = ()) -> tuple[tuple[str, s
     """What a legend tells of points over these pairs; of lines from axis to axis where none."""
     cloud, pairs = designs.cloud, [*pairs]
     sign = "" if pairs else " line"
-    keys = [(f"design{sign or 's'}", say("chosen designs"))]
+    keys = [(f"design{sign}", say("chosen designs"))]
     if cloud.beyond:
         kept, others = say("designs that keep every limit"), say("others")
         keys += [(f"kept{sign}", kept), (f"beyond{sign}", others)]

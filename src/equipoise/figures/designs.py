@@ -113,7 +113,7 @@ def _against(designs: Designs, pair: Pair, alone: bool = False) -> Panel:
     if first in designs.numbers:
         y = replace(y, label=unit_in(designs.units, second).called)
     columns, cloud = designs.columns, designs.cloud
-    curves = [Curve(columns[first], columns[second], "", "designs")]
+    curves = [Curve(columns[first], columns[second], "", "design")]
     marks = []
     if len(designs.by) == 2 and designs.line is not None and {*pair} == {*designs.by}:
         line = designs.line[np.argsort(designs.line[:, 0], kind="stable")]

@@ -19,8 +19,8 @@ from equipoise.figures.shared import (
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
-from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.outputs import joint_named
+from equipoise.mechanism.poles import guided, pinned
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
 
@@ -46,7 +46,8 @@ def moving(motion: Motion) -> list[str]:
 
 
 def traced(motion: Motion) -> list[str]:
-    """Points with a path worth following: those of couplers, first those that are no joint.
+    """Points with a path worth following: a planting tip, then those of couplers, first those that
+    are no joint.
 
     A point of a link that is pinned to the frame runs on a circle; these come only where a machine
     has no others, and those of the drive last of all.
@@ -57,7 +58,9 @@ def traced(motion: Motion) -> list[str]:
     names = moving(motion)
     driven = [name for name in names if name not in machine.links[machine.drive.link].points]
     found = [name for name in names if name not in circling] or driven or names
-    return sorted(found, key=lambda name: name in joints.pins)
+    tip = [] if machine.planting is None else [machine.planting.tip]
+    every = dict.fromkeys([*tip, *found])
+    return sorted(every, key=lambda name: (name not in tip, name in joints.pins))
 
 
 def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
@@ -218,11 +221,7 @@ def kinematics(analysis: Analysis) -> Iterator[Chart]:
 
 def main_kinematics(analysis: Analysis) -> list[Chart]:
     """Those that matter most: of sliders, or driven links, on the frame; transmission angles."""
-    machine = analysis.machine
-    wanted = [slider.name for slider in machine.sliders if slider.on == FRAME]
-    if not wanted:
-        pinned = [link for link, body in machine.links.items() if {*body.points} & {*machine.frame}]
-        wanted = [link for link in pinned if link != machine.drive.link][:MOST_LINKS]
+    wanted = guided(analysis.machine) or pinned(analysis.machine)[:MOST_LINKS]
     names = {"kinematics-transmission", *map(_name, wanted)}
     return [chart for chart in kinematics(analysis) if chart.name in names]
 

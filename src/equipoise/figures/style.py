@@ -132,7 +132,7 @@ LOOKS: dict[str, Look] = {
     "failed": Look(INK, 0.0, sign="x", size=3.0, order=2.3),
     "kept line": Look(POINTS, 0.5, order=2.2),
     "beyond line": Look(DIM, 0.5, order=2.1),
-    "designs": Look(STRESS, 0.0, sign="o", size=4.5, order=4.2),
+    "design": Look(STRESS, 0.0, sign="o", size=4.5, order=4.2),
     "design line": Look(STRESS, 1.3, order=3.3),
     "front": Look(STRESS, 1.0, order=4.1),
     "rule": Look(INK, 0.9, order=3.6),

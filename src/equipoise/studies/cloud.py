@@ -124,7 +124,9 @@ def cloud_of(
     table, (good, bad, lost) = np.concatenate(rows), np.concatenate(marks, axis=1)
     there = good | bad
     ends = zip(names, least.tolist(), most.tolist(), table[there].T, strict=True)
-    spreads = {name: _spread(*one, figure=name not in numbers) for name, *one in ends}
+    spreads = {
+        name: _spread(low, high, column, name not in numbers) for name, low, high, column in ends
+    }
     counts: dict[Pair, Array] = {}
     failed = {name: spreads[name].bins(table[lost, k]) for k, name in enumerate(numbers)}
     if not few:

@@ -112,7 +112,7 @@ def test_all_designs_stand_behind_the_chosen_ones(size: int) -> None:
         assert np.sum(beyond.counts) > 0 and beyond.dots
     assert shown["kept"] == np.sum(good & ~failed)
     assert size > MOST or shown["beyond"] == np.sum(~good & ~failed)
-    (chosen,) = (curve for curve in panel.curves if curve.role == "designs")
+    (chosen,) = (curve for curve in panel.curves if curve.role == "design")
     np.testing.assert_array_equal(np.column_stack([chosen.x, chosen.y]), some.table[:, [5, 6]])
     (line,) = (curve for curve in panel.curves if curve.role == "front")
     assert list(line.x) == sorted(some.table[:, 5])
@@ -200,7 +200,7 @@ def _lines(chart: Chart, width: float) -> list[np.ndarray]:
 def test_designs_are_drawn_with_the_model_beside_them() -> None:
     chart, found = of_search()["front"], searched()
     (panel,) = chart.panels
-    (chosen,) = (curve for curve in panel.curves if curve.role == "designs")
+    (chosen,) = (curve for curve in panel.curves if curve.role == "design")
     np.testing.assert_allclose([chosen.x, chosen.y], found.figures[:, :2].T)
     assert [(m.x, m.y) for m in panel.marks if m.role == "own"] == [tuple(OWN[1][:2])]
     told = words(chart)
@@ -212,7 +212,7 @@ def test_designs_are_drawn_with_the_model_beside_them() -> None:
             strict=False,
         )
     ):
-        (chosen,) = (curve for curve in panel.curves if curve.role == "designs")
+        (chosen,) = (curve for curve in panel.curves if curve.role == "design")
         np.testing.assert_allclose(chosen.x, found.values[:, number])
         assert panel.x.text == label
     (curve,) = of_search()["search"].panels[0].curves
@@ -223,7 +223,7 @@ def test_three_aims_are_drawn_in_pairs() -> None:
     chart, found = of_three()["front"], searched()
     aims = [panel.x.label.split(" ")[0] for panel in chart.panels]
     assert aims == ["forward", "forward", "upward"]
-    (chosen,) = (curve for curve in chart.panels[2].curves if curve.role == "designs")
+    (chosen,) = (curve for curve in chart.panels[2].curves if curve.role == "design")
     np.testing.assert_allclose(chosen.x, found.figures[:, 1])
     assert "stroke (large is good), mm" in words(chart)
 
