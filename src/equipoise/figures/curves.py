@@ -41,7 +41,8 @@ def draw_curve(view: View, curve: Curve, number: int) -> None:
             line = Stroke(longer, look.color, look.width, look.lengths, clip=view.box)
             view.sheet.add(line, look.order)
         if len(alone):
-            view.sheet.add(signs_at(alone, Look(look.color, sign=".", size=2.5)), look.order)
+            dot = Look(look.color, sign=".", size=2.5)
+            view.sheet.add(signs_at(alone, dot, view.box), look.order)
     if look.sign:
         at = _spaced(places, number, view.box) if look.spaced else np.flatnonzero(there)
         clip = None if look.spaced else view.box

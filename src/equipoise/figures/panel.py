@@ -149,7 +149,7 @@ def frame(view: View, numbers: bool) -> None:
 
 
 ALIKE = (0.01, 0.004)
-"""Shares of the axes nearer than which two marks are one."""
+"""Shares of the axes nearer than which two signs with numbers, or two equal names, are one."""
 VISIBLE = 0.004
 """Over the longest bar: shorter ones cannot be seen, and get no number."""
 MOST_DECIMALS = 4
@@ -185,7 +185,8 @@ def _marks(view: View) -> None:
     size = np.array([view.x.length, view.y.length])
     for mark in view.panel.marks:
         (place,) = view.places(mark.x, mark.y)
-        told = [at for one, at in apart if one.text]
+        same = [(one, at) for one, at in apart if one.text and (one.sign or one.text == mark.text)]
+        told = [at for one, at in same if mark.sign or one.text == mark.text]
         if mark.text and any(np.all(np.abs(place - at) < ALIKE * size) for at in told):
             continue
         apart.append((mark, place))
@@ -198,7 +199,7 @@ def _marks(view: View) -> None:
         if mark.text:
             ink = look_of(mark.role).ink
             text = Text(mark.text, ink, mark.wish, mark.near, mark.optional, mark.bold)
-            view.labels.put(float(x), float(y), text)
+            view.labels.put(float(x) + mark.off.real, float(y) - mark.off.imag, text)
 
 
 def _bar_numbers(view: View) -> None:

@@ -159,7 +159,7 @@ class Mark:
 
     wish : direction in which its text stands best, deg.  sign : whether a sign stands at the place.
     optional : whether the text may be left out where there is no room.
-    near : least distance of the text from the place, points.
+    near : least distance of the text from the place, points; or from as far from it as `off`.
     """
 
     x: float
@@ -170,6 +170,7 @@ class Mark:
     sign: bool = True
     optional: bool = False
     near: float = 7.0
+    off: complex = 0j
     bold: bool = False
     label: str = ""
 
