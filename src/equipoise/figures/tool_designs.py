@@ -205,7 +205,7 @@ def design(found: ToolDesign) -> Chart:
     )
     x = engine_axis(found.speed)
     low, high = log_ends([*before, *after], 1.8, 2.2)
-    y = Axis("a_hv", RATE, "log", low, high)
+    y = Axis(say("total value a_hv"), RATE, "log", low, high)
     old = (replace(curve, label="", dashed=True) for curve in curves_of(found.speed, before))
     work = work_line(found.tool, x)
     marks = (*hand_peaks(found.better, found.speed, after, y), *work_mark(work, y, above=False))

@@ -169,7 +169,7 @@ def weighted(exposure: ToolExposure) -> Chart:
     read = {name: grip.a_hv for name, grip in exposure.grips.items()}
     allowed = {role: np.full(len(exposure.speed), one) for role, one in levels(exposure).items()}
     what = say("Weighted acceleration; dotted: action and limit value")
-    chart = _of_hands(exposure, "exposure", read, allowed, what, "a_hv")
+    chart = _of_hands(exposure, "exposure", read, allowed, what, say("total value a_hv"))
     if exposure.worst is None or exposure.a8 is None:
         return chart
     told = {"a8": shown(exposure.a8), "hand": short(exposure.worst)}

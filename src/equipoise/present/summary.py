@@ -10,7 +10,7 @@ import numpy as np
 from equipoise.balancing.told import capital, good_already, helps_told
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.outputs import joint_named
+from equipoise.mechanism.outputs import joint_named, named
 from equipoise.present.findings import Findings
 from equipoise.present.pages import Answer, Tile
 from equipoise.present.shaking import Shaking, acting, largest_joint
@@ -214,7 +214,11 @@ def vibration_told(found: Findings) -> Iterator[str]:
     for name, gauge in response.gauges.items():
         moved = float(gauge.displacement.peak_to_peak)
         unit = shown_in("rad" if gauge.rotation else "m", [moved])
-        words = {"unit": unit.name, "speed": brief(abs(response.speed) / PER_RPM), "gauge": name}
+        words = {
+            "unit": unit.name,
+            "speed": brief(abs(response.speed) / PER_RPM),
+            "gauge": named(name),
+        }
         words["size"] = unit.text(moved, digits=3)
         template = to_say(
             "{gauge}: the support moves by {size} {unit} peak to peak at {speed} rpm."

@@ -117,3 +117,11 @@ def test_the_pdf_is_short(name: str, most: int) -> None:
 def test_names_of_the_file_are_told_from_words(language: str) -> None:
     seen = drawn_of(document("yamashita-rig", language))["gauge-gauge"].seen
     assert {"en": "“gauge”", "ja": "「gauge」", "ko": "‘gauge’"}[language] in seen
+
+
+def test_what_the_hands_get_is_called_by_words() -> None:
+    told = document("brush-cutter", "ja")
+    assert "合成値" in drawn_of(told)["exposure"].svg
+    summary = document("yamashita-rig").summary
+    sentences = [one for answer in summary for one in answer.sentences]
+    assert any(one.startswith("“gauge”: the support moves by") for one in sentences)
