@@ -224,11 +224,15 @@ OF_LINKAGE: dict[str, Callable[[Findings], Iterator[Entry]]] = {
 
 
 def _of_tool(found: ToolFindings) -> Iterator[Entry]:
-    from equipoise.figures import tool_designs, tool_shaft, tool_speeds
+    from equipoise.figures import tool_designs, tool_shaft, tool_side, tool_speeds
 
     modes, transmission = found.modes, found.transmission
     planes = ("", "-lateral")[: 1 if found.tool.alike else 2]
+    caption = to_say("The tool from the side, at rest and as it is deflected at work.")
+    yield "side", caption, partial(tool_side.side, found.tool)
     if modes is not None:
+        caption = to_say("The tool from the side in its lowest natural vibrations.")
+        yield "side-modes", caption, partial(tool_side.side_modes, modes)
         caption = to_say("Shapes of the natural vibrations of the shaft.")
         for plane, name in enumerate(planes):
             drawn = partial(tool_shaft.shapes, modes, plane)
@@ -247,6 +251,8 @@ def _of_tool(found: ToolFindings) -> Iterator[Entry]:
         caption = to_say("Daily exposure of the hands, with what is allowed.")
         yield "exposure", caption, partial(tool_speeds.weighted, found.exposure)
     if found.design is not None:
+        caption = to_say("The tool from the side before and after what is changed.")
+        yield "side-design", caption, partial(tool_side.side_design, found.design)
         caption = to_say(
             "What the hand that gets most gets over the band of speeds, before and after."
         )

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -56,6 +57,15 @@ class Track:
     stretch: Array
 
 
+class Moving(Protocol):
+    """A scene: what pieces may move with, complex (N,) m and (N,) rad by name."""
+
+    @property
+    def places(self) -> Mapping[str, Array]: ...
+    @property
+    def angles(self) -> Mapping[str, Array]: ...
+
+
 @dataclass(frozen=True)
 class Hold:
     """What a piece moves with.
@@ -84,7 +94,7 @@ class Piece:
     hold: Hold | None = None
     link: str = ""
 
-    def track(self, scene: Scene) -> Track | None:
+    def track(self, scene: Moving) -> Track | None:
         """How it moves."""
         if self.hold is None:
             return None
@@ -92,6 +102,7 @@ class Piece:
         if self.hold.link:
             return Track(place, scene.angles[self.hold.link], np.ones(len(place)))
         if self.hold.guide:
+            assert isinstance(scene, Scene)
             (way,) = (guide.way for guide in scene.guides if guide.name == self.hold.guide)
             return Track(place, np.unwrap(np.angle(way)), np.ones(len(place)))
         way = scene.places[self.hold.to] - place
@@ -306,7 +317,7 @@ GROUND = ("field", "support")
 """Layers of pieces that paths are drawn on."""
 
 
-def placed(scene: Scene, every: list[Piece], k: int) -> list[Shape]:
+def placed(scene: Moving, every: list[Piece], k: int) -> list[Shape]:
     """The shapes of pieces where they are at the k-th crank angle, in the axes of the frame."""
     found: list[Shape] = []
     for piece in every:
