@@ -105,5 +105,5 @@ def _item(one: dict[str, str]) -> str:
     width, height = one["size"]
     told = f"{one['name']} · {one['source']}"
     size = f'width="{width}" height="{height}"'
-    picture = f'<img src="{one["svg"]}" alt="" {size} decoding="async">'
+    picture = f'<img src="{one["svg"]}" alt="" {size} loading="lazy">'
     return f'<li><a href="{one["svg"]}">{picture}{escape(told)}</a></li>\n'

@@ -63,3 +63,39 @@ def test_the_same_bytes_on_every_run() -> None:
         succeeded(equipoise(*words, "-o", name))
         assert process(*words, "-o", f"again-{name}", env={"PYTHONHASHSEED": "7"}).status == 0
         assert Path(name).read_bytes() == Path(f"again-{name}").read_bytes()
+
+
+def test_the_movement_of_the_support_is_drawn_and_told() -> None:
+    succeeded(equipoise("animate", "yamashita-1"))
+    for name, words, told in (
+        ("chosen", [], "movement of the support 2 times as large"),
+        ("twenty", ["--exaggerate", "20"], "movement of the support 20 times as large"),
+        ("true", ["--exaggerate", "1", "--speed", "150 rpm"], "movement of the support to scale"),
+        ("mode", ["--mode", "1"], "Mode 1: "),
+        ("still", ["--exaggerate", "0"], "</svg>"),
+    ):
+        succeeded(equipoise("animate", "yamashita-rig", "-o", f"{name}.svg", *words))
+        assert told in Path(f"{name}.svg").read_text(encoding="utf-8")
+    assert Path("chosen.svg").read_bytes() != Path("yamashita-1.svg").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("command", "why"),
+    [
+        ("yamashita-1 --exaggerate 2", "stands on solid ground"),
+        ("yamashita-1 --mode 1", "stands on solid ground"),
+        ('yamashita-1 --speed "300 rpm"', "--speed belongs to --force"),
+        ("yamashita-rig --mode 2", "has the modes 1 to 1"),
+        ("yamashita-rig --mode 1 --force", "in a mode the crank stands still"),
+        ("yamashita-rig --exaggerate -1", "got -1; give 0 to"),
+        ("riding-transplanter --mode 1", "across the drawing alone"),
+    ],
+)
+def test_options_of_the_support_that_do_nothing_are_refused(command: str, why: str) -> None:
+    refuses(f"animate {command}", why)
+
+
+def test_a_support_that_cannot_be_computed_is_drawn_standing_still() -> None:
+    result = equipoise("animate", "sieve", "--speed", "0 rpm", "-o", "still.svg")
+    assert "the support is drawn standing still: " in result.err
+    assert "movement" not in Path("still.svg").read_text(encoding="utf-8")

@@ -358,7 +358,7 @@ def test_sensitivities() -> None:
     words = ("sensitivities", "yamashita-2", "shaking_force.y")
     text = run(*words, "--crank-zero", "-100 deg")
     assert "crank angle from -100.0 deg" in text
-    row = cells(text, "coupler.center_x")
+    row = cells(text, "coupler  centre of mass, x")
     assert row[1] == "mm"
     assert [float(part) for part in row[3].split(",")] == pytest.approx([6.7, 265.8])
     content = told(*words)
@@ -370,7 +370,7 @@ def test_sensitivities() -> None:
 @pytest.mark.parametrize("output", ["shaking_force.x", "shaking_moment", "drive_torque"])
 def test_sensitivities_of_other_outputs(output: str) -> None:
     text = run("sensitivities", "lee-kim-a", output)
-    assert "coupler.mass" in text
+    assert re.search("^coupler +mass  +[0-9]", text, re.MULTILINE)
     assert "crank angle from" not in text
 
 

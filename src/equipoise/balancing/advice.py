@@ -2,7 +2,7 @@
 
 The aims are what a machine is judged by: what its gauges read, RMS about the mean, at the speeds
 at which it runs; without gauges the RMS of its shaking force.  Remedies are other phases of rows,
-which cost nothing, and counterweights of steel plate in the room that their links sweep already.
+which cost nothing, and counterweights of steel plate, as far about their pins as links reach.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import replace
 from math import floor, log10
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.compared import WORSE
+from equipoise.balancing.compared import WORTH, too_dear
 from equipoise.balancing.multi_row import Rows, Term
 from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
@@ -27,6 +27,7 @@ from equipoise.mechanism.balance import (
     Weight,
     largest_mass,
 )
+from equipoise.mechanism.body_checks import outlines
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.steps import size_of_bodies
@@ -41,12 +42,14 @@ SMALLEST = 0.05
 that is smaller."""
 THICK, HUB = 0.3, 0.2
 """Over a link's reach: the thickest plate, and the inner radius, inside which the shaft is."""
-THICKEST = 0.1
-"""m; plates beyond are not to be had."""
+THICKER, THICKEST = 3.0, 0.03
+"""Over the thickness of the link that carries it, and m: beyond, no workshop screws it on."""
 PLATES = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
 """Thicknesses to be had, times a power of ten."""
 CLEAR = 0.5
 """Share of the most that any remedy gains from which a simpler one is offered."""
+ROUNDS = 3
+"""How often a remedy that harms is looked for again."""
 LOUD, MOST_RESONANCES = 0.1, 2
 """Share of the loudest from which a resonance among the speeds is looked at; how many of them."""
 
@@ -55,8 +58,9 @@ def advise(machine: Machine, solve: Solve = balance) -> Balanced:
     """The machine's own plan carried out; where it has none, the remedy that helps most.
 
     What the file frees, or wants to become small, is kept; what it leaves out is as above.  Of the
-    remedies tried the simplest is taken that brings at least half of what the best one does, before
-    all one by which no gauge gets worse.  All are in `Balanced.tried`.
+    remedies that are worth building the simplest is taken that brings at least half of what the
+    best one does, before all one by which no gauge gets worse; where none is, the one that gains
+    most, of which `Balanced.helps` tells that it is not.  All are in `Balanced.tried`.
 
     Parameters
     ----------
@@ -78,12 +82,12 @@ def advise(machine: Machine, solve: Solve = balance) -> Balanced:
         if plan.phases is not None and plan.masses and any(one.helps for one in found):
             continue  # both together are for machines that neither helps
         try:
-            one = _without_harm(machine, replace(plan, objectives=aims_of(machine, plan)), solve)
+            one = _weighed(machine, replace(plan, objectives=aims_of(machine, plan)), solve)
         except UsageError as problem:
             problems.append(problem)
         else:
-            found.append(replace(one, tried=(one,)))
-            if one.gain >= CLEAR and not one.harms:
+            found.append(one)
+            if one.helps and one.gain >= CLEAR and not one.harms:
                 break  # of which nothing brings twice as much
     if not problems and not found:
         raise UsageError(
@@ -96,17 +100,40 @@ def advise(machine: Machine, solve: Solve = balance) -> Balanced:
     return replace(_chosen(found), tried=tuple(found))
 
 
-def _without_harm(machine: Machine, plan: Balance, solve: Solve) -> Balanced:
-    """A plan carried out such that no gauge gets worse, where that brings anything."""
-    found = solve(machine, plan)
-    if plan.phases is not None or not found.harms:
-        return found
-    limits = tuple(Limit(replace(one, weight=1.0), ratio=1.0) for one in plan.objectives)
-    try:
-        kept = solve(machine, replace(plan, limits=(*plan.limits, *limits)))
-    except UsageError:  # the least that a weight does is too much
-        return found
-    return kept if kept.gain > WORSE else found
+def _weighed(machine: Machine, plan: Balance, solve: Solve) -> Balanced:
+    """A plan carried out; where that harms, again such that it does not, if that is worth it."""
+    first = found = _as_tried(solve(machine, plan))
+    held: dict[Objective, Limit] = {}
+    for _ in range(ROUNDS if plan.phases is None else 0):
+        new = {one.objective: one for one in _held(found)} if found.gain >= WORTH else {}
+        if not new:
+            break
+        held |= new
+        try:
+            found = _as_tried(solve(machine, replace(plan, limits=(*plan.limits, *held.values()))))
+        except UsageError:  # the least that a weight does is too much
+            break
+    return found if found.helps else first
+
+
+def _as_tried(found: Balanced) -> Balanced:
+    """A result that is held to what is asked of remedies."""
+    return replace(found, tried=(found,))
+
+
+def _held(found: Balanced) -> Iterator[Limit]:
+    """Limits by which a remedy does no harm: no gauge gets worse, and nothing else grows by more
+    than half of what is gained, since with them less is.
+    """
+    if found.harms:
+        yield from (Limit(replace(one, weight=1.0), ratio=1.0) for one in found.plan.objectives)
+    if len(found.original.rows) > 1 or not too_dear(found.worse, found.gain):
+        return  # limits are those of all rows together
+    half = found.gain / 2
+    for one in found.worse:
+        if one.group != "gauges" and one.before and one.weight > half:
+            rms = replace(one.objective, measure="rms")  # a cone, where a peak is hundreds
+            yield Limit(rms, ratio=1 + half * one.growth / one.weight)
 
 
 def _chosen(found: list[Balanced]) -> Balanced:
@@ -147,10 +174,12 @@ def remedies(machine: Machine, own: Balance) -> Iterator[Balance]:
 
 def counterweight_on(machine: Machine, link: str) -> AddedMass:
     """A sector of steel plate within the reach of a link, from a fifth of it; the plate is the
-    thickest of at most 0.3 of the reach and 100 mm.
+    thickest of at most 0.3 of the reach, three times the link's own thickness, and 30 mm.
     """
-    reach = reach_of(machine, link)
-    sector = Weight("sector", reach, HUB * reach, plate_of(THICK * reach), MATERIALS["steel"])
+    reach, bodies = reach_of(machine, link), machine.links[link].bodies
+    own = max((one.thickness or one.outer_diameter or 0.0 for one in bodies), default=0.0)
+    plate = plate_of(min(THICK * reach, THICKER * own or THICKEST))
+    sector = Weight("sector", reach, HUB * reach, plate, MATERIALS["steel"])
     return AddedMass(link, pin_of(machine, link), sector)
 
 
@@ -168,15 +197,19 @@ def pin_of(machine: Machine, link: str) -> str:
 
 
 def reach_of(machine: Machine, link: str) -> float:
-    """Distance of a link's farthest point from its pin, m."""
+    """Distance of what of a link is farthest from its pin, m: a point, or an edge of a body."""
     return _reach(machine, link) or min(SMALLEST, float(size_of_bodies(machine)))
 
 
 def _reach(machine: Machine, link: str) -> float:
     """The same; 0 where nothing tells how large the link is."""
-    points = machine.links[link].points
-    center = complex(*points[pin_of(machine, link)])
-    return max(abs(complex(*point) - center) for point in points.values())
+    body = machine.links[link]
+    places = [(complex(*point), 0.0) for point in body.points.values()]
+    for part in body.bodies:
+        for corners, radius in outlines(part, body.points):
+            places += [(corner, max(radius, 0.0)) for corner in corners]
+    center = complex(*body.points[pin_of(machine, link)])
+    return max(abs(place - center) + radius for place, radius in places)
 
 
 # -- what it is judged by --------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.compared import WORSE, Pair, Worse, figures_of, merged, worse_of
+from equipoise.balancing.compared import WORSE, Pair, Worse, figures_of, merged, worse_of, worth
 from equipoise.balancing.design_variables import Bound
 from equipoise.balancing.effects import ANGLES
 from equipoise.balancing.geared import geared_range
@@ -139,9 +139,9 @@ class Balanced(Result):
 
     @property
     def helps(self) -> bool:
-        """Whether it brings anything that is worth a change."""
+        """Whether it is worth a change; of what nobody asked for more is wanted."""
         if self.tried:
-            return self.gain > WORSE
+            return worth(self.worse, self.gain)
         pairs = self.objectives.values()
         moved = (abs(after - before) > WORSE * before for before, after in pairs)
         return bool(self.plan.limits) or any(moved)
@@ -249,7 +249,8 @@ class Balanced(Result):
 
 def _tried(one: Balanced) -> dict[str, Any]:
     """A remedy that was tried, in short."""
-    return {"gain": one.gain, "changes": [change.to_dict() for change in one.changes]}
+    changes = [change.to_dict() for change in one.changes]
+    return {"gain": one.gain, "worth": one.helps, "changes": changes}
 
 
 def result_of(machine: Machine, plan: Balance, found: Solution) -> Balanced:

@@ -125,12 +125,15 @@ def before_after(found: Balanced) -> Table:
     for name, unit in units.items():
         least = 10 * largest[_kin(unit)]
         old, new = before.get(name), after.get(name, 0.0)
-        cells = (quantity(x[name], unit, least) if name in x else "" for x in (before, after))
+        had, has = (quantity(x[name], unit, least) if name in x else "" for x in (before, after))
         changed: Cell = say("new")
         if old is not None:
-            worse = new > (1 + WORSE) * old and name != "mass"
-            changed = None if old <= 1e-10 * least else Change(old, new, worse_if(worse))
-        rows.append((figure_named(name, len(found.original.rows)), *cells, changed))
+            nothing = 1e-10 * least
+            worse = worse_if(new > (1 + WORSE) * max(old, nothing) and name != "mass")
+            changed = Change(old, new, worse) if old > nothing else None
+            if changed is None and isinstance(has, Value):  # there is no share to stand out
+                has = replace(has, emphasis=worse)
+        rows.append((figure_named(name, len(found.original.rows)), had, has, changed))
     columns = (Column(""), *(Column(say(label)) for label in BEFORE_AFTER))
     return Table(say("Before and after"), columns, tuple(rows))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,7 +22,12 @@ from equipoise.results.outputs import Outputs, unit_of_measure
 from equipoise.vibration.forced import respond, usual_step
 
 WORSE = 0.01
-"""Share by which a figure has to grow to be told as worse, or an aim to shrink to be worth it."""
+"""Share by which a figure has to grow to be told as worse."""
+WORTH, PRICE = 0.05, 2.0
+"""Share of what counts that a remedy has to take away to be worth building; and how many times that
+share anything else may grow for it."""
+SMALL = 0.1
+"""Of the largest figure of its unit before: the growth of what was less is measured by that one."""
 FAINT = 1e-6
 """Of the largest figure of its unit: what is smaller is nobody's concern."""
 IMPORTANT = ("gauges", "rows", "forces", "joints", "gears")
@@ -37,12 +42,16 @@ class Worse:
     """A figure that got larger by more than `WORSE`: of several measures the one that grew most.
 
     objective : its output, its measure, and where it is read.  group : of the output.
+    weight : the growth of what grew most of its measures when it is weighed: over the value before,
+        or where that is small over the largest before of its unit; none of a component, which its
+        vector weighs.
     """
 
     objective: Objective
     group: str
     before: float
     after: float
+    weight: float
 
     @property
     def growth(self) -> float:
@@ -65,19 +74,42 @@ def worse_of(
         if output and not output.startswith("planting"):
             pairs[Objective(output, measure)] = (old, after.get(name, 0.0))  # type: ignore[arg-type]
     largest: dict[str, float] = {}
+    usual: dict[str, float] = {}
     for one, pair in pairs.items():
-        largest[_kin(one)] = max(largest.get(_kin(one), 0.0), *pair)
+        unit = _unit(one)
+        usual[unit] = max(usual.get(unit, 0.0), pair[0])
+        largest[_kin(unit)] = max(largest.get(_kin(unit), 0.0), *pair)
     found = []
     for one, (old, new) in pairs.items():
-        if new > (1 + WORSE) * old and new > FAINT * largest[_kin(one)]:
+        unit = _unit(one)
+        if new > (1 + WORSE) * old and new > FAINT * largest[_kin(unit)]:
             there = old if old > FAINT * new else 0.0
-            found.append(Worse(one, _group_of(one.output), there, new))
+            scale = old if old > SMALL * usual[unit] else usual[unit]
+            weight = 0.0 if _is_part(one) else (new - old) / scale if scale else float("inf")
+            found.append(Worse(one, _group_of(one.output), there, new, weight))
     found.sort(key=lambda one: (IMPORTANT.index(one.group), -one.growth))
     seen: dict[tuple[str, tuple[float, ...], str | None], Worse] = {}
     for grown in found:
         aim = grown.objective
-        seen.setdefault((aim.output, aim.speeds, aim.about), grown)
+        key = aim.output, aim.speeds, aim.about
+        most = seen.setdefault(key, grown)
+        seen[key] = replace(most, weight=max(most.weight, grown.weight))
     return tuple(seen.values())
+
+
+def worth(worse: Sequence[Worse], gain: float) -> bool:
+    """Whether a remedy is worth building: it gains `WORTH`, and nothing is too dear for that."""
+    return gain >= WORTH and not too_dear(worse, gain)
+
+
+def too_dear(worse: Sequence[Worse], gain: float) -> list[Worse]:
+    """Figures that grow by more than `PRICE` times the share that is gained."""
+    return [one for one in worse if one.weight > PRICE * max(gain, 0.0)]
+
+
+def _is_part(one: Objective) -> bool:
+    known = declared(one.output)
+    return known is not None and known[0].part in ("x", "y")
 
 
 def _group_of(output: str) -> str:
@@ -85,11 +117,14 @@ def _group_of(output: str) -> str:
     return known[0].group if known is not None else output.partition(".")[0]
 
 
-def _kin(one: Objective) -> str:
-    """Figures of the same kind, among which one may be nothing but rounding."""
-    if one.output.startswith("gauges."):
-        return "gauges"
-    unit = unit_of_measure(one.output, one.measure)
+def _unit(one: Objective) -> str:
+    """SI unit of a figure; of all gauges the same."""
+    gauge = one.output.startswith("gauges.")
+    return "gauges" if gauge else unit_of_measure(one.output, one.measure)
+
+
+def _kin(unit: str) -> str:
+    """Unit of what figures come from, among which one may be nothing but rounding."""
     return "N m" if unit == "J" else unit
 
 

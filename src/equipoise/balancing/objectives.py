@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from math import pi
 
 import numpy as np
@@ -45,6 +46,11 @@ class Near:
 
     machine: Machine
     numbers: Array | None = None
+
+    @cached_property
+    def linear(self) -> Linear:
+        """Its support."""
+        return Linear.of(self.machine, usual_step(self.machine))
 
 
 def signals_of(effects: Effects, objective: Objective, near: Near) -> list[Signal]:
@@ -122,14 +128,13 @@ def _gauge_signals(effects: Effects, objective: Objective, near: Near) -> list[S
 
 def reading_of(objective: Objective, near: Near) -> tuple[Linear, Array]:
     """The support near the solution, and a row (D,) that reads a gauge off its coordinates."""
-    like = near.machine
-    if like.support is None:
+    if near.machine.support is None:
         raise ModelError("support", "missing; a gauge needs a support that it stands on")
-    linear = Linear.of(like, usual_step(like))
-    gauges, name = gauges_of(linear.body), objective.output.removeprefix(GAUGES)
+    body, name = near.linear.body, objective.output.removeprefix(GAUGES)
+    gauges = gauges_of(body)
     if name not in gauges:
         raise ModelError("support.gauges", unknown(name, gauges, "gauge"))
-    return linear, linear.body.row(gauges[name])[linear.body.free]
+    return near.linear, body.row(gauges[name])[body.free]
 
 
 def read(
@@ -151,7 +156,7 @@ def read(
     if numbers is not None and len(numbers):
         whole = (free[:, 0] + np.einsum("k,dkn->dn", numbers, free[:, 1:])).T
         there = np.linalg.solve(linear.impedance(frequency), whole[..., None])[..., 0]
-        mass, stiffness = _by_numbers(effects, linear.body.machine)
+        mass, stiffness = _by_numbers(effects, linear)
         impedance = stiffness[:, None] - frequency[:, None, None] ** 2 * mass[:, None]
         bent = np.einsum("nd,knde,ne->kn", seen, impedance, there)
         amplitudes[1:, 1:] -= bent
@@ -162,17 +167,18 @@ def read(
 
 def supports_more(effects: Effects, machine: Machine) -> bool:
     """Whether what the support has to carry depends on the numbers."""
-    return any(np.any(one) for one in _by_numbers(effects, machine))
+    return any(np.any(one) for one in _by_numbers(effects, Near(machine).linear))
 
 
-def _by_numbers(effects: Effects, machine: Machine) -> tuple[Array, Array]:
+@lru_cache(maxsize=2)  # all gauges and speeds ask for the same
+def _by_numbers(effects: Effects, linear: Linear) -> tuple[Array, Array]:
     """Mass and stiffness (K, D, D) that a unit of each number adds to the support, at a machine.
 
     By differences.  Links are padded with inertia, in which both are linear, so that all of them
     are bodies that there can be; and with mass where they have none.
     """
-    step, padded = usual_step(machine), machine
-    order = list(machine.links)
+    step, machine = linear.excitation.step, linear.body.machine
+    padded, order = machine, list(machine.links)
     values = parameter_values(machine).reshape(-1, 4).copy()
     whole = np.sum(values, axis=0)
     for link in {part.link for part in effects.parts}:
@@ -189,19 +195,15 @@ def _by_numbers(effects: Effects, machine: Machine) -> tuple[Array, Array]:
             one, other = (Linear.of(with_parameters(padded, part.link, e), step) for e in ends)
             mass.append((one.mass - other.mass) / (2 * share))
             stiffness.append((one.stiffness - other.stiffness) / (2 * share))
-    return _tidy(np.array(mass), start.mass), _tidy(np.array(stiffness), start.stiffness)
-
-
-def _tidy(columns: Array, whole: Array) -> Array:
-    """Columns without what is rounding beside the whole."""
-    return np.where(np.abs(columns) > ROUNDING * np.max(np.abs(whole)), columns, 0.0)
+    found = np.array(mass), np.array(stiffness)
+    for columns, everything in zip(found, (start.mass, start.stiffness), strict=True):
+        columns[np.abs(columns) <= ROUNDING * np.max(np.abs(everything))] = 0.0
+    return found
 
 
 def _wrench(effects: Effects, linear: Linear, rows: Sequence[Row]) -> Periodic:
-    """Wrench (6, 1 + K, orders) of rows on the support: as they are, and of a unit of each number.
-
-    The machine's weight is no part of it; its moment is as the step has it, about the drive's
-    pivot.
+    """Wrench (6, 1 + K, orders) of rows on the support, without their weight: as they are, and of a
+    unit of each number; the moment is as the step has it, about the drive's pivot.
     """
     excitation, machine = linear.excitation, effects.machine
     force = effects.signal("frame_force").start - machine.mass * complex(*machine.gravity)

@@ -104,25 +104,28 @@ class Problem:
     @cached_property
     def before(self) -> dict[str, float]:
         """Value of each objective and limit of the machine as it is."""
-        return {one.name: self.value_of(self.machine, one) for one in self.asked}
+        values = self.values_of(self.machine, self.asked)
+        return {one.name: value for one, value in zip(self.asked, values, strict=True)}
 
     @staticmethod
     def value_of(machine: Machine, objective: Objective) -> float:
         """Value of an objective for a machine, read off the machine itself."""
-        found = Problem.signals_of(machine, objective)
-        return max(measured(signal, objective.measure) for signal in found)
+        return Problem.values_of(machine, [objective])[0]
 
     @staticmethod
-    def signals_of(machine: Machine, objective: Objective) -> list[Array]:
-        """Signals (N,) of a machine whose largest measure an objective is."""
-        signals = signals_of(Effects(machine, ()), objective, Near(machine))
-        return [signal.start for signal in signals]
+    def values_of(machine: Machine, objectives: Sequence[Objective]) -> list[float]:
+        """The same of several, in their order."""
+        effects, near = Effects(machine, ()), Near(machine)
+        return [
+            max(measured(found.start, one.measure) for found in signals_of(effects, one, near))
+            for one in objectives
+        ]
 
     def cost_of(self, machine: Machine) -> float:
         """What is to become small, for a machine; 1 for each unit of weight before."""
-        return self.plan.combined(
-            [self.value_of(machine, one) / self.scale(one) for one in self.plan.objectives]
-        )
+        values = self.values_of(machine, self.plan.objectives)
+        pairs = zip(values, self.plan.objectives, strict=True)
+        return self.plan.combined([value / self.scale(one) for value, one in pairs])
 
     @property
     def whole(self) -> float:

@@ -16,7 +16,7 @@ import numpy as np
 
 from equipoise.balancing.linear_conditions import machine_size
 from equipoise.errors import UsageError
-from equipoise.i18n import say
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.model import Link, Machine, unknown
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
@@ -28,14 +28,14 @@ from equipoise.results.outputs import output_named
 from equipoise.results.result import Result
 from equipoise.signals import Array
 
-CHANGES: dict[str, tuple[Dimension, str]] = {
-    "mass": ("mass", "kg"),
-    "center_x": ("length", "mm"),
-    "center_y": ("length", "mm"),
-    "inertia": ("inertia", "kg mm^2"),
+CHANGES: dict[str, tuple[Dimension, str, str]] = {
+    "mass": ("mass", "kg", to_say("mass")),
+    "center_x": ("length", "mm", to_say("centre of mass, x")),
+    "center_y": ("length", "mm", to_say("centre of mass, y")),
+    "inertia": ("inertia", "kg mm^2", to_say("inertia")),
 }
-"""Mass at a fixed centre of mass, that centre at a fixed mass, inertia about it: what each is, and
-the unit in which it is usually shown."""
+"""Mass at a fixed centre of mass, that centre at a fixed mass, inertia about it: what each is, the
+unit in which it is usually shown, and what it is called."""
 NOTHING = 1e-10
 """Share of the largest effect below which there is none."""
 LEAST_ANGLES = 8
@@ -215,13 +215,15 @@ def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Bl
     rows: list[tuple[Cell, ...]] = []
     turned = display("angle")
     for one in found.ranked:
-        dimension, usual = CHANGES[one.change]
+        dimension, usual, word = CHANGES[one.change]
         unit = display(dimension, (), usual)
         shifted = np.sort(np.mod(one.no_effect_at - zero, 2 * np.pi * found.turns))
         places = say(", ").join(fixed(turned, at, 1) for at in shifted) or say("never")
-        rows.append((one.name, Value(one.rms / unit.factor), unit.unit, Value(one.percent), places))
+        size = Value(one.rms / unit.factor)
+        rows.append((one.link, say(word), size, unit.unit, Value(one.percent), places))
     kind = DECLARED[found.output].dimension
     columns = (
+        Column(say("link")),
         Column(""),
         Column(say("RMS"), kind, alike=False),
         Column(say("per")),
@@ -239,7 +241,11 @@ def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Bl
             "machine's size"
         )
     )
-    still = [one.name for one in found.by_name.values() if not one.has_effect]
+    still = [
+        f"{one.link} ({say(CHANGES[one.change][2])})"
+        for one in found.by_name.values()
+        if not one.has_effect
+    ]
     if still:
         yield Text(say("No effect at any crank angle: {names}", names=say(", ").join(still)))
 

@@ -9,6 +9,7 @@ from math import ceil, floor, isinf, log10
 from operator import eq
 from typing import TYPE_CHECKING
 
+from equipoise.balancing.compared import PRICE, WORTH, too_dear
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.workshop import sentences
 from equipoise.i18n import Note, say, to_say
@@ -125,7 +126,8 @@ def gap_told(gap: float) -> str:
 
 def scope_of(found: Balanced) -> str:
     """Of what the proof holds, where that is not all that the plan allows."""
-    parts = say(" and ").join(map(said, found.scope))
+    limits = [say("within the limits")] if found.plan.limits else []
+    parts = say(" and ").join([*limits, *map(said, found.scope)])
     return f" {parts}" if parts else ""
 
 
@@ -227,26 +229,44 @@ def tried_blocks(found: Balanced) -> Iterator[Block]:
     )
     yield Text(say(of_rows if len(found.original.rows) > 1 else template))
     rows = (
-        (listed(freedoms(one.plan)), Change(1.0, 1 - one.gain), _harm(one)) for one in found.tried
+        (listed(freedoms(one.plan)), Change(1.0, 1 - one.gain), _price(one)) for one in found.tried
     )
-    columns = (Column(say("remedy")), Column(say("change")), Column(""))
+    columns = (Column(say("remedy")), Column(say("change")), Column(say("what gets worse")))
     title = say("What was tried to make smaller {aims}", aims=aims_told(found))
     yield Table(title, columns, tuple(rows))
+    template = to_say(
+        "Worth building is what takes away at least {least} %, and makes nothing else larger by "
+        "more than {price} % of that share."
+    )
+    yield Text(say(template, least=percent(WORTH, 0), price=percent(PRICE, 0)))
 
 
-def _harm(one: Balanced) -> str:
-    return say("a gauge gets worse") if one.harms else ""
+def _price(found: Balanced) -> str:
+    """A gauge that gets worse, or what grows most for what is gained."""
+    if found.harms:
+        return say("a gauge gets worse")
+    most = max(found.worse, key=lambda one: one.weight, default=None)
+    return "" if most is None else _grown(found, most)
 
 
 def nothing_told(found: Balanced) -> Iterator[str]:
     """That balancing brings nothing; how small the aims are, and what is proved."""
     if found.tried:
+        template = to_say(
+            "Of what can be built easily nothing that was tried makes {aims} smaller by {least} %; "
+            "the most, {gain} %, by {freedom}."
+        )
+        dear = to_say(
+            "Nothing that was tried is worth building: {freedom} would make {aims} smaller by "
+            "{gain} %, but far larger {figures}."
+        )
         yield say(
-            "Of what can be built easily nothing that was tried makes {aims} smaller by 1 %; the "
-            "most, {gain} %, by {freedom}.",
+            template if found.gain < WORTH else dear,
             aims=aims_told(found),
-            gain=percent(max(found.gain, 0.0), 2),
+            least=percent(WORTH, 0),
+            gain=percent(max(found.gain, 0.0), 1),
             freedom=listed(freedoms(found.plan)),
+            figures=say("; ").join(_grown(found, one) for one in too_dear(found.worse, found.gain)),
         )
     else:
         for one, (before, _) in found.aims.items():
@@ -264,7 +284,7 @@ def nothing_told(found: Balanced) -> Iterator[str]:
 def good_already(found: Balanced) -> str:
     """What a machine is where balancing brings nothing, as a part of a sentence."""
     if found.tried:
-        return say("already as small as what was tried can make it")
+        return say("nothing that was tried is worth building")
     return say("already as small as what may be changed can make it")
 
 

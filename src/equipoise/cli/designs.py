@@ -72,7 +72,8 @@ def best(
     outputs.write(lambda: _columns(found.designs, columns, opened.units))
     with outputs.showing(owner):
         units = units_in(opened)
-        outputs.draw(owner, lambda: best_charts(found, title, units))
+        own = None if owner is None or outputs.plot is None else _own(owner)
+        outputs.draw(owner, lambda: best_charts(found, title, units, opened, own))
         outputs.print(
             title,
             lambda: {"title": title, **found.to_dict()},

@@ -25,16 +25,11 @@ STARTS = {
 
 def examples() -> None:
     """List the bundled models and studies; their names can stand for FILE and STUDY everywhere."""
-    from shutil import get_terminal_size
-    from textwrap import fill
-
+    from equipoise.present import show_blocks
+    from equipoise.results.blocks import Table
     from equipoise.schema import opening
 
-    found = opening.examples()
-    width, indent = get_terminal_size().columns, 2 + max(map(len, found))
-    for name, title in found.items():
-        first = f"{name:<{indent}}"
-        print(fill(title, width, initial_indent=first, subsequent_indent=" " * indent))
+    show_blocks("", [Table.of("", ("", ""), opening.examples().items())])
 
 
 def check(

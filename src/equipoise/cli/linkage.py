@@ -89,7 +89,8 @@ def analyze(
     crank_zero
         With --orders: direction from which crank angles count, such as "-83 deg"; else the x axis.
     output
-        Tell this output over crank angle, such as "points.P.vx", instead.  May be repeated.
+        Tell this output over crank angle instead, by its name in --json, such as "points.P.vx" or
+        "joints.A".  May be repeated.
     dwell
         Tell how long sliders and points move by no more than "0.5 mm", or links by "0.5 deg".
     """

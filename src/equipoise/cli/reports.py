@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
+import sys
 from math import ceil
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -20,13 +21,15 @@ from equipoise.cli.options import (
     naming,
     quantity,
 )
-from equipoise.cli.outputs import Shown, check_result_file, sources_of, wrote
+from equipoise.cli.outputs import Shown, check_result_file, sources_of, tell, wrote
 from equipoise.cli.pictures import default_name
 from equipoise.cli.progress import counted
-from equipoise.errors import UsageError
+from equipoise.errors import EquipoiseError, UsageError
 
 if TYPE_CHECKING:
+    from equipoise.mechanism.model import Machine
     from equipoise.results.analysis import Analysis
+    from equipoise.symbols.scene import Scene
 
 FILMS = ("svg", "gif", "mp4")
 SVG_FRAMES = 60
@@ -34,6 +37,8 @@ SVG_FRAMES = 60
 LEAST_ANGLES = 720
 """In a turn, for smooth paths."""
 MOST_PATHS = 3
+MOST_LARGER = 1e9
+"""Times that the movement of a support may be drawn larger than true."""
 
 
 def animate(
@@ -47,16 +52,18 @@ def animate(
     trace: Many = None,
     force: bool = False,
     speed: Rate = None,
+    exaggerate: Annotated[float | None, SIGNED] = None,
+    mode: Annotated[int | None, SIGNED] = None,
     dark: bool = False,
 ) -> None:
-    """Show how a linkage moves: as SVG for a page, as GIF, or as a film in MP4.
+    """Show how a linkage and its support move: as SVG for a page, as GIF, or as a film in MP4.
 
     Parameters
     ----------
     out
         The animation: name of an .svg, .gif or .mp4 file; FILE.svg beside you if not given.
     seconds
-        Time that a turn of the crank takes.
+        Time that a turn of the crank takes, or with --mode a swing.
     turns
         With .mp4: turns of the crank, the whole cycle if not given.
     width
@@ -66,11 +73,16 @@ def animate(
     force
         Draw the shaking force on the frame as an arrow.
     speed
-        With --force: speed of the crank instead of the file's, such as "300 rpm".
+        With --force or a support: speed of the crank instead of the file's, such as "300 rpm".
+    exaggerate
+        By how much larger than true the support moves; 1 is to scale.  If not given, so that it
+        can be seen.
+    mode
+        The support in this mode of free vibration, counted from 1, instead of what moves at speed.
     dark
         With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
     """
-    from equipoise.figures.stage import check_seconds, check_width
+    from equipoise.figures.stage import Arrow, check_seconds, check_width
     from equipoise.results.analysis import analyze
     from equipoise.schema.files import write
 
@@ -80,21 +92,78 @@ def animate(
         raise UsageError(f"--turns: got {turns}; give 1 or more, with a name that ends in .mp4")
     if dark and kind == "svg":
         raise UsageError("--dark: an SVG follows the reader's screen; leave it out")
-    check_belonging("--force", force, speed=speed)
     check_seconds(seconds)
     check_width(width)
     machine = linkage_of(file, speed)
+    _check_support(machine, force, speed, exaggerate, mode)
     check_result_file("--out", name, sources_of(machine, file))
     options: dict[str, Any] = {"seconds": seconds, "width": width, "traced": trace}
     if kind != "svg":
         options["dark"] = dark
     if kind == "mp4":
         options["turns"] = turns
+    count = _angles_of(kind, seconds)
     with naming(file):
-        found = analyze(machine, _angles_of(kind, seconds))
-        data = _animated(found, kind, force, options)
+        if mode is not None:
+            scene = _in_mode(machine, mode, count)
+        else:
+            found = analyze(machine, count)
+            scene = _swinging(found, exaggerate)
+            options["arrow"] = Arrow.of(found) if force else None
+        if trace is None:
+            options["traced"] = () if mode is not None else scene.ends[:MOST_PATHS]
+        data = _animated(scene, machine.title, kind, options)
     write(name, data)
     wrote(name)
+
+
+def _check_support(
+    machine: Machine,
+    force: bool,
+    speed: float | None,
+    exaggerate: float | None,
+    mode: int | None,
+) -> None:
+    """Refuse options that do nothing."""
+    if exaggerate is not None and not 0 <= exaggerate < MOST_LARGER:
+        raise UsageError(f"--exaggerate: got {exaggerate:g}; give 0 to {MOST_LARGER:.0e}")
+    given = {"--exaggerate": exaggerate, "--mode": mode}
+    if machine.support is None:
+        check_belonging("--force", force, speed=speed)
+        for name, value in given.items():
+            if value is not None:
+                raise UsageError(f"{name}: the machine stands on solid ground; leave it out")
+    others = {"--exaggerate": exaggerate, "--speed": speed, "--force": force or None}
+    for name, value in others.items():
+        if mode is not None and value is not None:
+            raise UsageError(f"{name}: in a mode the crank stands still; leave it out")
+
+
+def _swinging(found: Analysis, factor: float | None) -> Scene:
+    """What moves at speed, its support too, as far as that can be computed."""
+    from equipoise.figures.swing import swinging
+    from equipoise.symbols.scene import Scene
+    from equipoise.vibration.forced import respond
+
+    scene = Scene.of(found.motion)
+    if found.machine.support is None or factor == 0:
+        return scene
+    try:
+        return swinging(scene, respond(found.machine), factor)
+    except EquipoiseError as error:
+        if factor is not None:
+            raise
+        tell(f"the support is drawn standing still: {error}", sys.stderr)
+        return scene
+
+
+def _in_mode(machine: Machine, number: int, count: int) -> Scene:
+    from equipoise.figures.swing import in_mode
+    from equipoise.vibration.free import modes
+
+    free = modes(machine)
+    with blaming("--mode"):
+        return in_mode(free, number, count)
 
 
 def _kind(out: str) -> str:
@@ -112,19 +181,11 @@ def _angles_of(kind: str, seconds: float) -> int:
     return frames * ceil(LEAST_ANGLES / frames)
 
 
-def _animated(found: Analysis, kind: str, force: bool, options: dict[str, Any]) -> str | bytes:
-    from equipoise.figures.animation import animated_svg
-    from equipoise.figures.stage import Arrow
-    from equipoise.symbols.scene import Scene
-
-    scene = Scene.of(found.motion)
-    if options["traced"] is None:
-        options["traced"] = scene.ends[:MOST_PATHS]
-    if force:
-        forces, of_one = found.forces, len(found.machine.rows) > 1
-        options["arrow"] = Arrow(forces.about, forces.shaking_force.value, of_one)
+def _animated(scene: Scene, title: str, kind: str, options: dict[str, Any]) -> str | bytes:
     if kind == "svg":
-        return animated_svg(scene, title=found.machine.title, frames=SVG_FRAMES, **options)
+        from equipoise.figures.animation import animated_svg
+
+        return animated_svg(scene, title=title, frames=SVG_FRAMES, **options)
     from equipoise.figures import film
 
     draw = film.gif if kind == "gif" else film.mp4

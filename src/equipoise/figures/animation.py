@@ -17,22 +17,15 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.figures.stage import (
-    Arrow,
-    Label,
-    Moves,
-    Stage,
-    captions,
-    check_seconds,
-    check_width,
-    ruler_ends,
-)
+from equipoise.figures.captions import Label, captions, ruler_ends
+from equipoise.figures.stage import Arrow, Moves, Stage, check_seconds, check_width
 from equipoise.i18n import say
 from equipoise.mechanism.model import unknown
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, pixels
-from equipoise.symbols.pieces import Track, pieces
+from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Array, Shape, arrow
+from equipoise.symbols.tracks import Track
 
 HEAD = 13.0
 """Length of the head of an arrow, units."""
@@ -100,16 +93,17 @@ def laid_out(
         raise UsageError("got one crank angle; an animation needs two and more")
     stage = Stage(scene, arrow, frames, width)
     names = tuple(dict.fromkeys(traced))
-    moves: dict[Any, Moves] = {}
+    moves: dict[Any, Moves | None] = {}
     behind: list[Part] = []
     before: list[Part] = []
     for piece in pieces(scene, names):
-        origin = stage.origin if piece.hold is None else 0
+        held = piece.hold, piece.still
+        if held not in moves:  # pieces that are held alike share their moves
+            track = piece.track(scene, stage.unit / stage.scale)
+            moves[held] = None if track is None else stage.moves(track)
+        origin = stage.origin if moves[held] is None else 0
         strokes = tuple(_stroke(stage, shape, origin) for shape in piece.shapes)
-        track = None if piece.hold in moves else piece.track(scene)
-        if track is not None:  # pieces with one hold share their moves
-            moves[piece.hold] = stage.moves(track)
-        part = Part(strokes, moves.get(piece.hold))
+        part = Part(strokes, moves[held])
         (behind if piece.layer in BEHIND else before).append(part)
     behind.append(Part((*_paths(stage, names), _ruler(stage))))
     return Moving(stage, tuple(behind), captions(stage, names), (*before, *_force(stage)))
@@ -122,9 +116,9 @@ def _stroke(stage: Stage, shape: Shape, origin: complex = 0) -> Stroke:
 
 def _paths(stage: Stage, traced: tuple[str, ...]) -> Iterator[Stroke]:
     for name in traced:
-        yield Stroke("trace", stage.path(stage.at(stage.scene.places[name])), stage.closed)
+        yield Stroke("trace", stage.way(name), stage.closed)
     if stage.arrow is not None:
-        tips = stage.at(stage.arrow.place) + np.conj(stage.arrow.force) * stage.strength
+        tips = stage.at(stage.foot) + np.conj(stage.arrow.force) * stage.strength
         yield Stroke("force-path", stage.path(tips), stage.closed)
 
 
@@ -132,7 +126,7 @@ def _force(stage: Stage) -> Iterator[Part]:
     """The arrow of the force: its shaft is stretched, its head is not, but where it is short."""
     if stage.arrow is None:
         return
-    foot, size = stage.arrow.place, HEAD * stage.unit / stage.scale
+    foot, size = stage.foot, HEAD * stage.unit / stage.scale
     reach = stage.arrow.force * stage.strength / stage.scale
     length, angle = abs(reach), np.unwrap(np.angle(reach))
     short = np.clip(length / (1.5 * size), 1e-3, 1)
@@ -140,7 +134,7 @@ def _force(stage: Stage) -> Iterator[Part]:
     longest = float(shaft.max())
     shapes = arrow("force", longest)
     tracks = (
-        Track(np.full(len(reach), foot), angle, shaft / longest),
+        Track(foot, angle, shaft / longest),
         Track(foot + reach, angle, short),
     )
     for shape, track in zip(shapes, tracks, strict=True):
@@ -205,8 +199,11 @@ def animated_svg(
     mark = f"e{sha256(repr((shapes, moves, seconds)).encode()).hexdigest()[:8]}"
     lasting = seconds * drawn.stage.turns
     names = ", ".join(body.name for body in scene.bodies)
-    words = [say("The linkage turns through its whole cycle."), say("Links: {names}.", names=names)]
+    turning = any(np.ptp(angle) for angle in scene.angles.values())
+    words = [say("The linkage turns through its whole cycle.")] * turning
+    words += [say("Links: {names}.", names=names)]
     words += [say("Path of {names}.", names=", ".join(traced))] if traced else []
+    words += [told for told, _ in drawn.stage.told]
     style = "\n".join([*_colors(mark, drawn), *_motions(mark, moves, lasting, drawn.stage.closed)])
     stage = drawn.stage
     return f"""\

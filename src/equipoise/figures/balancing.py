@@ -1,35 +1,31 @@
-"""The charts of balancing: before and after, orders, rows and their phases, trade-offs."""
+"""The charts of balancing: before and after, rows and their phases, trade-offs."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.balancing.effects import Effects
 from equipoise.balancing.multi_row import Rows
 from equipoise.balancing.problem import Problem
+from equipoise.figures.aims import aims
 from equipoise.figures.analysis import rounding, settled
 from equipoise.figures.changes import grams
-from equipoise.figures.forces import Read, last_order, order_panel
-from equipoise.figures.shared import (
-    by_name,
-    closed,
-    compared,
-    continued,
-    crank_axis,
-    extent,
-    groups,
-    numbers,
-    told_angles,
-    told_speed,
+from equipoise.figures.pairs import (
+    NOTHING,
+    WHEN,
+    Pair,
+    changed,
+    compare,
+    keys,
+    paired,
+    roles_of,
 )
+from equipoise.figures.shared import by_name, extent, numbers, told_angles, told_speed
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.balance import Objective
-from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of
-from equipoise.quantities import Dimension
 from equipoise.results.analysis import analyze
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
 from equipoise.results.outputs import objective_named, shown_in
@@ -38,12 +34,8 @@ from equipoise.signals import Periodic
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
-    from equipoise.mechanism.model import Drive, Machine
+    from equipoise.mechanism.model import Machine
 
-Pair = Mapping[str, Array]
-"""``before`` and ``after``, or the latter alone."""
-
-WHEN = {"before": to_say("before"), "after": to_say("after"), "unchanged": to_say("unchanged")}
 SIGNALS = {
     "moment": (
         "shaking_moment",
@@ -55,23 +47,21 @@ SIGNALS = {
 """Picture -> column, title, and label of the axis."""
 SAMPLES, SAMPLES_OF_ROWS = 360, 720
 """Crank angles in a turn from which it is told what is rounding, and of rows together."""
-NOTHING, ALIKE = 1e-9, 1e-6
-"""Over the largest value before: what is left after is rounding; what differs is unchanged."""
 NEAR = 0.015
 """Over the size of a hodograph: numbers after that are nearer to those before are left out."""
-MOST_PANELS, IN_LINE = 4, 6
-"""Panels of orders in a picture; dials side by side."""
+IN_LINE = 6
+"""Dials side by side."""
 
 
 def charts(found: Balanced) -> dict[str, Chart]:
     """Charts of a balanced machine by name, which also does for a file.
 
-    ``force``, ``polar``, ``moment``, ``torque`` where the linkage is changed; ``orders`` where a
-    force, moment or torque was made small, with ``orders-2`` and so on where there are many;
-    ``phases`` and ``rows`` where phases of rows are chosen.
+    ``aims``, what was made small or limited, with ``aims-2`` and so on where that is much;
+    ``force``, ``polar``, ``moment``, ``torque`` where the linkage is changed; ``phases`` and
+    ``rows`` where phases of rows are chosen.  What did not change is left out.
     """
     of_linkage = any(change.kind != "phases" for change in found.changes)
-    drawn = (signals(found) if of_linkage else {}) | by_name(orders(found))
+    drawn = by_name(aims(found)) | (signals(found) if of_linkage else {})
     if found.phasing is not None:
         drawn |= row_charts(found.original, found.machine)
     return drawn
@@ -85,41 +75,11 @@ def row_charts(original: Machine | None, machine: Machine) -> dict[str, Chart]:
 # -- before and after ------------------------------------------------------------------------------
 
 
-def paired(before: Array, after: Array, least: float) -> Pair:
-    """Values (N,) before and after; zeros where they are no more than `least`, which is rounding.
-
-    After they are also zeros where they are rounding beside those before.
-    """
-    before = settled(before, least)
-    largest = float(np.max(np.abs(before), initial=0.0))
-    return {"before": before, "after": settled(after, max(least, NOTHING * largest))}
-
-
-def roles_of(pair: Pair) -> dict[str, Array]:
-    """What is drawn of a pair by its role: of what is alike one muted line."""
-    if "before" in pair:
-        largest = float(np.max(np.abs(pair["before"]), initial=0.0))
-        if np.all(np.abs(pair["after"] - pair["before"]) <= ALIKE * largest):
-            return {"unchanged": pair["after"]}
-    return dict(pair)
-
-
-def keys(*pairs: Pair) -> tuple[tuple[str, str], ...]:
-    """What the lines of some pairs are, for a legend."""
-    drawn = {role for pair in pairs for role in roles_of(pair)}
-    return tuple((role, say(name)) for role, name in WHEN.items() if role in drawn)
-
-
-def compare(drive: Drive, angles: Array, pair: Pair, label: str, dimension: Dimension) -> Panel:
-    """A signal before and after over crank angles (N,), a whole cycle; extremes of both."""
-    period = float(angles[-1] + angles[1] - angles[0])
-    axis = crank_axis(short(drive.link, 16), drive.speed, round(period / (2 * np.pi)))
-    drawn = {role: closed(angles, values, period) for role, values in roles_of(pair).items()}
-    return compared(axis, label, dimension, drawn)
-
-
 def signals(found: Balanced) -> dict[str, Chart]:
-    """``force``, ``polar``, ``moment`` and ``torque``, before and after."""
+    """``force``, ``polar``, ``moment`` and ``torque`` before and after, but for what is alike.
+
+    Moment and torque of a single row that are aims are left to `aims`.
+    """
     columns = {name: values for name, _, values in found.columns()}
     angles, drive = columns["crank_angle"], found.original.drive
     least_force, least_moment = rounding(analyze(found.original, SAMPLES))
@@ -129,19 +89,22 @@ def signals(found: Balanced) -> dict[str, Chart]:
         return paired(columns[f"{output}.before"], columns[f"{output}.after"], least)
 
     force = {axis: pair_of(f"shaking_force.{axis}", least_force) for axis in ("x", "y")}
-    panels = tuple(
-        compare(drive, angles, pair, say("along {axis}", axis=axis), "force")
-        for axis, pair in force.items()
-    )
-    what = f"{say('Shaking force')}, {when}"
-    drawn = {
-        "force": Chart("force", title, what, panels, keys=keys(*force.values())),
-        "polar": polar(found, angles, force),
-    }
+    moved = {axis: pair for axis, pair in force.items() if changed(pair)}
+    drawn: dict[str, Chart] = {}
+    if moved:
+        panels = tuple(
+            compare(drive, angles, pair, say("along {axis}", axis=axis), "force")
+            for axis, pair in moved.items()
+        )
+        what = f"{say('Shaking force')}, {when}"
+        drawn["force"] = Chart("force", title, what, panels, keys=keys(*moved.values()))
+        drawn["polar"] = polar(found, angles, force)
+    aimed = {one.output for one in found.plan.objectives} if len(found.original.rows) < 2 else ()
     for name, (output, told, label) in SIGNALS.items():
         pair = pair_of(output, least_moment)
-        panel = compare(drive, angles, pair, say(label), "torque")
-        drawn[name] = Chart(name, title, f"{say(told)}, {when}", (panel,), keys=keys(pair))
+        if changed(pair) and output not in aimed:
+            panel = compare(drive, angles, pair, say(label), "torque")
+            drawn[name] = Chart(name, title, f"{say(told)}, {when}", (panel,), keys=keys(pair))
     return drawn
 
 
@@ -170,59 +133,6 @@ def polar(found: Balanced, angles: Array, force: Mapping[str, Pair]) -> Chart:
     panel = Panel(x, y, tuple(curves), tuple(marks), message=message, equal=True)
     what = f"{say('Shaking force')}, {_told(found)}; {say('numbers: crank angle, deg')}"
     return Chart("polar", found.original.title, what, (panel,), keys=keys(ends))
-
-
-# -- orders ----------------------------------------------------------------------------------------
-
-
-def orders(found: Balanced) -> Iterator[Chart]:
-    """Bars of the orders of each objective that is a force, moment or torque."""
-    with_rows = found.phasing is not None
-    drawn = {
-        one.name: one
-        for one in found.plan.objectives
-        if (with_rows if one.output in OF_ROWS else not one.output.startswith(GAUGES))
-    }
-    every, speed = list(drawn), told_speed(found.original.drive.speed)
-    both = {"bar before": found.original, "bar after": found.machine}
-    for suffix, names in groups(every, MOST_PANELS):
-        what = say("Amplitude of each order") + continued(names, every)
-        if len(found.original.rows) > 1:
-            what += ", " + (say("all rows") if with_rows else say("of one row"))
-        what += ", " + say("before and after, at {speed}", speed=speed)
-        read = {
-            name: {role: amplitudes(one, drawn[name], with_rows) for role, one in both.items()}
-            for name in names
-        }
-        last = max(last_order(one) for one in read.values())
-        panels = tuple(_orders_panel(found, drawn[name], read[name], last) for name in names)
-        keyed = tuple((f"bar {when}", say(WHEN[when])) for when in ("before", "after"))
-        yield Chart(f"orders{suffix}", found.original.title, what, panels, keys=keyed)
-
-
-def _orders_panel(found: Balanced, one: Objective, read: Read, last: int) -> Panel:
-    """Bars of an objective; of a vector they are of both components."""
-    output = output_of(one.output, found.original)
-    told = objective_named(one, len(found.original.rows) if found.phasing is not None else 1)
-    if output.is_vector:
-        told = say("{what}: both components together", what=told)
-    return order_panel(told, output.dimension, read, last)
-
-
-def amplitudes(machine: Machine, objective: Objective, rows: bool = False) -> tuple[Array, Array]:
-    """Orders (K + 1,) of an output, and the size (K + 1,) of each; of a vector, of both parts.
-
-    rows : of all rows together, instead of one.
-    """
-    if rows and not objective.output.startswith(JOINTS):
-        read = Rows(machine).signals(objective)
-        total = read.total(np.array([row.phase for row in machine.rows]))[0]
-        return read.orders, np.linalg.norm(np.abs(total), axis=0)
-    signal = Effects(machine, ()).signal(objective.output, objective.about).kept(objective.orders)
-    values = signal.start
-    parts = np.array([values.real, values.imag] if np.iscomplexobj(values) else [values])
-    periodic = Periodic.of(parts, signal.turns)
-    return periodic.orders, np.linalg.norm(periodic.sizes, axis=0)
 
 
 # -- rows ------------------------------------------------------------------------------------------

@@ -63,6 +63,8 @@ def cell_of(panel: Panel, height: float) -> Cell:
         along, up = np.concatenate([bars.at - half, bars.at + half]), [*bars.size, 0.0]
         x.append(along if bars.across == "x" else up)
         y.append(up if bars.across == "x" else along)
+    x += [cells.x for cells in panel.cells]
+    y += [cells.y for cells in panel.cells]
     x += [[mark.x] for mark in panel.marks]
     y += [[mark.y] for mark in panel.marks]
     places = [np.array([arrow.tail, arrow.head]) for arrow in panel.arrows]

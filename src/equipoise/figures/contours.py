@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.figures.curves import thinned
 from equipoise.figures.sheet import Array, Stroke, Words, width_of
-from equipoise.figures.style import FAINT, INK, SMALL
+from equipoise.figures.style import FAINT, INK, SMALL, mixed
 from equipoise.figures.view import View, corners_of
 from equipoise.results.charts import Surface
 
@@ -17,7 +17,7 @@ LEVELS = 12
 """Lines at most."""
 STEEP = 90
 """Percentile of the values up to which there are lines: beside dead points they rise endlessly."""
-DARK, LIGHT = np.array([0xCF, 0xE0, 0xEF]), np.array([0xFF, 0xFF, 0xFF])
+DARK = "#cfe0ef"
 """Low is dark, in grey too; never so dark that a line or a label would be lost."""
 FINE = 240
 """Steps along an axis, between which lines of equal value are straight."""
@@ -48,7 +48,7 @@ def draw_surface(view: View, surface: Surface) -> None:
     ends = [min(float(np.nanmin(smooth)), levels[0]) - 1e-300, *levels]
     for number, (low, high) in enumerate(zip(ends, [*ends[1:], np.inf], strict=True)):
         share = number / max(len(ends) - 2, 1)
-        color = "#" + "".join(f"{round(c):02x}" for c in DARK + (LIGHT - DARK) * min(share, 1.0))
+        color = mixed(DARK, 1.0 - min(share, 1.0))
         found: Any = drawn.filled(low, high)  # points, and where the lines in them begin and end
         for points, parts in zip(*found, strict=True):
             lines = tuple(thinned(points[a:b]) for a, b in pairwise(parts.tolist()))

@@ -8,13 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.figures.sheet import Array, Box, Labels, Sheet, Signs, Stroke
-from equipoise.figures.style import Look, look_of
-from equipoise.figures.view import View, corners_of
-from equipoise.results.charts import Area, Bars, Curve, Panel
+from equipoise.figures.sheet import MIDDLE, Array, Box, Labels, Sheet, Signs, Stroke, Words
+from equipoise.figures.style import INK, SMALL, Look, look_of, mixed
+from equipoise.figures.view import Scale, View, corners_of, ends_of, ticks_of
+from equipoise.results.charts import Area, Bars, Cells, Curve, Panel, Rule
 from equipoise.symbols import looks
-from equipoise.symbols.shapes import PIN, Shape, circle, gauge, mass, sign
+from equipoise.symbols.carrier import gauge
+from equipoise.symbols.shapes import PIN, Shape, circle, mass, sign, zigzag
 
+SHADES = 4
+"""Of cells in which something is."""
 CAP = 2.2
 """Points: half the line across the end of an interval."""
 MARKERS = 7
@@ -38,7 +41,8 @@ def draw_curve(view: View, curve: Curve, number: int) -> None:
             line = Stroke(longer, look.color, look.width, look.lengths, clip=view.box)
             view.sheet.add(line, look.order)
         if len(alone):
-            view.sheet.add(signs_at(alone, Look(look.color, sign=".", size=2.5)), look.order)
+            dot = Look(look.color, sign=".", size=2.5)
+            view.sheet.add(signs_at(alone, dot, view.box), look.order)
     if look.sign:
         at = _spaced(places, number, view.box) if look.spaced else np.flatnonzero(there)
         clip = None if look.spaced else view.box
@@ -119,6 +123,49 @@ def _intervals(view: View, bars: Bars, low: Array, high: Array) -> None:
         across = np.array([0.0, CAP]) if bars.across == "y" else np.array([CAP, 0.0])
         caps = (np.array([place - across, place + across]) for place in places)
         view.sheet.add(Stroke((places, *caps), look.color, look.width, clip=view.box), look.order)
+
+
+def draw_cells(view: View, cells: Cells) -> None:
+    """Shades, the darker the more there are, by their logarithm; or dots."""
+    look = look_of(cells.role)
+    x, y = view.x.at(cells.x), view.y.at(cells.y)
+    if cells.dots:
+        rows, columns = np.nonzero(cells.counts)
+        middles = np.column_stack([(x[1:] + x[:-1])[columns] / 2, (y[1:] + y[:-1])[rows] / 2])
+        if len(middles):
+            view.sheet.add(signs_at(middles, look, view.box), look.order)
+        return
+    largest = float(np.log(1.0 + np.max(cells.counts, initial=0))) or 1.0
+    shades = np.ceil(SHADES * np.log1p(cells.counts) / largest).astype(int)
+    for shade in range(1, SHADES + 1):
+        corners = tuple(
+            corners_of((float(x[a]), float(y[row + 1]), float(x[b]), float(y[row])))
+            for row in range(len(shades))
+            for a, b in _runs(shades[row] == shade)
+        )
+        if corners:
+            color = mixed(look.color, shade / SHADES)
+            line = Stroke(corners, color, 0.3, fill=color, closed=True, clip=view.box)
+            view.sheet.add(line, look.order + 0.01 * shade)
+
+
+def _runs(mask: Array) -> list[tuple[int, int]]:
+    """Stretches that are true, each from its first to beyond its last place."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
+    return [(a, b) for a, b in edges.reshape(-1, 2).tolist()]
+
+
+def draw_rule(view: View, rule: Rule) -> None:
+    """An upright axis with its numbers, on a pale ground, for lines run across it."""
+    _, top, _, bottom = view.box
+    x = float(view.x.at(rule.at))
+    scale = Scale(rule.axis, *ends_of(rule.axis, ()), bottom, top)
+    view.line(np.array([(x, top), (x, bottom)]), look_of("rule"))
+    for place, text in ticks_of(scale, upright=True):
+        y = float(scale.of(place))
+        view.line(np.array([(x, y), (x + 3, y)]), look_of("rule"))
+        words = Words(x + 5, y + MIDDLE * SMALL, text, SMALL, INK, backed=True)
+        view.sheet.add(words, 7.0)
 
 
 def draw_arrow(view: View, tail: complex, head: complex, look: Look) -> None:
@@ -222,6 +269,10 @@ def _keep_clear(
             labels.avoid(inside, WEIGHTS[one.role])
 
 
+SPRINGS = ("spring", "planned", "added")
+"""That there are, that are to be found, and that were found."""
+
+
 def sample_of(role: str) -> list[Shape]:
     """Shapes that stand for a role in a legend."""
     look = looks.LOOKS[role]
@@ -229,6 +280,8 @@ def sample_of(role: str) -> list[Shape]:
         return mass(0)
     signs = {"gauge": gauge(0, 0), "foot": [circle("foot", 0, grown=PIN)]}
     signs |= {name: [circle(name, 0, grown=3.0)] for name in ("dot", "float", "pin")}
+    spring = zigzag(-15, 15, 4)
+    signs |= {name: [sign(name, 0, spring.places + spring.offsets)] for name in SPRINGS}
     if role in signs:
         return signs[role]
     box = np.array([-12 - 6j, 12 - 6j, 12 + 6j, -12 + 6j])

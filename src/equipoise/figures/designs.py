@@ -1,138 +1,158 @@
-"""The charts of designs: those that were chosen or found, against each other.
+"""The charts of designs: all of a study, those that were chosen or found, and the model itself.
 
 Numbers and figures are drawn in the units that are given by name, as `schema.study_units` has them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.figures.clouds import Designs, Own, Pair, counted, in_words, keys_for
+from equipoise.figures.parallel import parallel
 from equipoise.figures.shared import by_name, continued, groups
 from equipoise.figures.studies import PERCENT, Units, unit_of
 from equipoise.figures.style import short
 from equipoise.i18n import say
-from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel
+from equipoise.results.charts import (
+    Axis,
+    Cells,
+    Chart,
+    Curve,
+    Line,
+    Mark,
+    Panel,
+)
 from equipoise.studies.blocks import unit_in
+from equipoise.studies.cloud import Cloud
 
 if TYPE_CHECKING:
-    from equipoise.studies.design_space import Make
     from equipoise.studies.search import Searched
     from equipoise.studies.selection import Best
+    from equipoise.studies.store import Store
 
-Own = tuple[Array, Array]
-"""Values (d,) and figures (m,) of the model itself."""
-
-MARGIN = 0.08
-"""Free at each side, over what is drawn."""
+BELOW = -0.06
+"""How far below all designs those stand that fail, over what they reach."""
 
 
-def best_charts(found: Best, title: str, units: Units) -> dict[str, Chart]:
-    """``front`` where there are several aims; ``designs``: the first aim over every number.
+def best_charts(
+    found: Best, title: str, units: Units, store: Store, own: Own | None = None
+) -> dict[str, Chart]:
+    """``front`` where there are several aims; ``designs``: the first aim over every number;
+    ``parallel``: designs as lines from axis to axis.
 
-    More than ten numbers go on in ``designs-2`` and so on.
+    More than ten numbers go on in ``designs-2`` and so on, more than eight axes in ``parallel-2``.
+
+    store : with all designs.  own : the model itself.
     """
-    columns = dict(zip(found.numbers, found.values.T, strict=True))
-    columns |= dict(zip(found.outputs, found.figures.T, strict=True))
     labels = [str(number) for number in found.designs.tolist()]
-    return _of(Designs(title, found.by, found.numbers, columns, labels, units))
+    table = np.hstack([found.values, found.figures])
+    given = (title, found.by, found.numbers, store.wishes, units, table, labels)
+    designs = Designs(*given, store.in_blocks, store.size, own, found.trade_off)
+    return charts_of(designs)
 
 
 def searched_charts(found: Searched, units: Units, own: Own | None = None) -> dict[str, Chart]:
-    """The same of a search, and ``search``: how it got better from generation to generation.
-
-    own : the model itself, for comparison.
-    """
+    """The same of a search, and ``search``: how it got better from generation to generation."""
     study = found.study
-    names = (*study.paths, *study.names)
-    columns = dict(zip(names, (*found.values.T, *found.figures.T), strict=True))
     labels = [str(number) for number in range(len(found.values))]
-    before = None if own is None else dict(zip(names, (*own[0], *own[1]), strict=True))
-    by = dict(found.objectives)
-    designs = Designs(study.title, by, study.paths, columns, labels, units, before)
-    return {**_of(designs), "search": grown(found, units)}
+    table = np.hstack([found.values, found.figures])
+    given = (study.title, found.objectives, study.paths, study.outputs, units, table, labels)
+    front = found.figures[:, [study.names.index(name) for name in found.objectives]]
+    designs = Designs(*given, lambda: [(0, found.tried)], len(found.tried.values), own, front)
+    return {**charts_of(designs), "search": grown(found, units)}
 
 
-@dataclass(frozen=True, eq=False)
-class Designs:
-    """Designs (K) as columns (K,) by name, SI units.
-
-    by : what they were chosen by, and which way.  numbers : names of what varies.
-    labels : of the designs.  units : in which they are drawn.
-    own : the model itself by the same names, where it is known.
-    """
-
-    title: str
-    by: Mapping[str, Make]
-    numbers: Sequence[str]
-    columns: Mapping[str, Array]
-    labels: Sequence[str]
-    units: Units
-    own: Mapping[str, float] | None = None
-
-    def axis(self, name: str, most: int = 40, way: bool = True) -> Axis:
-        """Of a number or figure; way : whether it is told which way is good."""
-        told = unit_in(self.units, name)
-        label, unit = short(told.called, most), unit_of(told)
-        if way and name in self.by:
-            good = say("large is good") if self.by[name] == "largest" else say("small is good")
-            label = f"{label} ({good})"
-        return Axis(label, unit, room=MARGIN)
-
-
-def _of(designs: Designs) -> dict[str, Chart]:
+def charts_of(designs: Designs) -> dict[str, Chart]:
+    """Every chart of them by its name."""
     fronts = [front(designs)] if len(designs.by) > 1 else []
-    return by_name([*fronts, *over_numbers(designs)])
+    return by_name([*fronts, *over_numbers(designs), *parallel(designs)])
 
 
 def front(designs: Designs) -> Chart:
     """Every two aims against each other."""
     pairs = list(combinations(designs.by, 2))
     alone = len(pairs) == 1
-    most, columns = (40, 1) if alone else (26, 2)
-    panels = tuple(_against(designs, *pair, most, told=alone) for pair in pairs)
-    what = say("{count} designs that no other beats in everything", count=len(designs.labels))
-    return Chart("front", designs.title, what, panels, columns, False, _keys(designs))
+    panels = tuple(_against(designs, pair, alone) for pair in pairs)
+    what = say("Trade-off of {aims}", aims=say(", ").join(in_words(designs, designs.by)))
+    told = (counted(designs),)
+    return Chart(
+        "front",
+        designs.title,
+        what,
+        panels,
+        1 if alone else 2,
+        False,
+        keys_for(designs, pairs),
+        words=told,
+    )
 
 
 def over_numbers(designs: Designs) -> Iterator[Chart]:
     """The first aim over each number that varies."""
-    aim = next(iter(designs.by))
-    every = list(designs.numbers)
+    aim = designs.aim
+    every = [name for name in designs.numbers if name != aim]
     for suffix, names in groups(every):
-        panels = tuple(_against(designs, name, aim, 34) for name in names)
+        panels = tuple(_against(designs, (name, aim)) for name in names)
         what = say("{aim} over each number that varies", aim=designs.axis(aim).text)
         what += continued(names, every)
         own, columns = f"designs{suffix}", min(2, len(panels))
-        yield Chart(own, designs.title, what, panels, columns, False, _keys(designs))
+        keys = keys_for(designs, [(name, aim) for name in names])
+        told = (counted(designs),)
+        yield Chart(own, designs.title, what, panels, columns, False, keys, words=told)
 
 
-def _against(designs: Designs, first: str, second: str, most: int, told: bool = False) -> Panel:
-    x, y = designs.columns[first], designs.columns[second]
+def _against(designs: Designs, pair: Pair, alone: bool = False) -> Panel:
+    """All designs, the chosen ones and the model itself over two columns."""
+    first, second = pair
+    x, y = (designs.axis(name, way=alone or name not in designs.numbers) for name in pair)
+    if first in designs.numbers:
+        y = replace(y, label=unit_in(designs.units, second).called)
+    columns, cloud = designs.columns, designs.cloud
+    curves = [Curve(columns[first], columns[second], "", "design")]
     marks = []
-    if designs.own is not None:
-        marks.append(Mark(designs.own[first], designs.own[second], "", "own"))
-    if told:
-        for k in sorted({int(np.argmin(x)), int(np.argmax(x))}):
+    if len(designs.by) == 2 and designs.line is not None and {*pair} == {*designs.by}:
+        line = designs.line[np.argsort(designs.line[:, 0], kind="stable")]
+        curves.append(Curve(line[:, 0], line[:, 1], "", "front"))
+    if designs.model:
+        at = (designs.model[first], designs.model[second])
+        marks.append(Mark(*at, say("model"), "own", optional=not alone))
+    if alone:
+        for k in sorted({int(np.argmin(columns[first])), int(np.argmax(columns[first]))}):
             text = say("design {name}", name=designs.labels[k])
-            marks.append(Mark(float(x[k]), float(y[k]), text, "designs", 60.0, sign=False))
+            at = (float(columns[first][k]), float(columns[second][k]))
+            marks.append(Mark(*at, text, "stress", 60.0, sign=False))
+    cells, points = _all(cloud, pair)
+    lines = [Line(limit, "bound", "", "y") for limit in designs.limits(second)]
+    lines += [Line(limit, "bound") for limit in designs.limits(first)]
+    if first in cloud.lost and len(cloud.lost[first]):
+        below = np.full(len(cloud.lost[first]), cloud.spreads[second].at(BELOW))
+        points.append(Curve(cloud.lost[first], below, "", "failed"))
+    drawn = (*points, *curves)
+    height = 250.0 if alone else 118.0
     return Panel(
-        designs.axis(first, most),
-        designs.axis(second, most, way=told or (second not in designs.numbers and most < 30)),
-        (Curve(x, y, "", "designs"),),
-        tuple(marks),
-        height=250.0 if told else 118.0,
-        zero=False,
+        x, y, drawn, tuple(marks), (), tuple(lines), cells=cells, height=height, zero=False
     )
 
 
-def _keys(designs: Designs) -> tuple[tuple[str, str], ...]:
-    own = (("own", say("the model itself")),) if designs.own is not None else ()
-    return (("designs", say("designs")), *own)
+def _all(cloud: Cloud, pair: Pair) -> tuple[tuple[Cells, ...], list[Curve]]:
+    """All designs over two columns: shades and dots of many, points of few."""
+    first, second = pair
+    if cloud.each:
+        x, y = cloud.some[first], cloud.some[second]
+        kinds = (("beyond", ~cloud.good), ("kept", cloud.good))
+        return (), [Curve(x[mask], y[mask], "", role) for role, mask in kinds if np.any(mask)]
+    inside, outside = cloud.counts[pair]
+    edges = (cloud.spreads[first].edges, cloud.spreads[second].edges)
+    beyond = Cells(*edges, np.where(inside, 0, outside), "beyond", dots=True)
+    return (beyond, Cells(*edges, inside, "kept")), []
+
+
+# -- a search --------------------------------------------------------------------------------------
 
 
 def grown(found: Searched, units: Units) -> Chart:

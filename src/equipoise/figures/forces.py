@@ -262,9 +262,17 @@ def last_order(read: Read) -> int:
 
 
 def order_panel(
-    told: str, dimension: Dimension | None, read: Read, last: int, most_told: int = MOST_TOLD
+    told: str,
+    dimension: Dimension | None,
+    read: Read,
+    last: int,
+    most_told: int = MOST_TOLD,
+    unit: str | None = None,
 ) -> Panel:
-    """Bars beside each other for each order up to the last; numbers at them where there is room."""
+    """Bars beside each other for each order up to the last; numbers at them where there is room.
+
+    unit : as of `Axis.of`.
+    """
     largest = max(float(np.max(sizes)) for _, sizes in read.values())
     finest = _finest(read, VISIBLE * largest)
     wide = BAR_WIDE * finest / len(read)
@@ -278,7 +286,7 @@ def order_panel(
     label, room = say("order: events in one turn of the crank"), 0.7 * finest
     x = Axis(label, low=-room, high=last + room, ticks=ticks)
     every = np.concatenate([sizes for _, sizes in read.values()])
-    y = Axis.of(say("amplitude"), dimension, every, low=0.0, room=0.2)
+    y = Axis.of(say("amplitude"), dimension, every, unit, low=0.0, room=0.2)
     message = "" if largest else say("zero at every order")
     return Panel(x, y, bars=tuple(bars), title=told, message=message)
 

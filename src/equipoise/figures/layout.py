@@ -136,7 +136,7 @@ def _settle(cell: Cell, width: float, small: bool) -> None:
     if small and not fixed:
         room = SMALL_ROOM * width
         point = max(np.ptp(x), np.ptp(y), cell.least_span) / (width - 2 * room) or 1.0
-        cell.height = width
+        cell.height = width if cell.panel.held is None else np.ptp(y) / point + 2 * room
     else:
         high, room = fixed or MOST, 0.0 if cell.panel.bare else ROOM
         point = max(np.ptp(x) / (width - 2 * room), np.ptp(y) / (high - 2 * room)) or 1.0

@@ -9,6 +9,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.figures.points import moving
+from equipoise.figures.stage import beyond
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.mechanism.checks import FRAME
@@ -21,6 +22,7 @@ from equipoise.symbols.scene import Scene
 
 if TYPE_CHECKING:
     from equipoise.mechanism.motion import Motion
+    from equipoise.mechanism.support import Support
     from equipoise.results.analysis import Analysis
 
 
@@ -28,6 +30,8 @@ MOST = 24
 """Crank angles in one picture."""
 MANY, SMALLER = 3, 0.75
 """Panels beside each other in which signs are smaller, and how much."""
+BESIDE = 24.0
+"""Units from a mount or gauge to the middle of its sign."""
 STILL = 1e-9
 """Over the size of the machine: what is less stands still."""
 
@@ -61,8 +65,8 @@ def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
     what = say("Linkage, to scale; above each: angle of {link} in the frame", **told)
     if columns == 1:
         what = say("Linkage, to scale; angle of {link} in the frame: {angle}", **told)
-    keys = tuple(keys_of(scene))
-    return Chart("linkage", analysis.machine.title, what, panels, columns, keys=keys)
+    keys, words = tuple(keys_of(scene)), tuple(beyond(scene))
+    return Chart("linkage", analysis.machine.title, what, panels, columns, keys=keys, words=words)
 
 
 def told_angle(angle: float) -> str:
@@ -90,7 +94,7 @@ def _panel(scene: Scene, k: int, paths: tuple[Curve, ...], columns: int) -> Pane
     return Panel(
         *plane_axes(scene),
         paths,
-        (*joint_names(scene, k), *(_link_names(scene, k) if alone else ())),
+        (*joint_names(scene, k), *(_other_names(scene, k) if alone else ())),
         title="" if alone else told_angle(float(scene.crank_angle[k])),
         equal=True,
         zero=False,
@@ -117,6 +121,22 @@ def joint_names(scene: Scene, k: int, optional: bool = False) -> Iterator[Mark]:
         out = -sum(way / abs(way) for way in ways if way)
         wish = float(np.degrees(np.angle(out))) if abs(out) > 0.1 else 45.0
         yield Mark.of(z, short(name), "strong", wish, False, optional, near=5.0, bold=True)
+
+
+def _other_names(scene: Scene, k: int) -> Iterator[Mark]:
+    """Names of links, of gauges and, where there is room, of mounts."""
+    yield from _link_names(scene, k)
+    if scene.carrier is None:
+        return
+    carrier, support = scene.carrier, scene.carrier.support
+    for items, color in ((support.gauges, "ink"), (support.mounts, "lines")):
+        for place, names in carrier.named(items).items():
+            if scene.shows(place):
+                text = "\n".join(short(name, 20) for name in names)
+                way = carrier.way(items[names[0]])
+                at = place + BESIDE * scene.unit * way  # not where joints have their names
+                optional = items is support.mounts
+                yield Mark.of(at, text, color, 20.0, False, optional, near=10.0)
 
 
 def _link_names(scene: Scene, k: int) -> Iterator[Mark]:
@@ -207,5 +227,19 @@ def keys_of(scene: Scene) -> Iterator[tuple[str, str]]:
         yield "planned", say("spring to be found")
     if scene.carrier is not None:
         yield "support", say("support")
+        yield from support_keys(scene.carrier.support)
     if scene.field is not None:
         yield "soil", say("soil")
+        if scene.field.tray:
+            yield "tray", say("tray")
+
+
+def support_keys(support: Support) -> Iterator[tuple[str, str]]:
+    """What the signs are of what holds a support and of what is read there."""
+    if any(gauge.point is not None for gauge in support.gauges.values()):
+        yield "gauge", say("gauge")
+    pushing = {mount.one_sided for mount in support.mounts.values() if mount.point is not None}
+    if False in pushing:
+        yield "foot", say("mount")
+    if True in pushing:
+        yield "float", say("pushing mount")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from equipoise.figures.curves import UNIT
+from equipoise.figures.linkage import support_keys
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.motion import move
 from equipoise.mechanism.support import AXES, Gauge, Mount, unit_vector
 from equipoise.quantities import typeset
 from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, shown
-from equipoise.symbols import shapes
+from equipoise.symbols import carrier, shapes
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape, hull
 from equipoise.vibration.linkages import rows_of
@@ -62,9 +64,11 @@ PHASES = np.exp(1j * np.linspace(0, 2 * np.pi, 73))
 
 UNDAMPED, NOTHING = 1e-9, 1e-4
 """Damping ratio that is rounding; part of a shape, over its largest, that counts as none."""
-MOST_NAMES, SMALLER, TOGETHER = 16, 0.8, 0.02
-"""Mounts and gauges that are named in a view; size of signs in one of three views; over the size of
-the support: what is nearer to each other shares a name."""
+MOST_NAMES, SMALLER = 16, 0.8
+"""Mounts and gauges that are named in a view; size of signs in one of three views."""
+ASIDE, BESIDE = 2.0, 4.0
+"""Units by which the middle of a sign is off its place where it has a direction; points from its
+end to its name."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,30 +214,40 @@ def _panel(shape: ModeShape, view: View, views: list[View]) -> Panel:
     Where it is the only one it names all; else each thing is named where it acts.
     """
     alone = len(views) == 1
-    low, high = shape.extent(view)
-    if not alone:
-        every = [shape.extent(one) for one in VIEWS]
-        half = max(max((e[1] - e[0]).real, (e[1] - e[0]).imag) for e in every) / 2
-        low, high = ((low + high) / 2 + sign * half * (1 + 1j) for sign in (-1, 1))
+    low, high = _held(shape, view, views)
     ticks = (None, _downward(low, high) if view == "top" else None)
     x, y = (
         Axis.of(say(name), "length", [shape.size], room=0.0, ticks=one)
         for name, one in zip(VIEWS[view].names, ticks, strict=True)
     )
-    named = [(n, item) for n, item in dict(shape.items).items() if alone or view_of(item) == view]
+    named = [name for name, item in shape.items if alone or view_of(item) == view]
+    size = 1.0 if alone else SMALLER
     return Panel(
         x,
         y,
         tuple(_curves(shape, view)),
-        tuple(_names(shape, view, named[:MOST_NAMES])),
+        tuple(_names(shape, view, named, size)),
         title="" if alone else say(VIEWS[view].told),
         equal=True,
         zero=False,
         held=(low, high),
-        sign_size=1.0 if alone else SMALLER,
+        sign_size=size,
         ground=(shapes.line("rest", *shape.outline(view)[:-1], closed=True),),
         signs=tuple(_signs(shape, view)),
     )
+
+
+def _held(shape: ModeShape, view: View, views: list[View]) -> tuple[complex, complex]:
+    """Corners of what is shown: of all views as wide, and as high of those side by side."""
+    low, high = shape.extent(view)
+    if len(views) == 1:
+        return low, high
+    every = {one: shape.extent(one) for one in VIEWS}
+    wide = max((end[1] - end[0]).real for end in every.values())
+    middle = (low.real + high.real) / 2
+    beside = [every[one] for one in VIEWS if VIEWS[one].up == VIEWS[view].up]
+    ends = min(end[0].imag for end in beside), max(end[1].imag for end in beside)
+    return complex(middle - wide / 2, ends[0]), complex(middle + wide / 2, ends[1])
 
 
 def _downward(low: complex, high: complex) -> tuple[tuple[float, str], ...]:
@@ -274,41 +288,44 @@ def _signs(shape: ModeShape, view: View) -> Iterator[Shape]:
     if support.pivot is not None and view == "side":
         yield from shapes.pivot(reference)
         yield shapes.circle("pin", reference, grown=shapes.PIN)
-    center, ring = complex(np.mean(shape.outline(view))), 0
-    for _, item in shape.items:
+    for _, _, sign in _items(shape, view):
+        yield from sign
+    yield from shapes.mass(complex(seen(support.center_of_mass, view)))
+
+
+def _items(shape: ModeShape, view: View) -> Iterator[tuple[str, complex, list[Shape]]]:
+    """Gauges and mounts that are seen in a view: name, place in m, and sign."""
+    reference, ring = complex(seen(shape.reference, view)), 0
+    center = complex(np.mean(shape.outline(view)))
+    for name, item in shape.items:
         gauge = isinstance(item, Gauge)
         if item.point is None:
             if item.axis == VIEWS[view].axis:
-                yield from shapes.turning(reference, ring, gauge)
+                yield name, reference, carrier.turning(reference, ring, gauge)
                 ring += 1
             continue
         place = complex(seen(item.point, view))
         way = complex(seen(unit_vector(item.direction), view))
         if isinstance(item, Gauge):
-            yield from shapes.gauge(place, way)
+            yield name, place, carrier.gauge(place, way)
         else:
-            yield from shapes.mount(place, way, center, bool(item.stiffness), item.one_sided)
-    yield from shapes.mass(complex(seen(support.center_of_mass, view)))
+            to = carrier.to_ground(way, place - center, item.one_sided)
+            yield name, place, carrier.mount(item, place, to)
 
 
-def _names(shape: ModeShape, view: View, items: list[tuple[str, Mount | Gauge]]) -> Iterator[Mark]:
-    """Names where mounts and gauges are; those at one place share one."""
-    met: list[tuple[complex, float, list[str]]] = []
-    for name, item in items:
-        if item.point is not None:
-            place = complex(seen(item.point, view))
-            wish = 20.0 if isinstance(item, Gauge) else -20.0
-        elif item.axis == VIEWS[view].axis:
-            place, wish = complex(seen(shape.reference, view)), 45.0
-        else:
-            continue
-        near = (names for at, _, names in met if abs(at - place) < TOGETHER * shape.size)
-        together = next(near, None)
-        if together is None:
-            met.append((place, wish, together := []))
-        together.append(short(name, 20))
-    for place, wish, names in met:
-        yield Mark.of(place, "\n".join(names), "ink", wish, False, near=14.0)
+def _names(shape: ModeShape, view: View, named: Collection[str], size: float) -> Iterator[Mark]:
+    """Names at the ends of the signs of mounts and gauges, so that those of one place are apart.
+
+    size : of the signs, over the usual one.
+    """
+    shown_here = [item for item in _items(shape, view) if item[0] in named]
+    for name, place, sign in shown_here[:MOST_NAMES]:
+        offsets = np.concatenate([part.offsets for part in sign])
+        middle = complex(np.mean(offsets))
+        way = middle / abs(middle) if abs(middle) > ASIDE else np.exp(0.25j * np.pi)
+        end = UNIT * size * float(np.max(np.abs(offsets))) * complex(way)
+        wish = float(np.degrees(np.angle(way)))
+        yield Mark.of(place, short(name, 20), "ink", wish, False, near=BESIDE, off=end)
 
 
 def _keys(shape: ModeShape) -> Iterator[tuple[str, str]]:
@@ -317,10 +334,4 @@ def _keys(shape: ModeShape) -> Iterator[tuple[str, str]]:
     yield "rest", say("support at rest")
     yield "dot", say("joint of the linkages")
     yield "mass", say("centre of mass")
-    if any(gauge.point is not None for gauge in support.gauges.values()):
-        yield "gauge", say("gauge")
-    pushing = {mount.one_sided for mount in support.mounts.values() if mount.point is not None}
-    if False in pushing:
-        yield "foot", say("mount")
-    if True in pushing:
-        yield "float", say("pushing mount")
+    yield from support_keys(support)

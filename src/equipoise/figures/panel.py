@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import ceil, floor, log10
+from typing import Any
 
 import numpy as np
 
@@ -11,8 +13,10 @@ from equipoise.figures.curves import (
     draw_area,
     draw_arrow,
     draw_bars,
+    draw_cells,
     draw_curve,
     draw_machine,
+    draw_rule,
     signs_at,
 )
 from equipoise.figures.sheet import MIDDLE, Array, Stroke, Text, Words, spread, width_of
@@ -42,8 +46,14 @@ def draw(view: View) -> None:
         view.area(look_of(band.role), corners_of(box))
     if panel.surface is not None:
         draw_surface(view, panel.surface)
-    for area in panel.areas:
-        draw_area(view, area)
+    behind: list[tuple[Any, Sequence[Any]]] = [
+        (draw_cells, panel.cells),
+        (draw_area, panel.areas),
+        (draw_rule, panel.rules),
+    ]
+    for draw_one, parts in behind:
+        for part in parts:
+            draw_one(view, part)
     for outline in panel.outlines:
         look = look_of(outline.role)
         lines = tuple(view.places(one.real, one.imag) for one in (outline.places, *outline.holes))
@@ -139,7 +149,7 @@ def frame(view: View, numbers: bool) -> None:
 
 
 ALIKE = (0.01, 0.004)
-"""Shares of the axes nearer than which two marks are one."""
+"""Shares of the axes nearer than which two signs with numbers, or two equal names, are one."""
 VISIBLE = 0.004
 """Over the longest bar: shorter ones cannot be seen, and get no number."""
 MOST_DECIMALS = 4
@@ -175,7 +185,8 @@ def _marks(view: View) -> None:
     size = np.array([view.x.length, view.y.length])
     for mark in view.panel.marks:
         (place,) = view.places(mark.x, mark.y)
-        told = [at for one, at in apart if one.text]
+        same = [(one, at) for one, at in apart if one.text and (one.sign or one.text == mark.text)]
+        told = [at for one, at in same if mark.sign or one.text == mark.text]
         if mark.text and any(np.all(np.abs(place - at) < ALIKE * size) for at in told):
             continue
         apart.append((mark, place))
@@ -188,7 +199,7 @@ def _marks(view: View) -> None:
         if mark.text:
             ink = look_of(mark.role).ink
             text = Text(mark.text, ink, mark.wish, mark.near, mark.optional, mark.bold)
-            view.labels.put(float(x), float(y), text)
+            view.labels.put(float(x) + mark.off.real, float(y) - mark.off.imag, text)
 
 
 def _bar_numbers(view: View) -> None:

@@ -154,16 +154,17 @@ def compared(
     drawn: Mapping[str, tuple[Array, Array]],
     low: float | None = None,
     beside: Any = (),
+    unit: str | None = None,
     **rest: Any,
 ) -> Panel:
     """Signals of one quantity by their roles over crank angle, with the extremes of each.
 
     drawn : role -> crank angles (N,), rad, and values (N,), SI units.  low : where the axis begins.
     beside : values of the same quantity in other panels, so that all have one unit.
-    rest : of the panel.
+    unit : as of `Axis.of`.  rest : of the panel.
     """
     every = np.concatenate([values for _, values in drawn.values()])
-    axis = Axis.of(label, dimension, np.append(every, beside), room=ROOM, low=low)
+    axis = Axis.of(label, dimension, np.append(every, beside), unit, room=ROOM, low=low)
     marks: list[Mark] = []
     for role, (theta, values) in reversed(tuple(drawn.items())):
         marks += extremes(axis, values, sampled_extremes(theta, values), role)

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from math import floor, log10
-from typing import Any, Literal
+from itertools import pairwise
+from textwrap import wrap
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.i18n import say
-from equipoise.results.charts import quantity
+from equipoise.results.charts import Axis, quantity
 from equipoise.symbols.clear import clear_angle
-from equipoise.symbols.pieces import Track
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import FOOT, Array
+from equipoise.symbols.tracks import Track
+
+if TYPE_CHECKING:
+    from equipoise.results.analysis import Analysis
 
 SIDE, STRIP = 30.0, 30.0
 """Pixels around the machine, and of the strip below it, of a picture 640 pixels wide."""
@@ -26,6 +29,10 @@ IN_A_TURN = 240
 """Points of a path in a turn of the crank."""
 SIZE, LEAST = 12.0, 11.0
 """Of type, in pixels: in a picture 640 pixels wide, and in small ones."""
+RULER = 0.22
+"""Most length of the ruler, in widths of the picture."""
+SOME = 24
+"""Instants, and places on an edge of a link, at which texts are kept free."""
 RATES = {"gif": 25, "mp4": 30}
 """Frames a second of films.  Delays of a GIF are whole hundredths of a second."""
 MOST_SECONDS = 600
@@ -43,6 +50,12 @@ class Arrow:
     place: complex
     force: Array
     of_one: bool = False
+
+    @classmethod
+    def of(cls, analysis: Analysis) -> Arrow:
+        """That of a machine whose masses are known."""
+        forces, of_one = analysis.forces, len(analysis.machine.rows) > 1
+        return cls(forces.about, forces.shaking_force.value, of_one)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,11 +123,11 @@ class Stage:
     @cached_property
     def _corners(self) -> tuple[complex, complex]:
         """Lower left and upper right of all that is drawn, m."""
-        low, high = self.scene.box
+        low, high = self.scene.swept_box
         around = np.array([low, high])
         if self.arrow is not None:
             for _ in range(3):  # the arrow has its length in pixels, whose size it changes
-                tips = self.arrow.place + self.arrow.force * self.strength / self._scale(high - low)
+                tips = self.foot + self.arrow.force * self.strength / self._scale(high - low)
                 every = np.concatenate([around, tips])
                 low = complex(every.real.min(), every.imag.min())
                 high = complex(every.real.max(), every.imag.max())
@@ -135,13 +148,13 @@ class Stage:
         """Pixels, even as films need them."""
         low, high = self._corners
         tall = max((high - low).imag * self.scale, 0.25 * self.width)
-        return 2 * round((tall + (2 * SIDE + FOOT + STRIP) * self.unit) / 2)
+        return 2 * round((tall + 2 * SIDE * self.unit + self._below) / 2)
 
     @cached_property
     def origin(self) -> complex:
         """Where the machine's origin is drawn."""
         low, high = self._corners
-        middle = complex(self.width, self.height - (FOOT + STRIP) * self.unit) / 2
+        middle = complex(self.width, self.height - self._below) / 2
         return middle - ((low + high) / 2).conjugate() * self.scale
 
     @property
@@ -149,9 +162,69 @@ class Stage:
         """Pixels."""
         return max(SIZE * self.unit, LEAST)
 
+    @cached_property
+    def told(self) -> list[tuple[str, str]]:
+        """What is to be said of the support, its movement and the force, and its colour."""
+        swing = self.scene.swing
+        said = (*beyond(self.scene), *(() if swing is None else swing.told))
+        found = [(words, "ink") for words in said]
+        if self.arrow is not None:
+            peak = quantity(float(abs(self.arrow.force).max()), "force")
+            words = say("shaking force, at most {peak}", peak=peak)
+            if self.arrow.of_one:
+                words = say("shaking force of one row, at most {peak}", peak=peak)
+            found.append((words, "stress"))
+        return found
+
+    @cached_property
+    def lines(self) -> list[tuple[str, str]]:
+        """The same in lines from below; the first is empty where none fits beside the ruler."""
+        found = []
+        for words, color in self.told:
+            size = width_of(words, self.size_of_type) / len(words)
+            parts = wrap(words, max(1, int((self.width - 24 * self.unit) / size)))
+            found += [(part, color) for part in parts]
+        beside = (1 - RULER) * self.width - 36 * self.unit - width_of("500 mm ", self.size_of_type)
+        if found and width_of(found[-1][0], self.size_of_type) > beside:
+            found.append(("", "ink"))
+        return found[::-1]
+
+    @property
+    def row(self) -> float:
+        """Pixels from one of these to the next."""
+        return 1.4 * self.size_of_type
+
+    @property
+    def _below(self) -> float:
+        """Pixels of stands and of the strip with what is told below them."""
+        return (FOOT + STRIP) * self.unit + self.row * max(len(self.lines) - 1, 0)
+
+    @property
+    def foot(self) -> Array:
+        """Where the arrow of the force begins, m."""
+        assert self.arrow is not None
+        return np.asarray(self.scene.swung(self.arrow.place) + 0 * self.arrow.force)
+
     def at(self, place: Any) -> Any:
         """Pixels of a place, m."""
         return np.conj(place) * self.scale + self.origin
+
+    @cached_property
+    def links(self) -> Array:
+        """Pixels along the edges of links at some instants."""
+        at = self.chosen[:: max(1, len(self.chosen) // SOME)] % len(self.scene.crank_angle)
+        found = [np.zeros(0, complex)]
+        for body in self.scene.bodies:
+            corners = [
+                self.at(self.scene.swung(self.scene.places[name])[at]) for name in body.outline
+            ]
+            for start, end in pairwise((*corners, corners[0])):
+                found += [start + (end - start) * part for part in np.linspace(0, 1, SOME)]
+        return np.concatenate(found)
+
+    def way(self, point: str) -> Array:
+        """Pixels through which a point goes, as many as a smooth line needs."""
+        return self.path(self.at(self.scene.swung(self.scene.places[point])))
 
     def path(self, values: Array) -> Array:
         """Of N values as many as a smooth line needs."""
@@ -179,98 +252,29 @@ class Moves:
     stretch: Array
 
 
-# -- texts -----------------------------------------------------------------------------------------
+def beyond(scene: Scene) -> list[str]:
+    """What a support has too far from the linkage to be in its picture, and where."""
+    carrier = scene.carrier
+    if carrier is None:
+        return []
+    places = {carrier.center: [say("centre of mass")]}
+    if carrier.support.pivot is not None:
+        places = {carrier.reference: [say("pivot")]} | places
+    for items in (carrier.support.mounts, carrier.support.gauges):
+        for place, names in carrier.named(items).items():
+            places[place] = places.get(place, []) + names
+    told = []
+    for place, names in places.items():
+        if not scene.shows(place):
+            axis = Axis.of("", "length", [place])
+            at = f"({axis.told(place.real)}, {axis.told(place.imag)}) {axis.unit_name}"
+            told.append(f"{', '.join(names)} {at}")
+    return [say("Beyond the drawing: {items}", items="; ".join(told))] if told else []
 
 
-@dataclass(frozen=True)
-class Label:
-    """A text that stands still.
-
-    place : of its beginning, middle or end, as anchor says; the middle of its height.
-    color : name in `symbols.looks.LIGHT`.
-    """
-
-    text: str
-    place: complex
-    anchor: Literal["start", "middle", "end"] = "middle"
-    color: str = "ink"
-
-    def box(self, size: float) -> tuple[float, float, float, float]:
-        """Left, top, right, bottom; about as wide as the text will be."""
-        wide = size * sum(1.1 if ord(sign) > 0x2E7F else 0.6 for sign in self.text)
-        left = self.place.real - {"start": 0.0, "middle": 0.5, "end": 1.0}[self.anchor] * wide
-        return left, self.place.imag - 0.6 * size, left + wide, self.place.imag + 0.6 * size
-
-
-def captions(stage: Stage, traced: tuple[str, ...]) -> tuple[Label, ...]:
-    """Names of what stands still and of paths, each where it has room; then the strip below."""
-    found: list[Label] = []
-    for choices in (*_strip(stage), *_of_pivots(stage), *_of_paths(stage, traced)):
-        free = (one for one in choices if _fits(one, found, stage))
-        if (label := next(free, None)) is not None:
-            found.append(label)
-    return tuple(found)
-
-
-def _fits(label: Label, others: list[Label], stage: Stage) -> bool:
-    """Whether a text lies in the picture and on no other text."""
-    left, top, right, bottom = label.box(stage.size_of_type)
-    if left < 0 or top < 0 or right > stage.width or bottom > stage.height:
-        return False
-    boxes = (other.box(stage.size_of_type) for other in others)
-    return not any(left < b[2] and b[0] < right and top < b[3] and b[1] < bottom for b in boxes)
-
-
-def _strip(stage: Stage) -> Iterator[list[Label]]:
-    right, length = ruler_ends(stage)[1], _ruler_length(stage)
-    words = f"{1000 * length:g} mm" if length < 10 else f"{length:g} m"
-    yield [Label(words, right + 8 * stage.unit - 2j, "start")]
-    if stage.arrow is not None:
-        peak = quantity(float(abs(stage.arrow.force).max()), "force")
-        words = say("shaking force, at most {peak}", peak=peak)
-        if stage.arrow.of_one:
-            words = say("shaking force of one row, at most {peak}", peak=peak)
-        corner = complex(stage.width - 12 * stage.unit, right.imag - 2)
-        yield [Label(words, corner, "end", "stress")]
-
-
-def ruler_ends(stage: Stage) -> tuple[complex, complex]:
-    left = complex(14 * stage.unit, stage.height - 12 * stage.unit)
-    return left, left + _ruler_length(stage) * stage.scale
-
-
-def _ruler_length(stage: Stage) -> float:
-    """A round length, m, of a tenth to a fifth of the picture."""
-    most = 0.22 * stage.width / stage.scale
-    size = 10.0 ** floor(log10(most))
-    return max(by * size for by in (1, 2, 5) if by * size <= most)
-
-
-def _of_pivots(stage: Stage) -> Iterator[list[Label]]:
-    side = 22 * stage.unit
-    for name in stage.scene.standing:
-        place = complex(stage.at(stage.scene.places[name][0]))
-        way = stage.scene.ground(name).conjugate() * stage.unit
-        yield [
-            Label(name, place + (FOOT + 8) * way),
-            Label(name, place + side + 10 * way, "start"),
-            Label(name, place - side + 10 * way, "end"),
-        ]
-
-
-def _of_paths(stage: Stage, traced: tuple[str, ...]) -> Iterator[list[Label]]:
-    """Beyond the ends of each path."""
-    off = 14 * stage.unit
-    for name in traced:
-        path = stage.path(stage.at(stage.scene.places[name]))
-        ends = (path.imag.argmin(), path.real.argmin(), path.real.argmax(), path.imag.argmax())
-        top, left, right, bottom = (complex(path[k]) for k in ends)
-        yield [
-            Label(name, top - 1j * off, color="main"),
-            Label(name, left - off, "end", "main"),
-            Label(name, right + off, "start", "main"),
-            Label(name, bottom + 1j * off, color="main"),
-        ]
+def width_of(text: str, size: float) -> float:
+    """Pixels that a text takes, about."""
+    return size * sum(1.1 if ord(sign) > 0x2E7F else 0.6 for sign in text)
 
 
 def in_a_turn(kind: str, seconds: float) -> int:

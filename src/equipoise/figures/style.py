@@ -65,6 +65,9 @@ KINDS = (
 )
 """Colour and sign of several curves that are told apart; what is beyond is thin."""
 
+POINTS, DIM = "#6b9fc9", "#c4c4c4"
+"""Of what is many, and of that of it which is not wanted; in grey one is lighter."""
+
 LOOKS: dict[str, Look] = {
     "main": Look(),
     "ink": Look(INK),
@@ -124,7 +127,16 @@ LOOKS: dict[str, Look] = {
     "station": Look(LINES, 1.0, sign="o", size=4.5, hollow=True, order=4),
     "quiet speed": Look(LINES, 1.0, sign="v", size=5.5, order=5),
     # clouds
-    "designs": Look(MAIN, 0.0, sign="o", size=4.5),
+    "kept": Look(POINTS, 0.0, sign=".", size=2.4, order=2.2),
+    "beyond": Look(DIM, 0.0, sign=".", size=1.7, order=2.1),
+    "failed": Look(INK, 0.0, sign="x", size=3.0, order=2.3),
+    "kept line": Look(POINTS, 0.5, order=2.2),
+    "beyond line": Look(DIM, 0.5, order=2.1),
+    "design": Look(STRESS, 0.0, sign="o", size=4.5, order=4.2),
+    "design line": Look(STRESS, 1.3, order=3.3),
+    "front": Look(STRESS, 1.0, order=4.1),
+    "rule": Look(INK, 0.9, order=3.6),
+    "own line": Look(INK, 1.5, MEDIUM, order=3.4),
     "own": Look(INK, 1.0, sign="D", size=6.5, hollow=True, order=4),
     "best": Look(MAIN, 1.6, sign="o", size=4.5),
     "least": Look(STRESS, 1.0, sign="P", size=9, order=6),
@@ -148,7 +160,7 @@ LOOKS: dict[str, Look] = {
     "stand": Look(LINES, 0.9, sign="stand", size=10, hollow=True, order=2.5),
     "point": Look(MAIN, 1.0, sign="o", size=2.6),
     "pivot": Look(LINES, 1.0, sign="o", size=3),
-    "point path": Look("#6b9fc9", 0.8, order=1.2),
+    "point path": Look(POINTS, 0.8, order=1.2),
     "path in soil": Look(STRESS, 2.8, order=3.1),
     "other unit": Look(FAINT, 0.9, MEDIUM, order=2),
     "tick": Look(MAIN, 0.8, order=3),
@@ -182,6 +194,12 @@ LOOKS |= {
     )
 }
 LOOKS["quieter"] = Look(FAINT, 0.7, order=2.5)
+
+
+def mixed(color: str, share: float) -> str:
+    """So much of a colour on white."""
+    parts = (int(color[k : k + 2], 16) for k in (1, 3, 5))
+    return "#" + "".join(f"{round(255 + share * (part - 255)):02x}" for part in parts)
 
 
 def look_of(role: str, dashed: bool = False) -> Look:

@@ -139,12 +139,13 @@ def own_speed(sweep: Sweep) -> tuple[Line, ...]:
 
 
 def at_work(axis: Axis, sweep: Sweep, found: Sequence[Named]) -> Iterator[Mark]:
-    """Value of the named curves at the speed of the machine."""
+    """Value of the named curves at the speed of the machine, where it is in sight."""
+    least, most = ends(axis)
     for line in own_speed(sweep):
         k = int(np.argmin(np.abs(np.abs(sweep.speed) - line.at)))
         for number, one in enumerate(found[: len(KINDS)]):
             value = float(one.values[k])
-            if value > 0:
+            if least <= value <= most:
                 text, role = axis.told(value), f"kind {number}"
                 yield Mark(line.at, value, text, role, 30.0, optional=True)
 

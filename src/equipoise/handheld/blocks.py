@@ -85,7 +85,7 @@ def summary_blocks(tool: Tool) -> Iterator[Block]:
             length=told(shaft.length, "length"),
             mass=told(shaft.mass, "mass", "kg"),
             stiffness=told(section.bending_stiffness, "bending stiffness"),
-            theory=shaft.theory,
+            theory=shaft.theory.title(),
             whole=told(tool.mass, "mass", "kg"),
         )
     )

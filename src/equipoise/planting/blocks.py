@@ -25,7 +25,7 @@ from equipoise.planting.names import (
 )
 from equipoise.planting.stroke import finger_base
 from equipoise.quantities import PER_RPM, Dimension, angle, number, told
-from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
+from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value, broken_if
 
 if TYPE_CHECKING:
     from equipoise.planting.search import Fit
@@ -232,12 +232,15 @@ def _clearances(page: Page) -> Iterator[Block]:
 
 
 def _limits(page: Page) -> Iterator[Block]:
-    figures = ("limit", "highest_speed", "highest_forward_speed")
-    rows = tuple(
-        (say(label), *(page.cell(f"limits.{name}.{what}") for what in figures))
-        for name, label in LIMITS.items()
-        if page.get(f"limits.{name}.limit") is not None
-    )
+    """Limits of acceleration; a highest speed that is below the machine's stands out."""
+    speed = abs(page.figures.machine.drive.speed)
+    rows: list[tuple[Cell, ...]] = []
+    for name, label in LIMITS.items():
+        figures = ("limit", "highest_speed", "highest_forward_speed")
+        limit, highest, forward = (page.cell(f"limits.{name}.{what}") for what in figures)
+        if highest is not None:
+            over = broken_if(speed > highest.value * (1 + 1e-9))
+            rows.append((say(label), limit, replace(highest, emphasis=over), forward))
     if rows:
         columns = (
             Column(""),
@@ -245,7 +248,7 @@ def _limits(page: Page) -> Iterator[Block]:
             Column(say("highest speed of the crank"), "angular speed", "rpm"),
             Column(say("of the machine"), "speed"),
         )
-        yield Table(say("Limits of the tip's acceleration"), columns, rows)
+        yield Table(say("Limits of the tip's acceleration"), columns, tuple(rows))
 
 
 def _forces(page: Page) -> Iterator[Block]:
@@ -314,10 +317,7 @@ def _goals(fit: Fit) -> Table:
         *("", say("make"), say("wanted"), say("at least"), say("at most")),
         *(say("before"), say("after"), say("met")),
     )
-    filled = [any(row[k] not in (None, "") for row in rows) for k in range(len(labels))]
-    kept = [k for k, full in enumerate(filled) if full or k in (0, 5, 6, 7)]
-    columns = tuple(Column(labels[k]) for k in kept)
-    return Table(say("Goals"), columns, tuple(tuple(row[k] for k in kept) for row in rows))
+    return Table(say("Goals"), tuple(map(Column, labels)), tuple(rows))
 
 
 def _changes(fit: Fit) -> Table:

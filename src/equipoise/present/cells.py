@@ -69,9 +69,9 @@ class Grid:
 
     @property
     def leading(self) -> int:
-        """How many columns tell the rows: the first, and the second where that is words too."""
-        words = [self.is_words(column) for column in range(len(self.heads))]
-        return 2 if all(words[:2]) and not all(words) else 1
+        """How many columns tell the rows: one, or two of words where the first tells some alike."""
+        names = {row[0].text for row in self.rows}
+        return 2 if len(names) < len(self.rows) and self.is_words(0) and self.is_words(1) else 1
 
 
 def grid(table: Table) -> Grid:

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from equipoise.errors import ModelError
+from equipoise.handheld.design_plan import OUTPUTS
+from equipoise.handheld.hand_blocks import varied_named
 from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.cycle import turns_of_loads
 from equipoise.mechanism.dynamics import massless
@@ -213,7 +215,7 @@ def tool_blocks(tool: Tool, file: str) -> Iterator[Block]:
         times = (f"{one.name} {number(one.duration / 3600)} h" for one in tool.work)
         yield Text(f"day: {', '.join(times)}")
     if tool.design is not None:
-        yield Text(f"design: {_design(tool.design)}")
+        yield from map(Text, _design(tool.design))
     yield Listing("", f"ready: equipoise tool {file}")
 
 
@@ -226,13 +228,13 @@ def _mass(value: float) -> str:
 
 
 def _bending(section: Section) -> str:
-    return f"EI {told(section.bending_stiffness, 'bending stiffness')}"
+    return f"bending stiffness {told(section.bending_stiffness, 'bending stiffness')}"
 
 
 def _shaft(shaft: Shaft) -> Iterator[str]:
     pieces = shaft.pieces
     stiffness = _bending(pieces[0][2]) if len(pieces) == 1 else ""
-    parts = [_length(shaft.length), _mass(shaft.mass), stiffness, shaft.theory]
+    parts = [_length(shaft.length), _mass(shaft.mass), stiffness, shaft.theory.title()]
     if shaft.loss_factor:
         parts.append(f"loss factor {number(shaft.loss_factor)}")
     yield f"shaft: {', '.join(filter(None, parts))}"
@@ -298,9 +300,18 @@ def _operation(operation: Operation) -> Iterator[str]:
         yield f"racing at {_rpm(operation.racing)} rpm"
 
 
-def _design(design: DesignPlan) -> str:
+LIMITED = {
+    "acceleration": "weighted acceleration at {station}",
+    "force": "force at {station}",
+    "added_mass": "added mass",
+}
+
+
+def _design(design: DesignPlan) -> Iterator[str]:
     low, high = map(_rpm, design.speeds)
-    changes = ", ".join(variable.name for variable in design.variables)
-    kept = ", ".join(f"{limit.station or ''} {limit.output}".strip() for limit in design.limits)
-    limits = f"; limits {kept}" if kept else ""
-    return f"{low} to {high} rpm, {design.measure}; may change {changes}{limits}"
+    measure = {"rms": "RMS", "peak": "largest"}[design.measure]
+    yield f"design: acceleration of the hands, {measure} over {low} to {high} rpm"
+    yield f"  may change: {', '.join(varied_named(one.name) for one in design.variables)}"
+    for limit in design.limits:
+        most = told(limit.at_most, OUTPUTS[limit.output])
+        yield f"  {LIMITED[limit.output].format(station=limit.station)}: at most {most}"

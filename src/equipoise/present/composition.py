@@ -188,15 +188,15 @@ def _animation(found: Findings) -> str:
     scene = Scene.of(analysis.motion)
     ends = [name for name in scene.places if name not in (*scene.pins, *scene.frame)]
     tip = () if found.machine.planting is None else (found.machine.planting.tip,)
-    arrow = None
-    if analysis.solved is not None:
-        forces = analysis.solved
-        arrow = Arrow(forces.about, forces.shaking_force.value, of_one=len(found.machine.rows) > 1)
+    if found.response is not None:
+        from equipoise.figures.swing import swinging
+
+        scene = swinging(scene, found.response)
     return animated_svg(
         scene,
         title=found.machine.title,
         traced=tip or ends[:MOST_TRACED],
-        arrow=arrow,
+        arrow=None if analysis.solved is None else Arrow.of(analysis),
         width=440,  # as wide as it stands on the page, so that its texts have their size
     )
 

@@ -191,11 +191,16 @@ def _balance(found: Findings) -> Iterator[Entry]:
     balanced = found.balanced
     if balanced is None or not found.helped:
         return
-    from equipoise.figures.balancing import orders, phases, signals, together
+    from equipoise.figures.aims import aims
+    from equipoise.figures.balancing import phases, signals, together
     from equipoise.figures.changes import changes
 
-    if any(change.kind != "phases" for change in balanced.changes):
+    of_linkage = any(change.kind != "phases" for change in balanced.changes)
+    if of_linkage:
         yield "changes", to_say("What to change, to scale."), partial(changes, balanced)
+    caption = to_say("What was made small or limited, before and after, by crank angle and order.")
+    yield from pages("aims", caption, partial(aims, balanced))
+    if of_linkage:
         captions = {
             "force": to_say("Shaking force, before and after."),
             "polar": to_say("Shaking force as a polar diagram, before and after."),
@@ -204,8 +209,6 @@ def _balance(found: Findings) -> Iterator[Entry]:
         }
         for name, chart in signals(balanced).items():
             yield f"balanced-{name}", captions[name], partial(_made, chart)
-    caption = to_say("Orders of what was made small, before and after.")
-    yield from pages("balanced-orders", caption, partial(orders, balanced))
     if balanced.phasing is not None:
         both = balanced.original, balanced.machine
         yield "phases", to_say("Phases of the rows."), partial(phases, *both)

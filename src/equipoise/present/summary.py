@@ -134,10 +134,10 @@ def tiles(found: Findings) -> Iterator[Tile]:
         yield _tile(label, largest.peak, "force", say("joint {name}", name=joint_named(name)))
     if found.balanced is not None:
         first, pair = next(iter(found.balanced.aims.items()))
-        told = change(*pair).removesuffix(" %") or percent(0)
+        told = change(*pair).removesuffix(" %") if found.helped else ""
         what = objective_named(first, len(found.machine.rows))
         note = what if found.helped else good_already(found.balanced)
-        yield Tile(say("by balancing"), told, "%", note)
+        yield Tile(say("by balancing"), told or percent(0), "%", note)
 
 
 def _tile(label: str, value: float, dimension: Dimension, note: str, scale: float = 0.0) -> Tile:

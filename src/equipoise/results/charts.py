@@ -159,7 +159,7 @@ class Mark:
 
     wish : direction in which its text stands best, deg.  sign : whether a sign stands at the place.
     optional : whether the text may be left out where there is no room.
-    near : least distance of the text from the place, points.
+    near : least distance of the text from the place, points; or from as far from it as `off`.
     """
 
     x: float
@@ -170,6 +170,7 @@ class Mark:
     sign: bool = True
     optional: bool = False
     near: float = 7.0
+    off: complex = 0j
     bold: bool = False
     label: str = ""
 
@@ -235,6 +236,28 @@ class Surface:
 
 
 @dataclass(frozen=True, eq=False)
+class Cells:
+    """How many there are (J, K) between places x (K + 1,) and y (J + 1,), SI units.
+
+    dots : whether a dot in its middle is drawn where there are any, instead of a shade.
+    """
+
+    x: Array
+    y: Array
+    counts: Array
+    role: str
+    dots: bool = False
+
+
+@dataclass(frozen=True)
+class Rule:
+    """An upright axis of its own at a place of the x axis; its ends are given."""
+
+    at: float
+    axis: Axis
+
+
+@dataclass(frozen=True, eq=False)
 class Panel:
     """One pair of axes with what stands in them.
 
@@ -263,6 +286,8 @@ class Panel:
     flags: tuple[Flag, ...] = ()
     flag_words: tuple[str, ...] = ()
     asides: tuple[Aside, ...] = ()
+    cells: tuple[Cells, ...] = ()
+    rules: tuple[Rule, ...] = ()
     surface: Surface | None = None
     title: str = ""
     remark: str = ""

@@ -267,11 +267,11 @@ def figure_named(path: str) -> Note | str:
     return Note("{what}, {part}", what=found[0].note(found[1]), part=Note(FIGURES[figure]))
 
 
-def objective_named(one: Objective, rows: int = 1) -> str:
-    """What is to become small, in words."""
+def objective_named(one: Objective, rows: int = 1, measured: bool = True) -> str:
+    """What is to become small, in words; measured : with its measure."""
     of_joint = one.output.startswith(("joints.", "gauges."))
     output = one.output if rows < 2 or of_joint else f"rows.{one.output}"
-    words = [output_named(output), say(MEASURES[one.measure])]
+    words = [output_named(output), *([say(MEASURES[one.measure])] if measured else [])]
     if one.about:
         words.append(say("about {point}", point=one.about))
     if one.orders:

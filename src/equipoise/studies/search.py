@@ -20,6 +20,7 @@ from equipoise.results.result import Result
 from equipoise.studies.design_space import Choices, Make, Range
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import (
+    Block,
     Evaluator,
     Hypervolumes,
     Outcome,
@@ -63,7 +64,7 @@ class Searched(Result):
     front : number of all such designs; of more than a population some that lie far apart are told.
     objectives : output -> ``smallest`` or ``largest``.
     values : (K, d).  figures : (K, m).  SI units, in the order of the first objective.
-    computed : number of different designs; failures : of these by reason.
+    computed : number of different designs; failures : of these by reason; tried : all of them.
     generations : done.  stood_still : whether the front did not grow any more.
     volumes : after each generation: share of the box from the best to the worst figures of the last
         front that the front dominates (hypervolume); of one objective the best figure.
@@ -82,6 +83,7 @@ class Searched(Result):
     stood_still: bool
     volumes: Array
     seed: int
+    tried: Block
 
     def machine(self, number: int = 0) -> Machine | Tool:
         """One of the designs as a new machine, counted from 0."""
@@ -90,7 +92,6 @@ class Searched(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units."""
-        volumes = [None if isnan(one) else one for one in self.volumes.tolist()]
         study = self.study
         return {
             "title": study.title,
@@ -101,7 +102,7 @@ class Searched(Result):
             "stood_still": self.stood_still,
             "computed": self.computed,
             "failures": dict(self.failures),
-            "volumes": volumes,
+            "volumes": [None if isnan(one) else one for one in self.volumes.tolist()],
             "designs": designs_told(study.paths, self.values, study.names, self.figures),
         }
 
@@ -157,9 +158,8 @@ def search_designs(
             progress(generation, generations, len(seen.values), len(seen.front))
         if volumes.still:
             break
-    still = bred is None or volumes.still
     told = seen.some_of_front(seen.rows(values_at(study, breeding.pop.get("X"))), population)
-    return _result(study, seen, volumes, told, still, seed)
+    return _result(study, seen, volumes, told, bred is None or volumes.still, seed)
 
 
 def _check(study: Study) -> None:
@@ -196,6 +196,7 @@ def _result(
         stood_still=still,
         volumes=volumes.all * (seen.signs[0] if len(seen.signs) == 1 else 1),
         seed=seed,
+        tried=Block(seen.values, seen.outcome),
     )
 
 
@@ -217,8 +218,7 @@ def _evolution(seen: _Archive, population: int, seed: int) -> Any:
     from pymoo.core.termination import NoTermination
     from pymoo.util.ref_dirs import get_reference_directions
 
-    makes, limits = len(seen.makes), len(seen.limits)
-    first, new = _first(seen.study, population, seed), _only_new(seen)
+    makes, first, new = len(seen.makes), _first(seen.study, population, seed), _only_new(seen)
     if makes == 1:
         algorithm = DE(pop_size=population, sampling=first, variant="DE/rand/1/bin", CR=0.9)
     elif makes < MANY:
@@ -228,7 +228,7 @@ def _evolution(seen: _Archive, population: int, seed: int) -> Any:
         directions = get_reference_directions("das-dennis", makes, n_partitions=fine)
         algorithm = NSGA3(directions, pop_size=population, sampling=first, eliminate_duplicates=new)
     width = len(seen.study.vary)
-    problem = Problem(n_var=width, n_obj=makes, n_ieq_constr=1 + limits, xl=0.0, xu=1.0)
+    problem = Problem(n_var=width, n_obj=makes, n_ieq_constr=1 + len(seen.limits), xl=0.0, xu=1.0)
     return algorithm.setup(problem, termination=NoTermination(), seed=seed, verbose=False)
 
 

@@ -51,6 +51,7 @@ class Best(Result):
         is one figure to go by, but for others just as good.
     kept, computed, stored : number of designs that keep every limit, that have figures, that are
         stored at all.
+    trade_off : (F, M) what the whole front has of `by`; none where there is one figure to go by.
     """
 
     records: ClassVar[str] = "designs"
@@ -65,6 +66,7 @@ class Best(Result):
     kept: int
     computed: int
     stored: int
+    trade_off: Array | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units."""
@@ -171,8 +173,9 @@ class _Choice:
         if not self.kept:
             units = [self.store.units.get(output.name, "") for output in self.outputs]
             raise UsageError(f"{where}: {why_none(self.outputs, self.reasons, self.limits, units)}")
-        front = len(self.designs) if len(self.ways) > 1 else 1
+        front, trade_off = 1, None
         if len(self.ways) > 1:
+            front, trade_off = len(self.designs), self.costs * self.signs
             self.keep_only(far_apart(self.costs, self.count))
             self.keep_only(np.argsort(self.costs[:, 0], kind="stable"))
         values, figures = np.split(self.rows, [len(self.store.numbers)], axis=1)
@@ -187,6 +190,7 @@ class _Choice:
             kept=self.kept,
             computed=int(self.reasons[COMPUTED]),
             stored=stored,
+            trade_off=trade_off,
         )
 
 

@@ -8,8 +8,9 @@ from itertools import combinations, pairwise
 import numpy as np
 
 from equipoise.mechanism.kernels import cross
+from equipoise.symbols.carrier import MOUNT
 from equipoise.symbols.scene import Scene
-from equipoise.symbols.shapes import MOUNT, Array, off_outline
+from equipoise.symbols.shapes import Array, off_outline
 
 CANDIDATES = 24
 """Crank angles in a turn among which the clearest is chosen."""

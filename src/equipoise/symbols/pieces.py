@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, replace
-from typing import Protocol
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.support import Mount, unit_vector
-from equipoise.symbols.carrier import Carrier
+from equipoise.symbols.carrier import foot, gauge, ground, strut, turning
 from equipoise.symbols.scene import WIDE, Body, Guide, Scene
 from equipoise.symbols.shapes import (
     PIN,
@@ -20,21 +19,19 @@ from equipoise.symbols.shapes import (
     circle,
     coils,
     driver,
-    gauge,
     hull,
     line,
     mass,
-    mount,
     off_outline,
     pivot,
     plate,
     rails,
     slot,
     soil,
-    turning,
     wheel,
     zigzag,
 )
+from equipoise.symbols.tracks import Hold, Track, track_of
 
 BESIDE = 0.6
 """How much farther than the machine the soil reaches, over its size: out of every picture."""
@@ -45,70 +42,24 @@ SENSE = 0.55, 30.0
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
-    """How a piece moves over N crank angles.
-
-    place : of its origin, (N,) complex, m.  angle : (N,) rad, counterclockwise, counted on.
-    stretch : (N,) factor of its places along its x axis.
-    """
-
-    place: Array
-    angle: Array
-    stretch: Array
-
-
-class Moving(Protocol):
-    """A scene: what pieces may move with, complex (N,) m and (N,) rad by name."""
-
-    @property
-    def places(self) -> Mapping[str, Array]: ...
-    @property
-    def angles(self) -> Mapping[str, Array]: ...
-
-
-@dataclass(frozen=True)
-class Hold:
-    """What a piece moves with.
-
-    point : its origin.  Its x axis is that of a link, the way of a guide, or points to another
-    point, between which and the origin it is stretched; one of the three is given.
-    """
-
-    point: str
-    link: str = ""
-    guide: str = ""
-    to: str = ""
-
-
-@dataclass(frozen=True, eq=False)
 class Piece:
     """Shapes that move together, in axes of their own; those without a hold stand still.
 
     layer : ``field``, ``support``, ``wheels``, ``guides``, ``stands``, ``links``, ``springs``,
         ``pivots``, ``blocks``, ``joints``, ``tray`` or ``drive``.
     link : whose plate or bar it is, if any.
+    still : whether it stands on the ground, and not on the support.
     """
 
     layer: str
     shapes: tuple[Shape, ...]
     hold: Hold | None = None
     link: str = ""
+    still: bool = False
 
-    def track(self, scene: Moving) -> Track | None:
-        """How it moves."""
-        if self.hold is None:
-            return None
-        place = scene.places[self.hold.point]
-        if self.hold.link:
-            return Track(place, scene.angles[self.hold.link], np.ones(len(place)))
-        if self.hold.guide:
-            assert isinstance(scene, Scene)
-            (way,) = (guide.way for guide in scene.guides if guide.name == self.hold.guide)
-            return Track(place, np.unwrap(np.angle(way)), np.ones(len(place)))
-        way = scene.places[self.hold.to] - place
-        length = abs(way)
-        usual = float(length.mean()) or 1.0
-        return Track(place, np.unwrap(np.angle(way)), length / usual)
+    def track(self, scene: Scene, unit: float = 0.0) -> Track | None:
+        """How it moves; None where it stands still.  unit : of signs, m; the scene's if 0."""
+        return track_of(scene, self.hold, self.still, unit or scene.unit)
 
 
 def pieces(scene: Scene, traced: Collection[str] = (), field: bool = True) -> list[Piece]:
@@ -150,39 +101,43 @@ def _soil(scene: Scene) -> Iterator[Piece]:
     over = BESIDE * WIDE * scene.unit
     surface, depth = scene.field.surface, scene.field.depth
     ends = low.real - over, high.real + over
-    yield Piece("field", tuple(soil(*ends, surface, surface - depth - over, scene.unit)))
+    earth = soil(*ends, surface, surface - depth - over, scene.unit)
+    yield Piece("field", tuple(earth), still=True)
 
 
 def _carrier(scene: Scene) -> Iterator[Piece]:
+    """The support, mounts and gauges; what would lie on its like from the side is drawn once."""
     carrier = scene.carrier
     if carrier is None:
         return
     body = plate(np.array(carrier.corners), ("support-edge", "support"))
     yield Piece("support", tuple(body))
-    held = tuple(_held(carrier))
-    if carrier.support.pivot is not None:
-        held += (*pivot(carrier.reference), circle("pin", carrier.reference, grown=PIN))
-    yield Piece("support", (*held, *mass(carrier.center)))
-
-
-def _held(carrier: Carrier) -> Iterator[Shape]:
-    """Mounts and gauges as the side shows them; what would lie on its like is drawn once."""
+    below, above = [], []  # what stands on the ground, and what the support carries
     seen, ring = set(), 0
-    for item in carrier.items.values():
+    for name, item in carrier.items.items():
         kind = Mount if isinstance(item, Mount) else None
         if item.point is None:
             if item.axis == "pitch":
-                yield from turning(carrier.reference, ring, kind is None)
+                above += turning(carrier.reference, ring, kind is None)
                 ring += 1
             continue
-        place, way = (complex(*z[:2]) for z in (item.point, unit_vector(item.direction)))
-        if (key := (kind, round(abs(place), 9), place, way)) in seen:
+        place, along = (complex(*z[:2]) for z in (item.point, unit_vector(item.direction)))
+        if (key := (kind, round(abs(place), 9), place, along)) in seen:
             continue
         seen.add(key)
-        if isinstance(item, Mount):
-            yield from mount(place, way, carrier.center, bool(item.stiffness), item.one_sided)
-        else:
-            yield from gauge(place, way)
+        if not isinstance(item, Mount):
+            above += gauge(place, along)
+            continue
+        way = carrier.way(item)
+        above += foot(place, way, item.one_sided)
+        if way:
+            below += ground(place, way)
+            yield Piece("support", tuple(strut(item, 0j, 1 + 0j)), Hold(mount=name))
+    if carrier.support.pivot is not None:
+        below += pivot(carrier.reference)
+        above.append(circle("pin", carrier.reference, grown=PIN))
+    yield Piece("support", tuple(below), still=True)
+    yield Piece("support", (*above, *mass(carrier.center)))
 
 
 # -- the linkage -----------------------------------------------------------------------------------
@@ -317,7 +272,7 @@ GROUND = ("field", "support")
 """Layers of pieces that paths are drawn on."""
 
 
-def placed(scene: Moving, every: list[Piece], k: int) -> list[Shape]:
+def placed(scene: Scene, every: Iterable[Piece], k: int) -> list[Shape]:
     """The shapes of pieces where they are at the k-th crank angle, in the axes of the frame."""
     found: list[Shape] = []
     for piece in every:
@@ -325,9 +280,5 @@ def placed(scene: Moving, every: list[Piece], k: int) -> list[Shape]:
         if track is None:
             found += piece.shapes
             continue
-        turn = np.exp(1j * track.angle[k])
-        for shape in piece.shapes:
-            stretched = shape.places.real * track.stretch[k] + 1j * shape.places.imag
-            places = track.place[k] + stretched * turn
-            found.append(replace(shape, places=places, offsets=shape.offsets * turn))
+        found += [track.moved(shape, k) for shape in piece.shapes]
     return found

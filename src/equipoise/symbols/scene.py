@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -15,8 +16,8 @@ from equipoise.mechanism.joints import gear_pins
 from equipoise.mechanism.model import FRAME, Link, Machine
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.tip import surface_of
-from equipoise.symbols.carrier import Carrier
-from equipoise.symbols.shapes import MOUNT, Array, hull
+from equipoise.symbols.carrier import MOUNT, Carrier, Swing
+from equipoise.symbols.shapes import Array, hull
 
 
 @dataclass(frozen=True)
@@ -113,6 +114,7 @@ class Scene:
     springs : ends of each, on its link and on the frame, as names of points.
     angles : of each link, counted on through the turns; (N,) rad.
     planned : springs that balancing may set, likewise.
+    swing : how the support moves, where it is to be seen; places are in the frame's axes all along.
     """
 
     crank_angle: Array
@@ -129,6 +131,7 @@ class Scene:
     planned: tuple[tuple[str, str], ...] = ()
     field: Field | None = None
     carrier: Carrier | None = None
+    swing: Swing | None = None
 
     @classmethod
     def of(cls, motion: Motion) -> Scene:
@@ -179,6 +182,13 @@ class Scene:
         hung = [float(np.mean(way.imag / np.maximum(np.abs(way), 1e-150))) for way in ways]
         return 1j if hung and max(hung) < -HANGING else -1j
 
+    def swung(self, place: Any) -> Any:
+        """Where places of the frame's axes, (N,) m, are as the support swings."""
+        if self.swing is None or self.carrier is None:
+            return place
+        arm = (place - self.carrier.reference) * np.exp(1j * self.swing.angle)
+        return self.carrier.reference + self.swing.place + arm
+
     @cached_property
     def linkage_box(self) -> tuple[complex, complex]:
         """Lower left and upper right corner of all places, wheels and ways of blocks, m."""
@@ -223,6 +233,18 @@ class Scene:
             if max(span.real, span.imag) <= most:
                 low, high = grown
         return low, high
+
+    def shows(self, place: complex) -> bool:
+        """Whether a place, m, is in the box."""
+        low, high = self.box
+        return low.real <= place.real <= high.real and low.imag <= place.imag <= high.imag
+
+    @property
+    def swept_box(self) -> tuple[complex, complex]:
+        """The same with all that it holds as the support swings."""
+        low, high = self.box
+        corners = (low, high, complex(low.real, high.imag), complex(high.real, low.imag))
+        return _box(np.concatenate([np.atleast_1d(self.swung(corner)) for corner in corners]))
 
     def corners_at(self, k: int) -> Array:
         """Places and wheels at the k-th crank angle, complex, m."""

@@ -28,14 +28,6 @@ FOOT = 22.0
 """How far a pivot's sign reaches below it."""
 APART = 6.0
 """Between two strokes of hatching."""
-MOUNT = 40.0, 7.0
-"""Length of a spring or damper between support and ground, and half its width."""
-NEEDLE = 32.0
-"""Length of a gauge's arrow."""
-SEEN = 0.3
-"""Length of the view of a unit vector below which it is seen end on."""
-RING = 22.0, 10.0
-"""Radius of the first arc about an axis that is seen end on, and how much larger others are."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +103,7 @@ def pivot(place: complex, grounded: bool = True, way: complex = -1j) -> list[Sha
     """
     half, high = STAND
     foot, side = high * way, half * 1j * way
-    found = _hatching(place, foot + 1.6 * side, foot - 1.6 * side, way) if grounded else []
+    found = hatching(place, foot + 1.6 * side, foot - 1.6 * side, way) if grounded else []
     reach = 1.6 if grounded else 1.0
     return [
         *found,
@@ -211,65 +203,6 @@ def soil(left: float, right: float, surface: float, bottom: float, unit: float) 
     return [ground, *strokes, line("surface", *corners)]
 
 
-# -- the support -----------------------------------------------------------------------------------
-
-
-def mount(
-    place: complex, way: complex, center: complex, sprung: bool, one_sided: bool
-) -> list[Shape]:
-    """A spring or damper from the support to hatched ground.
-
-    way : the view of the direction in which it pushes the support, at most 1 long.
-    center : of the support, from which one that goes along points away.
-    """
-    if abs(way) < SEEN:
-        return [circle("float", place, grown=5.0), circle("dot", place, grown=1.5)]
-    way = -way / abs(way)
-    if not one_sided and abs(way.imag) < 0.5 and ((place - center) * np.conj(way)).real < 0:
-        way = -way
-    length = MOUNT[0]
-    lines = [sign("mount", place, length * way * piece) for piece in _BODIES[sprung]]
-    ends = length * way + 16 * 1j * way * np.array([-1, 1])
-    start, end = (complex(z) for z in ends)
-    ground = [*_hatching(place, start, end, way), sign("rail", place, ends)]
-    return [*lines, *ground, circle("float" if one_sided else "foot", place, grown=PIN)]
-
-
-HALF = 1j * MOUNT[1] / MOUNT[0]
-ALONG = np.concatenate([[0, 0.2], 0.2 + 0.6 * (np.arange(6) + 0.5) / 6, [0.8, 1]])
-_BODIES: dict[bool, list[Array]] = {
-    True: [ALONG + HALF * np.array([0, 0, *([1, -1] * 3), 0, 0])],
-    False: [
-        np.array([0, 0.35 + 0j]),
-        np.array([0.75 + HALF, 0.35 + HALF, 0.35 - HALF, 0.75 - HALF]),
-        np.array([0.6 + 0.8 * HALF, 0.6 - 0.8 * HALF]),
-        np.array([0.6, 1 + 0j]),
-    ],
-}
-"""From 0 to 1, sides over the length: a zigzag; a piston in a cylinder open to the ground."""
-
-
-def gauge(place: complex, way: complex) -> list[Shape]:
-    """A gauge: a diamond with an arrow in its direction, the view of which is at most 1 long."""
-    diamond = sign("gauge", place, 5.5 * np.array([1, 1j, -1, -1j]), closed=True)
-    if abs(way) < SEEN:
-        return [diamond]
-    way /= abs(way)
-    head = sign("needle-head", place, way * (NEEDLE + np.array([0, -8 + 3j, -8 - 3j])), closed=True)
-    return [sign("needle", place, [0, way * (NEEDLE - 6)]), head, diamond]
-
-
-def turning(place: complex, ring: int, of_gauge: bool) -> list[Shape]:
-    """An arc with a head about an axis that is seen end on, the first or one outside of it."""
-    radius = RING[0] + RING[1] * ring
-    arc = radius * np.exp(1j * np.radians(np.linspace(-60, 195, 40)))
-    way = 1j * arc[-1] / abs(arc[-1])
-    role = "needle" if of_gauge else "mount"
-    head = arc[-1] + way * 8 * np.array([1, 0.38j, -0.38j])
-    tip = "needle-head" if of_gauge else "foot"
-    return [sign(role, place, arc), sign(tip, place, head, closed=True)]
-
-
 # -- parts of signs --------------------------------------------------------------------------------
 
 
@@ -312,7 +245,7 @@ def _box(role: str, low: complex, high: complex, over: float, half: float) -> Sh
     return Shape(role, np.array([low, high, high, low], complex), offsets * way, True)
 
 
-def _hatching(place: complex, start: complex, end: complex, away: complex) -> list[Shape]:
+def hatching(place: complex, start: complex, end: complex, away: complex) -> list[Shape]:
     """Short strokes behind a line between two offsets from a place, on the side away."""
     ends = np.array([place, place], complex)
     return _hatched(ends, np.array([start, end]), away, 1.0)

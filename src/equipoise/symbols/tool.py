@@ -8,9 +8,10 @@ from functools import cached_property
 
 import numpy as np
 
-from equipoise.symbols.pieces import Hold, Piece, placed
+from equipoise.symbols.carrier import MOUNT, SPRING, foot, ground, turning
 from equipoise.symbols.scene import WIDE
-from equipoise.symbols.shapes import Array, Shape, circle, line, mount, sign, turning
+from equipoise.symbols.shapes import Array, Shape, circle, line, sign
+from equipoise.symbols.tracks import Track
 
 DENSITY = 1000.0
 """Of bodies of which the mass alone is known, kg/m3: they are drawn as cubes of water."""
@@ -18,8 +19,6 @@ THIN = 3.5
 """Half the width of a shaft whose diameter is not known, units."""
 ROOM = 6.0
 """Around all that is drawn, units."""
-UPRIGHT = " "
-"""In the place of a link, with which turns what stands upright however the shaft is deflected."""
 BLADE, TILT = 2.2, np.exp(0.55j)
 """Length of a blade over the width of the head that has it, and its direction."""
 
@@ -74,23 +73,18 @@ class ToolScene:
     deflected: Array
 
     @cached_property
-    def places(self) -> Mapping[str, Array]:
-        """Of every seat by name; (N,) complex, m."""
-        return {
-            one.name: one.place
-            + 1j * np.array([np.interp(one.place, self.along, row) for row in self.deflected])
-            for one in self.seats
-        }
-
-    @cached_property
-    def angles(self) -> Mapping[str, Array]:
-        """By which every seat is turned with the shaft; (N,) rad."""
-        slopes = np.gradient(self.deflected, self.along, axis=1)
-        turned = {
-            one.name: np.arctan([np.interp(one.place, self.along, row) for row in slopes])
-            for one in self.seats
-        }
-        return {**turned, UPRIGHT: np.zeros(len(self.deflected))}
+    def tracks(self) -> Mapping[str, tuple[Track, Track]]:
+        """Of every seat: of what turns with the shaft, and of what stays upright."""
+        slopes, found = np.gradient(self.deflected, self.along, axis=1), {}
+        for one in self.seats:
+            high, slope = (
+                np.array([np.interp(one.place, self.along, row) for row in rows])
+                for rows in (self.deflected, slopes)
+            )
+            place, none = one.place + 1j * high, np.zeros(len(high))
+            turned, upright = (Track(place, by, none + 1) for by in (np.arctan(slope), none))
+            found[one.name] = turned, upright
+        return found
 
     @property
     def unit(self) -> float:
@@ -109,14 +103,11 @@ class ToolScene:
 
     def at(self, k: int) -> list[Shape]:
         """Everything that is drawn at the k-th instant, from the back to the front."""
-        layers: list[list[Piece]] = [
-            [
-                Piece("links", tuple(draw(one)), Hold(one.name, link=upright or one.name))
-                for one in self.seats
-            ]
-            for draw, upright in ((_held, UPRIGHT), (_absorber, ""), (_body, ""), (_hands, UPRIGHT))
-        ]
-        held, hung, bodies, hands = (placed(self, layer, k) for layer in layers)
+        tracks = self.tracks
+        held, hung, bodies, hands = (
+            [tracks[one.name][upright].moved(shape, k) for one in self.seats for shape in draw(one)]
+            for draw, upright in ((_held, 1), (_absorber, 0), (_body, 0), (_hands, 1))
+        )
         return [*held, *hung, *self._shaft(k), *bodies, *hands]
 
     def _shaft(self, k: int) -> Iterator[Shape]:
@@ -164,7 +155,8 @@ def _held(seat: Seat) -> Iterator[Shape]:
         yield circle("float", 0, grown=9.0)
         yield sign("mount", 0, [9j, 18j])
     if seat.grounded:
-        yield from mount(0, 1j, 0, sprung=True, one_sided=False)
+        yield sign("mount", 0, -1j * MOUNT[0] * SPRING[0])
+        yield from (*ground(0, -1j), *foot(0, -1j, one_sided=False))
     if seat.clamped:
         yield from turning(0, 0, of_gauge=False)
 

@@ -19,7 +19,7 @@ import numpy as np
 from equipoise.errors import ModelError
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import AXES, FREEDOMS, Gauge, Mount, Support, unit_vector
-from equipoise.signals import Array
+from equipoise.signals import Array, Periodic
 
 MISSING = (
     "the machine stands on solid ground; add a table [support] with its mass, mounts and gauges"
@@ -64,6 +64,12 @@ class Body:
         along = np.array(unit_vector(item.direction))
         found: Array = self.wrench(along, item.point)
         return found
+
+    def whole(self, moved: Periodic) -> Periodic:
+        """All six coordinates (6, K + 1), of those that are free (D, K + 1)."""
+        found = np.zeros((len(FREEDOMS), moved.amplitudes.shape[-1]), complex)
+        found[self.free] = moved.amplitudes
+        return Periodic(found, moved.turns)
 
     @cached_property
     def mass(self) -> Array:

@@ -19,8 +19,9 @@ from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import move
 from equipoise.mechanism.reactions import Pass
+from equipoise.mechanism.support import FREEDOMS
 from equipoise.signals import Array, Periodic
-from equipoise.vibration.body import PITCH, Body, Reading
+from equipoise.vibration.body import IN_PLANE, PITCH, Body, Reading
 from equipoise.vibration.coupled import Coupled, settled
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import BaseMotion, Sums, joint_forces, rows_of
@@ -186,9 +187,10 @@ class ExactSolution:
         return float(self.system.sense * 2 * pi * self.turns / period)
 
     def signal(self, samples: Array) -> Periodic:
-        """Of samples (N,) at those instants: against the crank angle of a constant mean speed."""
+        """Of samples (..., N) at those instants: by the crank angle of a constant mean speed."""
         backwards = self.system.sense < 0
-        return Periodic.of(np.roll(samples[::-1], 1) if backwards else samples, self.turns)
+        samples = np.roll(samples[..., ::-1], 1, axis=-1) if backwards else samples
+        return Periodic.of(samples, self.turns)
 
     def response(self, brief: bool = False) -> Response:
         """Everything that is told of it; `brief` leaves out the joint forces."""
@@ -206,7 +208,14 @@ class ExactSolution:
             self.multipliers,
             self.energy(),
             tuple(self._notes()),
+            None if self.linear is None else self._motion(),
         )
+
+    def _motion(self) -> Periodic:
+        """Of the support, all six coordinates."""
+        place = np.zeros((len(FREEDOMS), len(self.crank_angle)))
+        place[list(IN_PLANE)] = self.ride.place
+        return self.signal(place)
 
     def _notes(self) -> Iterator[Note]:
         """What a reader has to know of the solution."""

@@ -228,6 +228,8 @@ class Response(Result):
     Signals are against the mean speed times the time, which is the crank angle where the speed is
     constant.
     multipliers, residual, energy : of the periodic solution; None for steps that need none.
+    motion : (6, K + 1) of the support, in the order of `FREEDOMS`, m and rad, as small; None where
+        there is none.
     """
 
     machine: Machine
@@ -243,6 +245,7 @@ class Response(Result):
     multipliers: Array | None = None
     energy: Energy | None = None
     notes: tuple[Note | str, ...] = ()
+    motion: Periodic | None = None
 
     @property
     def stable(self) -> bool | None:

@@ -50,6 +50,7 @@ def respond_linear(linear: Linear, speed: float) -> Response:
         linear.modes,
         DriveSignals(_torque(linear, speed)),
         notes=tuple(notes),
+        motion=linear.body.whole(moved),
     )
 
 
@@ -221,6 +222,7 @@ def respond_coupled(linear: Linear, speed: float) -> Response:
         model="coupled",
         gauges=_gauges(linear, moved, moving, change),
         mounts=_mounts(linear, moved, moving, speed)[0],
+        motion=linear.body.whole(moved),
         residual=found.residual,
         multipliers=multipliers,
         notes=(*plain.notes, *in_words(multipliers)),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from equipoise.quantities import display
 from equipoise.results.analysis import Analysis
 from equipoise.signals import Periodic
 from equipoise.symbols.looks import LOOKS
-from equipoise.symbols.pieces import Piece, pieces
+from equipoise.symbols.pieces import Piece, pieces, placed
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape
 from equipoise.web.edits import Solved, extent_of, movable
@@ -204,12 +204,14 @@ def stage_of(scene: Scene, handles: Sequence[str]) -> Values:
         "box": [low.real, low.imag, high.real, high.imag],
         "movable": list(handles),
         "traced": traced(scene),
-        "signs": [_sign(piece) for piece in drawn],
+        "signs": [_sign(scene, piece) for piece in drawn],
         "looks": {role: LOOKS[role].css(UNIT) for role in roles},
     }
 
 
-def _sign(piece: Piece) -> Values:
+def _sign(scene: Scene, piece: Piece) -> Values:
+    if piece.hold is not None and piece.hold.mount:  # here the support stands still
+        piece = replace(piece, hold=None, shapes=tuple(placed(scene, [piece], 0)))
     hold = None if piece.hold is None else {k: v for k, v in asdict(piece.hold).items() if v}
     if hold is not None and "to" in hold:
         hold["length"] = float(np.max(piece.shapes[0].places.real))

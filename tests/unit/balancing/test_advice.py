@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.advice import advise, plate_of, running_speeds
+from equipoise.balancing.advice import advise, counterweight_on, plate_of, running_speeds
 from equipoise.balancing.blocks import outcome_blocks
 from equipoise.balancing.told import aims_told, proof_told, worse_told
 from equipoise.errors import EquipoiseError, MassError, UsageError
@@ -57,21 +57,23 @@ def test_rows_are_turned_so_that_the_gauges_read_least() -> None:
 
 def test_counterweights_are_cut_from_plate_in_the_room_of_their_link() -> None:
     """Mass and first moment of each sector by its outline, as a polygon."""
-    found = advise(RIG)
+    found = advise(RIG).tried[1]
     reaches = {"crank": 33.5e-3, "rocker": 80e-3}
     assert [change.link for change in found.changes] == [*reaches]
     for change in found.changes:
-        (piece,) = change.values["pieces"]
-        reach = reaches[change.link]
-        assert (piece["outer_radius"], piece["inner_radius"]) == pytest.approx((reach, reach / 5))
-        assert piece["thickness"] == pytest.approx({"crank": 10e-3, "rocker": 20e-3}[change.link])
-        turned = piece["direction"] + piece["angle"] * np.linspace(-0.5, 0.5, 4001)
-        outer, inner = (piece[f"{end}_radius"] * np.exp(1j * turned) for end in ("outer", "inner"))
-        outline = np.concatenate([outer, inner[::-1]])
-        crossed = np.imag(np.conj(outline) * np.roll(outline, -1))
-        plate = 7850 * piece["thickness"]
-        assert plate * np.sum(crossed) / 2 == pytest.approx(change.values["mass"], rel=1e-5)
-        moment = plate * np.sum(crossed * (outline + np.roll(outline, -1))) / 6
+        reach, mass, moment = reaches[change.link], 0.0, 0.0
+        thickness = {"crank": 10e-3, "rocker": 20e-3}[change.link]
+        for piece in change.values["pieces"]:
+            radii = (piece["outer_radius"], piece["inner_radius"])
+            assert radii == pytest.approx((reach, reach / 5))
+            assert piece["thickness"] == pytest.approx(thickness)
+            turned = piece["direction"] + piece["angle"] * np.linspace(-0.5, 0.5, 4001)
+            outer, inner = (radius * np.exp(1j * turned) for radius in radii)
+            outline = np.concatenate([outer, inner[::-1]])
+            crossed = np.imag(np.conj(outline) * np.roll(outline, -1))
+            mass += 7850 * thickness * np.sum(crossed) / 2
+            moment += 7850 * thickness * np.sum(crossed * (outline + np.roll(outline, -1))) / 6
+        assert mass == pytest.approx(change.values["mass"], rel=1e-5)
         assert abs(moment) == pytest.approx(change.values["moment"], rel=1e-5)
     added = sum(change.values["mass"] for change in found.changes)
     assert added <= RIG.mass * (1 + 1e-6)
@@ -80,20 +82,45 @@ def test_counterweights_are_cut_from_plate_in_the_room_of_their_link() -> None:
 
 @pytest.mark.parametrize(
     ("most", "thickness"),
-    [(12e-3, 12e-3), (11.9e-3, 10e-3), (0.99e-6, 0.8e-6), (5.0, 0.1), (1e-3, 1e-3)],
+    [(12e-3, 12e-3), (11.9e-3, 10e-3), (0.99e-6, 0.8e-6), (5.0, 0.03), (1e-3, 1e-3)],
 )
 def test_plates_that_are_to_be_had(most: float, thickness: float) -> None:
     assert plate_of(most) == pytest.approx(thickness, rel=1e-12)
 
 
+def test_plates_are_no_thicker_than_their_links_can_carry() -> None:
+    """Three times a hanger of 8 mm; and no farther from the pin than the link with its bodies."""
+    sieve = eq.load("sieve")
+    hanger, crank = (counterweight_on(sieve, link).weight for link in ("left", "crank"))
+    assert (hanger.thickness, crank.thickness) == pytest.approx((20e-3, 12e-3))
+    assert hanger.radius == pytest.approx(np.hypot(350e-3, 25e-3))
+    assert crank.radius == pytest.approx(45e-3)  # its disc, where the pin is at 18 mm
+
+
 def test_what_is_simple_is_taken_where_it_does_half_of_what_the_best_one_does() -> None:
-    simple, both = advise(eq.load("yamashita-1")), advise(RIG)
-    assert [one.gain for one in simple.tried] == pytest.approx([0.0499, 0.0650], abs=2e-4)
+    simple, both = advise(RIG), advise(eq.load("lee-kim-a"))
+    assert [one.gain for one in simple.tried] == pytest.approx([0.0658, 0.1284], abs=2e-4)
     assert len(simple.changes) == 1
-    assert [one.gain for one in both.tried] == pytest.approx([0.0658, 0.1936], abs=2e-4)
+    assert [one.gain for one in both.tried] == pytest.approx([0.0345, 0.0632], abs=2e-4)
     assert len(both.changes) == 2
-    before, after = swing(RIG, "gauge"), swing(both.machine, "gauge")
-    assert both.gain == pytest.approx(1 - after / before, rel=1e-6)
+    before, after = swing(RIG, "gauge"), swing(simple.machine, "gauge")
+    assert simple.gain == pytest.approx(1 - after / before, rel=1e-6)
+
+
+def test_a_remedy_that_makes_others_far_worse_is_held_or_not_recommended() -> None:
+    """The shaper's lever would double as a flail: the force falls by 66 %, the moment grows to 3.8
+    times.  What a six-bar's rockers gain is less where its joints are held, and still worth it.
+    """
+    flail = advise(eq.load("quick-return"))
+    dear = flail.tried[1]
+    assert dear.gain == pytest.approx(0.6625, abs=1e-3) and not flail.helps
+    moments = [eq.analyze(m).summary["shaking_moment"].rms for m in (dear.original, dear.machine)]
+    assert moments[1] / moments[0] == pytest.approx(3.79, abs=0.01)
+    six_bar = eq.load("stephenson-six-bar")
+    found = advise(six_bar)
+    free = eq.balance(six_bar, replace(found.plan, limits=()))
+    assert free.gain > 0.4 > found.gain > 0.1 and found.helps
+    assert [round(max(one.weight for one in each.worse), 1) for each in (free, found)] == [2.3, 0.3]
 
 
 def test_all_speeds_at_which_a_machine_runs_are_aims() -> None:
@@ -138,9 +165,9 @@ def test_what_the_file_frees_is_kept_and_what_it_leaves_out_is_as_usual() -> Non
 
 def test_where_nothing_helps_that_is_said() -> None:
     found = advise(eq.load("slider-crank-engine"))
-    assert not found.helps and found.gain < 0.01
+    assert not found.helps and found.gain < 0.05
     told = " ".join(str(block) for block in outcome_blocks(found))
-    assert "nothing that was tried makes shaking force, RMS at 6000 rpm smaller by 1 %" in told
+    assert "nothing that was tried makes shaking force, RMS at 6000 rpm smaller by 5 %" in told
     assert "add a counterweight" not in told
 
 

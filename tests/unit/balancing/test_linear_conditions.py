@@ -300,8 +300,8 @@ def test_added() -> None:
 
 def test_sensitivities() -> None:
     text = words(sensitivities(eq.load("yamashita-2")).blocks(zero=np.radians(-100)))
-    assert "coupler.center_y 0.1200 mm 0.2801 27.9, 214.7, 319.4, 330.6" in text
-    assert "No effect at any crank angle: crank.inertia, coupler.inertia, rocker.inertia" in text
+    assert "coupler centre of mass, y 0.1200 mm 0.2801 27.9, 214.7, 319.4, 330.6" in text
+    assert "No effect at any crank angle: crank (inertia), coupler (inertia), rocker" in text
     assert "crank angle from -100.0 deg" in text
 
 

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.balancing.advice import advise
+from equipoise.balancing.balanced import Balanced
 from equipoise.figures import balancing as view
+from equipoise.figures.aims import aims_of
 from equipoise.figures.forces import order_panel
 from equipoise.figures.layout import lay_out
-from equipoise.mechanism.objectives import Objective
 from equipoise.results.charts import Chart
-from unit.figures.balance_samples import FORCE, MOMENT, found, front, in_rows, phasing, pictures
+from equipoise.vibration.forced import respond
+from unit.figures.balance_samples import found, front, in_rows, phasing, pictures
 from unit.figures.samples import words
 
 
@@ -22,7 +26,7 @@ def curve(chart: Chart, role: str, panel: int = 0) -> np.ndarray:
 
 
 def test_names_in_order() -> None:
-    assert list(view.charts(found("sector"))) == ["force", "polar", "moment", "torque", "orders"]
+    assert list(view.charts(found("sector"))) == ["aims", "force", "polar", "torque"]
     assert list(pictures("phases")) == ["phases", "rows"]
     assert {"phases", "rows", "changes"} <= pictures("rows, both").keys()
     assert list(pictures("front")) == ["front"]
@@ -56,7 +60,7 @@ def test_rounding_is_nothing() -> None:
 
 def test_bars_are_the_orders() -> None:
     result = found("sector")
-    panel = pictures("sector")["orders"].panels[0]
+    panel = pictures("sector")["aims"].panels[1]
     for bars, machine in zip(panel.bars, (result.original, result.machine), strict=True):
         force = eq.analyze(machine, 360).forces.shaking_force.y
         sizes = np.abs(np.fft.rfft(force)) / 180
@@ -74,18 +78,72 @@ def test_numbers_at_bars_keep_apart(factor: float) -> None:
     assert numbers
 
 
-def test_orders_of_vectors_joints_and_rows() -> None:
-    machine = found("one of each").original
-    for objective in (FORCE, MOMENT, Objective("joints.B")):
-        orders, sizes = view.amplitudes(machine, objective)
-        assert len(orders) == len(sizes) and sizes[1] > 0
-    rows = in_rows().original
-    one, four = (view.amplitudes(rows, FORCE, rows=which)[1][1] for which in (False, True))
-    assert four == pytest.approx(4 * one)
-    told = words(pictures("one of each")["orders"])
-    assert "both components together" in told and "order" in told
-    gauges = replace(found("sector").plan, objectives=(Objective("gauges.tip"),))
-    assert not list(view.orders(replace(found("sector"), plan=gauges)))
+def test_aims_are_drawn_as_they_are_asked() -> None:
+    """A vector by its size, a joint, and two orders of a moment."""
+    result, chart = found("one of each"), pictures("one of each")["aims"]
+    force, joint, moment = chart.panels[::2]
+    for role, machine in (("before", result.original), ("after", result.machine)):
+        forces = eq.analyze(machine, 720).forces
+        for panel, size in ((force, forces.shaking_force.size), (joint, forces.joints["B"].size)):
+            mine = next(curve for curve in panel.curves if curve.role == role)
+            np.testing.assert_allclose(mine.y[:-1], size, atol=1e-6)
+        drawn = next(curve for curve in moment.curves if curve.role == role)
+        kept = np.fft.rfft(forces.shaking_moment)
+        kept[[0, *range(3, len(kept))]] = 0.0
+        np.testing.assert_allclose(drawn.y[:-1], np.fft.irfft(kept), atol=1e-6)
+    assert "both components together" in words(chart).replace("\n", " ")
+
+
+def test_aims_of_rows_are_of_all_of_them() -> None:
+    rows = in_rows()
+    (aim,) = aims_of(rows)
+    one = eq.analyze(replace(rows.original, rows=()), 720).forces.shaking_force.size
+    np.testing.assert_allclose(aim.pair["before"], 4 * one, atol=1e-6)
+
+
+@cache
+def rig() -> Balanced:
+    return eq.balance(eq.load("balance-rig"))
+
+
+def test_a_gauge_is_drawn_at_each_speed_at_which_it_is_read() -> None:
+    """Against the steady state of both machines, and with the joint whose force is limited."""
+    result = rig()
+    chart = view.charts(result)["aims"]
+    (aim,), (limit,) = result.plan.objectives, result.plan.limits
+    for k, speed in enumerate(aim.speeds):
+        panel, orders = chart.panels[2 * k : 2 * k + 2]
+        told = []
+        for role, machine in (("before", result.original), ("after", result.machine)):
+            read = respond(machine, speed).gauges["gauge"].displacement
+            values = next(curve for curve in panel.curves if curve.role == role).y
+            told.append(1000 * read.peak_to_peak)
+            assert 1000 * np.ptp(values) == pytest.approx(told[-1], rel=1e-4)
+            (bars,) = (bars for bars in orders.bars if bars.role == f"bar {role}")
+            np.testing.assert_allclose(bars.size[1:], read.sizes[1 : len(bars.size)], rtol=1e-6)
+        whole = orders.title.replace("\N{NO-BREAK SPACE}", " ")
+        assert whole == f"peak to peak: {told[0]:.4g} → {told[1]:.4g} mm"
+        assert panel.title == f"reading at gauge, at {speed * 30 / np.pi:.4g} rpm"
+    joint = chart.panels[6]
+    assert joint.title.startswith("force in joint A")
+    assert [line.at for line in joint.lines] == [result.prices[limit.name].at_most]
+
+
+def test_of_limits_that_nobody_asked_for_those_are_drawn_that_stand_in_the_way() -> None:
+    result = advise(eq.load("yamashita-1"))
+    assert result is not None and result.tried
+    asked = [one.output for aim in aims_of(result) for one, _ in aim.asked]
+    active = [one.objective.output for one in result.plan.limits if result.prices[one.name].active]
+    assert asked == [*(one.output for one in result.plan.objectives), *active]
+    assert len(active) < len(result.plan.limits)
+
+
+def test_what_did_not_change_is_left_out() -> None:
+    """A weight about the crank's pivot leaves the moment about it; one that moves all, nothing."""
+    assert list(view.charts(rig())) == ["aims", "force", "polar", "torque"]
+    result = found("sector")
+    same = replace(result, machine=result.original)
+    assert not view.charts(same)
 
 
 def test_hands_are_the_cranks() -> None:

@@ -59,6 +59,38 @@ def test_every_path_is_drawn_closed() -> None:
         np.testing.assert_array_equal(curve.x + 1j * curve.y, np.append(place, place[0]))
 
 
+@pytest.mark.parametrize(
+    ("name", "named", "beyond"),
+    [
+        ("sieve", ["stand\nstand_along", "front_up\nfront_along", "back_up\nback_along"], ""),
+        (
+            "yamashita-rig",
+            ["gauge", "spring"],
+            "pivot, bearing (−1340, 0) mm; centre of mass (−590",
+        ),
+        ("walking-transplanter", ["planting_part", "float"], "handle_along (−700, 450) mm"),
+    ],
+)
+def test_what_holds_a_linkage_is_named_or_told(name: str, named: list[str], beyond: str) -> None:
+    chart = linkage(analysis_of(name))
+    assert {*named} <= {mark.text for mark in chart.panels[0].marks}
+    assert (beyond in chart.words[0]) if beyond else not chart.words
+    assert {"support", "gauge"} < {role for role, _ in chart.keys}
+    drawn = [shape.role for panel in chart.panels for shape in (*panel.ground, *panel.signs)]
+    assert {role for role, _ in chart.keys} <= {*drawn}
+    shown = words(chart)
+    assert all(text.split("\n")[0] in shown for text in named)
+
+
+def test_soil_and_tray_are_in_the_picture_and_its_legend() -> None:
+    chart = linkage(analysis_of("transplanter"))
+    assert {("soil", "soil"), ("tray", "tray")} <= {*chart.keys}
+    (soil,) = (shape for shape in chart.panels[0].ground if shape.role == "soil")
+    tip = analysis_of("transplanter").motion.points["P"].place
+    assert np.max(soil.places.imag) == pytest.approx(np.min(tip.imag) + 0.04, abs=1e-3)
+    assert [shape.role for shape in chart.panels[0].signs].count("tray") == 1
+
+
 @pytest.mark.parametrize("of_one", [False, True])
 def test_a_moving_picture_says_whose_force_it_is(of_one: bool) -> None:
     found = eq.analyze(eq.load("four-row-transplanter"), 60)

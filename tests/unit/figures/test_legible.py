@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.figures import layout
 from equipoise.figures.analysis import joint_polars, joints
 from equipoise.figures.forces import force, spectrum, torque
 from equipoise.figures.layout import lay_out
 from equipoise.figures.points import main_kinematics
 from equipoise.figures.view import View
 from equipoise.results.charts import Axis, Chart, Curve, Panel
+from unit.figures.checks import views
 
 LINKAGES = tuple(eq.examples("linkage"))
 LARGER = re.compile(r"drawn (\S+) times as large")
@@ -32,16 +32,7 @@ def drawn(name: str) -> tuple[tuple[Chart, tuple[View, ...]], ...]:
     if analysis.solved is not None:
         charts += [force(analysis), spectrum(analysis), torque(analysis)]
         charts += [*joints(analysis), *joint_polars(analysis)]
-    return tuple((chart, views(chart)) for chart in charts)
-
-
-def views(chart: Chart) -> tuple[View, ...]:
-    found: list[View] = []
-    draw = layout.draw
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(layout, "draw", lambda view: (found.append(view), draw(view)))
-        lay_out(chart)
-    return tuple(found)
+    return tuple((chart, tuple(views(chart))) for chart in charts)
 
 
 def comparable(found: tuple[View, ...]) -> Iterator[tuple[View, View]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,7 +20,9 @@ from equipoise.results.charts import Chart
 from equipoise.schema.studies import load_study
 from equipoise.schema.study_units import units_of
 from equipoise.schema.template import Template
+from equipoise.studies.cloud import MOST, SOME
 from equipoise.studies.objective_map import Landscape, landscape
+from equipoise.studies.outcomes import Block, Outcome
 from equipoise.studies.search import Searched, search_designs
 from equipoise.studies.selection import Best
 from equipoise.studies.tolerances import Tolerances, tolerance
@@ -64,7 +67,90 @@ def of_three() -> dict[str, Chart]:
     names = (found.study.paths, found.study.names)
     numbers = np.arange(count) + 100
     best = Best(by, *names, numbers, found.values, found.figures, *[count] * 4)  # type: ignore[arg-type]
-    return designs.best_charts(best, "A store", units_of(found.study))
+    store = SimpleNamespace(
+        wishes=found.study.outputs,
+        in_blocks=lambda: [(0, found.tried)],
+        size=len(found.tried.values),
+    )
+    return designs.best_charts(best, "A store", units_of(found.study), store)  # type: ignore[arg-type]
+
+
+def given(size: int) -> tuple[designs.Designs, Block]:
+    """Designs of which some break a limit and some fail, the first three of them chosen."""
+    random = np.random.default_rng(5)
+    study = load_study("study-of-balance")
+    ranges = np.array([(one.spread.low, one.spread.high) for one in study.vary])  # type: ignore[union-attr]
+    values = random.uniform(*ranges.T, (size, 5))
+    figures = random.uniform([1.0, -2.0, 0.18], [9.0, 1.5, 0.25], (size, 3))
+    figures[:, 1] = 10 ** figures[:, 1]
+    reason = np.where(values[:, 0] > 0.8, 2, 0).astype(np.uint8)
+    figures[reason > 0] = np.nan
+    block = Block(values, Outcome(figures, reason))
+    there = np.flatnonzero(reason == 0)[:3]
+    table = np.hstack([values, figures])[there]
+    by = {"forward": "smallest", "upward": "smallest"}
+    told = (study.title, by, study.paths, study.outputs, units_of(study), table, ["7", "8", "9"])
+    front = table[:, [5, 6]]
+    return designs.Designs(*told, lambda: [(0, block)], size, OWN, front), block  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("size", [600, 6000])
+def test_all_designs_stand_behind_the_chosen_ones(size: int) -> None:
+    some, block = given(size)
+    charts = designs.charts_of(some)
+    (panel,) = charts["front"].panels
+    good = block.outcome.figures[:, 2] >= 0.2
+    failed = np.isnan(block.outcome.figures[:, 0])
+    shown = {"kept": 0, "beyond": 0}
+    if size <= MOST:
+        for curve in panel.curves:
+            shown[curve.role] = len(curve.x)
+    else:
+        beyond, kept = panel.cells
+        shown["kept"] = int(np.sum(kept.counts))
+        assert np.all((beyond.counts == 0) | (kept.counts == 0))
+        assert np.sum(beyond.counts) > 0 and beyond.dots
+    assert shown["kept"] == np.sum(good & ~failed)
+    assert size > MOST or shown["beyond"] == np.sum(~good & ~failed)
+    (chosen,) = (curve for curve in panel.curves if curve.role == "design")
+    np.testing.assert_array_equal(np.column_stack([chosen.x, chosen.y]), some.table[:, [5, 6]])
+    (line,) = (curve for curve in panel.curves if curve.role == "front")
+    assert list(line.x) == sorted(some.table[:, 5])
+    assert [(m.x, m.y, m.text) for m in panel.marks if m.role == "own"] == [(8.7, 12.2, "model")]
+    assert (panel.x.scale, panel.y.scale) == ("linear", "log")  # 1 to 9 N, 0.01 to 30 N
+    told = words(charts["front"])
+    assert f"{size} designs, {np.sum(good & ~failed)} keep every limit" in told
+    assert f"{np.sum(failed)} cannot be computed" in told
+    mass = charts["designs"].panels[0]
+    (lost,) = (curve for curve in mass.curves if curve.role == "failed")
+    assert np.all(lost.x > 0.79) and len(lost.x) > 3
+    for chart in charts.values():
+        check(chart)
+        assert render(chart) == render(chart)
+
+
+def test_lines_run_from_axis_to_axis() -> None:
+    some, _ = given(6000)
+    chart = designs.charts_of(some)["parallel"]
+    (panel,) = chart.panels
+    told = words(chart)
+    for name, unit in (("mass of the", "g"), ("stroke", "mm"), ("forward", "N")):
+        (flag,) = (flag for flag in panel.flags if " ".join(flag.texts).startswith(name))
+        assert flag.texts[-1] == unit
+    assert "lines of 2" in told and "all designs" not in told
+    by_role = {curve.role: curve for curve in panel.curves}
+    assert set(by_role) == {"kept line", "beyond line", "design line", "own line"}
+    assert len(panel.rules) == 8 == len(panel.flags)
+    lines = by_role["design line"].y.reshape(3, 9)
+    assert np.all(np.isnan(lines[:, 8]))
+    names = [*(name for name in some.names if name != "forward"), "forward"]
+    for k, rule in enumerate(panel.rules):
+        column = some.columns[names[k]]
+        ends = np.array([rule.axis.low, rule.axis.high])
+        values = [np.log(one) if rule.axis.scale == "log" else one for one in (column, ends)]
+        np.testing.assert_allclose(lines[:, k], (values[0] - values[1][0]) / np.diff(values[1]))
+    many = sum(np.sum(np.isnan(by_role[role].y)) for role in ("kept line", "beyond line"))
+    assert f"lines of {many} designs" in told and 150 < many <= SOME
 
 
 def test_histograms_are_the_scatter_and_pale_outside_of_the_limit() -> None:
@@ -114,8 +200,8 @@ def _lines(chart: Chart, width: float) -> list[np.ndarray]:
 def test_designs_are_drawn_with_the_model_beside_them() -> None:
     chart, found = of_search()["front"], searched()
     (panel,) = chart.panels
-    np.testing.assert_allclose(panel.curves[0].x, found.figures[:, 0])
-    np.testing.assert_allclose(panel.curves[0].y, found.figures[:, 1])
+    (chosen,) = (curve for curve in panel.curves if curve.role == "design")
+    np.testing.assert_allclose([chosen.x, chosen.y], found.figures[:, :2].T)
     assert [(m.x, m.y) for m in panel.marks if m.role == "own"] == [tuple(OWN[1][:2])]
     told = words(chart)
     assert "upward (small is good), N" in told and "the model itself" in told
@@ -126,7 +212,8 @@ def test_designs_are_drawn_with_the_model_beside_them() -> None:
             strict=False,
         )
     ):
-        np.testing.assert_allclose(panel.curves[0].x, found.values[:, number])
+        (chosen,) = (curve for curve in panel.curves if curve.role == "design")
+        np.testing.assert_allclose(chosen.x, found.values[:, number])
         assert panel.x.text == label
     (curve,) = of_search()["search"].panels[0].curves
     np.testing.assert_allclose(curve.y, found.volumes)
@@ -136,7 +223,8 @@ def test_three_aims_are_drawn_in_pairs() -> None:
     chart, found = of_three()["front"], searched()
     aims = [panel.x.label.split(" ")[0] for panel in chart.panels]
     assert aims == ["forward", "forward", "upward"]
-    np.testing.assert_allclose(chart.panels[2].curves[0].x, found.figures[:, 1])
+    (chosen,) = (curve for curve in chart.panels[2].curves if curve.role == "design")
+    np.testing.assert_allclose(chosen.x, found.figures[:, 1])
     assert "stroke (large is good), mm" in words(chart)
 
 

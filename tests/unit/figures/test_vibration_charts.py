@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.figures.layout import lay_out
 from equipoise.figures.pictures import pictures_of
 from equipoise.figures.shared import bounded, ordered
 from equipoise.figures.style import LOOKS, look_of
@@ -19,6 +20,7 @@ from equipoise.vibration.forced import respond
 from equipoise.vibration.resonance import Resonance
 from equipoise.vibration.sweep import Sweep, sweep_speed
 from equipoise.vibration.transient import simulate
+from unit.figures.checks import views
 from unit.figures.samples import words
 from unit.figures.vibration_samples import (
     RPM,
@@ -163,6 +165,29 @@ def test_the_peak_is_at_the_resonance_and_told() -> None:
     speed, value = sweep.peaks["tip"][0]
     assert curve.x[np.argmax(curve.y)] == pytest.approx(loudest.speed, rel=1e-3)
     assert f"{1e3 * value:.4g} at {speed * RPM:.4g} rpm" in words(pictures("rig")["sweep response"])
+
+
+@pytest.mark.parametrize("name", ["riding-transplanter", "exudyn-slider-crank"])
+def test_names_in_modes_stand_at_their_signs(name: str) -> None:
+    """Each once in all views, one beside the other, though mounts and gauges share a place."""
+    machine = eq.load(name)
+    assert machine.support is not None
+    wanted = sorted([*machine.support.gauges, *machine.support.mounts])
+    for chart in pictures_of(eq.vibration.modes(machine)).values():
+        texts = [mark.text for panel in chart.panels for mark in panel.marks]
+        assert sorted(texts) == wanted
+        found = [text for text in lay_out(chart).words if text.text in wanted]
+        assert sorted(text.text for text in found) == wanted
+        ends = {(mark.x, mark.y, mark.off) for panel in chart.panels for mark in panel.marks}
+        assert len({(x, y) for x, y, _ in ends}) < len(ends)
+
+
+def test_views_of_modes_have_one_scale_and_no_more_height_than_they_need() -> None:
+    chart = pictures_of(eq.vibration.modes(eq.load("riding-transplanter")))["mode-1"]
+    side, rear, top = views(chart)
+    assert len({round(v.x.length / (v.x.high - v.x.low), 9) for v in (side, rear, top)}) == 1
+    assert (side.y.low, side.y.high) == pytest.approx((rear.y.low, rear.y.high))
+    assert side.y.length < 0.7 * side.x.length
 
 
 def test_resonances_are_marked_and_named() -> None:

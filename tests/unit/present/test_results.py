@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rich.cells import cell_len
 
 import equipoise as eq
 from equipoise.balancing.linear_conditions import conditions
@@ -85,6 +86,16 @@ def test_no_line_is_longer_than_the_terminal(name: str, width: int) -> None:
     assert lines
     assert [line for line in lines if len(line) > width] == []
     assert all(line.isprintable() and line.isascii() for line in lines)
+
+
+@pytest.mark.parametrize("language", ["ja", "ko"])
+@pytest.mark.parametrize("name", RESULTS)
+def test_wide_signs_keep_within_the_terminal(name: str, language: str) -> None:
+    with speaking(language):
+        text = shown(result(name).blocks(), result(name).title, 60)
+    assert not text.isascii()
+    wide = [line for line in text.splitlines() if cell_len(line) > 60]
+    assert [line for line in wide if len(line.split()) > 1] == []
 
 
 @pytest.mark.parametrize("name", RESULTS)

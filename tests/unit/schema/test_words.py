@@ -54,7 +54,7 @@ def test_words_of_numbers(name: str, path: str, words: str) -> None:
 
 def test_words_in_other_languages() -> None:
     path = "links.crank.center_of_mass.y"
-    assert said("yamashita-1", path, "ja") == "crankの重心、y"
+    assert said("yamashita-1", path, "ja") == "crankの重心 y"
     assert said("yamashita-1", path, "ko") == "crank의 질량중심, y"
 
 

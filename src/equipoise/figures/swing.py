@@ -1,0 +1,133 @@
+"""Supports that swing in moving pictures, larger than true: at a speed, or in a mode."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import floor, log10
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.figures.modes import described
+from equipoise.i18n import say, to_say
+from equipoise.mechanism.motion import move
+from equipoise.mechanism.support import AXES, FREEDOMS, PLANAR
+from equipoise.results.charts import quantity, shown
+from equipoise.symbols.carrier import Swing
+from equipoise.symbols.clear import clear_angle
+from equipoise.symbols.scene import Drive, Scene
+from equipoise.symbols.shapes import Array
+
+if TYPE_CHECKING:
+    from equipoise.vibration.free import FreeVibration
+    from equipoise.vibration.response import Response
+
+SEEN = 0.04
+"""Largest displacement that is drawn, over the size of the drawing."""
+LEAST = 0.01
+"""Share of the largest displacement below which one is not told."""
+ANGLES, INSTANTS = 360, 240
+"""In a turn, among which a clear one is looked for; in a swing."""
+ACROSS = {"sway": to_say("sway"), "roll": to_say("roll"), "yaw": to_say("yaw")}
+"""What is not in the plane of the drawing."""
+
+
+def swinging(scene: Scene, response: Response, factor: float | None = None) -> Scene:
+    """A scene whose support moves about its mean place as it does at the speed of a response.
+
+    factor : by which its movement is larger than true; where not given, 1, 2 or 5 and zeros, such
+        that it can be seen.
+    """
+    if response.motion is None or scene.carrier is None:
+        return scene
+    values = response.motion.values(scene.crank_angle)
+    values = values - response.motion.amplitudes[:, :1].real
+    reach = _reach(scene, values)
+    if factor is None:
+        factor = _round(SEEN * _size(scene) / reach) if reach else 1.0
+    told = [say("movement of the support {factor} times as large", factor=shown(factor))]
+    if factor == 1:
+        told = [say("movement of the support to scale")]
+    sizes = [f"{say(ACROSS[name])} {size}" for name, size in _across(scene, values, reach)]
+    if sizes:
+        told.append(say("across the drawing, not shown: {sizes}", sizes=", ".join(sizes)))
+    return _with(scene, factor * values, told)
+
+
+def in_mode(free: FreeVibration, number: int, instants: int = INSTANTS) -> Scene:
+    """A machine whose crank stands still while its support swings in a mode, counted from 1.
+
+    instants : in a swing, in place of crank angles.
+
+    Raises
+    ------
+    UsageError : there is no such mode, or it moves nothing in the plane of the drawing.
+    """
+    count = len(free.modes)
+    if not 1 <= number <= count:
+        raise UsageError(f"got {number}; the machine has the modes 1 to {count}")
+    still = Scene.of(move(free.machine, ANGLES))
+    angle = still.crank_angle[clear_angle(still)]
+    scene = Scene.of(move(free.machine, np.full(instants, angle)))
+    phase = np.arange(instants) * (2 * np.pi / instants)
+    drive = Drive(scene.drive.link, scene.drive.pivot, 0)
+    scene = replace(scene, crank_angle=phase, drive=drive)
+    mode, whole = free.modes[number - 1], np.zeros(len(FREEDOMS), complex)
+    whole[free.linear.body.free] = mode.shape
+    values = (whole[:, None] * np.exp(1j * phase)).real
+    reach = _reach(scene, values)
+    across = [name for name, _ in _across(scene, values, reach)]
+    planar = [*map(FREEDOMS.index, PLANAR)]
+    in_plane = np.zeros_like(values)
+    in_plane[planar] = values[planar]
+    if not _reach(scene, in_plane) > LEAST * reach:
+        raise UsageError(
+            f"mode {number} moves the support across the drawing alone, in {' and '.join(across)}; "
+            f"`equipoise plot --only mode-{number}` shows it from three sides"
+        )
+    told = [say("Mode {number}: {told}", number=number, told=described(mode))]
+    if across:
+        names = ", ".join(say(ACROSS[name]) for name in across)
+        told.append(say("across the drawing, not shown: {sizes}", sizes=names))
+    return _with(scene, values * (SEEN * _size(scene) / reach), told)
+
+
+def _with(scene: Scene, values: Array, told: list[str]) -> Scene:
+    """A scene whose support has six displacements (6, N), m and rad."""
+    surge, heave, pitch = (values[FREEDOMS.index(name)] for name in PLANAR)
+    return replace(scene, swing=Swing(surge + 1j * heave, pitch, tuple(told)))
+
+
+def _size(scene: Scene) -> float:
+    """The larger side of a drawing, m."""
+    low, high = scene.box
+    return max((high - low).real, (high - low).imag)
+
+
+def _reach(scene: Scene, values: Array) -> float:
+    """How far the farthest corner of the drawing moves, m, under displacements (6, N)."""
+    assert scene.carrier is not None
+    low, high = scene.box
+    corners = np.array([[x, y, 0.0] for x in (low.real, high.real) for y in (low.imag, high.imag)])
+    arms = corners - np.array(scene.carrier.support.reference)
+    moved = values[:3].T[:, None] + np.cross(values[3:].T[:, None], arms)
+    return float(np.max(np.linalg.norm(moved, axis=-1)))
+
+
+def _across(scene: Scene, values: Array, reach: float) -> Iterator[tuple[str, str]]:
+    """Name and amplitude, with its unit, of what moves across the drawing enough to be told."""
+    for name in ACROSS:
+        k = FREEDOMS.index(name)
+        size = float(np.ptp(values[k])) / 2
+        alone = np.zeros_like(values)
+        alone[k] = values[k]
+        if _reach(scene, alone) > LEAST * reach:
+            yield name, quantity(size, "angle" if name in AXES else "length")
+
+
+def _round(value: float) -> float:
+    """The largest of 1, 2 or 5 and zeros that is no larger, and at least 1."""
+    power = 10.0 ** floor(log10(value))
+    return max(1.0, *(by * power for by in (1, 2, 5) if by * power <= value))

@@ -1,0 +1,205 @@
+"""What every command prints, on terminals of any width: nothing is too wide, nothing is lost."""
+
+from __future__ import annotations
+
+import io
+import re
+import shlex
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from contextlib import chdir, redirect_stdout
+from functools import cache
+from math import cos, exp
+from pathlib import Path
+
+import pytest
+from rich.cells import cell_len
+
+import equipoise.present
+from equipoise.cli import COMMANDS, app
+from equipoise.present.cells import grid
+from equipoise.present.layout import plain
+from equipoise.present.terminal import print_blocks
+from equipoise.results.blocks import Block, Listing, Section, Table, Text
+from surface.running import equipoise as equipoise_runs
+from surface.running import example_text, succeeded
+from surface.studies import LENGTHS, TOLERANCES
+
+WIDTHS = (40, 57, 80, 120, 200)
+TARGETS = """
+schema = 1
+[search]
+generations = 2
+population = 8
+[vary]
+crank = ["33 mm", "34 mm"]
+[[goals]]
+figure = "curve.height"
+target = "40 cm"
+"""
+DESIGN = """
+[design]
+speeds = ["6500 rpm", "8000 rpm"]
+[[design.variables]]
+station = "belt"
+key = "position"
+from = "200 mm"
+to = "300 mm"
+"""
+FILES = {"study.toml": LENGTHS, "tolerances.toml": TOLERANCES, "targets.toml": TARGETS}
+FILES["tool.toml"] = example_text("pole-saw") + DESIGN
+FILES["decay.csv"] = "time [s],displacement [mm]\n" + "".join(
+    f"{k / 100},{20 * exp(-k / 150) * cos(k / 8)}\n" for k in range(240)
+)
+LINES = [
+    "analyze slider-crank-engine",
+    "analyze yamashita-1 --orders 3",
+    "analyze quick-return --output points.E.x --output joints.B --dwell '0.5 mm'",
+    "balance balance-shafts",
+    "balance balance-spring",
+    "balance four-row-transplanter",
+    "balance yamashita-1",
+    "balance arrangements yamashita-1 4",
+    "balance conditions watt-six-bar",
+    "balance sensitivities yamashita-1 shaking_force.y",
+    "balance trade-off balance-crank shaking_force drive_torque --points 3",
+    "decay decay.csv",
+    "check brush-cutter",
+    "check slider-crank-engine",
+    "check study-of-lengths",
+    "check riding-transplanter",
+    "examples",
+    "exposure 'mowing: 4.6 m/s^2 for 2 h' 'sawing: 9 m/s^2 for 2 h'",
+    "exposure --idle '3.1 m/s^2' --racing '9 m/s^2' --duration '3 h'",
+    "modes riding-transplanter",
+    "plant transplanter",
+    "plant fit kim-chung-a targets.toml --out fitted.toml",
+    "respond yamashita-rig --model exact",
+    "respond riding-transplanter --speed '60 rpm : 150 rpm' --speeds 8",
+    "simulate yamashita-rig '0.3 s'",
+    "sweep study.toml --out designs.zarr",
+    "resume designs.zarr",
+    "best designs.zarr --by vertical --by torque",
+    "search study.toml --population 8 --generations 2",
+    "tolerance tolerances.toml --designs 352",
+    "tool brush-cutter",
+    "tool design tool.toml",
+    "tool sensitivities tool.toml",
+    "tool vary nagamine-irie 'harness position = 0 mm : 400 mm'",
+]
+"""Of every command that prints blocks, quick ones with much to tell."""
+SILENT = {"animate", "export", "new", "report", "schema", "serve", "plot", "plot map"}
+"""Commands that print no blocks."""
+STAND_OUT = [
+    "balance balance-shafts",
+    "balance balance-spring",
+    "balance four-row-transplanter",
+    "exposure 'mowing: 4.6 m/s^2 for 2 h' 'sawing: 9 m/s^2 for 2 h'",
+    "exposure --idle '3.1 m/s^2' --racing '9 m/s^2' --duration '3 h'",
+    "plant fit kim-chung-a targets.toml --out fitted.toml",
+    "plant transplanter",
+    "tool brush-cutter",
+    "tool design tool.toml",
+]
+"""Where a limit is broken, or something got worse."""
+
+
+class Told:
+    """What a command tells: as text by width, as cells, and as texts that stand out."""
+
+    def __init__(self, title: str | None, blocks: Iterable[Block | Section]) -> None:
+        parts = [*blocks]
+        self.by_width = {width: shown(title, parts, width) for width in WIDTHS}
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv("FORCE_COLOR", "1")
+            self.coloured = shown(title, parts, 80)
+        self.whole = [line for one in parts if isinstance(one, Listing) for line in lines_of(one)]
+        told = [grid(one) for one in within(parts) if isinstance(one, Table)]
+        self.cells = [cell for one in told for row in one.rows for cell in row]
+        texts = [one for one in within(parts) if isinstance(one, Text) and one.emphasis]
+        self.marked = len(texts), sum(cell.emphasis is not None for cell in self.cells)
+
+
+def shown(title: str | None, blocks: Iterable[Block | Section], width: int) -> str:
+    out = io.StringIO()
+    with redirect_stdout(out):
+        print_blocks(title, blocks, width)
+    return out.getvalue()
+
+
+def lines_of(one: Listing) -> list[str]:
+    """Lines to be pasted, which stay whole."""
+    return plain(one.text).splitlines()
+
+
+def within(blocks: Iterable[Block | Section]) -> Iterator[Block | Section]:
+    for one in blocks:
+        yield from within(one.blocks) if isinstance(one, Section) else [one]
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the files that commands are given."""
+    folder = tmp_path_factory.mktemp("widths")
+    for name, text in FILES.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    return folder
+
+
+@cache
+def run(line: str, place: Path) -> list[Told]:
+    """What a command line shows, run once for all widths."""
+    if line.startswith(("resume", "best")):
+        run("sweep study.toml --out designs.zarr", place)
+    found: list[Told] = []
+
+    def keep(title: str | None, blocks: Iterable[Block | Section], _: int | None = None) -> None:
+        found.append(Told(title, blocks))
+
+    with pytest.MonkeyPatch.context() as patch, chdir(place):
+        patch.setattr(equipoise.present, "show_blocks", keep)
+        succeeded(equipoise_runs(*shlex.split(line)))
+    assert found
+    return found
+
+
+def test_no_command_is_left_out() -> None:
+    """With its own commands, such as `balance conditions`."""
+    own = {name: [one for one in app[name] if one[0] != "-"] for name in COMMANDS}
+    names = {f"{name} {one}" for name, ones in own.items() for one in ones} | COMMANDS.keys()
+    assert {one for one in names if not any(line.startswith(one) for line in LINES)} == SILENT
+
+
+@pytest.mark.parametrize("line", LINES)
+def test_no_line_is_wider_than_the_terminal(line: str, place: Path) -> None:
+    """But where a single word is."""
+    for told in run(line, place):
+        for width, text in told.by_width.items():
+            lines = (one for one in text.splitlines() if one not in told.whole)
+            wide = [one for one in lines if cell_len(one) > width and len(one.split()) > 1]
+            assert wide == [], width
+
+
+@pytest.mark.parametrize("line", LINES)
+def test_nothing_is_lost_at_any_width(line: str, place: Path) -> None:
+    for told in run(line, place):
+        numbers = [cell for cell in told.cells if cell.number]
+        wanted = Counter(word for one in numbers for word in f"{one.text} {one.at}".split())
+        words = {word for one in told.cells if not one.number for word in plain(one.text).split()}
+        for text in told.by_width.values():
+            assert wanted - Counter(text.split()) == Counter()
+            parts = (part for word in words for part in re.split("(?<=[./-])", word))
+            assert [part for part in parts if part not in text] == []
+
+
+@pytest.mark.parametrize("line", LINES)
+def test_what_stands_out_does_so_with_and_without_colour(line: str, place: Path) -> None:
+    for told in run(line, place):
+        sentences, cells = told.marked
+        for text in told.by_width.values():
+            assert len(re.findall("^! ", text, re.MULTILINE)) == sentences
+            assert len(re.findall(r"(?: |^)(?:broken|worse)$", text, re.MULTILINE)) <= cells
+            assert len(re.findall(r" (?:broken|worse)\b", text)) >= cells
+        assert told.coloured.count("\x1b[1;31m") >= sentences + cells
+        assert "\x1b" not in told.by_width[80]
+    assert any(any(told.marked) for told in run(line, place)) == (line in STAND_OUT)
