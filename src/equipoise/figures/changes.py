@@ -18,7 +18,6 @@ from equipoise.mechanism.motion import Motion, move
 from equipoise.results.charts import Array, Arrow, Chart, Curve, Mark, Outline, Panel, quantity
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
-from equipoise.symbols.shapes import Shape, coils, zigzag
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
@@ -108,7 +107,7 @@ def changes(found: Balanced) -> Chart:
     clearest = machine if len(machine.springs) > len(original.springs) else original
     posed = Posed(machine, clear_angle(Scene.of(move(clearest, ANGLES))))
     new = [one.in_meters() for one in additions(posed, found.changes, found.plan)]
-    scene = _without_new(Scene.of(posed.motion), Scene.of(move(original, [0.0])))
+    scene = _without_new(Scene.of(posed.motion), Scene.of(move(original, [0.0])), found.changes)
     changed = any(one.kind != "room" for one in new)
     what = say("What to change, to scale") if changed else say("Nothing to change, to scale")
     told = told_angle(float(posed.motion.crank_angle[posed.number]))
@@ -120,10 +119,18 @@ def changes(found: Balanced) -> Chart:
     return Chart("changes", original.title, what, (panel,), keys=tuple(keys))
 
 
-def _without_new(scene: Scene, old: Scene) -> Scene:
-    """What there was before, and no centres of mass: what is new is drawn over it."""
+def _without_new(scene: Scene, old: Scene, changes: tuple[Change, ...]) -> Scene:
+    """What there was before, and no centres of mass: what is new is drawn over it.
+
+    New springs count as planned, so that they are held as others are.
+    """
     springs, wheels = scene.springs[: len(old.springs)], scene.wheels[: len(old.wheels)]
-    return replace(scene, springs=springs, wheels=wheels, planned=(), mass_centers={})
+    new = tuple((one.values["point"], one.values["to"]) for one in changes if _is_spring(one))
+    return replace(scene, springs=springs, wheels=wheels, planned=new, mass_centers={})
+
+
+def _is_spring(change: Change) -> bool:
+    return change.kind == "spring" and bool(change.values["stiffness"])
 
 
 # -- what is new -----------------------------------------------------------------------------------
@@ -137,7 +144,7 @@ def additions(posed: Posed, changes: tuple[Change, ...], plan: Balance) -> Itera
             yield from _pieces(posed, change)
         elif change.kind == "center of mass":
             yield _moved(posed, change)
-        elif change.kind == "spring" and change.values["stiffness"]:
+        elif _is_spring(change):
             yield _spring(posed, change)
         elif change.kind == "gears":
             yield from _gears(posed, change)
@@ -281,20 +288,14 @@ def _panel(scene: Scene, k: int, new: list[Addition]) -> Panel:
         equal=True,
         zero=False,
         ground=shapes["ground"],
-        signs=(
-            *shapes["signs"],
-            *(_zigzag(one.outline, scene.unit) for one in new if one.kind == "spring"),
+        signs=tuple(
+            replace(one, role="added") if one.role == "planned" else one for one in shapes["signs"]
         ),
     )
 
 
 def _size(places: Array) -> float:
     return float(max(np.ptp(places.real), np.ptp(places.imag)))
-
-
-def _zigzag(ends: Array, unit: float) -> Shape:
-    start, end = (complex(z) for z in ends)
-    return zigzag(start, end, coils(abs(end - start), unit), "added")
 
 
 def _dots(new: list[Addition]) -> Iterator[Mark]:

@@ -226,7 +226,7 @@ def changes_told(found: ToolDesign) -> list[str]:
         axis = Axis("", number_unit(one.dimension))
         ends = f"{axis.told(one.before)} → {axis.quantity(one.after)}"
         end = f" ({say(ALLOWED[edge])})" if edge else ""
-        words.append(f"{short(figure_named(one), 40)}: {ends}{end}")
+        words.append(f"{figure_named(one)}: {ends}{end}")
     if count <= MOST_CHANGES:
         return words
     return [*words[: MOST_CHANGES - 1], say("and {count} more", count=count - MOST_CHANGES + 1)]

@@ -152,6 +152,9 @@ def test_springs() -> None:
     spring = result.machine.springs[-1]
     ends = [at_pose("spring", "rocker", result.machine.links["rocker"].points["C"]), 50 + 120j]
     assert spring_drawn[[0, -1]] == pytest.approx(np.array(ends))
+    panel = changes_of("spring").panels[0]
+    stands = [one.places[0] for one in (*panel.ground, *panel.signs) if one.role == "stand"]
+    assert any(abs(MM * place - ends[1]) < 1e-6 for place in stands)  # so it is held in the frame
     assert f"{spring.stiffness:.4g} N/m" in words(changes_of("spring"))
     none = Change("spring", "rocker", {"point": "C", "to": "S", "stiffness": 0.0, "free_length": 0})
     chart = changes(replace(result, changes=(none,)))
