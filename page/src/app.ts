@@ -111,7 +111,7 @@ export class App {
       () => this.crank(),
     );
     this.toolbar = new Toolbar({
-      example: (name) => this.open({ type: "open", example: name }),
+      example: (name) => this.open({ type: "open", example: name }, name),
       file: (file) => void this.read(file),
       undo: () => this.step("undo"),
       redo: () => this.step("redo"),
@@ -187,7 +187,7 @@ export class App {
     else if (first && !this.talk.recall() && !hello.machine) {
       const names = hello.examples.map(({ name }) => name);
       const example = names.find((name) => name === FIRST) ?? names[0];
-      if (example) this.open({ type: "open", example });
+      if (example) this.open({ type: "open", example }, example);
     }
   }
 
@@ -232,6 +232,10 @@ export class App {
 
   /** Draw a state at once: the next frame then has only to be painted. */
   private show(state: State, other: boolean): void {
+    if (other) {
+      this.toolbar.show(state);
+      this.heading.show(state);
+    }
     this.stage.show(state, other);
     this.transport.take(state.angles);
     this.charts.show(state, other);
@@ -302,16 +306,20 @@ export class App {
     );
   }
 
-  private open(asked: Asked): void {
+  private open(asked: Asked, name: string): void {
     this.talk.release();
     this.opened = "asked";
     this.talk.ask(asked);
+    if (!this.state) return;
+    // What is named is what is drawn, until the other machine is there.
+    this.toolbar.show(this.state);
+    this.board.say(`Opening ${name} …`, false);
   }
 
   private async read(file: File): Promise<void> {
     const problem = tooLarge(file, this.hello?.largest ?? Infinity);
     if (problem) return this.board.say(problem, true);
-    this.open({ type: "open", name: file.name, text: await file.text() });
+    this.open({ type: "open", name: file.name, text: await file.text() }, file.name);
   }
 
   private command(asked: Asked): void {

@@ -50,8 +50,7 @@ export class Charts {
     const look = { height: 110, xAxis: true, xLabel: "°", xStep, picked };
     this.output = new Strip({ ...look, control: this.outputOf.label }, theme);
     this.squares.append(this.polar.root, this.path.root);
-    const parts = [this.whoseRow, this.squares, this.forces, this.output.root, this.answers];
-    this.root = h("div", { class: "charts" }, ...parts);
+    this.root = h("div", { class: "charts" });
     this.watcher.observe(this.output.root);
   }
 
@@ -94,6 +93,7 @@ export class Charts {
     this.squares.classList.toggle("alone", !forces);
     // Rows that stand still have no forces together.
     this.whoseRow.hidden = !state.numbers.has(`${ROWS}shaking_force`);
+    if (other) this.arrange(state.first);
     if (other) this.offer(state);
     this.outputOf.offer(state.outputs);
     this.again(other);
@@ -125,10 +125,18 @@ export class Charts {
     for (const strip of this.strips) strip.repaint();
   }
 
+  /** Charts in their order, but first those that tell what the machine is for. */
+  private arrange(first: State["first"]): void {
+    const { squares, forces, answers } = this;
+    const groups = { squares, forces, output: this.output.root, answers };
+    this.root.append(this.whoseRow, ...Object.values(groups));
+    this.whoseRow.after(groups[first]);
+  }
+
   private offer(state: State): void {
     const names = state.numbers.names("place.").map((name) => name.slice(6));
     const moving = names.filter((name) => !state.scene.frame.includes(name));
-    const first = state.scene.traced ?? [];
+    const first = state.traced;
     const points = [...first, ...moving.filter((name) => !first.includes(name))];
     const ground: [string, string][] = state.planting
       ? [[`ground.${state.planting.tip}`, `${state.planting.tip} over ground`]]
@@ -229,6 +237,7 @@ export class Charts {
     const found = one && column(state, `output.${one.name}`);
     const curves = found ? [{ label: "", role: THIRD, ...scaled(found, one) }] : [];
     const [title, unit] = [capital(one?.label ?? "output"), one?.unit ?? ""];
+    this.outputOf.tell(one?.label ?? "");
     this.output.root.classList.toggle("empty", !found);
     this.output.show({ title, x: this.x.of(state.angles, state.turns), unit, curves });
   }

@@ -31,6 +31,8 @@ export function chooser(name: string, changed: () => void): Chooser {
 export interface Finder {
   label: HTMLElement;
   offer(outputs: Output[]): void;
+  /** Tell what is drawn, but to whom is typing. */
+  tell(label: string): void;
 }
 
 /** A heading to type in, that offers what it finds among many names. */
@@ -48,6 +50,9 @@ export function finder(name: string, chosen: (name: string) => void): Finder {
   input.setAttribute("list", id);
   return {
     label: h("span", { class: "heading finder" }, input, list),
+    tell(label) {
+      if (!input.matches(":focus")) input.value = label;
+    },
     offer(outputs) {
       const shape = outputs.map((one) => one.name).join();
       if (shape === offered) return;

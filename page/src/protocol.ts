@@ -99,7 +99,6 @@ export interface Scene {
   mass_centers: string[];
   box: [number, number, number, number];
   movable: string[];
-  traced?: string[];
   /** From the back to the front. */
   signs: Sign[];
   /** Role of a shape -> its style. */
@@ -152,6 +151,9 @@ export interface StateMessage {
   figures: Figure[];
   outputs: Output[];
   charts: ChartData[];
+  /** Charts that tell what the machine is for; points, those first whose paths do. */
+  first: "squares" | "output" | "answers";
+  traced: string[];
   /** Size below which a force or moment is drawn as none, N and N m. */
   least: number;
   orders: number[];

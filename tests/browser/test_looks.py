@@ -19,6 +19,9 @@ WIDTHS = (1280, 400)
 SCHEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
 FITS = "document.documentElement.scrollWidth <= document.documentElement.clientWidth"
 
+TOPS = "() => [...document.querySelectorAll('#forces figure')].map(one => one.offsetTop)"
+"""Where the pictures of the forces begin."""
+
 CLIPPED = """() => [...document.querySelectorAll(".equipoise *:not(.unseen)")]
     .filter((part) => part.checkVisibility() && part.clientWidth)
     .filter((part) => part.matches("input") || getComputedStyle(part).overflowX !== "visible")
@@ -58,3 +61,12 @@ def test_a_report(new_page: Callable[..., Page], tmp_path: Path) -> None:
         assert page.evaluate(FITS)
         assert (brightness(page) > 128) == (scheme == "light")
         assert Live(page).findings() == []
+        tops = page.evaluate(TOPS)
+        assert (tops[0] == tops[1]) == (width == max(WIDTHS))  # in pairs, or one below the other
+    appendix = page.locator("#more-balance table").last
+    expect(appendix).not_to_be_visible()
+    page.emulate_media(media="print")
+    expect(appendix).to_be_visible()
+    page.emulate_media(media="screen")
+    page.locator("a[href='#more-balance']").click()
+    expect(appendix).to_be_visible()

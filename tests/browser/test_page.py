@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 
 import numpy as np
@@ -67,6 +68,52 @@ def test_any_output_is_drawn_over_the_crank_angle(live: Live) -> None:
     search.fill("no such output")
     search.press("Enter")
     expect(chart).to_have_attribute("aria-label", "Output: ")
+
+
+def test_name_title_and_drawing_are_of_one_machine(live: Live) -> None:
+    """In every frame, while others are opened by name and from a file."""
+    live.page.evaluate("""window.seen = new Set(); const look = () => {
+        const handles = [...document.querySelectorAll(".grip")].map(one => one.dataset.name);
+        const named = document.querySelector("[aria-label=Example]").value;
+        seen.add(JSON.stringify([named, document.querySelector("h1").textContent, handles]));
+        requestAnimationFrame(look);
+    }; look()""")
+    names = ("yamashita-1", "quick-return", "riding-transplanter", "class-three", "drag-link")
+    for name in names[1:]:
+        live.page.get_by_role("combobox", name="Example").select_option(name)
+        expect(live.page.get_by_role("heading", name=eq.load(name).title)).to_be_visible()
+        live.page.wait_for_timeout(100)
+    seen = [json.loads(one) for one in live.page.evaluate("[...seen]")]
+    assert [one[:2] for one in seen] == [[name, eq.load(name).title] for name in names]
+
+
+@pytest.mark.parametrize(
+    ("name", "path", "first"),
+    [
+        ("yamashita-rig", "Path of P", "Response of"),
+        ("transplanter", "P over ground", "Path of"),
+        ("stephenson-six-bar", "Path of E", "Any output over crank angle"),
+        ("slider-crank-engine", "Path of C", "Path of"),
+    ],
+)
+def test_what_a_machine_is_for_comes_first(live: Live, name: str, path: str, first: str) -> None:
+    """The chart that tells it stands at the top, and of the paths none is the crank's circle."""
+    live.page.get_by_role("combobox", name="Example").select_option(name)
+    expect(live.page.get_by_role("heading", name=eq.load(name).title)).to_be_visible()
+    drawn = live.page.get_by_role("combobox", name="Path of")
+    expect(drawn.locator("option:checked")).to_have_text(path)
+    heading = live.page.get_by_role("combobox", name=first)
+    expect(heading).to_be_visible()
+    spectrum = live.page.get_by_role("combobox", name="Spectrum of").bounding_box()
+    top = heading.bounding_box()
+    assert top and spectrum and top["y"] < spectrum["y"]
+    others = live.page.locator(".charts .heading").all()
+    boxes = [box for box in (one.bounding_box() for one in others) if box]
+    assert top["y"] <= min(box["y"] for box in boxes) + 1
+    search = live.page.get_by_role("combobox", name="Any output over crank angle")
+    expect(search).to_have_value(
+        "angle of output" if first == "Any output over crank angle" else ""
+    )
 
 
 def test_pages_do_not_disturb_each_other(new_page: Callable[..., Page], address: str) -> None:

@@ -51,17 +51,24 @@ def test_figures_in_the_units_of_the_files(shown: str) -> None:
     assert re.search(r"^centre of mass of the coupler, x +\+- 2.000 mm ", shown, re.MULTILINE)
 
 
+def unfolded(text: str) -> str:
+    """A text as one line."""
+    return " ".join(text.split())
+
+
 def test_what_to_tighten_first(shown: str) -> None:
     """Mass and inertia go together, so that they are one cause."""
     own = eq.studies.tolerance(eq.schema.load_study(written(TOLERANCES)))
     first = own.causes[0]
-    (sentence,) = re.findall(r"^Tighten first: .*$", shown, re.MULTILINE)
+    sentence = unfolded(shown)[unfolded(shown).index("Tighten first: ") :]
     units = units_of(own.study)
     assert sentence.startswith(f"Tighten first: {named_together(first.numbers, units)}")
     assert f"takes {100 * first.gain:.0f} % off the variance of vertical" in sentence
     ranked = [named_together(cause.numbers, units) for cause in own.causes]
-    starts = [next((w for w in ranked if line.startswith(w)), "") for line in shown.splitlines()]
-    assert [words for words in starts if words] == [*ranked, *ranked]
+    ranked = [words.replace("–", "-") for words in ranked]  # which is all that some terminals have
+    lines = shown.replace("–", "-").splitlines()  # the ends of long cells stand in the next ones
+    starts = [words for line in lines for words in ranked if line.startswith(words[:12])]
+    assert starts == len(starts) // len(ranked) * ranked and len(starts) >= 2 * len(ranked)
     assert ("links.coupler.mass", "links.coupler.inertia") in [one.numbers for one in own.causes]
 
 
@@ -69,7 +76,7 @@ def test_without_limits() -> None:
     shown = succeeded(equipoise("tolerance", written(TOLERANCES, ('at_most = "23.5 N"', ""))))
     assert "Limits" not in shown
     assert "Every limit" not in shown
-    assert re.search(r"^Tighten first: .* off the variance of vertical\.$", shown, re.MULTILINE)
+    assert re.search(r" Tighten first: .* off the variance of vertical\.$", unfolded(shown))
 
 
 def test_a_limit_that_the_model_does_not_keep() -> None:

@@ -171,14 +171,11 @@ def search(
 
 def _own(study: Study) -> tuple[Array, Array] | None:
     """Values and figures of the model itself, for comparison; None where it cannot be computed."""
-    import numpy as np
-
     from equipoise.codegen.figures import COMPUTED
     from equipoise.studies.evaluate import evaluator
 
-    values = np.array([study.model.number(path)[0] for path in study.paths], dtype=float)
-    outcome = evaluator(study)(values[None])
-    return (values, outcome.figures[0]) if outcome.reason[0] == COMPUTED else None
+    outcome = evaluator(study)(study.own[None])
+    return (study.own, outcome.figures[0]) if outcome.reason[0] == COMPUTED else None
 
 
 def _save(model: Any, out: str, number: int, of: str) -> None:

@@ -170,6 +170,10 @@ Rate = Annotated[float | None, size("angular speed")]
 Speed = Annotated[
     Rate, Parameter(help='Speed of the crank instead of the file\'s, such as "250 rpm".')
 ]
+OF_ANY = Parameter(
+    help="Speed of the crank, or of the tool's engine, instead of the file's, such as \"250 rpm\"."
+)
+AnySpeed = Annotated[Rate, OF_ANY]
 Angle = Annotated[float | None, size("angle")]
 CrankZero = Annotated[
     Angle,

@@ -113,6 +113,23 @@ class Drawn(Printed):
 
 @Parameter(name="*")
 @dataclass(frozen=True)
+class Folder(Shown):
+    """Where pictures go, and as what."""
+
+    out: Out = None
+    """Folder for the pictures; FILE-pictures beside you if not given."""
+    format: Kind = "svg"
+    """Kind of the pictures."""
+
+    def of(self, file: str) -> str:
+        """Name of the folder."""
+        folder = default_name(file, "-pictures") if self.out is None else self.out
+        check_folder("--out", folder)
+        return folder
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
 class Outputs(Drawn):
     """What a command prints, draws and writes as columns."""
 
@@ -220,6 +237,11 @@ def write_model(
 
 
 # -- where results may go --------------------------------------------------------------------------
+
+
+def default_name(file: str, ending: str) -> str:
+    """Name of what is written beside the user where no other is given."""
+    return f"{os.path.basename(file).removesuffix('.toml')}{ending}"
 
 
 def check_folder(option: str, path: str) -> None:

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import App, Parameter
 
 from equipoise.cli.options import (
+    AnySpeed,
     File,
     Many,
-    Out,
-    Rate,
     Speed,
     blaming,
     count,
@@ -24,7 +23,7 @@ from equipoise.cli.options import (
     quantity,
     read_by,
 )
-from equipoise.cli.outputs import Kind, Shown, check_folder, tell, tell_pictures, write_pictures
+from equipoise.cli.outputs import Folder, tell, tell_pictures, write_pictures
 from equipoise.cli.plan import read_objective
 from equipoise.cli.progress import counted
 from equipoise.errors import ModelError, UsageError
@@ -45,11 +44,6 @@ NUMBER = '"links.crank.mass = 300 g"'
 GIVEN = re.compile(r"(?P<path>[^=]+)=(?P<value>.+)", re.DOTALL)
 
 
-def default_name(file: str, ending: str) -> str:
-    """Name of what is written beside the user where no other is given."""
-    return f"{os.path.basename(file).removesuffix('.toml')}{ending}"
-
-
 # -- pictures --------------------------------------------------------------------------------------
 
 
@@ -65,46 +59,37 @@ def plot(
     file: File,
     /,
     *,
-    out: Out = None,
-    format: Kind = "svg",
     only: Many = None,
     output: Many = None,
     at: Annotated[Any, read_by(_crank_angles)] = None,
-    speed: Rate = None,
-    shown: Shown = Shown(),
+    speed: AnySpeed = None,
+    pictures: Folder = Folder(),
 ) -> None:
     """Every picture of a linkage or a tool: motion, forces, vibration, balance.
 
     Parameters
     ----------
-    out
-        Folder for the pictures; FILE-pictures beside you if not given.
-    format
-        Kind of the pictures.
     only
         Draw this picture, by its name, and no other.  May be repeated.
     output
         Draw this output over crank angle, such as "points.P.vx", instead.  May be repeated.
     at
         Crank angles at which the linkage is drawn, such as "0 deg, 45 deg".
-    speed
-        Speed of the crank, or of the tool's engine, instead of the file's, such as "250 rpm".
     """
     from equipoise.figures import render
     from equipoise.present.findings import ToolFindings, find
     from equipoise.present.pictures import each
     from equipoise.schema.files import write_all
 
-    folder = default_name(file, "-pictures") if out is None else out
-    check_folder("--out", folder)
+    folder, kind = pictures.of(file), pictures.format
     found = find(file, speed=speed)
     if at is not None and isinstance(found, ToolFindings):
         raise UsageError("--at: a tool has no crank angles; leave it out")
-    with naming(file), shown.showing(found.owner):
+    with naming(file), pictures.showing(found.owner):
         chosen = _outputs(found, output) if output else _chosen(each(found, at), only)
         for picture in chosen:
-            name = f"{picture.name}.{format}"
-            write_all(folder, {name: render(picture.draw(), format)})
+            name = f"{picture.name}.{kind}"
+            write_all(folder, {name: render(picture.draw(), kind)})
             tell(f"{os.path.join(folder, name)}  {picture.caption}")
     for part, why in found.failed.items():
         tell(f"{part}: left out, {why}", sys.stderr)
@@ -151,9 +136,7 @@ def landscape(
     set: Many = None,
     points: Annotated[int, count(5, MOST_POINTS)] = POINTS,
     speed: Speed = None,
-    out: Out = None,
-    format: Kind = "svg",
-    shown: Shown = Shown(),
+    pictures: Folder = Folder(),
 ) -> None:
     """An output over two numbers of a machine.
 
@@ -170,18 +153,13 @@ def landscape(
         A number that is set first, "counterweights.crank.mass = 1 kg".  May be repeated.
     points
         Values of each number.
-    out
-        Folder for the pictures; FILE-pictures beside you if not given.
-    format
-        Kind of the pictures.
     """
     from equipoise.figures.studies import landscape as drawn_map
     from equipoise.figures.studies import told_best
     from equipoise.schema.template import Template
     from equipoise.studies import objective_map as studies
 
-    folder = default_name(file, "-pictures") if out is None else out
-    check_folder("--out", folder)
+    folder = pictures.of(file)
     objective = read_objective("OUTPUT", output)
     model = Template.load(file)
     if model.kind == "tool":
@@ -194,12 +172,10 @@ def landscape(
         numbers["drive.speed"] = speed
     with naming(file), counted("machine") as progress:
         found = studies.landscape(model, dict(both), objective, numbers, progress)
-    with shown.showing(model.base()):
-        pictures = {"landscape": drawn_map(found)}
-        write_pictures(pictures, folder, format)
+    with pictures.showing(model.base()):
+        write_pictures({"landscape": drawn_map(found)}, folder, pictures.format)
         best = told_best(found)
-    for name in pictures:
-        tell(os.path.join(folder, f"{name}.{format}"))
+    tell(os.path.join(folder, f"landscape.{pictures.format}"))
     edge = [f"; {path} is at an end of its range" for path in found.at_edge]
     tell(best + "".join(edge))
 

@@ -9,6 +9,7 @@ from math import ceil
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from equipoise.cli.options import (
+    OF_ANY,
     SIGNED,
     File,
     Many,
@@ -21,8 +22,7 @@ from equipoise.cli.options import (
     naming,
     quantity,
 )
-from equipoise.cli.outputs import Shown, check_result_file, sources_of, tell, wrote
-from equipoise.cli.pictures import default_name
+from equipoise.cli.outputs import Shown, check_result_file, default_name, sources_of, tell, wrote
 from equipoise.cli.progress import counted
 from equipoise.errors import EquipoiseError, UsageError
 
@@ -206,7 +206,7 @@ def report(
     out: Out = None,
     language: Language = "en",
     pdf: bool = False,
-    speed: Text = None,
+    speed: Annotated[Text, OF_ANY] = None,
     shown: Shown = Shown(),
 ) -> None:
     """One page that tells all of a linkage or a tool: summary, pictures, tables, before and after.
@@ -219,8 +219,6 @@ def report(
         English, Japanese or Korean.
     pdf
         Write a PDF beside the page too.
-    speed
-        Speed of the crank, or of the tool's engine, instead of the file's, such as "250 rpm".
     """
     paths = _paths(file, out, pdf)
     rate = None if speed is None else quantity("--speed", speed, "angular speed")

@@ -14,7 +14,7 @@ Kind = Literal["svg", "png", "pdf"]
 Picture = Chart
 """What can be drawn."""
 
-__all__ = ["Kind", "Picture", "figure", "plot", "render", "unwritten"]
+__all__ = ["Kind", "Picture", "drawn", "figure", "plot", "render", "unwritten"]
 
 
 def render(picture: Chart, kind: Kind = "svg") -> bytes:
@@ -37,6 +37,19 @@ def unwritten(picture: Chart) -> str:
     from equipoise.figures.paint import unwritten as found
 
     return found(lay_out(picture))
+
+
+MOST_OF_HALF = 4
+"""Panels side by side and below each other that are seen in half of the width of a page."""
+
+
+def drawn(picture: Chart) -> tuple[str, bool]:
+    """The picture as SVG for a page that tells its heading beside it; whether it is a wide one."""
+    from equipoise.figures.layout import HALF, WIDE, lay_out
+    from equipoise.figures.vector import svg_of
+
+    wide = picture.columns > 1 and len(picture.panels) > MOST_OF_HALF
+    return svg_of(lay_out(picture, WIDE if wide else HALF, headed=False)), wide
 
 
 def figure(picture: Chart) -> Figure:

@@ -14,33 +14,40 @@ from equipoise.figures.panel import LEAD, draw, flag_height, frame
 from equipoise.figures.sheet import Sheet, Words, lines_of, width_of
 from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL
 from equipoise.figures.view import Scale, View, ticks_of
-from equipoise.results.charts import Chart
+from equipoise.results.charts import Axis, Chart
 
-WIDE = 518.4
-"""Points: width of every picture."""
+WIDE, HALF = 518.4, 340.0
+"""Points: width of a picture, and of one of a pair, which is shown half as wide as a page."""
+
 EDGE, GAP, BELOW = 10.0, 14.0, 12.0
 """Points: free at the edges, between columns, and between rows of panels."""
-LINE, OVER = 12.0, 16.0
-"""Points: height of a line of words; by how much the name of an axis may be longer than that."""
+TIED = "\N{NO-BREAK SPACE}"
+LINE, OVER, TOP = 12.0, 16.0, 4.0
+"""Points: height of a line of words; by how much the name of an axis may be longer than that; free
+above a picture without a heading."""
 HIGH = {1: 190.0, 2: 132.0, 3: 106.0, 4: 92.0}
+HIGH_OF_HALF = {1: 128.0, 2: 78.0, 3: 54.0, 4: 40.0}
 """Height of one of so many panels above each other; the last of more."""
-LEAST, MOST, ROOM, SMALL_ROOM = 110.0, 345.0, 26.0, 0.13
+LEAST, MOST, MOST_OF_HALF, ROOM, SMALL_ROOM = 110.0, 345.0, 160.0, 26.0, 0.13
 """Height of panels of one scale at least and at most; free in them around what is drawn, points
 or, in small ones, a share."""
 
 
-def lay_out(chart: Chart) -> Sheet:
-    """A chart on a sheet."""
-    sheet = Sheet(WIDE, 0.0, chart.title)
-    top = _heading(sheet, chart)
+def lay_out(chart: Chart, wide: float = WIDE, headed: bool = True) -> Sheet:
+    """A chart on a sheet.
+
+    wide : of the sheet, points.  headed : whether the chart's heading stands on it.
+    """
+    sheet = Sheet(wide, 0.0, chart.title)
+    top = _heading(sheet, chart) if headed else TOP
     keys = [Key(role, name, kind_of(role)) for role, name in chart.keys]
     keys += [key for panel in chart.panels for key in keys_of(panel, chart_level=True)]
     keys = [*dict.fromkeys(keys)]
-    top = draw_legend(sheet, keys, EDGE, WIDE - EDGE, top) + (5 if keys else 2)
+    top = draw_legend(sheet, keys, EDGE, wide - EDGE, top) + (5 if keys else 2)
     top = _panels(sheet, chart, top)
     if chart.foot:
-        for line in lines_of(chart.foot, WIDE - 2 * EDGE, NORMAL):
-            sheet.add(Words(WIDE / 2, top + 11, line, NORMAL, INK, "middle"), 7)
+        for line in lines_of(chart.foot, wide - 2 * EDGE, NORMAL):
+            sheet.add(Words(wide / 2, top + 11, line, NORMAL, INK, "middle"), 7)
             top += LINE
         top += 2
     sheet.height = top + 7
@@ -49,7 +56,7 @@ def lay_out(chart: Chart) -> Sheet:
 
 def _heading(sheet: Sheet, chart: Chart) -> float:
     """The machine, what is shown, and further words; where they end."""
-    room, top = WIDE - 2 * EDGE, 3.0
+    room, top = sheet.width - 2 * EDGE, 3.0
     for line in lines_of(chart.title, room, LARGE, bold=True):
         sheet.add(Words(EDGE, top + 14.0, line, LARGE, INK, bold=True), 7)
         top += LARGE + 4
@@ -63,11 +70,15 @@ def _heading(sheet: Sheet, chart: Chart) -> float:
 
 def _panels(sheet: Sheet, chart: Chart, top: float) -> float:
     columns = min(chart.columns, len(chart.panels))
+    if sheet.width == HALF and not all(panel.equal for panel in chart.panels):
+        columns = 1  # words along the axes need the width
     rows = [chart.panels[k : k + columns] for k in range(0, len(chart.panels), columns)]
-    usual = HIGH[min(len(rows), max(HIGH))]
-    cells = [cell_of(panel, panel.height or usual) for panel in chart.panels]
+    high, most = (HIGH_OF_HALF, MOST_OF_HALF / len(rows)) if sheet.width == HALF else (HIGH, MOST)
+    usual = high[min(len(rows), max(high))]
+    highest = usual if sheet.width == HALF else np.inf
+    cells = [cell_of(panel, min(panel.height or usual, highest)) for panel in chart.panels]
     share(cells, columns)
-    inner = (WIDE - 2 * EDGE - (columns - 1) * GAP) / columns
+    inner = (sheet.width - 2 * EDGE - (columns - 1) * GAP) / columns
     for number, cell in enumerate(cells):
         later = cells[number + columns :: columns]
         cell.numbered = not (chart.stacked and any(_same_x(cell, one) for one in later[:1]))
@@ -78,7 +89,7 @@ def _panels(sheet: Sheet, chart: Chart, top: float) -> float:
         left, right = max(cell.left for cell in beside), max(cell.right for cell in beside)
         for cell in cells[column::columns]:
             cell.left, cell.right = left, right
-            _settle(cell, inner - left - right, small=columns > 1)
+            _settle(cell, inner - left - right, most, small=columns > 1)
             _above(cell, inner - left - right)
     for number in range(0, len(cells), columns):
         row = cells[number : number + columns]
@@ -109,7 +120,7 @@ def _sides(cell: Cell) -> None:
         numbers.append("−0000")
     wide = max(width_of(text, SMALL) for text in numbers)
     if panel.y.label:
-        cell.y_label = tuple(lines_of(panel.y.text, cell.height + OVER, NORMAL))
+        cell.y_label = _name_of(panel.y, cell.height + OVER)
     cell.left = max(
         7 + wide + 2 + (1 + LINE * len(cell.y_label) if cell.y_label else 0),
         *(10 + width_of(text, NORMAL) for text in panel.left),
@@ -127,20 +138,21 @@ def _sides(cell: Cell) -> None:
     cell.below = 14.0 + (LINE if panel.x.label else 0.0) if cell.numbered else 4.0
 
 
-def _settle(cell: Cell, width: float, small: bool) -> None:
+def _settle(cell: Cell, width: float, most: float, small: bool) -> None:
     """Ends of axes of one scale, so that they hold what is drawn with room for its words."""
     if not cell.panel.equal:
         return
     x, y = (np.array(ends) for ends in (cell.x_ends, cell.y_ends))
     fixed = cell.panel.height
     if small and not fixed:
-        room = SMALL_ROOM * width
-        point = max(np.ptp(x), np.ptp(y), cell.least_span) / (width - 2 * room) or 1.0
-        cell.height = width if cell.panel.held is None else np.ptp(y) / point + 2 * room
+        side = min(width, most)
+        room = SMALL_ROOM * side
+        point = max(np.ptp(x), np.ptp(y), cell.least_span) / (side - 2 * room) or 1.0
+        cell.height = side if cell.panel.held is None else np.ptp(y) / point + 2 * room
     else:
-        high, room = fixed or MOST, 0.0 if cell.panel.bare else ROOM
+        high, room = fixed or most, 0.0 if cell.panel.bare else ROOM
         point = max(np.ptp(x) / (width - 2 * room), np.ptp(y) / (high - 2 * room)) or 1.0
-        cell.height = fixed or min(max(np.ptp(y) / point + 2 * room, LEAST), MOST)
+        cell.height = fixed or min(max(np.ptp(y) / point + 2 * room, LEAST), most)
     half_x, half_y = point * width / 2, point * cell.height / 2
     cell.x_ends = (float(np.mean(x)) - half_x, float(np.mean(x)) + half_x)
     cell.y_ends = (float(np.mean(y)) - half_y, float(np.mean(y)) + half_y)
@@ -165,7 +177,7 @@ def _above(cell: Cell, width: float) -> None:
     if cell.keys and not cell.beside:
         cell.above += KEY * len(rows) + 2
     if cell.numbered and panel.x.label and not panel.bare:
-        cell.x_label = tuple(lines_of(panel.x.text, width + 2 * OVER, NORMAL))
+        cell.x_label = _name_of(panel.x, width + 2 * OVER)
         cell.below += LINE * (len(cell.x_label) - 1)
 
 
@@ -204,6 +216,13 @@ def _titles(sheet: Sheet, cell: Cell, start: float, end: float, foot: float) -> 
     for line in reversed(cell.titles):
         sheet.add(Words(start, foot - 4, line, NORMAL, INK), 7)
         foot -= LINE
+
+
+def _name_of(axis: Axis, room: float) -> tuple[str, ...]:
+    """Lines of the name of an axis, whose unit stays whole."""
+    unit = axis.unit_name
+    whole = axis.text.replace(unit, unit.replace(" ", TIED)) if " " in unit else axis.text
+    return tuple(line.replace(TIED, " ") for line in lines_of(whole, room, NORMAL))
 
 
 def _name_axes(sheet: Sheet, cell: Cell, view: View, left: float) -> None:

@@ -19,8 +19,8 @@ from equipoise.figures.shared import (
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
-from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.outputs import joint_named
+from equipoise.mechanism.poles import guided, pinned
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
 
@@ -46,7 +46,8 @@ def moving(motion: Motion) -> list[str]:
 
 
 def traced(motion: Motion) -> list[str]:
-    """Points with a path worth following: those of couplers, first those that are no joint.
+    """Points with a path worth following: a planting tip, then those of couplers, first those that
+    are no joint.
 
     A point of a link that is pinned to the frame runs on a circle; these come only where a machine
     has no others, and those of the drive last of all.
@@ -57,7 +58,9 @@ def traced(motion: Motion) -> list[str]:
     names = moving(motion)
     driven = [name for name in names if name not in machine.links[machine.drive.link].points]
     found = [name for name in names if name not in circling] or driven or names
-    return sorted(found, key=lambda name: name in joints.pins)
+    tip = [] if machine.planting is None else [machine.planting.tip]
+    every = dict.fromkeys([*tip, *found])
+    return sorted(every, key=lambda name: (name not in tip, name in joints.pins))
 
 
 def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
@@ -211,19 +214,15 @@ def kinematics(analysis: Analysis) -> Iterator[Chart]:
     angles = [one.name for one in analysis.outputs if one.group == "transmission"]
     if angles:
         what = say("Transmission angles")
-        yield outputs_chart(analysis, angles, "kinematics-transmission", what)
+        yield outputs_chart(analysis, angles, kinematics_named("transmission"), what)
     yield from _each(analysis, "links")
     yield from _each(analysis, "points")
 
 
 def main_kinematics(analysis: Analysis) -> list[Chart]:
     """Those that matter most: of sliders, or driven links, on the frame; transmission angles."""
-    machine = analysis.machine
-    wanted = [slider.name for slider in machine.sliders if slider.on == FRAME]
-    if not wanted:
-        pinned = [link for link, body in machine.links.items() if {*body.points} & {*machine.frame}]
-        wanted = [link for link in pinned if link != machine.drive.link][:MOST_LINKS]
-    names = {"kinematics-transmission", *map(_name, wanted)}
+    wanted = guided(analysis.machine) or pinned(analysis.machine)[:MOST_LINKS]
+    names = {kinematics_named("transmission"), *map(kinematics_named, wanted)}
     return [chart for chart in kinematics(analysis) if chart.name in names]
 
 
@@ -236,8 +235,9 @@ def _each(analysis: Analysis, group: str) -> Iterator[Chart]:
             members.setdefault(one.item, []).append(one)
     for item, ones in members.items():
         what = say("Motion of {name}", name=short(joint_named(item), 24))
-        yield outputs_chart(analysis, [one.name for one in ones], _name(item), what)
+        yield outputs_chart(analysis, [one.name for one in ones], kinematics_named(item), what)
 
 
-def _name(item: str) -> str:
+def kinematics_named(item: str) -> str:
+    """Name of the chart of a slider, link or point."""
     return f"kinematics-{item.translate(FORBIDDEN)}"

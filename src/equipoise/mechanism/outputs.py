@@ -6,6 +6,7 @@ all rows.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -60,6 +61,14 @@ def slider_names(machine: Any) -> list[str]:
 def body_named(name: str) -> str:
     """A link, or the frame, in words."""
     return say("frame") if name == FRAME else name
+
+
+LETTER = re.compile(r"[A-Z]'?[0-9]*")
+
+
+def named(name: str) -> str:
+    """A name of a file as a sentence has it: in quotation marks, but for letters such as ``B2``."""
+    return name if LETTER.fullmatch(name) else say("“{name}”", name=name)
 
 
 def joint_named(name: str) -> str:

@@ -6,8 +6,6 @@ from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from equipoise.codegen.backends import engine, processors
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import lacking
@@ -30,7 +28,7 @@ SLOW = "one after the other"
 def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
     """Everything about a study that can be told before it is computed."""
     compute = evaluator(study)
-    own = np.array([study.model.number(path)[0] for path in study.paths], dtype=float)
+    own = study.own
     outcome = compute(own[None])
     sampling = study.sampling
     seed = "" if sampling.method == "grid" else f", seed {sampling.seed}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -16,15 +16,27 @@ from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
 from equipoise.i18n import LANGUAGES, say, speaking, to_say
 from equipoise.mechanism.shown_units import units_of
 from equipoise.planting.blocks import planting_blocks
+from equipoise.present.drawing import drawings
 from equipoise.present.findings import Findings, ToolFindings, find
+from equipoise.present.headlines import seen_in
 from equipoise.present.pages import Document, check_pdf, page, pdf
-from equipoise.present.pictures import drawings
+from equipoise.present.sources import sources
 from equipoise.present.summary import answers, check_whole_cycle, tiles
+from equipoise.present.tool_headlines import judged
 from equipoise.present.tool_summary import tool_answers, tool_tiles
 from equipoise.quantities import PER_RPM, chosen_units, number, showing_by_default
 from equipoise.results.analysis import Analysis
 from equipoise.results.analysis_blocks import force_blocks, joint_table, motion_blocks
-from equipoise.results.blocks import Block, Facts, Listing, Notes, Section, Text, beside
+from equipoise.results.blocks import (
+    Block,
+    Facts,
+    Listing,
+    Notes,
+    Section,
+    Table,
+    Text,
+    beside,
+)
 from equipoise.results.machine_blocks import angles_told, driven, model_blocks
 from equipoise.vibration.blocks import model_told, response_blocks
 from equipoise.vibration.sweep_blocks import resonances_table
@@ -43,9 +55,13 @@ TITLES = {
     "file": to_say("The model file"),
 }
 
+AFTER = to_say("Lines that end in “after” are those after the change that helps most.")
+
 Parts = dict[str, list[Block | Section]]
 """What stands in each section, by its name."""
 
+SHORT = 6
+"""Rows of a table that stands among the pictures; longer ones stand in the appendix."""
 MOST_TRACED = 3
 """Points whose paths are drawn beside the moving linkage, where no finger plants."""
 
@@ -77,7 +93,7 @@ def build(
 def _of_linkage(found: Findings, language: str, command: str, together: bool) -> Document:
     machine, analysis = found.machine, found.analysis
     drawn = drawings(found, together)
-    blocks: Parts = {"model": [*model_blocks(machine)]}
+    blocks: Parts = {"model": [*drawn.get("model", []), *model_blocks(machine)]}
     blocks["motion"] = [*drawn.get("motion", []), *motion_blocks(analysis)]
     if found.planting is not None:
         blocks["planting"] = [*drawn.get("planting", []), *planting_blocks(found.planting)]
@@ -94,6 +110,7 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
             blocks["vibration"].append(resonances_table(found.sweep))
     if found.balanced is not None:
         blocks["balance"] = [*balance_blocks(found), *drawn.get("balance", [])]
+    seen = {name: seen_in(name, found) for name in blocks}
     return Document(
         language,
         machine.title,
@@ -102,7 +119,8 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
         tuple(tiles(found)),
         tuple(answers(found)),
         _animation(found),
-        _sections(found, blocks, _settings_of_linkage(found), command),
+        *_sections(found, blocks, seen, _settings_of_linkage(found), command),
+        lead="" if later is None else say(AFTER),
     )
 
 
@@ -112,16 +130,10 @@ def _joints(analysis: Analysis) -> Iterator[Block]:
 
 def _with_after(
     blocks: Callable[[Any], Iterable[Block]], before: Any, after: Any
-) -> Iterator[Block]:
+) -> Iterable[Block]:
     """What a result shows, beside the same after the change that helps most, where there is one."""
-    told = tuple(blocks(before))
-    if after is None:
-        yield from told
-        return
-    both = tuple(beside(told, blocks(after)))
-    if both != told:
-        yield Text(say("Lines that end in “after” are those after the change that helps most."))
-    yield from both
+    told = blocks(before)
+    return told if after is None else beside(told, blocks(after))
 
 
 def balance_blocks(found: Findings) -> Iterator[Block]:
@@ -155,14 +167,21 @@ def _of_tool(found: ToolFindings, language: str, command: str) -> Document:
         tuple(tool_tiles(found)),
         tuple(tool_answers(found)),
         "",
-        _sections(found, named, (), command),
+        *_sections(found, named, {"tool": judged(found)}, (), command),
     )
 
 
 def _sections(
-    found: Findings | ToolFindings, blocks: Parts, settings: Iterable[str], command: str
-) -> tuple[Section, ...]:
-    """Sections of the blocks, then what every report ends with."""
+    found: Findings | ToolFindings,
+    blocks: Parts,
+    seen: Mapping[str, str],
+    settings: Iterable[str],
+    command: str,
+) -> tuple[tuple[Section, ...], tuple[Section, ...]]:
+    """Sections of the blocks, then what every report ends with; and the appendix.
+
+    seen : what is seen in a section, by its name.
+    """
     template = to_say("Made by Equipoise {version} from {file}")
     made = say(template, version=equipoise.__version__, file=found.file)
     notes = [Notes(found.notes)] if found.notes else []
@@ -170,13 +189,29 @@ def _sections(
     last: Parts = {
         "sources": [Facts("", tuple(sources(found)))],
         "settings": [Facts("", (*settings, made)), *notes, *again],
-        "file": [Listing(found.file, found.text)],
     }
-    return tuple(
-        Section(name, say(TITLES[name]), tuple(parts))
-        for name, parts in (blocks | last).items()
-        if parts
-    )
+    sections, appendix = [], []
+    for name, parts in (blocks | last).items():
+        short, long = parted(parts)
+        title = say(TITLES[name])
+        if parts:
+            sections.append(Section(name, title, tuple(short), seen.get(name, "")))
+        if long:
+            appendix.append(Section(name, title, tuple(long)))
+    listing = Listing(found.file, found.text)
+    return tuple(sections), (*appendix, Section("file", say(TITLES["file"]), (listing,)))
+
+
+def parted(blocks: Iterable[Block | Section]) -> tuple[list[Block | Section], list[Block]]:
+    """What stands in a section, and long tables."""
+    short: list[Block | Section] = []
+    long: list[Block] = []
+    for block in blocks:
+        if isinstance(block, Table) and len(block.rows) > SHORT:
+            long.append(block)
+        else:
+            short.append(block)
+    return short, long
 
 
 def _animation(found: Findings) -> str:
@@ -283,48 +318,3 @@ def write_document(document: Document, outs: Iterable[str | os.PathLike[str]]) -
     for out in outs:
         data = pdf(document) if kind_of(out) == "pdf" else page(document).encode()
         write_all(os.path.dirname(out) or ".", {os.path.basename(out): data})
-
-
-KIM_CHUNG = (
-    "Kim, K. U., Chung, C. J.: An analytical method for kinematic analysis of the planting "
-    "mechanism of a rice transplanter, c. 1977"
-)
-YAMASHITA = (
-    "山下光司, 市川真祐, 森邦男: 田植機における植付爪の振動消去に関する研究 "
-    "(Yamashita, Ichikawa, Mori: Studies on control of vibrations originating in rice "
-    "transplanting mechanism), c. 1982"
-)
-LEE_KIM = (
-    "李政基, 金景旭: 크랭크식 移秧機 植付機構의 動的 均衡에 관한 研究 "
-    "(Lee, Kim: Dynamic balancing of crank-type transplanting mechanism of rice "
-    "transplanter), c. 1990"
-)
-NAGAMINE_IRIE = (
-    "長嶺正紀, 入江敏博: 刈払機の振動特性について "
-    "(Nagamine, Irie: On the vibration characteristics of a brush cutter), 1970"
-)
-ISO_5349 = "ISO 5349-1:2001, ISO 5349-2:2001"
-DIRECTIVE = "Directive 2002/44/EC"
-ISO_22867 = "ISO 22867"
-
-USED = {
-    "force": to_say("Shaking force, drive torque, balancing, vibration on a support: {source}"),
-    "moment": to_say("Shaking moment, shaking energy, geared counterweights: {source}"),
-    "planting": to_say("Figures of planting: {source}"),
-    "shaft": to_say("Vibration of the shaft and transmission to the hands: {source}"),
-    "hands": to_say("Weighting and daily exposure of the hands: {source}"),
-}
-
-
-def sources(found: Findings | ToolFindings) -> Iterator[str]:
-    """What was used, a line each."""
-    if isinstance(found, ToolFindings):
-        yield say(USED["shaft"], source=NAGAMINE_IRIE)
-        if found.exposure is not None:
-            yield say(USED["hands"], source=f"{ISO_5349}; {DIRECTIVE}; {ISO_22867}")
-        return
-    if found.analysis.solved is not None:
-        yield say(USED["force"], source=YAMASHITA)
-        yield say(USED["moment"], source=LEE_KIM)
-    if found.planting is not None:
-        yield say(USED["planting"], source=KIM_CHUNG)

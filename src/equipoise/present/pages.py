@@ -23,7 +23,7 @@ from equipoise.figures.style import GRID, STUBBLE
 from equipoise.i18n import LANGUAGES, say, speaking, spoken
 from equipoise.present.cells import Grid, Head, Text, grid, noted, printed, sign_of
 from equipoise.quantities import Units, showing
-from equipoise.results.blocks import Block, Section, Table
+from equipoise.results.blocks import Block, Drawn, Section, Table
 from equipoise.results.result import Result
 from equipoise.symbols.looks import DARK, LIGHT
 
@@ -33,12 +33,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Tile:
-    """One figure that is seen at once; `note` stands below it."""
+    """One figure that is seen at once; `note` stands below it.
+
+    after : the same after the change that helps most, where that makes it another.
+    """
 
     label: str
     value: str
     unit: str
     note: str = ""
+    after: str = ""
 
 
 @dataclass(frozen=True)
@@ -54,6 +58,8 @@ class Document:
     """A whole report.
 
     language : its code.  subtitle : what runs, how fast.  animation : SVG, empty where none moves.
+    appendix : long tables of the sections, by their names, and the model file.
+    lead : what stands above it.
     units : that are chosen, by dimension.
     """
 
@@ -65,7 +71,20 @@ class Document:
     summary: tuple[Answer, ...]
     animation: str
     sections: tuple[Section, ...]
+    appendix: tuple[Section, ...] = ()
+    lead: str = ""
     units: Units = field(default_factory=dict)
+
+    def more(self, section: str) -> str:
+        """How many tables of a section stand in the appendix, in words; empty where none does."""
+        own = (one.blocks for one in self.appendix if one.name == section)
+        count = sum(isinstance(block, Table) for blocks in own for block in blocks)
+        return say("Tables in the appendix: {count}", count=count) if count else ""
+
+    @property
+    def together(self) -> tuple[Block | Section, ...]:
+        """The appendix without its headings."""
+        return tuple(block for section in self.appendix for block in section.blocks)
 
     @contextmanager
     def spoken(self) -> Iterator[None]:
@@ -126,21 +145,26 @@ def html_of(result: Result) -> str:
 def page(document: Document) -> str:
     """A document as HTML."""
     with document.spoken():
-        labels = {
-            "contents": say("Contents"),
-            "summary": say("Summary"),
-            "still": say("Stop the motion"),
-            "made": say("Made by Equipoise {version}", version=equipoise.__version__),
-        }
         template = _environment().get_template("report.html.j2")
         return template.render(
             document=document,
-            labels=labels,
+            labels=_labels(),
             style=Markup(text_of("report.css")),  # a file of this package
             light=Markup(colors(dark=False)),
             dark=Markup(colors(dark=True)),
             animation=Markup(document.animation),  # drawn by `animation`, with names escaped
         )
+
+
+def _labels() -> dict[str, str]:
+    """What stands on every report."""
+    return {
+        "contents": say("Contents"),
+        "summary": say("Summary"),
+        "still": say("Stop the motion"),
+        "appendix": say("Appendix"),
+        "made": say("Made by Equipoise {version}", version=equipoise.__version__),
+    }
 
 
 @cache
@@ -149,7 +173,7 @@ def _environment() -> jinja2.Environment:
         loader=jinja2.FunctionLoader(text_of), autoescape=True, trim_blocks=True, lstrip_blocks=True
     )
     environment.globals["stress"] = LIGHT["stress"]
-    environment.filters |= {**FILTERS, "inlined": _inlined, "runs": _runs, "classes": _classes}
+    environment.filters |= {**FILTERS, "inlined": _inlined, "classes": _classes}
     return environment
 
 
@@ -162,10 +186,6 @@ def printed_grid(table: Table) -> Grid:
         for row in told.rows
     )
     return Grid(printed(told.title), tuple(heads), tuple(rows))
-
-
-FILTERS: dict[str, Callable[..., Any]] = {"grid": printed_grid, "printed": printed, "noted": noted}
-"""Of templates, by the names that these have for them."""
 
 
 def _classes(cell: Text) -> Markup:
@@ -181,6 +201,50 @@ def _runs(blocks: Iterable[Block | Section]) -> Iterator[tuple[str, list[Block |
     """Neighbours of the same kind together."""
     for kind, members in groupby(blocks, key=lambda block: block.kind):
         yield kind, list(members)
+
+
+def paired(drawn: Iterable[Drawn]) -> list[list[Drawn]]:
+    """Pictures in rows: two of half a page's width each, or a wide one; in their order but for
+    wide ones, which do not part two that stand side by side.
+    """
+    rows: list[list[Drawn]] = []
+    waiting: list[Drawn] = []
+    for one in drawn:
+        row = [one] if one.wide else [*waiting, one]
+        if one.wide or len(row) == 2:
+            rows.append(row)
+        waiting = waiting if one.wide else row[: len(row) % 2]
+    return [*rows, waiting] if waiting else rows
+
+
+def flowed(blocks: Iterable[Block | Section]) -> Iterator[tuple[str, list[Any]]]:
+    """Blocks of a kind together, pictures in rows; one without a neighbour before tables is packed
+    with these.
+    """
+    lone: list[Drawn] = []
+    for kind, members in _runs(blocks):
+        if kind == "drawn":
+            *rows, last = paired(members)  # type: ignore[arg-type]
+            lone = last if len(last) == 1 and not last[0].wide else []
+            yield from (("row", row) for row in (rows if lone else [*rows, last]))
+            continue
+        if lone and kind != "table":
+            yield "row", lone
+            lone = []
+        yield kind, [*lone, *members]
+        lone = []
+    if lone:
+        yield "row", lone
+
+
+FILTERS: dict[str, Callable[..., Any]] = {
+    "grid": printed_grid,
+    "noted": noted,
+    "paired": paired,
+    "printed": printed,
+    "runs": _runs,
+}
+"""Of templates, by the names that these have for them."""
 
 
 def text_of(name: str) -> str:
@@ -216,11 +280,7 @@ def pdf(document: Document) -> bytes:
 
     families = _families(document.language)
     with document.spoken():
-        labels = {
-            "summary": say("Summary"),
-            "made": say("Made by Equipoise {version}", version=equipoise.__version__),
-        }
-        source = _template().render(document=document, labels=labels, families=families)
+        source = _template().render(document=document, labels=_labels(), families=families)
     try:
         made = typst.compile(source.encode(), font_paths=_fonts(), format="pdf", timestamp=0)
     except typst.TypstError as error:
@@ -261,7 +321,7 @@ def _families(language: str) -> list[str]:
 def _template() -> jinja2.Template:
     environment = jinja2.Environment(autoescape=False, trim_blocks=True, lstrip_blocks=True)
     environment.globals["stress"] = LIGHT["stress"]
-    environment.filters |= {**FILTERS, "text": _text, "width": _width}
+    environment.filters |= {**FILTERS, "flowed": flowed, "text": _text, "width": _width}
     return environment.from_string(text_of("report.typ.j2"))
 
 

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from functools import cached_property
-from math import cos, hypot, pi, sin
+from math import pi
 
 import numpy as np
 
 from equipoise.balancing.told import capital, good_already, helps_told
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import joint_named
 from equipoise.present.findings import Findings
 from equipoise.present.pages import Answer, Tile
+from equipoise.present.shaking import Shaking, acting, largest_joint
 from equipoise.quantities import (
     PER_RPM,
     Dimension,
@@ -28,68 +26,12 @@ from equipoise.quantities import (
 )
 from equipoise.results.analysis_blocks import shares
 from equipoise.results.outputs import CAUSES, objective_named, shown_in
-from equipoise.signals import Array, Figures, figures, harmonics
-from equipoise.vibration.resonance import within
-
-
-@dataclass(frozen=True, eq=False)
-class Shaking:
-    """The shaking force of all rows together.
-
-    force : complex (N,), N, of equally spaced crank angles of a whole cycle of `turns`.
-    """
-
-    machine: Machine
-    crank_angle: Array
-    force: Array
-    turns: int
-
-    @classmethod
-    def of(cls, found: Findings) -> Shaking:
-        """From the analysis; rows turn ahead by their phases."""
-        motion, force = found.analysis.motion, found.analysis.forces.shaking_force.value
-        if len(rows := found.machine.rows) > 1:
-            orders = np.fft.fftfreq(len(force), 1 / len(force)) / motion.turns
-            ahead = sum(np.exp(1j * orders * row.phase) for row in rows)
-            force = np.fft.ifft(np.fft.fft(force) * ahead)
-        return cls(found.machine, found.analysis.crank_angle, force, motion.turns)
-
-    @cached_property
-    def size(self) -> Figures:
-        """Figures of its size."""
-        return figures(self.crank_angle, np.abs(self.force))
-
-    @property
-    def over_weight(self) -> float:
-        """Peak over the weight of the links; 0 without gravity."""
-        weight = self.machine.mass * hypot(*self.machine.gravity)
-        return self.size.peak / (weight * max(1, len(self.machine.rows))) if weight else 0.0
-
-    @cached_property
-    def loudest(self) -> tuple[float, float]:
-        """Order with the largest share of the mean square, the mean left out, and that share."""
-        squares = sum(np.abs(harmonics(part)) ** 2 for part in (self.force.real, self.force.imag))
-        squares = np.asarray(squares)
-        squares[0] = 0.0
-        top = int(np.argmax(squares))
-        return top / self.turns, float(squares[top] / (np.sum(squares) or 1.0))
-
-    @cached_property
-    def direction(self) -> tuple[float, float]:
-        """Direction along which most of its mean square acts, rad in [0, pi), and that share."""
-        parts = np.vstack([self.force.real, self.force.imag])
-        values, vectors = np.linalg.eigh(parts @ parts.T)
-        share = float(values[1] / (np.sum(values) or 1.0))
-        x, y = vectors[:, 1]
-        return float(np.arctan2(y, x) % pi), share
-
+from equipoise.vibration.resonance import nearest, within
 
 SMALL = 0.005
 """Share of a link or cause below which it is not named."""
 LEADING = 0.5
 """Share of the mean square from which one order is told as the whole."""
-STRETCHED, ROUND = 0.8, 0.6
-"""Share of the mean square along one direction: from where, and up to where, it is called so."""
 
 
 def answers(found: Findings) -> Iterator[Answer]:
@@ -110,14 +52,15 @@ def answers(found: Findings) -> Iterator[Answer]:
 
 
 def tiles(found: Findings) -> Iterator[Tile]:
-    """The figures that are seen at once."""
-    analysis = found.analysis
+    """The figures that are seen at once, before and after the change that helps most."""
+    analysis, later = found.analysis, found.after
     speed = abs(analysis.motion.speed) / PER_RPM
     yield Tile(say("crank speed"), brief(speed), "rpm", found.machine.drive.link)
     if analysis.solved is None:
         return
     size = Shaking.of(found).size
-    yield _tile(say("shaking force, peak"), size.peak, "force", _at(size.peak_at))
+    after = None if later is None else Shaking.of(later).size.peak
+    yield _tile(say("shaking force, peak"), size.peak, "force", _at(size.peak_at), after=after)
     template = to_say("one row: {what}") if len(found.machine.rows) > 1 else "{what}"
     labels = {
         "shaking_moment": say("shaking moment, peak"),
@@ -125,13 +68,15 @@ def tiles(found: Findings) -> Iterator[Tile]:
     }
     for name, label in labels.items():
         one = analysis.summary[name]
+        after = None if later is None else later.analysis.summary[name].peak
         scale = analysis.summary["frame_moment"].peak
         note = _at(one.peak_at) if brief(one.peak, scale) != "0" else ""
-        yield _tile(say(template, what=label), one.peak, "torque", note, scale)
-    name, largest = _largest_joint(found)
-    if name:
-        label = say("largest joint force")
-        yield _tile(label, largest.peak, "force", say("joint {name}", name=joint_named(name)))
+        yield _tile(say(template, what=label), one.peak, "torque", note, scale, after)
+    if analysis.forces.joints:
+        name, largest = largest_joint(analysis)
+        after = None if later is None else largest_joint(later.analysis)[1].peak
+        note = say("joint {name}", name=joint_named(name))
+        yield _tile(say("largest joint force"), largest.peak, "force", note, after=after)
     if found.balanced is not None:
         first, pair = next(iter(found.balanced.aims.items()))
         told = change(*pair).removesuffix(" %") if found.helped else ""
@@ -140,26 +85,22 @@ def tiles(found: Findings) -> Iterator[Tile]:
         yield Tile(say("by balancing"), told or percent(0), "%", note)
 
 
-def _tile(label: str, value: float, dimension: Dimension, note: str, scale: float = 0.0) -> Tile:
+def _tile(
+    label: str,
+    value: float,
+    dimension: Dimension,
+    note: str,
+    scale: float = 0.0,
+    after: float | None = None,
+) -> Tile:
     unit = display(dimension, [value if brief(value, scale) != "0" else 0.0])
-    return Tile(label, unit.text(value, scale, 3), unit.name, note)
+    before = unit.text(value, scale, 3)
+    later = "" if after is None else unit.text(after, max(scale, value), 3)
+    return Tile(label, before, unit.name, note, later if later != before else "")
 
 
 def _at(crank_angle: float) -> str:
     return say("at crank angle {angle}", angle=angle(crank_angle, 0))
-
-
-def _largest_joint(found: Findings) -> tuple[str, Figures]:
-    summary = found.analysis.summary
-    joints = {
-        name: one
-        for name, one in summary.items()
-        if name.startswith("joints.") and not name.endswith(".moment")
-    }
-    if not joints:
-        return "", summary["shaking_force"]
-    name = max(joints, key=lambda name: joints[name].peak)
-    return name.removeprefix("joints."), joints[name]
 
 
 # -- what shakes, and why --------------------------------------------------------------------------
@@ -191,7 +132,7 @@ def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
         if shaking.over_weight:
             ratio = brief(shaking.over_weight)
             yield say("That is {ratio} times the weight of its links.", ratio=ratio)
-        yield _directed(shaking)
+        yield say("{sentence}.", sentence=acting(shaking.force))
         yield _ordered(found, shaking)
     moment, scale = summary["shaking_moment"], summary["frame_moment"].peak
     if brief(moment.peak, scale) == "0":
@@ -204,17 +145,6 @@ def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
     template = of_rows if rows > 1 else of_one
     peak, rms = (told(size, "torque", digits=3) for size in (moment.peak, moment.rms))
     yield say(template, peak=peak, rms=rms)
-
-
-def _directed(shaking: Shaking) -> str:
-    way, share = shaking.direction
-    if share <= ROUND:
-        return say("It acts in all directions alike, turning with the crank.")
-    if share >= STRETCHED and abs(sin(way)) > cos(pi / 6):
-        return say("It acts mostly up and down.")
-    if share >= STRETCHED and abs(cos(way)) > cos(pi / 6):
-        return say("It acts mostly to and fro.")
-    return say("It acts mostly along a direction of {angle} from the x axis.", angle=angle(way, 0))
 
 
 def _ordered(found: Findings, shaking: Shaking) -> str:
@@ -299,14 +229,14 @@ def vibration_told(found: Findings) -> Iterator[str]:
         yield say(template, **words)
     if found.sweep is None or not found.sweep.resonances:
         return
-    nearest = min(found.sweep.resonances, key=lambda one: abs(abs(one.speed / response.speed) - 1))
+    near = nearest(found.sweep.resonances, response.speed)
     yield say(
         "The nearest resonance is at {speed} rpm, where order {order} meets mode {mode} "
         "({frequency} Hz).",
-        order=f"{nearest.order:.4g}",
-        mode=nearest.mode,
-        frequency=brief(nearest.frequency / (2 * pi)),
-        speed=brief(abs(nearest.speed) / PER_RPM),
+        order=f"{near.order:.4g}",
+        mode=near.mode,
+        frequency=brief(near.frequency / (2 * pi)),
+        speed=brief(abs(near.speed) / PER_RPM),
     )
     for note in within(found.sweep.resonances, response.speed):
         yield say("{sentence}.", sentence=capital(note.said()))

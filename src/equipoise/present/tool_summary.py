@@ -19,6 +19,7 @@ from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, spoken, to_say
 from equipoise.present.findings import ToolFindings
 from equipoise.present.pages import Answer, Tile
+from equipoise.present.tool_headlines import worst_at_work
 from equipoise.quantities import PER_RPM, Dimension, brief, change, display, percent
 from equipoise.signals import highest_at
 
@@ -43,7 +44,7 @@ def tool_tiles(found: ToolFindings) -> Iterator[Tile]:
             say("engine speed"), brief(tool.operation.speed / PER_RPM), "rpm", say("working")
         )
     if exposure is not None and WORKING in exposure.named:
-        name, value = _worst_at_work(exposure)
+        name, value = worst_at_work(exposure)
         yield Tile(say("vibration of the hand"), brief(value), "m/s²", name)
     if exposure is not None and exposure.a8 is not None and exposure.worst is not None:
         verdict = say(VERDICTS[exposure.days[exposure.worst].verdict])
@@ -68,14 +69,9 @@ def tool_answers(found: ToolFindings) -> Iterator[Answer]:
         yield Answer(say("What helps most"), tuple(_helps(found.design)))
 
 
-def _worst_at_work(exposure: ToolExposure) -> tuple[str, float]:
-    at_work = {name: float(grip.a_hv[0]) for name, grip in exposure.named[WORKING].items()}
-    return max(at_work.items(), key=lambda item: item[1])
-
-
 def _felt(exposure: ToolExposure) -> Iterator[str]:
     if WORKING in exposure.named:
-        name, value = _worst_at_work(exposure)
+        name, value = worst_at_work(exposure)
         yield say(
             "At the working speed the hand at {hand} gets most: a weighted acceleration a_hv of "
             "{value} m/s².",

@@ -166,12 +166,19 @@ class Picture:
 
 @dataclass(frozen=True)
 class Drawn:
-    """A picture as SVG, as it has been drawn."""
+    """A picture as SVG, as it has been drawn, without its heading.
+
+    caption : what is drawn.  seen : what is seen in it.  instead : for those who cannot see it.
+    wide : whether it takes the width of a page, not half of it.
+    """
 
     kind: ClassVar[str] = "drawn"
     name: str
     caption: str
     svg: str
+    seen: str = ""
+    instead: str = ""
+    wide: bool = True
 
 
 @dataclass(frozen=True)
@@ -188,12 +195,16 @@ Block = Text | Facts | Table | Notes | Picture | Drawn | Listing
 
 @dataclass(frozen=True)
 class Section:
-    """A heading and what stands below it; `name` is its anchor."""
+    """A heading and what stands below it; `name` is its anchor.
+
+    seen : what is seen in it, in one line.
+    """
 
     kind: ClassVar[str] = "section"
     name: str
     title: str
     blocks: tuple[Block | Section, ...]
+    seen: str = ""
 
 
 # -- before and after ------------------------------------------------------------------------------

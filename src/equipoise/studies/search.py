@@ -262,8 +262,7 @@ def _first(study: Study, population: int, seed: int) -> Array:
     power = (population - 1).bit_length()  # SciPy warns of other numbers than powers of two
     places = qmc.Sobol(len(study.vary), seed=seed).random_base2(power)[:population]
     spreads: list[Any] = [one.spread for one in study.vary]
-    numbers = (study.model.number(path)[0] for path in study.paths)
-    own = [spread.place(number) for spread, number in zip(spreads, numbers, strict=True)]
+    own = [spread.place(number) for spread, number in zip(spreads, study.own.tolist(), strict=True)]
     if all(place is not None for place in own):
         places[0] = own
     return canonical(study, places)

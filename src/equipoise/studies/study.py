@@ -84,6 +84,11 @@ class Study:
         return tuple(one.path for one in self.vary)
 
     @property
+    def own(self) -> Array:
+        """Values (d,) of these numbers as they stand in the model itself."""
+        return np.array([self.model.number(path)[0] for path in self.paths], dtype=float)
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Names of the outputs, in the order of the columns of all figures."""
         return tuple(output.name for output in self.outputs)

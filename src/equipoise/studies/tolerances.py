@@ -147,8 +147,7 @@ def tolerance(
     if not reasons[COMPUTED] or not np.all(there):
         raise UsageError(why_none(study.outputs, reasons, np.zeros(len(there))))
     found = [run.joined([table]) for table in tables(study, rows)]
-    own = np.array([[study.model.number(path)[0] for path in study.paths]], dtype=float)
-    base = run.compute(own).figures[0]
+    base = run.compute(study.own[None]).figures[0]
     told = _causes(study, causes, found)
     return Tolerances(
         study=study,

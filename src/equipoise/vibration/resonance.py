@@ -61,6 +61,11 @@ def around(drive: Drive, speed: float) -> tuple[float, float]:
     return slow, fast
 
 
+def nearest(found: Iterable[Resonance], speed: float) -> Resonance:
+    """Of some resonances the one whose speed is nearest to a speed, rad/s."""
+    return min(found, key=lambda one: abs(abs(one.speed / speed) - 1))
+
+
 def within(found: Iterable[Resonance], speed: float) -> Iterator[Note]:
     """Which resonances amplify at a speed (rad/s) so much that it is to be kept away from."""
     for one in found:

@@ -30,7 +30,7 @@ from equipoise.web.edits import Solved, edited, settled, solved
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.messages import Message
 from equipoise.web.shaken import more, response_of
-from equipoise.web.state import state_of
+from equipoise.web.state import first_of, state_of
 
 LONGEST = 800
 """Signs of a sentence."""
@@ -182,7 +182,7 @@ class Session:
         with self.lock:
             self.scale = Scale.of(design)
             self._go(History(Step(design, "")), found)
-            self.before = None
+            self.before, self.wanted = None, first_of(design.machine)[1]
 
     @property
     def has_more(self) -> bool:

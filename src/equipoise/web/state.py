@@ -8,8 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.figures.points import traced
 from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import GROUPS
+from equipoise.mechanism.poles import guided, pinned
 from equipoise.mechanism.tip import surface_of
 from equipoise.quantities import display
 from equipoise.results.analysis import Analysis
@@ -97,6 +100,8 @@ def state_of(
         "has_forces": analysis.solved is not None,
         "missing": [name for name, link in machine.links.items() if not link.has_mass],
         "scene": stage_of(scene, movable(machine)),
+        "traced": traced(motion),
+        "first": first_of(machine)[0],
         "figures": figures_of(signals, old, machine),
         "outputs": [
             {
@@ -203,7 +208,6 @@ def stage_of(scene: Scene, handles: Sequence[str]) -> Values:
         "mass_centers": list(scene.mass_centers),
         "box": [low.real, low.imag, high.real, high.imag],
         "movable": list(handles),
-        "traced": traced(scene),
         "signs": [_sign(scene, piece) for piece in drawn],
         "looks": {role: LOOKS[role].css(UNIT) for role in roles},
     }
@@ -229,7 +233,21 @@ def _shape(shape: Shape) -> list[Any]:
     return [shape.role, shape.closed, *sizes, corners.ravel().tolist()]
 
 
-def traced(scene: Scene) -> list[str]:
-    """Points whose paths are shown first: those of links alone, else all that move on a curve."""
-    moving = [name for name in scene.places if name not in scene.frame]
-    return [name for name in moving if name not in scene.pins] or moving
+# -- what comes first ------------------------------------------------------------------------------
+
+
+def first_of(machine: Machine) -> tuple[str, tuple[str, ...]]:
+    """The charts that a page shows first, and the outputs that it draws: what a machine is for.
+
+    On mounts that is what its gauges read; of a planting finger, or of a machine that moves one
+    thing, its path and the shaking force; of one that moves one thing by way of another, such as a
+    six-bar with a dwell, the motion of its output.
+    """
+    moved = [link for link in pinned(machine) if len(machine.links[link].points) > 1]
+    moved += guided(machine)
+    if machine.support is not None and not massless(machine):
+        return "answers", ()
+    if machine.planting is not None or len(moved) < 2:
+        return "squares", ()
+    slides = moved[-1] not in machine.links
+    return "output", (f"sliders.{moved[-1]}.travel" if slides else f"links.{moved[-1]}.angle",)

@@ -54,7 +54,7 @@ def test_what_cannot_be_found_is_told_and_the_rest_is_there(tmp_path: Path) -> N
     parts = [note.split(":")[0] for note in found.notes]
     assert parts == ["vibration", "natural frequencies", "balance"]
     names = {picture.section for picture in pictures(found)}
-    assert names == {"motion"}
+    assert names == {"model", "motion"}
 
 
 @cache

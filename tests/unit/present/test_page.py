@@ -26,6 +26,7 @@ class Page(HTMLParser):
         self.ids: list[str] = []
         self.refs: list[str] = []
         self.words: list[str] = []
+        self.instead: list[str] = []
         self.feed(text)
 
     def handle_starttag(self, tag, attrs):
@@ -34,6 +35,8 @@ class Page(HTMLParser):
             assert not name.startswith("on")
             if name == "id":
                 self.ids.append(value)
+            elif name == "aria-label":
+                self.instead.append(value)
             elif name in ("href", "src", "xlink:href", "action", "data"):
                 self.refs.append(value)
             elif "url(" in (value or ""):
@@ -71,8 +74,9 @@ def test_the_page_holds_every_picture_and_the_model(found, html):
     drawn = pictures(found)
     assert read.tags.count("svg") == len(drawn) + 1  # the moving linkage
     words = " ".join(read.words)
-    for part in (*(one.caption for one in drawn), found.machine.description, eq.__version__):
+    for part in (*(one.draw().what for one in drawn), found.machine.description, eq.__version__):
         assert part in words
+    assert {one.caption for one in drawn} <= set(read.instead)
     assert found.text.strip() in words
     assert "equipoise report yamashita-rig" in words
 
@@ -91,7 +95,7 @@ def test_a_tool_has_its_report():
     told = " ".join(one for answer in document.summary for one in answer.sentences)
     worst = max(grip.a_hv[0] for grip in shorter.exposure.named["working"].values())
     assert f"a_hv of {worst:.2f}" in told.replace("\xa0", " ")
-    assert {section.name for section in document.sections} >= {"model", "tool", "file"}
+    assert {section.name for section in document.sections} >= {"model", "tool", "settings"}
 
 
 EVIL = 'A <script>alert("x")</script> & #image("/etc/passwd") \\ {{ 1 }} $x$ `'

@@ -7,6 +7,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.quantities import change, display, display_rules, number, typeset
+from equipoise.web.session import opened_example, titles
 from surface.running import example_text, massless
 from unit.web.pages import ask, edit, opened
 
@@ -176,3 +177,44 @@ def test_charts_are_those_of_the_outputs() -> None:
     assert [curve["array"] for curve in whole["curves"]] == [
         "spectrum.rows.shaking_force.x", "spectrum.rows.shaking_force.y"
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "first", "point"),
+    [
+        ("transplanter", "squares", "P"),
+        ("kim-chung-a", "squares", "P"),
+        ("slider-crank-engine", "squares", "C"),
+        ("drag-link", "squares", "C"),
+        ("riding-transplanter", "answers", "P"),
+        ("exudyn-slider-crank", "answers", "C"),
+        ("sieve", "answers", "C"),
+        ("stephenson-six-bar", "output", "E"),
+        ("quick-return", "output", "F"),
+    ],
+)
+def test_what_a_machine_is_for_comes_first(name: str, first: str, point: str) -> None:
+    _, shown = opened(name)
+    assert (shown.content["first"], shown.content["traced"][0]) == (first, point)
+
+
+@pytest.mark.parametrize("name", [name for name in titles() if not name.startswith("drag")])
+def test_the_first_path_is_no_circle_of_the_crank(name: str) -> None:
+    """Of every example where another point moves than those of the crank."""
+    _, shown = opened(name)
+    machine = eq.load(name)
+    first = shown.content["traced"][0]
+    crank = machine.links[machine.drive.link].points
+    moving = [point for link in machine.links.values() for point in link.points]
+    assert first not in crank or {*moving} <= {*crank, *machine.frame}
+
+
+def test_a_six_bar_shows_what_its_output_does() -> None:
+    """Without being asked; and no more of it where another machine is opened."""
+    session, shown = opened("stephenson-six-bar")
+    angle = eq.analyze(eq.load("stephenson-six-bar"), 720).outputs["links.output.angle"].drawn
+    assert shown.array("output.links.output.angle") == pytest.approx(angle, rel=1e-6)
+    session.open(opened_example("quick-return"))
+    (state_of_it, *_) = ask(session, "compare", on=False)
+    outputs = [one for one in state_of_it.content["arrays"] if one.startswith("output.")]
+    assert outputs == ["output.sliders.ram on frame.travel"]

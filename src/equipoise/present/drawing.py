@@ -1,0 +1,81 @@
+"""The pictures of a report, drawn by two processes where that is safe: it takes half the time."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import warnings
+from collections.abc import Collection
+from typing import TYPE_CHECKING
+
+from equipoise.figures import drawn as svg_of
+from equipoise.i18n import say
+from equipoise.present.findings import Findings, ToolFindings
+from equipoise.present.pictures import SECTIONS, each
+from equipoise.results.blocks import Drawn
+
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
+Drawings = dict[str, list[Drawn]]
+"""Pictures by section."""
+
+
+def drawings(found: Findings | ToolFindings, together: bool = False) -> Drawings:
+    """All pictures.
+
+    together : whether a copy of this process may draw half of them, where there are two processors,
+        Linux, and no other thread, which the copy would lack.
+    """
+    processors = len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1
+    may_fork = together and processors > 1 and threading.active_count() == 1
+    other = _others(found) if may_fork else ()
+    if not other:
+        return _draw(found, SECTIONS)
+    _ = found.notes  # everything that both need is computed once
+    import multiprocessing
+
+    context = multiprocessing.get_context("fork")
+    here, there = context.Pipe(duplex=False)
+    helper = context.Process(target=_send, args=(there, found, other), daemon=True)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # threads of BLAS can be forked
+        helper.start()
+    there.close()
+    try:
+        drawn = _draw(found, [section for section in SECTIONS if section not in other])
+        of_helper: Drawings = here.recv()
+        return drawn | of_helper
+    except EOFError:  # the helper failed, and what it failed of is to be told
+        return drawn | _draw(found, other)
+    finally:
+        helper.kill()
+        helper.join()
+
+
+def _others(found: Findings | ToolFindings) -> Collection[str]:
+    """Sections that hold about half of the pictures."""
+    if isinstance(found, ToolFindings):
+        return ()
+    if found.response is not None:
+        return ("vibration",) if found.planting is None else ("vibration", "modes", "balance")
+    return ("motion", "forces") if found.planting is None else ("motion", "planting")
+
+
+def _send(pipe: Connection, found: Findings | ToolFindings, sections: Collection[str]) -> None:
+    try:
+        pipe.send(_draw(found, sections))
+    except BaseException:  # what goes wrong here goes wrong again where it can be told
+        pipe.close()
+
+
+def _draw(found: Findings | ToolFindings, sections: Collection[str]) -> Drawings:
+    drawn: Drawings = {}
+    for picture in each(found, sections=sections):
+        chart = picture.draw()
+        told = say("; ").join((chart.what, *chart.words))
+        svg, wide = svg_of(chart)
+        block = Drawn(picture.name, told, svg, picture.seen(), say(picture.caption), wide)
+        drawn.setdefault(picture.section, []).append(block)
+    return drawn

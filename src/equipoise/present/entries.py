@@ -1,0 +1,35 @@
+"""A picture of a report before it has a place there: what draws it, and what is seen in it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from equipoise.figures import Picture as Drawing
+    from equipoise.results.charts import Chart
+
+
+class Entry(NamedTuple):
+    """Name, caption, what draws it, and what is seen in it."""
+
+    name: str
+    caption: str
+    draw: Callable[[], Drawing]
+    seen: Callable[[], str] = str
+
+
+def pages(
+    name: str, caption: str, make: Callable[[], Iterable[Chart]], seen: Callable[[], str] = str
+) -> Iterator[Entry]:
+    """What goes on over several pictures; how many, only their charts tell."""
+    for number, chart in enumerate(make(), 1):
+        if number == 1:
+            yield Entry(name, caption, partial(made, chart), seen)
+        else:
+            yield Entry(f"{name}-{number}", caption, partial(made, chart))
+
+
+def made(chart: Chart) -> Chart:
+    return chart

@@ -1,0 +1,284 @@
+"""What is seen in a part or a picture of a linkage's report, in one line made of its figures.
+
+Lines end without a point, as titles do; one that there is nothing to tell of is empty.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from equipoise.balancing.objectives import unit_of
+from equipoise.balancing.told import capital, figure_named, figure_unit, good_already
+from equipoise.i18n import say, to_say
+from equipoise.mechanism.outputs import joint_named, named
+from equipoise.present.shaking import NOTHING, Shaking, acting, largest_joint, largest_of
+from equipoise.present.support_headlines import first_gauge
+from equipoise.quantities import Dimension, angle, brief, change, percent, told
+from equipoise.results.analysis_blocks import shares
+from equipoise.results.outputs import CAUSES, objective_named, output_named, shown_in
+from equipoise.signals import Figures
+
+if TYPE_CHECKING:
+    from equipoise.balancing.balanced import Balanced
+    from equipoise.planting.summary import PlantingFigures
+    from equipoise.present.findings import Findings
+    from equipoise.results.analysis import Analysis
+
+# -- motion ----------------------------------------------------------------------------------------
+
+
+def counted(analysis: Analysis) -> str:
+    """How many links move, and their mass."""
+    links = analysis.machine.links
+    if any(link.mass is None for link in links.values()):
+        return say("{count} moving links", count=len(links))
+    mass = told(analysis.machine.mass, "mass", "kg", digits=3)
+    return say("{count} moving links of {mass} together", count=len(links), mass=mass)
+
+
+def heaviest(analysis: Analysis) -> str:
+    """Which link has most of the mass."""
+    links = analysis.machine.links
+    name, mass = largest_of({name: link.mass or 0.0 for name, link in links.items()})
+    if not mass or any(link.mass is None for link in links.values()):
+        return ""
+    share = percent(mass / analysis.machine.mass)
+    return say("{link} has {share} % of the mass of the links", link=named(name), share=share)
+
+
+def longest(analysis: Analysis) -> str:
+    """Which point of a moving link goes farthest in a turn of the crank."""
+    turns = analysis.motion.turns
+    lengths = {
+        name: float(np.sum(np.abs(point.place - np.roll(point.place, 1)))) / turns
+        for name, point in analysis.motion.points.items()
+    }
+    name, length = largest_of(lengths)
+    size = told(length, "length", digits=3)
+    return say(
+        "{point} goes farthest: {length} in a turn of the crank", point=named(name), length=size
+    )
+
+
+def fastest(analysis: Analysis) -> str:
+    """Which point moves fastest."""
+    points = analysis.motion.points.items()
+    name, speed = largest_of({name: float(np.max(np.abs(p.velocity))) for name, p in points})
+    size = told(speed, "speed", digits=3)
+    return say("{point} is the fastest point, at up to {speed}", point=named(name), speed=size)
+
+
+def stroked(analysis: Analysis) -> str:
+    """Stroke of the first slider or swing of the first rocker, with its time ratio."""
+    for name, one in analysis.strokes.items():
+        templates = {
+            "slider": to_say("{name} has a stroke of {size}, with a time ratio of {ratio}"),
+            "rocker": to_say("{name} swings by {size}, with a time ratio of {ratio}"),
+        }
+        size = told(one.stroke, one.dimension, "deg" if one.dimension == "angle" else None)
+        values = {"name": named(joint_named(name)), "size": size, "ratio": brief(one.time_ratio)}
+        return say(templates["slider" if one.kind == "slider" else "rocker"], **values)
+    return fastest(analysis)
+
+
+def kinematic(analysis: Analysis, name: str) -> str:
+    """Of a chart of motion: the range of the transmission angles, or the largest velocity."""
+    from equipoise.figures.points import kinematics_named
+
+    every = [one for one in analysis.outputs if one.group == "transmission"]
+    if every and name == kinematics_named("transmission"):
+        ends = ((one.figures.min, one.figures.max) for one in every)
+        low, high = (
+            angle(f(pair)) for f, pair in zip((min, max), zip(*ends, strict=True), strict=True)
+        )
+        return say("The transmission angle stays between {low} and {high}", low=low, high=high)
+    for one in analysis.outputs:
+        if one.dimension in ("speed", "angular speed") and name == kinematics_named(one.item):
+            return topped(one.label(), one.figures, one.dimension)
+    return ""
+
+
+# -- planting --------------------------------------------------------------------------------------
+
+
+def planted(found: PlantingFigures | None) -> str:
+    """How deep the finger goes."""
+    depth = None if found is None else found.figures.get("soil.depth")
+    if depth is None:
+        return ""
+    return say("The tip goes {depth} into the soil", depth=told(depth, "length", digits=3))
+
+
+def geared(analysis: Analysis, link: str) -> str:
+    """How much faster than the crank a link turns at most."""
+    rate = analysis.motion.links[link].angular_velocity / analysis.motion.speed
+    ratio = brief(float(np.max(np.abs(rate))))
+    return say(
+        "{link} turns at up to {ratio} times the speed of the crank", link=named(link), ratio=ratio
+    )
+
+
+def resisted(found: PlantingFigures) -> str:
+    """What the soil adds to the drive torque."""
+    assert found.forces is not None
+    air, soil = found.forces.compared()["drive_torque"]
+    before, after = (told(one.peak, "torque", digits=3) for one in (air, soil))
+    text = to_say("Drive torque: up to {before} in the air, {after} in the soil")
+    return say(text, before=before, after=after)
+
+
+# -- forces ----------------------------------------------------------------------------------------
+
+
+def shaken(found: Findings) -> str:
+    """How much shakes the frame."""
+    size = Shaking.of(found).size
+    if size.peak <= NOTHING * found.analysis.summary["frame_force"].peak:
+        return say("No force shakes the frame")
+    return say("Up to {peak} shakes the frame", peak=told(size.peak, "force", digits=3))
+
+
+def pushed(found: Findings) -> str:
+    """In which way the shaking force of all rows acts."""
+    return acting(Shaking.of(found).force) if shaken(found) else ""
+
+
+def peaked(analysis: Analysis, name: str, dimension: Dimension) -> str:
+    """The largest size of an output, and at which crank angle."""
+    one = analysis.summary[name]
+    scale = analysis.summary["frame_moment" if dimension == "torque" else "frame_force"].peak
+    what = output_named(name)
+    if one.peak <= NOTHING * scale:
+        return say("{what}: none", what=capital(what))
+    return topped(what, one, dimension)
+
+
+def topped(what: str, found: Figures, dimension: Dimension) -> str:
+    """The largest size of something, and at which crank angle."""
+    return say(
+        "{what}: up to {peak}, at crank angle {angle}",
+        what=capital(what),
+        peak=told(found.peak, dimension, digits=3),
+        angle=angle(found.peak_at, 0),
+    )
+
+
+def caused(analysis: Analysis) -> str:
+    """What most of the swing of the drive torque comes from."""
+    parts = analysis.forces.split.by_cause("drive_torque")
+    name, share = next(iter(shares({k: part - np.mean(part) for k, part in parts.items()}).items()))
+    values = {"share": percent(share), "cause": say(CAUSES[name])}
+    return say("{share} % of the swing of the drive torque comes from: {cause}", **values)
+
+
+def ordered(found: Findings) -> str:
+    """The loudest order of the shaking force."""
+    order, share = Shaking.of(found).loudest
+    text = to_say("{share} % of the shaking force is order {order}")
+    return say(text, share=percent(share), order=f"{order:.4g}")
+
+
+def carried(analysis: Analysis) -> str:
+    """Which joint carries most."""
+    name, found = largest_joint(analysis)
+    size = told(found.peak, "force", digits=3)
+    return say("Joint {name} carries most: up to {peak}", name=named(joint_named(name)), peak=size)
+
+
+def joint_peaked(analysis: Analysis) -> str:
+    """At which crank angle that joint carries most."""
+    name, found = largest_joint(analysis)
+    at = angle(found.peak_at, 0)
+    text = to_say("Joint {name} carries most at crank angle {angle}")
+    return say(text, name=named(joint_named(name)), angle=at)
+
+
+def joint_acting(analysis: Analysis) -> str:
+    """In which way the force in that joint acts."""
+    name, _ = largest_joint(analysis)
+    force = acting(analysis.forces.joints[name].value)
+    return say("Joint {name}: {sentence}", name=named(joint_named(name)), sentence=force)
+
+
+# -- balancing -------------------------------------------------------------------------------------
+
+
+def aimed(found: Findings) -> str:
+    """What balancing does to the first of what was to become small."""
+    balanced = found.balanced
+    assert balanced is not None
+    one, pair = next(iter(balanced.aims.items()))
+    what = capital(objective_named(one, len(found.machine.rows)))
+    if not found.helped:
+        return f"{what}: {good_already(balanced)}"
+    return say("{what}: {change}", what=what, change=change(*pair) or percent(0))
+
+
+def added(found: Findings) -> str:
+    """What the changes do to the mass of the links."""
+    balanced = found.balanced
+    assert balanced is not None
+    more = told(balanced.added_mass, "mass", digits=3)
+    return say("{mass} of mass is added", mass=more) if balanced.added_mass > 0 else ""
+
+
+COMPARED = {
+    "force": "shaking_force.rms",
+    "polar": "shaking_force.peak",
+    "moment": "shaking_moment.rms",
+    "torque": "drive_torque.rms",
+    "rows": "rows.shaking_force.rms",
+}
+"""Picture of before and after -> the figure that its line tells."""
+
+
+def compared(found: Findings, picture: str) -> str:
+    """A figure before and after."""
+    balanced, name = found.balanced, COMPARED.get(picture, "")
+    assert balanced is not None
+    if name not in balanced.before:
+        return ""
+    pair = balanced.before[name], balanced.after[name]
+    what = figure_named(name, len(found.machine.rows))
+    return _changed(what, pair, figure_unit(balanced, name))
+
+
+def reached(balanced: Balanced) -> str:
+    """The first of what was to become small, before and after."""
+    one, pair = next(iter(balanced.aims.items()))
+    what = objective_named(one, len(balanced.original.rows))
+    return _changed(what, pair, unit_of(one, balanced.original))
+
+
+def _changed(what: str, pair: tuple[float, float], si_unit: str) -> str:
+    before, after = pair
+    unit = shown_in(si_unit, pair)
+    return say(
+        "{what}: {before} → {after} {unit} ({change})",
+        what=capital(what),
+        before=unit.text(before, digits=3),
+        after=unit.text(after, before, 3),
+        unit=unit.name,
+        change=change(before, after) or percent(0),
+    )
+
+
+# -- parts -----------------------------------------------------------------------------------------
+
+
+def seen_in(part: str, found: Findings) -> str:
+    """The line of a part of the report, by its name."""
+    analysis = found.analysis
+    lines: dict[str, Callable[[], str]] = {
+        "model": lambda: counted(analysis),
+        "motion": lambda: stroked(analysis),
+        "planting": lambda: planted(found.planting),
+        "forces": lambda: shaken(found),
+        "joints": lambda: carried(analysis),
+        "vibration": lambda: first_gauge(found.response),
+        "balance": lambda: aimed(found),
+    }
+    return lines[part]()

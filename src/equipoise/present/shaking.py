@@ -1,0 +1,109 @@
+"""The shaking force of all rows together: its size, its loudest order, where it acts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import cos, hypot, pi, sin
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from equipoise.i18n import say
+from equipoise.quantities import angle
+from equipoise.signals import Array, Figures, figures, harmonics
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.model import Machine
+    from equipoise.present.findings import Findings
+    from equipoise.results.analysis import Analysis
+
+
+NOTHING = 1e-9
+"""Over the largest size of a signal: what is smaller is rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shaking:
+    """The shaking force of all rows together.
+
+    force : complex (N,), N, of equally spaced crank angles of a whole cycle of `turns`.
+    """
+
+    machine: Machine
+    crank_angle: Array
+    force: Array
+    turns: int
+
+    @classmethod
+    def of(cls, found: Findings) -> Shaking:
+        """From the analysis; rows turn ahead by their phases."""
+        motion, force = found.analysis.motion, found.analysis.forces.shaking_force.value
+        if len(rows := found.machine.rows) > 1:
+            orders = np.fft.fftfreq(len(force), 1 / len(force)) / motion.turns
+            ahead = sum(np.exp(1j * orders * row.phase) for row in rows)
+            force = np.fft.ifft(np.fft.fft(force) * ahead)
+        return cls(found.machine, found.analysis.crank_angle, force, motion.turns)
+
+    @cached_property
+    def size(self) -> Figures:
+        """Figures of its size."""
+        return figures(self.crank_angle, np.abs(self.force))
+
+    @property
+    def over_weight(self) -> float:
+        """Peak over the weight of the links; 0 without gravity."""
+        weight = self.machine.mass * hypot(*self.machine.gravity)
+        return self.size.peak / (weight * max(1, len(self.machine.rows))) if weight else 0.0
+
+    @cached_property
+    def loudest(self) -> tuple[float, float]:
+        """Order with the largest share of the mean square, the mean left out, and that share."""
+        parts = (self.force.real, self.force.imag)
+        squares = np.sum([np.abs(harmonics(part)) ** 2 for part in parts], axis=0)
+        squares[0] = 0.0
+        top = int(np.argmax(squares))
+        return top / self.turns, float(squares[top] / (np.sum(squares) or 1.0))
+
+
+def direction(force: Array) -> tuple[float, float]:
+    """Along which most of the mean square of a force (N,), complex, acts, and that share.
+
+    In rad, from 0 to less than pi.
+    """
+    parts = np.vstack([force.real, force.imag])
+    values, vectors = np.linalg.eigh(parts @ parts.T)
+    share = float(values[1] / (np.sum(values) or 1.0))
+    x, y = vectors[:, 1]
+    return float(np.arctan2(y, x) % pi), share
+
+
+STRETCHED, ROUND = 0.8, 0.6
+"""Share of the mean square along one direction: from where, and up to where, it is called so."""
+
+
+def acting(force: Array) -> str:
+    """The way in which a force (N,), complex, acts, as a title has it."""
+    way, share = direction(force)
+    if share <= ROUND:
+        return say("The force acts in all directions alike, turning with the crank")
+    if share >= STRETCHED and abs(sin(way)) > cos(pi / 6):
+        return say("The force acts mostly up and down")
+    if share >= STRETCHED and abs(cos(way)) > cos(pi / 6):
+        return say("The force acts mostly to and fro")
+    return say("The force acts mostly along {angle} from the x axis", angle=angle(way, 0))
+
+
+def largest_joint(analysis: Analysis) -> tuple[str, Figures]:
+    """The joint whose force is the largest, and figures of that force."""
+    found = {name: analysis.summary[f"joints.{name}"] for name in analysis.forces.joints}
+    name = max(found, key=lambda name: found[name].peak)
+    return name, found[name]
+
+
+def largest_of(sizes: Mapping[str, float]) -> tuple[str, float]:
+    """Name and size of the largest of some; of equal ones the first."""
+    top = max(sizes.values(), default=0.0)
+    name = next((name for name, size in sizes.items() if size >= (1 - NOTHING) * top), "")
+    return name, top

@@ -1,0 +1,119 @@
+"""What stands above parts and pictures of a report: lines made of figures of the machine."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.i18n import LANGUAGES
+from equipoise.present.composition import SHORT, build
+from equipoise.present.findings import Findings, find
+from equipoise.present.pages import Document, page, paired, pdf
+from equipoise.results.blocks import Drawn, Table
+
+
+@cache
+def document(name: str, language: str = "en", speed: float | None = None) -> Document:
+    return build(find(name, speed=speed), language)
+
+
+def drawn_of(told: Document) -> dict[str, Drawn]:
+    blocks = [block for section in told.sections for block in section.blocks]
+    return {block.name: block for block in blocks if isinstance(block, Drawn)}
+
+
+def test_the_share_of_an_order_is_that_of_the_force() -> None:
+    analysis = eq.analyze(eq.load("yamashita-1"), 720)
+    parts = (analysis.by_order[f"shaking_force.{axis}"] for axis in "xy")
+    squares = np.sum([one.sizes**2 for one in parts], axis=0)
+    share = squares[1] / np.sum(squares[1:])
+    seen = drawn_of(document("yamashita-1"))["spectrum"].seen
+    assert seen == f"{100 * share:.0f} % of the shaking force is order 1"
+
+
+def test_lines_are_of_this_machine_at_this_speed() -> None:
+    slow, fast = (
+        {section.name: section.seen for section in document("yamashita-1", "en", speed).sections}
+        for speed in (None, 40.0)
+    )
+    assert slow["forces"] == "Up to 23.2 N shakes the frame"
+    assert slow["forces"] != fast["forces"] and slow["motion"] == fast["motion"]
+    assert "70.9 N" in slow["joints"] and " %" in slow["balance"]
+
+
+@pytest.mark.parametrize(
+    ("name", "language"), [("yamashita-rig", "en"), ("brush-cutter", "ja"), ("transplanter", "ko")]
+)
+def test_a_caption_does_not_repeat_its_title(name: str, language: str) -> None:
+    told = document(name, language)
+    drawn = drawn_of(told)
+    assert drawn
+    for block in drawn.values():
+        assert block.caption and not (block.seen and block.seen in block.caption)
+        assert not block.seen.endswith((".", "。", ":", "："))
+    seen = [block.seen for block in drawn.values() if block.seen]
+    seen += [section.seen for section in told.sections if section.seen]
+    assert len(seen) > len(drawn) / 2
+
+
+def test_the_name_of_the_machine_stands_above_the_report_and_on_no_picture() -> None:
+    told = document("yamashita-rig")
+    assert all(told.title not in block.svg for block in drawn_of(told).values())
+    html = page(replace(told, animation="", appendix=()))
+    assert html.count(told.title) == 2  # of the page, and above it
+
+
+def shape(name: str, wide: bool) -> Drawn:
+    return Drawn(name, "", "", wide=wide)
+
+
+def test_pictures_stand_in_pairs() -> None:
+    drawn = [shape(name, name.isupper()) for name in "aBcDefg"]
+    rows = ["".join(one.name for one in row) for row in paired(drawn)]
+    assert rows == ["B", "ac", "D", "ef", "g"]
+    assert paired([]) == []
+
+
+@pytest.mark.parametrize("name", ["yamashita-1", "brush-cutter"])
+def test_long_tables_stand_in_the_appendix_and_none_is_lost(name: str) -> None:
+    found = find(name)
+    told = build(found)
+    in_sections = [b for s in told.sections for b in s.blocks if isinstance(b, Table)]
+    behind = [b for b in told.together if isinstance(b, Table)]
+    assert all(len(table.rows) <= SHORT for table in in_sections)
+    assert behind and all(len(table.rows) > SHORT for table in behind)
+    html = page(told)
+    assert html.count("<details>") == len(told.appendix)
+    assert html.count("<table") >= len([*in_sections, *behind])
+    if isinstance(found, Findings):
+        titles = {table.title for table in (*in_sections, *behind)}
+        results = (found.analysis, found.balanced)
+        wanted = [b.title for one in results for b in one.blocks() if isinstance(b, Table)]
+        assert wanted and set(wanted) <= titles
+
+
+def test_what_helps_is_told_before_and_after_at_once() -> None:
+    found = find("yamashita-1")
+    assert isinstance(found, Findings) and found.after is not None
+    tiles = {tile.label: tile for tile in document("yamashita-1").tiles}
+    peak = tiles["shaking force, peak"]
+    later = found.after.analysis.summary["shaking_force"].peak
+    assert (peak.value, peak.after) == ("23.2", f"{later:.1f}")
+    assert tiles["drive torque, peak"].after == ""  # is the same
+
+
+@pytest.mark.parametrize(("name", "most"), [("yamashita-1", 7), ("yamashita-rig", 10)])
+def test_the_pdf_is_short(name: str, most: int) -> None:
+    data = pdf(document(name))
+    assert len(re.findall(rb"/Type ?/Page\b", data)) in range(2, most + 1)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_names_of_the_file_are_told_from_words(language: str) -> None:
+    seen = drawn_of(document("yamashita-rig", language))["gauge-gauge"].seen
+    assert {"en": "“gauge”", "ja": "「gauge」", "ko": "‘gauge’"}[language] in seen
