@@ -179,13 +179,13 @@ class Asked:
 
     def pictures(self, names: Sequence[str]) -> Mapping[str, Picture]:
         """Pictures of answers; free vibration stands in those of others, too."""
-        from equipoise.figures import tool_designs, tool_shaft, tool_speeds
+        from equipoise.figures import tool_designs, tool_shaft, tool_side, tool_speeds
         from equipoise.handheld.studies import determinant_chart
 
         drawn: dict[str, Picture] = {}
         if "modes" in names:
             highest = float(self.modes.planes[0].parameter[-1])
-            drawn |= tool_shaft.mode_charts(self.modes)
+            drawn |= tool_side.mode_pictures(self.modes)
             chart = determinant_chart(self.tool, 1.1 * highest)
             drawn |= tool_designs.determinant_charts(chart, self.modes)
         if "respond" in names and self.respond.transmissions is not None:

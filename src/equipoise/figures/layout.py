@@ -14,13 +14,14 @@ from equipoise.figures.panel import LEAD, draw, flag_height, frame
 from equipoise.figures.sheet import Sheet, Words, lines_of, width_of
 from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL
 from equipoise.figures.view import Scale, View, ticks_of
-from equipoise.results.charts import Chart
+from equipoise.results.charts import Axis, Chart
 
 WIDE, HALF = 518.4, 340.0
 """Points: width of a picture, and of one of a pair, which is shown half as wide as a page."""
 
 EDGE, GAP, BELOW = 10.0, 14.0, 12.0
 """Points: free at the edges, between columns, and between rows of panels."""
+TIED = "\N{NO-BREAK SPACE}"
 LINE, OVER, TOP = 12.0, 16.0, 4.0
 """Points: height of a line of words; by how much the name of an axis may be longer than that; free
 above a picture without a heading."""
@@ -119,7 +120,7 @@ def _sides(cell: Cell) -> None:
         numbers.append("−0000")
     wide = max(width_of(text, SMALL) for text in numbers)
     if panel.y.label:
-        cell.y_label = tuple(lines_of(panel.y.text, cell.height + OVER, NORMAL))
+        cell.y_label = _name_of(panel.y, cell.height + OVER)
     cell.left = max(
         7 + wide + 2 + (1 + LINE * len(cell.y_label) if cell.y_label else 0),
         *(10 + width_of(text, NORMAL) for text in panel.left),
@@ -176,7 +177,7 @@ def _above(cell: Cell, width: float) -> None:
     if cell.keys and not cell.beside:
         cell.above += KEY * len(rows) + 2
     if cell.numbered and panel.x.label and not panel.bare:
-        cell.x_label = tuple(lines_of(panel.x.text, width + 2 * OVER, NORMAL))
+        cell.x_label = _name_of(panel.x, width + 2 * OVER)
         cell.below += LINE * (len(cell.x_label) - 1)
 
 
@@ -215,6 +216,13 @@ def _titles(sheet: Sheet, cell: Cell, start: float, end: float, foot: float) -> 
     for line in reversed(cell.titles):
         sheet.add(Words(start, foot - 4, line, NORMAL, INK), 7)
         foot -= LINE
+
+
+def _name_of(axis: Axis, room: float) -> tuple[str, ...]:
+    """Lines of the name of an axis, whose unit stays whole."""
+    unit = axis.unit_name
+    whole = axis.text.replace(unit, unit.replace(" ", TIED)) if " " in unit else axis.text
+    return tuple(line.replace(TIED, " ") for line in lines_of(whole, room, NORMAL))
 
 
 def _name_axes(sheet: Sheet, cell: Cell, view: View, left: float) -> None:

@@ -280,14 +280,15 @@ def _flags(view: View) -> None:
     flags = [f for f in panel.flags if low <= f.at * view.x.axis.unit.factor <= high]
     turned = upright(panel, view.x.length)
     wide = [STAND if turned else max(width_of(text, SMALL) for text in f.texts) + 6 for f in flags]
-    while flags and sum(wide) > view.x.length + 12:
+    while flags and sum(wide) > view.x.length + (0 if panel.bare else 12):
         gone = min(range(len(flags)), key=lambda k: flags[k].weight)
         del flags[gone], wide[gone]
     if not flags:
         return
     top = view.y.end
     places = [float(view.x.at(flag.at)) for flag in flags]
-    moved = spread(places, wide, view.x.start - (4 if panel.flag_words else 20), view.x.end + 8)
+    before, beyond = (0, 0) if panel.bare else (4 if panel.flag_words else 20, 8)
+    moved = spread(places, wide, view.x.start - before, view.x.end + beyond)
     count = max(len(flag.texts) for flag in flags)
     for flag, place, x in zip(flags, places, moved.tolist(), strict=True):
         view.line(np.array([(place, top), (x, top - LEAD)]), look_of("zero"), 2.0)

@@ -25,11 +25,11 @@ CHARTS = {
     "Response": "vibration:response_charts",
     "Transient": "vibration:transient_charts",
     "Sweep": "sweep:sweep_charts",
-    "ToolModes": "tool_shaft:mode_charts",
+    "ToolModes": "tool_side:mode_pictures",
     "Transmissions": "tool_speeds:transmission_charts",
     "ToolResponse": "tool_shaft:response_charts",
     "ToolExposure": "tool_speeds:exposure_charts",
-    "ToolDesign": "tool_designs:design",
+    "ToolDesign": "tool_side:design_pictures",
     "Variation": "tool_designs:variation_charts",
     "Landscape": "studies:landscape",
 }

@@ -214,15 +214,15 @@ def design(found: ToolDesign) -> Chart:
     one = found.figures[MEASURES.index("rms" if plan is None else plan.measure)]
     what = f"{figure_named(one)}: {shown(one.before)} → {shown(one.after)} m/s²"
     keys = (("dashed ink", say("before")), ("ink", say("after")))
-    words = tuple(changes_told(found))
-    return Chart("design", found.tool.title, what, (panel,), keys=keys, words=words)
+    return Chart("design", found.tool.title, what, (panel,), keys=keys)
 
 
 def changes_told(found: ToolDesign) -> list[str]:
-    """What was changed, each in words; where they are many, the first of them."""
-    count = len(found.variables)
-    words = []
-    for one, edge in zip(found.variables, found.edges, strict=True):
+    """What was changed but is not moved, in words; where they are many, the first of them."""
+    every = zip(found.variables, found.edges, strict=True)
+    told = [(one, edge) for one, edge in every if one.dimension != "length"]
+    words, count = [], len(told)
+    for one, edge in told:
         axis = Axis("", number_unit(one.dimension))
         ends = f"{axis.told(one.before)} → {axis.quantity(one.after)}"
         end = f" ({say(ALLOWED[edge])})" if edge else ""

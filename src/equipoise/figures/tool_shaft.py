@@ -224,7 +224,7 @@ def _displaced(line: ShaftLine, loudest: list[int]) -> dict[tuple[int, int], Arr
     least = MATTERS * float(np.max(np.abs(moved)))
     found: dict[tuple[int, int], Array] = {}
     for number, k in enumerate(loudest):
-        vertical, lateral = (_largest(moved[:, plane, k]) for plane in range(2))
+        vertical, lateral = (at_largest(moved[:, plane, k]) for plane in range(2))
         if np.max(np.abs(vertical)) > least:
             found[number, 0] = vertical
         if np.max(np.abs(lateral)) > least and not np.allclose(lateral, vertical, atol=least):
@@ -232,7 +232,7 @@ def _displaced(line: ShaftLine, loudest: list[int]) -> dict[tuple[int, int], Arr
     return found
 
 
-def _largest(amplitude: Array) -> Array:
+def at_largest(amplitude: Array) -> Array:
     """Where an amplitude (X,) is at the instant when it is largest."""
     turned = np.exp(-0.5j * np.angle(np.sum(amplitude**2)))
     shape = np.real(amplitude * turned)

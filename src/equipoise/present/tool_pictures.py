@@ -12,12 +12,16 @@ from equipoise.present.findings import ToolFindings
 
 
 def of_tool(found: ToolFindings) -> Iterator[Entry]:
-    """Modes, transmission, what the hands get, and the design."""
-    from equipoise.figures import tool_designs, tool_shaft, tool_speeds
+    """The tool itself, modes, transmission, what the hands get, and the design."""
+    from equipoise.figures import tool_designs, tool_shaft, tool_side, tool_speeds
 
     modes, transmission = found.modes, found.transmission
     planes = ("", "-lateral")[: 1 if found.tool.alike else 2]
+    caption = to_say("The tool from the side, at rest and as it is deflected at work.")
+    yield Entry("side", caption, partial(tool_side.side, found.tool))
     if modes is not None:
+        caption = to_say("The tool from the side in its lowest natural vibrations.")
+        yield Entry("side-modes", caption, partial(tool_side.side_modes, modes))
         caption = to_say("Shapes of the natural vibrations of the shaft.")
         for plane, name in enumerate(planes):
             drawn = partial(tool_shaft.shapes, modes, plane)
@@ -48,6 +52,8 @@ def of_tool(found: ToolFindings) -> Iterator[Entry]:
             partial(seen.judged, found),
         )
     if found.design is not None:
+        caption = to_say("The tool from the side before and after what is changed.")
+        yield Entry("side-design", caption, partial(tool_side.side_design, found.design))
         caption = to_say(
             "What the hand that gets most gets over the band of speeds, before and after."
         )

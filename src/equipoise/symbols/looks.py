@@ -111,6 +111,7 @@ LOOKS = {
     "driver-head": Look("ink", None),
     "force": Look(None, "stress", 2.6, flat=True),
     "force-head": Look("stress", None),
+    "force-arc": Look(None, "stress", 1.8),
     "scale": Look(None, "ink", 1.4),
 }
 """Role -> look."""

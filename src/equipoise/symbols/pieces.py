@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -280,9 +280,5 @@ def placed(scene: Scene, every: Iterable[Piece], k: int) -> list[Shape]:
         if track is None:
             found += piece.shapes
             continue
-        turn = np.exp(1j * track.angle[k])
-        for shape in piece.shapes:
-            stretched = shape.places.real * track.stretch[k] + 1j * shape.places.imag
-            places = track.place[k] + stretched * turn
-            found.append(replace(shape, places=places, offsets=shape.offsets * turn))
+        found += [track.moved(shape, k) for shape in piece.shapes]
     return found

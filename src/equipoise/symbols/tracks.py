@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from equipoise.symbols.carrier import MOUNT
 from equipoise.symbols.scene import Scene
-from equipoise.symbols.shapes import Array
+from equipoise.symbols.shapes import Array, Shape
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +22,13 @@ class Track:
     place: Array
     angle: Array
     stretch: Array
+
+    def moved(self, shape: Shape, k: int) -> Shape:
+        """A shape where it is at the k-th instant."""
+        turn = np.exp(1j * self.angle[k])
+        stretched = shape.places.real * self.stretch[k] + 1j * shape.places.imag
+        places = self.place[k] + stretched * turn
+        return replace(shape, places=places, offsets=shape.offsets * turn)
 
 
 @dataclass(frozen=True)

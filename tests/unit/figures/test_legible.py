@@ -98,3 +98,12 @@ def test_titles_and_names_of_axes_are_never_cut() -> None:
         written = " ".join(words.text for words in lay_out(chart).words)
         assert "…" not in written
         assert written.count("goes") == 12 * 4 + 3 * (12 * 3 + 3)
+
+
+def test_units_of_names_that_wrap_stay_whole() -> None:
+    x = np.linspace(0.0, 1.0, 5)
+    y = Axis.of("amplitude", "torque", x)
+    panel = Panel(Axis("x"), y, (Curve(x, x),), height=46.0)
+    words = [text.text for text in lay_out(Chart("one", "M", "what", (panel,))).words]
+    assert "N" not in words and "m" not in words
+    assert any(text.endswith("N m") for text in words)

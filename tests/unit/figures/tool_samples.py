@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from equipoise.figures import tool_designs, tool_shaft, tool_speeds
+from equipoise.figures import tool_designs, tool_shaft, tool_side, tool_speeds
 from equipoise.handheld.exposed import expose_tool
 from equipoise.handheld.model import Absorber, Excitation, Hand, Station, Tool, Work
 from equipoise.handheld.modes import vibrate_tool
@@ -119,7 +119,7 @@ def drawn_anew(kind: str) -> Drawn:
     """The same, not those drawn before."""
     tool = machine(kind)
     modes = vibrate_tool(tool, 8 if kind == "cutter" else 5)
-    drawn = tool_shaft.mode_charts(modes)
+    drawn = {"side": tool_side.side(tool), **tool_side.mode_pictures(modes)}
     if kind == "close together":
         return drawn | tool_shaft.response_charts(respond_tool(tool, 700.0))
     highest = 1.3 * float(modes.planes[0].parameter[-1])

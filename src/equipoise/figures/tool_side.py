@@ -1,0 +1,166 @@
+"""A hand-held tool from the side: at rest, deflected at work and in its modes, before and after."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from equipoise.figures.shared import by_name
+from equipoise.figures.style import short
+from equipoise.figures.tool_designs import changes_told, design
+from equipoise.figures.tool_shaft import (
+    LONGEST,
+    POINTS,
+    at_largest,
+    mode_charts,
+    station_flags,
+    turns_told,
+)
+from equipoise.handheld.response import respond_tool
+from equipoise.handheld.side import side_of
+from equipoise.i18n import say
+from equipoise.results.charts import (
+    Arrow,
+    Axis,
+    Chart,
+    Curve,
+    Flag,
+    Line,
+    Mark,
+    Panel,
+    quantity,
+    shown,
+)
+
+if TYPE_CHECKING:
+    from equipoise.handheld.design import ToolDesign
+    from equipoise.handheld.model import Tool
+    from equipoise.handheld.modes import ToolModes
+    from equipoise.symbols.tool import ToolScene
+
+
+SWING = 0.05
+"""Largest displacement as it is drawn, over the length of the shaft."""
+MOST_MODES = 4
+LANE = 16.0
+"""Between two arrows of places that a design moves, units."""
+
+
+def side(tool: Tool) -> Chart:
+    """``side``: what the tool is, to scale along its shaft; and how it moves at work."""
+    panels = [_panel(side_of(tool), _named(tool))]
+    panels += _at_work(tool)
+    what = say("The tool from the side, shaft to scale; bodies as cubes of the density of water")
+    return Chart("side", tool.title, what, tuple(panels))
+
+
+def side_modes(modes: ToolModes) -> Chart:
+    """``side-modes``: the tool in its lowest modes of the vertical plane."""
+    found, panels = modes.planes[0], []
+    lowest = np.flatnonzero(found.frequency > 0)[:MOST_MODES]
+    for k in map(int, lowest):
+        swing = SWING * modes.tool.shaft.length
+        frequency = shown(float(found.cycles_per_second[k]))
+        title = say("mode {number}: {frequency} Hz", number=k + 1, frequency=frequency)
+        drawn = side_of(modes.tool, modes.places, swing * found.shapes[k : k + 1])
+        panels.append(_panel(drawn, (), title))
+    drawn_as = quantity(SWING * modes.tool.shaft.length, "length")
+    what = say("Modes from the side; largest displacement drawn as {length}", length=drawn_as)
+    return Chart("side-modes", modes.tool.title, what, tuple(panels))
+
+
+def side_design(found: ToolDesign) -> Chart:
+    """``side-design``: the tool before and after, with arrows of what is moved along the shaft."""
+    old = side_of(found.tool)
+    moved = [
+        (one.position, other.position)
+        for one, other in zip(found.tool.stations, found.better.stations, strict=True)
+        if one.position != other.position
+    ]
+    before = _panel(old, _named(found.tool), say("before"))
+    after = _panel(side_of(found.better), _named(found.better), say("after"), moved)
+    what = say("The tool from the side before and after; arrows: what is moved along the shaft")
+    return Chart(
+        "side-design", found.tool.title, what, (before, after), words=tuple(changes_told(found))
+    )
+
+
+def _named(tool: Tool) -> tuple[Flag, ...]:
+    """Stations with where they are."""
+    places = {one.name: quantity(one.position, "length", "mm") for one in tool.stations}
+    by_label = {short(name, LONGEST): place for name, place in places.items()}
+    return tuple(
+        Flag(one.at, (*one.texts, by_label[one.texts[0]]), one.weight)
+        for one in station_flags(tool)
+    )
+
+
+def _at_work(tool: Tool) -> Iterator[Panel]:
+    """Deflected by the order that moves it most in the vertical plane, larger than it is."""
+    if tool.operation is None or not tool.excitations:
+        return
+    along = np.linspace(0.0, tool.shaft.length, POINTS)
+    response = respond_tool(tool, tool.operation.speed)
+    moved = response.line(along).displacement[:, 0, :, 0]
+    order = int(np.argmax(np.max(np.abs(moved), axis=0)))
+    shape = at_largest(moved[:, order])
+    most = float(np.max(np.abs(shape)))
+    if not most:
+        return
+    factor = float(f"{SWING * tool.shaft.length / most:.1g}")
+    title = say("at work, {speed} rpm", speed=turns_told(tool.operation.speed))
+    remark = say(
+        "order {order}, displacement drawn {factor} times as large",
+        order=shown(float(response.orders[order])),
+        factor=f"{factor:g}",
+    )
+    yield _panel(side_of(tool, along, factor * shape[None]), (), title, remark=remark)
+
+
+def _panel(
+    scene: ToolScene,
+    flags: tuple[Flag, ...] = (),
+    title: str = "",
+    moved: Sequence[tuple[float, float]] = (),
+    remark: str = "",
+) -> Panel:
+    x, y = (Axis.of("", "length", [0.1], room=0.0) for _ in "xy")
+    low, high = scene.box
+    arrows, marks = [], []
+    for lane, (before, after) in enumerate(moved):
+        depth = low.imag - (lane + 0.5) * LANE * scene.unit
+        tail, head = complex(before, depth), complex(after, depth)
+        arrows.append(Arrow(tail, head, "move"))
+        text = f"{x.told(before)} → {x.quantity(after)}"
+        marks.append(Mark.of(max(tail, head, key=lambda z: z.real), text, "ink", 0.0, False))
+    low -= 1j * LANE * scene.unit * len(arrows)
+    still = Curve(scene.along[[0, -1]], np.zeros(2), "", "zero")
+    return Panel(
+        x,
+        y,
+        (still,),
+        tuple(marks),
+        lines=tuple(Line(flag.at, "station line") for flag in flags),
+        arrows=tuple(arrows),
+        flags=flags,
+        title=title,
+        remark=remark,
+        equal=True,
+        grid=False,
+        zero=False,
+        bare=True,
+        signs=tuple(scene.at(0)),
+        held=(low, high),
+    )
+
+
+def mode_pictures(modes: ToolModes) -> dict[str, Chart]:
+    """``side-modes``, then ``modes`` and ``modes-lateral``."""
+    return by_name([side_modes(modes)]) | mode_charts(modes)
+
+
+def design_pictures(found: ToolDesign) -> dict[str, Chart]:
+    """``side-design`` and ``design``."""
+    return by_name([side_design(found), design(found)])

@@ -1,0 +1,76 @@
+"""A tool from the side, as it is drawn: at rest, or deflected."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from equipoise.handheld.model import Excitation, Station, Tool
+from equipoise.handheld.shaft import Shaft
+from equipoise.handheld.shaft import Tube as Profile
+from equipoise.signals import Array
+from equipoise.symbols.tool import Seat, ToolScene, Tube
+
+AT_END = 0.03
+"""Share of the shaft within which a station is at an end."""
+
+
+def side_of(tool: Tool, along: Array | None = None, deflected: Array | None = None) -> ToolScene:
+    """The tool at rest, or at N instants.
+
+    along : places (X,), m.  deflected : displacements (N, X), m, as large as they are to be drawn.
+    """
+    if along is None or deflected is None:
+        along, deflected = np.array([0.0, tool.shaft.length]), np.zeros((1, 2))
+    motor = _motor(tool)
+    seats = tuple(_seat(tool, one, motor) for one in tool.stations)
+    return ToolScene(tuple(_tubes(tool.shaft)), seats, along, deflected)
+
+
+def _motor(tool: Tool) -> Station | None:
+    """Where what turns with the engine shakes; the heaviest such station."""
+    shaking = {one.station for one in tool.excitations if abs(one.ratio) == 1}
+    found = [one for one in tool.stations if one.name in shaking]
+    return max(found, key=lambda one: one.mass, default=None)
+
+
+def _seat(tool: Tool, one: Station, motor: Station | None) -> Seat:
+    acting = [cause for cause in tool.excitations if cause.station == one.name]
+    part = ""
+    if one is motor:
+        part = "engine" if any(cause.linkage is not None for cause in acting) else "motor"
+    elif motor is not None and _end(tool, one) not in (0, _end(tool, motor)):
+        part = "blade"
+    return Seat(
+        one.name,
+        one.position,
+        one.mass,
+        0.0 if one.absorber is None else one.absorber.mass,
+        0 if one.hand is None else one.hand.hands,
+        one.harness is not None,
+        one.grounded,
+        any(one.rotational_stiffness) or any(one.rotational_damping),
+        "turns" if any(map(_turns, acting)) else "force" if acting else "",
+        part,
+    )
+
+
+def _turns(cause: Excitation) -> bool:
+    return cause.force is None or cause.direction == "rotating"
+
+
+def _end(tool: Tool, one: Station) -> int:
+    """-1 at the left end of the shaft, 1 at the right one, 0 between."""
+    share = one.position / tool.shaft.length
+    return -1 if share < AT_END else int(share > 1 - AT_END)
+
+
+def _tubes(shaft: Shaft) -> list[Tube]:
+    """Parts of the shaft; one whose diameter is not told, as where tubes overlap, has the most
+    of those beside it.
+    """
+    own = {(part.start, part.stop): part.profile for part in shaft.segments}
+    found = [(a, b, own.get((a, b), shaft.profile)) for a, b, _ in shaft.pieces]
+    wide = [one.outer_diameter if isinstance(one, Profile) else 0.0 for *_, one in found]
+    both = [max(wide[max(k - 1, 0) : k + 2]) for k in range(len(wide))]
+    sizes = (own or beside for own, beside in zip(wide, both, strict=True))
+    return [Tube(a, b, size) for (a, b, _), size in zip(found, sizes, strict=True)]
