@@ -5,13 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from equipoise.exposure.daily import ACTION, DAY, LIMIT, LONGEST, WorkingTimes, limit_time
+from equipoise.exposure.daily import (
+    ACTION,
+    DAY,
+    LIMIT,
+    LONGEST,
+    WorkingTimes,
+    limit_time,
+    verdict_of,
+)
 from equipoise.i18n import say, to_say
 from equipoise.quantities import number
 from equipoise.results.blocks import (
     Block,
     Cell,
     Column,
+    Emphasis,
     Notes,
     Section,
     Table,
@@ -44,6 +53,11 @@ MEANING = {
     "above the limit value": to_say("not acceptable: nobody may be exposed to this"),
 }
 """In plain words, by Directive 2002/44/EC."""
+
+
+def limit_broken(a8: float) -> Emphasis | None:
+    """The emphasis of a daily exposure, m/s2, or of a task's part of it."""
+    return broken_if(verdict_of(a8) == "above the limit value")
 
 
 def shortened(name: str) -> str:
@@ -160,14 +174,14 @@ def _tasks(day: Exposure) -> Table:
             shortened(task.name),
             Value(task.acceleration),
             Value(task.duration / 3600),
-            Value(task.partial),
+            Value(task.partial, emphasis=limit_broken(task.partial)),
             Value(100 * day.share(task), after=0),
             *_hours(task.times),
         )
         for task in day.tasks
     ]
     if len(rows) > 1:
-        whole = Value(day.a8, emphasis=broken_if(day.verdict == "above the limit value"))
+        whole = Value(day.a8, emphasis=limit_broken(day.a8))
         cells = (Value(day.a_hv), Value(day.duration / 3600), whole, Value(100.0, after=0))
         rows.append((say("all of them"), *cells, *_hours(day.times)))
     columns = (

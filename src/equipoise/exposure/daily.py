@@ -109,6 +109,15 @@ ROUNDING = 1e-9
 Verdict = Literal["below the action value", "above the action value", "above the limit value"]
 
 
+def verdict_of(a8: float) -> Verdict:
+    """What Directive 2002/44/EC makes of a daily exposure, m/s2."""
+    if a8 > LIMIT * (1 + ROUNDING):
+        return "above the limit value"
+    if a8 > ACTION * (1 + ROUNDING):
+        return "above the action value"
+    return "below the action value"
+
+
 @dataclass(frozen=True)
 class WorkingTimes:
     """How long a day, s, one may work with a tool.
@@ -223,11 +232,7 @@ class Exposure(Result):
     @property
     def verdict(self) -> Verdict:
         """What Directive 2002/44/EC makes of it."""
-        if self.a8 > LIMIT * (1 + ROUNDING):
-            return "above the limit value"
-        if self.a8 > ACTION * (1 + ROUNDING):
-            return "above the action value"
-        return "below the action value"
+        return verdict_of(self.a8)
 
     def share(self, task: Task) -> float:
         """Share of a task in the square of A(8), which is what adds up."""

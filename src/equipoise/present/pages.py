@@ -22,8 +22,9 @@ from equipoise.errors import EquipoiseError, UsageError
 from equipoise.figures.style import GRID, STUBBLE
 from equipoise.i18n import LANGUAGES, say, speaking, spoken
 from equipoise.present.cells import Grid, Head, Text, grid, noted, printed, sign_of
+from equipoise.present.layout import Looks
 from equipoise.quantities import Units, showing
-from equipoise.results.blocks import Block, Drawn, Section, Table
+from equipoise.results.blocks import Block, Drawn, Emphasis, Section, Table
 from equipoise.results.result import Result
 from equipoise.symbols.looks import DARK, LIGHT
 
@@ -36,6 +37,7 @@ class Tile:
     """One figure that is seen at once; `note` stands below it.
 
     after : the same after the change that helps most, where that makes it another.
+    emphasis : why it stands out, if it does.
     """
 
     label: str
@@ -43,6 +45,7 @@ class Tile:
     unit: str
     note: str = ""
     after: str = ""
+    emphasis: Emphasis | None = None
 
 
 @dataclass(frozen=True)
@@ -243,6 +246,7 @@ FILTERS: dict[str, Callable[..., Any]] = {
     "paired": paired,
     "printed": printed,
     "runs": _runs,
+    "word": Looks(coloured=False).word,
 }
 """Of templates, by the names that these have for them."""
 

@@ -11,7 +11,8 @@ import numpy as np
 
 from equipoise.balancing.compared import WORSE
 from equipoise.balancing.told import capital, larger
-from equipoise.exposure.blocks import VERDICTS
+from equipoise.exposure.blocks import VERDICTS, limit_broken
+from equipoise.exposure.daily import verdict_of
 from equipoise.handheld.blocks import UNITS
 from equipoise.handheld.exposed import WORKING, grips
 from equipoise.handheld.hand_blocks import figure_named, varied_named
@@ -46,9 +47,10 @@ def tool_tiles(found: ToolFindings) -> Iterator[Tile]:
     if exposure is not None and WORKING in exposure.named:
         name, value = worst_at_work(exposure)
         yield Tile(say("vibration of the hand"), brief(value), "m/s²", name)
-    if exposure is not None and exposure.a8 is not None and exposure.worst is not None:
-        verdict = say(VERDICTS[exposure.days[exposure.worst].verdict])
-        yield Tile(say("daily exposure A(8)"), brief(exposure.a8), "m/s²", verdict)
+    if exposure is not None and exposure.a8 is not None:
+        label, verdict = say("daily exposure A(8)"), VERDICTS[verdict_of(exposure.a8)]
+        stands_out = limit_broken(exposure.a8)
+        yield Tile(label, brief(exposure.a8), "m/s²", say(verdict), emphasis=stands_out)
     if found.design is not None:
         best = found.design.figures[0]
         told = change(best.before, best.after).removesuffix(" %")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -16,7 +17,7 @@ import equipoise as eq
 from equipoise.balancing.linear_conditions import conditions
 from equipoise.balancing.pareto import trade_off
 from equipoise.balancing.sensitivity import sensitivities
-from equipoise.exposure.daily import Exposure, Task
+from equipoise.exposure.daily import Exposure, Task, daily_exposure
 from equipoise.handheld.exposed import expose_tool
 from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import respond_tool
@@ -27,8 +28,10 @@ from equipoise.mechanism.balance import Objective
 from equipoise.planting.summary import plant
 from equipoise.present import html_of, terminal
 from equipoise.present.cells import grid, printed
+from equipoise.present.findings import find
 from equipoise.present.layout import plain
 from equipoise.present.pages import Document, page, pdf, printed_grid
+from equipoise.present.tool_summary import tool_tiles
 from equipoise.quantities import showing
 from equipoise.results.analysis import Analysis
 from equipoise.results.blocks import Change, Column, Section, Span, Table, Text, Value
@@ -247,6 +250,21 @@ def test_what_breaks_a_limit_stands_out(monkeypatch: pytest.MonkeyPatch) -> None
     assert "\x1b[1;31mNobody may" in text and not re.search("broken|worse|!", text)
     day = words(result("exposure").blocks())
     assert "above the limit value of 5 m/s^2 (2002/44/EC)" in day and "nobody may be exposed" in day
+
+
+def test_a_daily_exposure_beyond_the_limit_value_stands_out() -> None:
+    """In the table also of a day with one task, and in the tile of a report, by colour and word."""
+    day = daily_exposure([Task("mowing", 20.0, 3600.0)])
+    assert "7.071 broken" in words(day.blocks())
+    allowed = daily_exposure([Task("mowing", 5.0, 8 * 3600.0)])
+    assert "broken" not in words(allowed.blocks())
+    tile = next(one for one in tool_tiles(find("brush-cutter")) if "A(8)" in one.label)
+    assert tile.emphasis == "broken"
+    document = Document("en", "", "", "", (tile, replace(tile, emphasis=None)), (), "", ())
+    html = page(document)
+    assert html.count(f'class="value strong">{tile.value} ') == 1
+    assert html.count("m/s² broken</span>") == 1
+    assert pdf(document) != pdf(replace(document, tiles=(replace(tile, emphasis=None),) * 2))
 
 
 @pytest.mark.parametrize(
