@@ -114,6 +114,11 @@ def cells(text: str, label: str) -> list[str]:
 # -- files -----------------------------------------------------------------------------------------
 
 
+def unfolded(text: str) -> str:
+    """A text as one line."""
+    return " ".join(text.split())
+
+
 def example_text(name: str) -> str:
     """Return the text of a bundled model file."""
     return files("equipoise").joinpath("examples", f"{name}.toml").read_text(encoding="utf-8")

@@ -82,7 +82,9 @@ PICTURES = {
     "shaking_force.x shaking_force.y --points 3": {"front"},
     "decay decay.csv": {"record", "swings"},
     "exposure lines.csv lines.csv --duration '1 h'": {"exposure", "spectrum-2", "spectrum"},
-    "search study-of-balance --population 8 --generations 2": {"designs", "front", "search"},
+    "search study-of-balance --population 8 --generations 2": {
+        *("designs", "front", "parallel", "search")
+    },
     "tolerance study-of-tolerances --designs 800": {"scatter", "shares", "tighten"},
 }
 

@@ -10,7 +10,7 @@ import pytest
 import equipoise as eq
 from equipoise.schema.study_units import units_of
 from equipoise.studies.blocks import named_together
-from surface.running import equipoise, succeeded
+from surface.running import equipoise, succeeded, unfolded
 from surface.studies import TOLERANCES, written
 
 
@@ -49,11 +49,6 @@ def test_figures_in_the_units_of_the_files(shown: str) -> None:
     mass = r"^mass \+ inertia of the coupler +deviation 15.00 g, cut at 3; deviation "
     assert re.search(mass, shown, re.MULTILINE)
     assert re.search(r"^centre of mass of the coupler, x +\+- 2.000 mm ", shown, re.MULTILINE)
-
-
-def unfolded(text: str) -> str:
-    """A text as one line."""
-    return " ".join(text.split())
 
 
 def test_what_to_tighten_first(shown: str) -> None:

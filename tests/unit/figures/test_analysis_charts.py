@@ -24,6 +24,8 @@ from equipoise.planting.summary import plant
 from equipoise.results.analysis import Analysis
 from equipoise.results.charts import Chart, Panel
 from equipoise.signals import Periodic
+from equipoise.symbols.clear import clear_angle
+from equipoise.symbols.scene import Scene
 from unit.figures.samples import BUNDLED, drawn, long_cycle, one_link, read_off, words
 
 MOTION = ["linkage", "curves", "hodograph", "centrodes"]
@@ -151,7 +153,8 @@ def test_centrodes_of_gears_are_their_pitch_circles() -> None:
     assert (idler.title, planet.title) == ("idler", "planet")
     fixed, moving = places(idler)
     motion = analysis_of("planetary-planting-arm").motion
-    sun, wheel = motion.points["A"].place[0], motion.points["B"].place[0]
+    k = clear_angle(Scene.of(motion))  # at which the machine is drawn
+    sun, wheel = motion.points["A"].place[k], motion.points["B"].place[k]
     np.testing.assert_allclose(np.abs(fixed - sun), 0.03, atol=1e-12)
     np.testing.assert_allclose(np.abs(moving - wheel), 0.03, atol=1e-12)
     assert "centrodes" not in charts_of("scotch-yoke")
