@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.exposure.daily import ACTION, LIMIT, partial_exposure
+from equipoise.exposure.blocks import VERDICTS
+from equipoise.exposure.daily import ACTION, LIMIT, partial_exposure, verdict_of
 from equipoise.exposure.weighting import EDGES, factor
 from equipoise.figures.shared import by_name, ends
 from equipoise.figures.style import free_name, short
@@ -33,6 +34,8 @@ SHORTEST, LONGEST = 1 / 12, 24.0
 TIMES = {1 / 720: "5 s", 1 / 60: "1 min", 1 / 12: "5 min", 0.25: "15 min", 0.5: "30 min"} | {
     float(hours): f"{hours} h" for hours in (1, 2, 4, 8, 16)
 }
+JUDGED = {"above the action value": "warned", "above the limit value": "broken"}
+"""Roles of what is not below both values, by its verdict."""
 MOST_NAMES = 8
 """Tasks that are drawn with their names."""
 
@@ -103,12 +106,12 @@ def exposure(tools: Sequence[tuple[str, float]], day: Exposure | None) -> Chart:
             marks.append(Mark(hours, at, short(name), "main", -45.0, sign=False))
     else:
         if len(day.tasks) > 1 and day.a8 > 0:
-            curves.append(Curve(reach, _a8(day.a_hv, reach), "", "stress"))
-            marks.append(Mark(day.duration / 3600, day.a8, say("all of them"), "day", 90.0))
+            curves.append(Curve(reach, _a8(day.a_hv, reach), "", "strong"))
+            marks.append(_judged(day.duration, day.a8, say("all of them"), "day", 90.0))
         tasks = [task for task in day.tasks if task.acceleration > 0]
         for number, task in enumerate(tasks):
             text = short(task.name) if number < MOST_NAMES else ""
-            marks.append(Mark(task.duration / 3600, task.partial, text, "task", -45.0))
+            marks.append(_judged(task.duration, task.partial, text, "task", -45.0))
     levels = (Line(ACTION, "action value", axis="y"), Line(LIMIT, "limit value", axis="y"))
     panel = Panel(
         x,
@@ -124,6 +127,13 @@ def exposure(tools: Sequence[tuple[str, float]], day: Exposure | None) -> Chart:
         title = say("A(8) = {value} m/s²", value=shown(day.a8))
     what = say("Exposure A(8) against hours of work a day, Directive 2002/44/EC")
     return Chart("exposure", title, what, (panel,))
+
+
+def _judged(time: float, a8: float, text: str, role: str, wish: float) -> Mark:
+    """A(8), m/s2, at a time of work, s; with a sign that the legend tells where it is too much."""
+    verdict = verdict_of(a8)
+    label = say(VERDICTS[verdict]) if verdict in JUDGED else ""
+    return Mark(time / 3600, a8, text, JUDGED.get(verdict, role), wish, label=label)
 
 
 def _axes(lines: Sequence[tuple[str, float]], day: Exposure | None) -> tuple[Axis, Axis]:

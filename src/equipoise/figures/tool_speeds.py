@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.exposure.blocks import VERDICTS
 from equipoise.exposure.daily import ACTION, EIGHT_HOURS, LIMIT
 from equipoise.exposure.weighting import factor
 from equipoise.figures.shared import Named, by_name, curves_of, ends, log_ends, ordered
@@ -170,6 +171,15 @@ def weighted(exposure: ToolExposure) -> Chart:
     allowed = {role: np.full(len(exposure.speed), one) for role, one in levels(exposure).items()}
     what = say("Weighted acceleration; dotted: action and limit value")
     chart = _of_hands(exposure, "exposure", read, allowed, what, say("total value a_hv"))
+    over = say(VERDICTS["above the limit value"])
+    beyond = (np.where(one > allowed["limit"], one, np.nan) for one in read.values())
+    stretches = tuple(
+        Curve(exposure.speed, one, over, "broken stretch")
+        for one in beyond
+        if not np.all(np.isnan(one))
+    )
+    (panel,) = chart.panels
+    chart = replace(chart, panels=(replace(panel, curves=(*panel.curves, *stretches)),))
     if exposure.worst is None or exposure.a8 is None:
         return chart
     told = {"a8": shown(exposure.a8), "hand": short(exposure.worst)}

@@ -15,6 +15,7 @@ from equipoise.exposure.spectra import weigh_spectrum
 from equipoise.exposure.weighting import NOMINAL, Weighted
 from equipoise.figures import figure, measured, plot, render
 from equipoise.figures import measured as of_decay
+from equipoise.figures.style import look_of
 from equipoise.figures.view import Scale, ends_of, ticks_of
 from equipoise.measured.decay import Decay, identify_decay
 from equipoise.measured.record import simulate_decay
@@ -70,6 +71,24 @@ def test_tasks_and_the_day_stand_at_their_hours() -> None:
     for curve, task in zip(chart.panels[0].curves, WORK.tasks, strict=False):
         reach = np.interp(np.log(5.0), np.log(curve.y), np.log(curve.x))
         assert np.exp(reach) == pytest.approx(8 * (5.0 / task.acceleration) ** 2, rel=1e-6)
+
+
+def test_what_is_beyond_a_value_has_a_sign_that_the_legend_tells() -> None:
+    one = day(("calm", 1.0, 1.0), ("mowing", 6.0, 3.0), ("clearing", 13.0, 1.5))
+    chart = measured.exposure(tools(one), one)
+    roles = {mark.text: mark.role for mark in chart.panels[0].marks}
+    assert [roles[name] for name in ("calm", "mowing", "clearing", "all of them")] == [
+        "task",
+        "warned",
+        "broken",
+        "broken",
+    ]
+    assert "above the limit value of 5 m/s² (2002/44/EC)" in words(chart)
+    assert "above the action value of 2.5 m/s² (2002/44/EC)" in words(chart)
+    assert len({look_of(role).sign for role in roles.values()} - {""}) == 3
+    check(chart)
+    calm = day(("calm", 1.0, 1.0), ("calmer", 0.5, 1.0))
+    assert "above the" not in words(measured.exposure(tools(calm), calm))
 
 
 @pytest.mark.parametrize(

@@ -262,7 +262,13 @@ def test_exposure_and_levels() -> None:
     hours = tool_speeds.duration_of(exposure) / 3600
     flat = [curves(chart.panels[0], role)[0].y[0] for role in ("action", "limit")]
     assert flat == pytest.approx([2.5 * np.sqrt(8 / hours), 5 * np.sqrt(8 / hours)])
+    limit = flat[1]
+    for stretch, grip in zip(
+        curves(chart.panels[0], "broken stretch"), exposure.grips.values(), strict=False
+    ):
+        np.testing.assert_allclose(stretch.y, np.where(grip.a_hv > limit, grip.a_hv, np.nan))
     told = words(chart)
+    assert "above the limit value of 5 m/s²" in told
     assert f"A(8) = {exposure.a8:.4g} m/s² at {exposure.worst}" in told
     assert "limit: A(8) of 5 m/s²" in told and "action: A(8) of 2.5 m/s²" in told
     assert all(text in told for text in ("rear-grip", "front-handle", "work, 7500 rpm"))
