@@ -70,3 +70,15 @@ def test_a_report(new_page: Callable[..., Page], tmp_path: Path) -> None:
     page.emulate_media(media="screen")
     page.locator("a[href='#more-balance']").click()
     expect(appendix).to_be_visible()
+
+
+def test_drawings_of_a_tool_are_seen_whole(new_page: Callable[..., Page], tmp_path: Path) -> None:
+    """On a narrow screen too; none is to be moved from side to side."""
+    path = tmp_path / "report.html"
+    succeeded(equipoise("report", "brush-cutter", "-o", path))
+    page = new_page(viewport={"width": 400, "height": 900})
+    page.set_content(path.read_text(encoding="utf-8"))
+    ends = page.locator("main > section > .drawings svg").evaluate_all(
+        "all => all.map(one => one.getBoundingClientRect().right)"
+    )
+    assert len(ends) > 3 and max(ends) <= 400
