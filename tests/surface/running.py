@@ -108,7 +108,7 @@ def cells(text: str, label: str) -> list[str]:
     begin = re.compile(rf"{re.escape(label)}(, \S+( \S+)*?)?  +")
     rows = ((begin.match(line), line.rstrip()) for line in text.splitlines())
     row = next(line[label.end() :] for label, line in rows if label)
-    return re.split(r"  +", re.sub(r" at (?=[-0-9])", "  ", row))
+    return re.split(r"  +", re.sub(r" at +(?=[-0-9])", "  ", row))
 
 
 # -- files -----------------------------------------------------------------------------------------

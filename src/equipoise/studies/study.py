@@ -279,10 +279,8 @@ def _wrong_correlations(study: Study) -> Iterator[ModelError]:
             yield ModelError(f"{where}.between", told)
         given[pair] = number
         if not -1 < one.coefficient < 1:
-            yield ModelError(
-                f"{where}.coefficient",
-                f"got {one.coefficient:g}; give a number between -1 and 1, without these",
-            )
+            told = f"got {one.coefficient:g}; give a number between -1 and 1, without these"
+            yield ModelError(f"{where}.coefficient", told)
     try:
         np.linalg.cholesky(correlation_matrix(study.paths, study.correlations)[1])
     except np.linalg.LinAlgError:
@@ -316,9 +314,7 @@ def _wrong_outputs(study: Study) -> Iterator[ModelError]:
         yield ModelError("outputs", "there is none; give at least one [[outputs]]")
     if len(outputs) > MOST_OUTPUTS:
         yield ModelError("outputs", f"got {len(outputs)}; at most {MOST_OUTPUTS} are computed")
-    taken: dict[str, str] = {
-        path: f"the path of vary[{n}]" for n, path in enumerate(study.paths, 1)
-    }
+    taken = {path: f"the path of vary[{n}]" for n, path in enumerate(study.paths, 1)}
     taken |= dict.fromkeys(RESERVED, "what every store of designs has")
     for number, output in enumerate(outputs, 1):
         where = f"outputs[{number}]"

@@ -251,9 +251,9 @@ def test_a_support_that_is_a_point_is_as_large_as_its_linkage() -> None:
     assert 0.1 < (view.x.high - view.x.low) / 1e3 / abs(high - low) < 1
 
 
-def test_what_is_at_one_place_shares_a_name() -> None:
+def test_what_is_at_one_place_is_named_at_its_own_sign() -> None:
     (panel,) = pictures_of(eq.modes(eq.load("exudyn-slider-crank")))["mode-1"].panels
-    assert [mark.text for mark in panel.marks] == ["x\ny\nalong\nacross"]
+    assert [mark.text for mark in panel.marks] == ["x", "y", "along", "across"]
 
 
 def test_signs_that_some_font_has_are_written(monkeypatch: pytest.MonkeyPatch) -> None:
