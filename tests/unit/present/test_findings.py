@@ -93,7 +93,7 @@ def test_a_tool_is_found_at_another_speed() -> None:
     assert found.tool.operation is not None and found.tool.operation.speed == 700.0
     assert found.modes is not None and found.exposure is not None and found.design is None
     assert found.transmission is not None and found.notes == ()
-    assert [p.name for p in pictures(found)][:2] == ["modes", "modes-lateral"]
+    assert [p.name for p in pictures(found)][:2] == ["side", "side-modes"]
 
 
 def test_a_study_is_refused() -> None:
