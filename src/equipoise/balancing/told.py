@@ -258,7 +258,7 @@ def nothing_told(found: Balanced) -> Iterator[str]:
         )
         dear = to_say(
             "Nothing that was tried is worth building: {freedom} would make {aims} smaller by "
-            "{gain} %, but far larger {figures}."
+            "{gain} %, but these far larger: {figures}."
         )
         yield say(
             template if found.gain < WORTH else dear,

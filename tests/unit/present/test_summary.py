@@ -118,7 +118,7 @@ def test_a_remedy_that_makes_something_far_worse_is_told_and_not_recommended():
     assert not found.helped and found.after is None
     told = text_of(found)
     assert "Nothing that was tried is worth building" in told
-    assert "smaller by 66.3 %, but far larger shaking moment, RMS, by 279 %." in told
+    assert "smaller by 66.3 %, but these far larger: shaking moment, RMS, by 279 %." in told
     assert "add a counterweight" not in told
     assert [*tiles(found)][-1].value == "0"
 
