@@ -16,7 +16,7 @@ from typing import Any
 
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError, to_paste
-from equipoise.i18n import LANGUAGES
+from equipoise.i18n import LANGUAGES, said
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
@@ -166,7 +166,9 @@ class Session:
             {
                 "type": "hello",
                 "version": __version__,
-                "examples": [{"name": name, "title": title} for name, title in titles().items()],
+                "examples": [
+                    {"name": name, "title": said(title)} for name, title in titles().items()
+                ],
                 "largest": LARGEST,
                 "numbers": display_rules(),
                 "machine": self.found is not None,
