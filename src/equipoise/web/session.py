@@ -6,7 +6,6 @@ It knows nothing of how messages travel.
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
@@ -16,16 +15,14 @@ from typing import Any
 
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError, to_paste
-from equipoise.i18n import LANGUAGES
-from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
-from equipoise.schema.documents import dumps
-from equipoise.schema.files import LARGEST, printable, to_csv
+from equipoise.schema.files import LARGEST, printable
 from equipoise.schema.models import load_linkage, loads_linkage
 from equipoise.schema.opening import examples, kind_of_text, opened
 from equipoise.web.balanced import balanced, balanced_design, balanced_told, nothing_gained
 from equipoise.web.design import Design, History, Step
+from equipoise.web.downloads import downloaded
 from equipoise.web.edits import Solved, edited, settled, solved
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.messages import Message
@@ -298,48 +295,3 @@ def opened_text(name: str, text: str) -> Design:
     if kind_of_text(text) == "tool":
         raise ModelError("", TOOLS, shown)
     return Design(shown, loads_linkage(text.removeprefix("\ufeff"), shown))
-
-
-FILES = {
-    "model": (".toml", "application/toml"),
-    "csv": (".csv", "text/csv"),
-    "report": (".html", "text/html"),
-}
-"""What there is, with the end of its name and its type."""
-FORBIDDEN = re.compile(r'[\\/:*?"<>|]+')
-"""What some system would not have in the name of a file."""
-_drawing = Lock()
-"""Matplotlib draws one picture after the other."""
-
-
-def downloaded(found: Solved, what: str, language: str) -> tuple[dict[str, Any], bytes]:
-    """Name and type of a file, and its bytes.
-
-    Raises
-    ------
-    UsageError : there is no such file or language.
-    EquipoiseError : it cannot be made of this machine.
-    """
-    if what not in FILES:
-        raise UsageError(unknown(what, FILES, "download"))
-    ending, mime = FILES[what]
-    stem = FORBIDDEN.sub("-", found.design.name.removesuffix(".toml")) or "machine"
-    name = f"{stem}-report{ending}" if what == "report" else f"{stem}{ending}"
-    if what == "model":
-        text = dumps(found.design.machine)
-    elif what == "csv":
-        text = to_csv(found.analysis)
-    else:
-        text = _report(found, f"{stem}.toml", language)
-    return {"name": name, "mime": mime}, text.encode()
-
-
-def _report(found: Solved, file: str, language: str) -> str:
-    from equipoise.present.composition import report_page
-    from equipoise.present.findings import Findings
-
-    if language not in LANGUAGES:
-        raise UsageError(unknown(language, LANGUAGES, "language of reports"))
-    machine = found.design.machine
-    with _drawing:
-        return report_page(Findings(machine, dumps(machine), file), language)
