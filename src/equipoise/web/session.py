@@ -28,6 +28,7 @@ from equipoise.web.fields import Scale, fields_of
 from equipoise.web.messages import Message
 from equipoise.web.shaken import more, response_of
 from equipoise.web.state import first_of, state_of
+from equipoise.web.tables import entered, tables_of
 
 LONGEST = 800
 """Signs of a sentence."""
@@ -107,6 +108,17 @@ class Session:
             yield refused(message.seq, problem)
         if found is not None:
             yield from self._shown(message.seq)
+
+    def _tables(self, message: Message) -> Iterator[Reply]:
+        with self._in_units():
+            told = tables_of(self._current().design.own)
+        yield Reply({"type": "tables", "seq": message.seq, **told})
+
+    def _entry(self, message: Message) -> Iterator[Reply]:
+        with self.lock, self._in_units():
+            found = settled(solved(entered(self._current().design, message.entry())))
+            self._go(self._past.then(found.design, message.label), found)
+        yield from self._shown(message.seq)
 
     def _undo(self, message: Message) -> Iterator[Reply]:
         with self.lock:
@@ -250,7 +262,7 @@ def refused(seq: int | None, error: Exception) -> Reply:
     """Say why something cannot be done."""
     content: dict[str, Any] = {"type": "refused", "seq": seq, "message": _shortened(str(error))}
     if isinstance(error, ModelError) and error.where:
-        content["path"] = error.where
+        content |= {"path": error.where, "what": _shortened(error.what)}
     return Reply(content)
 
 
