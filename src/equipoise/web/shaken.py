@@ -70,7 +70,7 @@ def swept(machine: Machine, progress: Callable[[int, int], None]) -> tuple[Value
         array = f"sweep.{name}"
         block.add(array, curve.peak_to_peak)
         label = f"{_spoken(name)} against speed, peak to peak"
-        choices.append(gauge_choice(name, label, curve.rotation, array))
+        choices.append(gauge_choice(name, label, curve.rotation, array, log=True))
     rpm = display("angular speed", (), "rpm")
     over = {"array": "sweep.speed", "unit": rpm.name, "factor": rpm.factor, "at": found.speed}
     content["charts"].append(chart("sweep", choices, x=over))
