@@ -1,4 +1,4 @@
-"""Files that a page hands out: the model, its signals, a report."""
+"""Files that a page can keep: the model, its signals, its report."""
 
 from __future__ import annotations
 
