@@ -9,6 +9,7 @@ import { turning, wide } from "./scale";
 import { Abscissa, column } from "./signals";
 import { Strip } from "./strip";
 import type { Role, Theme } from "./theme";
+import { say } from "./words";
 
 const THIRD: Role = "third";
 const PREFIX = "output.";
@@ -32,8 +33,10 @@ export class Outputs {
     private readonly wanted: (names: string[]) => void,
     private readonly made: (strip: Strip) => void,
   ) {
-    this.finder = new Finder("Any output over crank angle", "No output has such a name", (name) =>
-      this.add(name),
+    this.finder = new Finder(
+      say("Any output over crank angle"),
+      say("No output has such a name"),
+      (name) => this.add(name),
     );
     this.root.append(this.finder.root);
   }
@@ -70,7 +73,7 @@ export class Outputs {
     if (!found) return;
     const { strip, button } = this.drawn.get(output.name) ?? this.make(output.name);
     const title = capital(output.label);
-    button.setAttribute("aria-label", `Close chart of ${output.label}`);
+    button.setAttribute("aria-label", say("Close chart of {output}", { output: output.label }));
     const curves = [{ label: "", role: THIRD, ...scaled(found, output) }];
     const x = this.x.of(state.angles, state.turns);
     strip.show({ title, x, unit: output.unit, curves, log: wide(found.values) });

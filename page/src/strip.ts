@@ -15,6 +15,7 @@ import {
   RIGHT,
   TOP,
 } from "./uplot_options";
+import { say } from "./words";
 
 /** Values with null in place of those that are none, or have no logarithm: a line breaks off there. */
 function gapped(values: Float64Array, log: boolean): uPlot.TypedArray | (number | null)[] {
@@ -207,7 +208,9 @@ export class Strip {
   describe(): void {
     const said = this.content.curves.map((curve) => {
       const [low, high] = extremes([curve.values]);
-      const range = `from ${shown(low, 3)} to ${shown(high, 3)} ${this.content.unit}`;
+      const { unit } = this.content;
+      const values = { low: shown(low, 3), high: shown(high, 3), unit };
+      const range = say("from {low} to {high} {unit}", values);
       return `${curve.label} ${range}`.trim();
     });
     set(this.root, { "aria-label": `${this.content.title}: ${said.join("; ")}` });
