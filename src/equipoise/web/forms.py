@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from equipoise import keys
+from equipoise.i18n import say
 from equipoise.quantities import display
 from equipoise.schema.entries import entry_of, own_keys, tables_below
 from equipoise.schema.words import plain_word
@@ -54,7 +55,7 @@ def control_of(one: keys.Key) -> Values:
 
 def word_of(one: keys.Key) -> str:
     """What a key is called: as its number is, where that does not take in what is around it."""
-    return one.word if one.word and "{" not in one.word else plain_word(one)
+    return say(one.word if one.word and "{" not in one.word else plain_word(one))
 
 
 def _control(kind: keys.Kind) -> Values:

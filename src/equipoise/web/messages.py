@@ -15,6 +15,7 @@ from equipoise.schema.files import LARGEST
 
 KINDS = (
     "ready",
+    "speak",
     "open",
     "edit",
     "undo",
@@ -28,7 +29,7 @@ KINDS = (
 )
 SLOW = ("balance", "download")
 """Those that take more than a moment."""
-MOST_EDITS, MOST_OUTPUTS = 100, 20
+MOST_EDITS, MOST_OUTPUTS, MOST_LANGUAGES = 100, 20, 50
 DEEPEST = 8
 """Steps on the way to a value of a file."""
 LONGEST_LABEL = 200
@@ -101,12 +102,12 @@ class Message:
             _wrong(f"{self.kind}: {key}", value, "true or false")
         return value
 
-    def names(self) -> tuple[str, ...]:
-        """Names of the outputs that a message of the kind `outputs` asks for."""
-        names = self.values.get("names")
+    def names(self, key: str = "names", most: int = MOST_OUTPUTS) -> tuple[str, ...]:
+        """A list of names of the message, each once; of `outputs`, those that it asks for."""
+        names = self.values.get(key)
         good = isinstance(names, list) and all(isinstance(name, str) for name in names)
-        if not isinstance(names, list) or not good or len(names) > MOST_OUTPUTS:
-            _wrong("outputs: names", names, f"a list of at most {MOST_OUTPUTS} names")
+        if not isinstance(names, list) or not good or len(names) > most:
+            _wrong(f"{self.kind}: {key}", names, f"a list of at most {most} names")
         return tuple(dict.fromkeys(names))
 
     @property

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import AbstractContextManager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from functools import cache
 from threading import Lock
@@ -15,6 +15,7 @@ from typing import Any
 
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError, to_paste
+from equipoise.i18n import LANGUAGES, say, speaking
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
 from equipoise.schema.files import LARGEST, printable
@@ -25,10 +26,11 @@ from equipoise.web.design import Design, History, Step
 from equipoise.web.downloads import downloaded
 from equipoise.web.edits import Solved, edited, settled, solved
 from equipoise.web.fields import Scale, fields_of
-from equipoise.web.messages import Message
+from equipoise.web.messages import MOST_LANGUAGES, Message
 from equipoise.web.shaken import more, response_of
 from equipoise.web.state import first_of, state_of
 from equipoise.web.tables import entered, tables_of
+from equipoise.web.words import language_of, words_of
 
 LONGEST = 800
 """Signs of a sentence."""
@@ -52,6 +54,7 @@ class Session:
     before : with which it is compared, if with any.
     scale : of the sliders.  more_told : the design of which `tell_more` has told.
     wanted : outputs that the page draws besides those that it always does.
+    language : that its reader speaks.
     lock : held while a design takes the place of another, since balancing has a thread of its own.
     """
 
@@ -62,6 +65,7 @@ class Session:
     scale: Scale | None = None
     more_told: Solved | None = None
     wanted: tuple[str, ...] = ()
+    language: str = "en"
     lock: Lock = field(default_factory=Lock)
 
     def receive(self, message: Message) -> Iterator[Reply]:
@@ -78,6 +82,11 @@ class Session:
         if self.found is not None:
             yield from self._shown(message.seq)
 
+    def _speak(self, message: Message) -> Iterator[Reply]:
+        self.language = language_of(message.names("languages", MOST_LANGUAGES))
+        told = {"language": self.language, "languages": LANGUAGES, "words": words_of(self.language)}
+        yield Reply({"type": "spoken", "seq": message.seq, **told})
+
     def _open(self, message: Message) -> Iterator[Reply]:
         if "example" in message.values:
             design = opened_example(message.text("example"))
@@ -91,7 +100,7 @@ class Session:
 
     def _edit(self, message: Message) -> Iterator[Reply]:
         commit, problem = message.flag("commit", True), None
-        with self.lock, self._in_units():
+        with self.lock, self._telling():
             base, found = self._current(), None
             try:
                 found = edited(base, message.changes())
@@ -110,12 +119,12 @@ class Session:
             yield from self._shown(message.seq)
 
     def _tables(self, message: Message) -> Iterator[Reply]:
-        with self._in_units():
+        with self._telling():
             told = tables_of(self._current().design.own)
         yield Reply({"type": "tables", "seq": message.seq, **told})
 
     def _entry(self, message: Message) -> Iterator[Reply]:
-        with self.lock, self._in_units():
+        with self.lock, self._telling():
             found = settled(solved(entered(self._current().design, message.entry())))
             self._go(self._past.then(found.design, message.label), found)
         yield from self._shown(message.seq)
@@ -144,14 +153,17 @@ class Session:
 
     def _balance(self, message: Message) -> Iterator[Reply]:
         base = self._current()
-        yield Reply({"type": "busy", "seq": message.seq, "what": "balancing"})
+        with self._telling():
+            what = say("balancing")
+        yield Reply({"type": "busy", "seq": message.seq, "what": what})
         found = balanced(base.design)
-        nothing = nothing_gained(found)
+        with self._telling():
+            nothing = nothing_gained(found)
         if nothing is not None:
             yield from self._shown(message.seq, nothing)
             return
         after = solved(balanced_design(base.design, found))
-        with self._in_units():
+        with self._telling():
             told = balanced_told(base, after, found)
         with self.lock:
             if self.found is not base:
@@ -163,7 +175,7 @@ class Session:
 
     def _download(self, message: Message) -> Iterator[Reply]:
         language = message.text("language", "en")
-        with self._in_units():
+        with self._telling():
             content, data = downloaded(self._current(), message.text("kind"), language)
         yield Reply({"type": "file", "seq": message.seq, **content}, data)
 
@@ -203,16 +215,20 @@ class Session:
         found = self.more_told = self.shown
         told = more(found, lambda: self.shown is not found)
         while True:
-            with self._in_units():  # left where this waits: whoever goes on may be another thread
+            with self._telling():  # left where this waits: whoever goes on may be another thread
                 one = next(told, None)
             if one is None:
                 return
             content, data = one
             yield Reply({"seq": None, **content}, data)
 
-    def _in_units(self) -> AbstractContextManager[None]:
-        """Inside, values are shown in the units of the file that is open."""
-        return showing_by_default(units_of(self.shown.design.own))
+    @contextmanager
+    def _telling(self) -> Iterator[None]:
+        """Inside, the reader's language is spoken, in the units of the file that is open."""
+        with speaking(self.language), ExitStack() as units:
+            if self.found is not None:
+                units.enter_context(showing_by_default(units_of(self.shown.design.own)))
+            yield
 
     @property
     def shown(self) -> Solved:
@@ -239,11 +255,11 @@ class Session:
 
     def _shown(self, seq: int | None, *notes: str) -> Iterator[Reply]:
         """The design that is shown, and how its support is shaken; notes come before its own."""
-        with self._in_units():
+        with self._telling():
             state = self._state(seq)
         state.content["notes"] = [*notes, *state.content["notes"]]
         yield state
-        with self._in_units():
+        with self._telling():
             shaken = response_of(self.shown.design.machine)
         if shaken is not None:
             content, data = shaken
