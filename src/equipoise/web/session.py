@@ -6,9 +6,8 @@ It knows nothing of how messages travel.
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterator
-from contextlib import AbstractContextManager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from functools import cache
 from threading import Lock
@@ -16,21 +15,22 @@ from typing import Any
 
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError, to_paste
-from equipoise.i18n import LANGUAGES, said
-from equipoise.mechanism.checks import unknown
+from equipoise.i18n import LANGUAGES, said, say, speaking
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
-from equipoise.schema.documents import dumps
-from equipoise.schema.files import LARGEST, printable, to_csv
+from equipoise.schema.files import LARGEST, printable
 from equipoise.schema.models import load_linkage, loads_linkage
 from equipoise.schema.opening import examples, kind_of_text, opened
 from equipoise.web.balanced import balanced, balanced_design, balanced_told, nothing_gained
 from equipoise.web.design import Design, History, Step
+from equipoise.web.downloads import downloaded
 from equipoise.web.edits import Solved, edited, settled, solved
 from equipoise.web.fields import Scale, fields_of
-from equipoise.web.messages import Message
+from equipoise.web.messages import MOST_LANGUAGES, Message
 from equipoise.web.shaken import more, response_of
 from equipoise.web.state import first_of, state_of
+from equipoise.web.tables import entered, tables_of
+from equipoise.web.words import language_of, words_of
 
 LONGEST = 800
 """Signs of a sentence."""
@@ -54,6 +54,7 @@ class Session:
     before : with which it is compared, if with any.
     scale : of the sliders.  more_told : the design of which `tell_more` has told.
     wanted : outputs that the page draws besides those that it always does.
+    language : that its reader speaks.
     lock : held while a design takes the place of another, since balancing has a thread of its own.
     """
 
@@ -64,6 +65,7 @@ class Session:
     scale: Scale | None = None
     more_told: Solved | None = None
     wanted: tuple[str, ...] = ()
+    language: str = "en"
     lock: Lock = field(default_factory=Lock)
 
     def receive(self, message: Message) -> Iterator[Reply]:
@@ -80,6 +82,11 @@ class Session:
         if self.found is not None:
             yield from self._shown(message.seq)
 
+    def _speak(self, message: Message) -> Iterator[Reply]:
+        self.language = language_of(message.names("languages", MOST_LANGUAGES))
+        told = {"language": self.language, "languages": LANGUAGES, "words": words_of(self.language)}
+        yield Reply({"type": "spoken", "seq": message.seq, **told})
+
     def _open(self, message: Message) -> Iterator[Reply]:
         if "example" in message.values:
             design = opened_example(message.text("example"))
@@ -93,7 +100,7 @@ class Session:
 
     def _edit(self, message: Message) -> Iterator[Reply]:
         commit, problem = message.flag("commit", True), None
-        with self.lock, self._in_units():
+        with self.lock, self._telling():
             base, found = self._current(), None
             try:
                 found = edited(base, message.changes())
@@ -110,6 +117,17 @@ class Session:
             yield refused(message.seq, problem)
         if found is not None:
             yield from self._shown(message.seq)
+
+    def _tables(self, message: Message) -> Iterator[Reply]:
+        with self._telling():
+            told = tables_of(self._current().design.own)
+        yield Reply({"type": "tables", "seq": message.seq, **told})
+
+    def _entry(self, message: Message) -> Iterator[Reply]:
+        with self.lock, self._telling():
+            found = settled(solved(entered(self._current().design, message.entry())))
+            self._go(self._past.then(found.design, message.label), found)
+        yield from self._shown(message.seq)
 
     def _undo(self, message: Message) -> Iterator[Reply]:
         with self.lock:
@@ -135,14 +153,17 @@ class Session:
 
     def _balance(self, message: Message) -> Iterator[Reply]:
         base = self._current()
-        yield Reply({"type": "busy", "seq": message.seq, "what": "balancing"})
+        with self._telling():
+            what = say("balancing")
+        yield Reply({"type": "busy", "seq": message.seq, "what": what})
         found = balanced(base.design)
-        nothing = nothing_gained(found)
+        with self._telling():
+            nothing = nothing_gained(found)
         if nothing is not None:
             yield from self._shown(message.seq, nothing)
             return
         after = solved(balanced_design(base.design, found))
-        with self._in_units():
+        with self._telling():
             told = balanced_told(base, after, found)
         with self.lock:
             if self.found is not base:
@@ -154,7 +175,7 @@ class Session:
 
     def _download(self, message: Message) -> Iterator[Reply]:
         language = message.text("language", "en")
-        with self._in_units():
+        with self._telling():
             content, data = downloaded(self._current(), message.text("kind"), language)
         yield Reply({"type": "file", "seq": message.seq, **content}, data)
 
@@ -196,16 +217,20 @@ class Session:
         found = self.more_told = self.shown
         told = more(found, lambda: self.shown is not found)
         while True:
-            with self._in_units():  # left where this waits: whoever goes on may be another thread
+            with self._telling():  # left where this waits: whoever goes on may be another thread
                 one = next(told, None)
             if one is None:
                 return
             content, data = one
             yield Reply({"seq": None, **content}, data)
 
-    def _in_units(self) -> AbstractContextManager[None]:
-        """Inside, values are shown in the units of the file that is open."""
-        return showing_by_default(units_of(self.shown.design.own))
+    @contextmanager
+    def _telling(self) -> Iterator[None]:
+        """Inside, the reader's language is spoken, in the units of the file that is open."""
+        with speaking(self.language), ExitStack() as units:
+            if self.found is not None:
+                units.enter_context(showing_by_default(units_of(self.shown.design.own)))
+            yield
 
     @property
     def shown(self) -> Solved:
@@ -232,11 +257,11 @@ class Session:
 
     def _shown(self, seq: int | None, *notes: str) -> Iterator[Reply]:
         """The design that is shown, and how its support is shaken; notes come before its own."""
-        with self._in_units():
+        with self._telling():
             state = self._state(seq)
         state.content["notes"] = [*notes, *state.content["notes"]]
         yield state
-        with self._in_units():
+        with self._telling():
             shaken = response_of(self.shown.design.machine)
         if shaken is not None:
             content, data = shaken
@@ -255,7 +280,7 @@ def refused(seq: int | None, error: Exception) -> Reply:
     """Say why something cannot be done."""
     content: dict[str, Any] = {"type": "refused", "seq": seq, "message": _shortened(str(error))}
     if isinstance(error, ModelError) and error.where:
-        content["path"] = error.where
+        content |= {"path": error.where, "what": _shortened(error.what)}
     return Reply(content)
 
 
@@ -300,48 +325,3 @@ def opened_text(name: str, text: str) -> Design:
     if kind_of_text(text) == "tool":
         raise ModelError("", TOOLS, shown)
     return Design(shown, loads_linkage(text.removeprefix("\ufeff"), shown))
-
-
-FILES = {
-    "model": (".toml", "application/toml"),
-    "csv": (".csv", "text/csv"),
-    "report": (".html", "text/html"),
-}
-"""What there is, with the end of its name and its type."""
-FORBIDDEN = re.compile(r'[\\/:*?"<>|]+')
-"""What some system would not have in the name of a file."""
-_drawing = Lock()
-"""Matplotlib draws one picture after the other."""
-
-
-def downloaded(found: Solved, what: str, language: str) -> tuple[dict[str, Any], bytes]:
-    """Name and type of a file, and its bytes.
-
-    Raises
-    ------
-    UsageError : there is no such file or language.
-    EquipoiseError : it cannot be made of this machine.
-    """
-    if what not in FILES:
-        raise UsageError(unknown(what, FILES, "download"))
-    ending, mime = FILES[what]
-    stem = FORBIDDEN.sub("-", found.design.name.removesuffix(".toml")) or "machine"
-    name = f"{stem}-report{ending}" if what == "report" else f"{stem}{ending}"
-    if what == "model":
-        text = dumps(found.design.machine)
-    elif what == "csv":
-        text = to_csv(found.analysis)
-    else:
-        text = _report(found, f"{stem}.toml", language)
-    return {"name": name, "mime": mime}, text.encode()
-
-
-def _report(found: Solved, file: str, language: str) -> str:
-    from equipoise.present.composition import report_page
-    from equipoise.present.findings import Findings
-
-    if language not in LANGUAGES:
-        raise UsageError(unknown(language, LANGUAGES, "language of reports"))
-    machine = found.design.machine
-    with _drawing:
-        return report_page(Findings(machine, dumps(machine), file), language)

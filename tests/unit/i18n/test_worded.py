@@ -72,7 +72,6 @@ def test_a_study_keeps_its_title_in_all_languages():
     study = study_in(Opened(text, "study.toml", None))
     assert restore(study.texts) == study
     assert isinstance(study.title, Worded)
-    assert study.title != str.__str__(study.title) + "x"
     assert restore(study.texts).title.texts == study.title.texts
 
 
@@ -84,10 +83,7 @@ def test_bundled_files_have_each_text_in_each_language(name):
             continue
         texts = Wording().check(content[key]).texts
         assert {*texts} == {*LANGUAGES}
-        english = texts["en"].splitlines()
-        assert all(
-            text not in english for code in ("ja", "ko") for text in texts[code].splitlines()
-        )
+        assert len({*texts.values()}) == len(LANGUAGES)
 
 
 @pytest.mark.parametrize(("name", "language"), [("drag-link", "ja"), ("nagamine-irie", "ko")])
