@@ -127,7 +127,9 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
     try:
         best = minimise(built.program, built.squares, problem.whole, progress, above)
     except StalledError as error:
-        raise UsageError(f"{error}; change a limit a little, or free less") from error
+        raise UsageError(
+            Note("{error}; change a limit a little, or free less", error=error.note)
+        ) from error
     except NoSolutionError:
         raise infeasibility(problem) from None
     numbers = _split(problem, best.x) if above < inf else _lightest_numbers(problem, best)
@@ -227,10 +229,19 @@ def infeasibility(problem: Problem) -> UsageError:
         clash = _infeasible_subset(program) if len(names) <= MOST_LIMITS else names
         told = listed([_limit_in_words(problem, name) for name in clash])
         which = "this limit cannot be met" if len(clash) == 1 else "these limits clash"
-        return UsageError(f"{which}: {told}; {_way_out(problem, clash)}")
+        return UsageError(
+            Note(
+                "{which}: {told}; {way_out}",
+                which=which,
+                told=told,
+                way_out=_way_out(problem, clash),
+            )
+        )
     return UsageError(
-        "what may be changed contradicts itself: a given mass has no place in its room, or the "
-        "most that may be added is less than what is given"
+        Note(
+            "what may be changed contradicts itself: a given mass has no place in its "
+            "room, or the most that may be added is less than what is given"
+        )
     )
 
 

@@ -108,8 +108,10 @@ class Search:
         ]
         if not within:
             raise ResponseError(
-                "no design within the limits was found; raise a limit, or widen the range of a "
-                "variable"
+                Note(
+                    "no design within the limits was found; raise a limit, or widen the range "
+                    "of a variable"
+                )
             )
         values = np.array([self.measure(place) for place in within])
         best = int(np.argmin(values))
@@ -172,7 +174,7 @@ DIGITS = 6
 """Significant digits of the numbers of a better tool, for people to set."""
 EDGE = 1e-6
 """Share of its range within which a variable is at an end of it."""
-NO_DESIGN = (
+NO_DESIGN = Note(
     "missing; add the table [design] with the band of speeds, and [[design.variables]] with what "
     "may be changed"
 )

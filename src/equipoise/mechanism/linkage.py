@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ChangePointError, MobilityError, ModelError, RangeError
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism import groups
 from equipoise.mechanism.checks import meant
 from equipoise.mechanism.cycle import CHANGE_POINT, POINTS_PER_TURN, Cycle, close
@@ -180,7 +181,10 @@ def ordered(
         hint = meant(joint, [*builder.sides]) or f"the dyads of this linkage meet at {dyads}"
         raise ModelError(
             f"assembly.{joint}",
-            f"no dyad has its inner joint there that could be assembled on two sides; {hint}",
+            Note(
+                "no dyad has its inner joint there that could be assembled on two sides; {hint}",
+                hint=hint,
+            ),
         )
     return Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
 
@@ -206,16 +210,22 @@ def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group
         freedom = joints.freedom(links, known)
         if freedom < 0:
             raise MobilityError(
-                f"too many joints hold {', '.join(links)}, while other links are free to move; "
-                "the linkage as a whole has one free motion, but no drive can command it"
+                Note(
+                    "too many joints hold {names}, while other links are free to move; the "
+                    "linkage as a whole has one free motion, but no drive can command it",
+                    names=", ".join(links),
+                )
             )
         if freedom == 0:
             from equipoise.mechanism.loopgroup import loop_group
 
             return loop_group(builder, joints, links)
     raise MobilityError(
-        f"the drive does not determine {', '.join(unknown)}: no group of these links has as many "
-        "joint equations as unknowns"
+        Note(
+            "the drive does not determine {names}: no group of these links has as many "
+            "joint equations as unknowns",
+            names=", ".join(unknown),
+        )
     )
 
 
@@ -244,8 +254,12 @@ def _dyad(builder: Builder, joints: Structure, first: Outer, second: Outer) -> G
     kinds = "".join("R" if pinned else "P" for pinned in is_pin)
     if kinds == "PPP":
         raise MobilityError(
-            f"three sliding joints in a row cannot position {pair[0]!r} and {pair[1]!r}; "
-            "replace one by a pin"
+            Note(
+                "three sliding joints in a row cannot position {pair!r} and {pair_2!r}; "
+                "replace one by a pin",
+                pair=pair[0],
+                pair_2=pair[1],
+            )
         )
     if kinds in ("PRR", "PPR") or (kinds == "RPR" and slides[0].link != first.link):
         first, second, kinds = second, first, kinds[::-1]
@@ -287,7 +301,7 @@ def solve_swinging(linkage: Linkage, theta: Array, error: Stuck) -> State:
             _add_references(linkage, start, theta * side >= 0, side, error)
     with np.errstate(all="ignore"):
         state = run(linkage.motion, start)
-    _check(linkage, state, theta, error, "asked for")
+    _check(linkage, state, theta, error, to_say("{error} (asked for {angle:.4g} deg)"))
     return state
 
 
@@ -313,7 +327,8 @@ def _add_references(linkage: Linkage, state: State, chosen: Array, side: int, er
     way = np.linspace(0.0, far, 2 + ceil(far / (2 * pi) * POINTS_PER_TURN))
     with np.errstate(all="ignore"):
         followed = run(linkage.motion, linkage.start(side * way))
-    _check(linkage, followed, side * way, error, "on the way from 0 deg, where gears start, at")
+    doing = to_say("{error} (on the way from 0 deg, where gears start, at {angle:.4g} deg)")
+    _check(linkage, followed, side * way, error, doing)
     for name in linkage.needed_references:
         reference = state.setdefault(f"reference({name})", np.zeros_like(theta))
         reference[chosen] = np.interp(np.abs(theta[chosen]), way, followed[f"phi({name})"])
@@ -328,7 +343,7 @@ def _check(linkage: Linkage, state: State, theta: Array, error: Stuck, doing: st
         bad = ~(margin > CHANGE_POINT)
         if np.any(bad):
             angle = degrees(theta[int(np.argmax(bad))])
-            told = f"{error} ({doing} {angle:.4g} deg)"
+            told = Note(doing, error=error.note, angle=angle)
             if isinstance(error, RangeError):
                 raise RangeError(told, error.ranges) from None
             raise ChangePointError(told, error.crank_angle) from None

@@ -14,8 +14,8 @@ from threading import Lock
 from typing import Any
 
 from equipoise import __version__
-from equipoise.errors import EquipoiseError, ModelError, UsageError, to_paste
-from equipoise.i18n import LANGUAGES, said, say, speaking
+from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place, to_paste
+from equipoise.i18n import LANGUAGES, Note, said, say, speaking
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
 from equipoise.schema.files import LARGEST, printable
@@ -73,7 +73,7 @@ class Session:
         try:
             yield from getattr(self, f"_{message.kind}")(message)
         except EquipoiseError as error:
-            yield refused(message.seq, error)
+            yield refused(message.seq, error, self.language)
 
     # -- what a page may ask -----------------------------------------------------------------------
 
@@ -114,7 +114,7 @@ class Session:
             elif found is not None:
                 self.preview = found
         if problem is not None:
-            yield refused(message.seq, problem)
+            yield refused(message.seq, problem, self.language)
         if found is not None:
             yield from self._shown(message.seq)
 
@@ -167,7 +167,9 @@ class Session:
             told = balanced_told(base, after, found)
         with self.lock:
             if self.found is not base:
-                raise UsageError("the machine was changed while it was balanced; balance it again")
+                raise UsageError(
+                    Note("the machine was changed while it was balanced; balance it again")
+                )
             self._go(self._past.then(after.design, "balance"), after)
             self.before = base
         yield Reply({"type": "balanced", "seq": message.seq, **told})
@@ -245,7 +247,7 @@ class Session:
 
     def _current(self) -> Solved:
         if self.found is None:
-            raise UsageError("no machine is open; pick an example, or drop a model file")
+            raise UsageError(Note("no machine is open; pick an example, or drop a model file"))
         return self.found
 
     def _go(self, history: History, found: Solved | None = None) -> None:
@@ -276,11 +278,13 @@ class Session:
         return Reply({"type": "state", "seq": seq, **told, **content}, data)
 
 
-def refused(seq: int | None, error: Exception) -> Reply:
-    """Say why something cannot be done."""
-    content: dict[str, Any] = {"type": "refused", "seq": seq, "message": _shortened(str(error))}
+def refused(seq: int | None, error: EquipoiseError, language: str = "en") -> Reply:
+    """Say why something cannot be done, in a language."""
+    told = _shortened(error.told(language))
+    content: dict[str, Any] = {"type": "refused", "seq": seq, "message": told}
     if isinstance(error, ModelError) and error.where:
-        content |= {"path": error.where, "what": _shortened(error.what)}
+        what = EquipoiseError(error.what).told(language)
+        content |= {"path": error.where, "what": _shortened(what)}
     return Reply(content)
 
 
@@ -288,7 +292,7 @@ def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:
     """The same error with the name of the file in front."""
     if isinstance(error, ModelError):
         return error.in_file(name)
-    return UsageError(f"{name}: {error}")
+    return UsageError(at_place(name, error.note))
 
 
 def _shortened(text: str) -> str:
@@ -306,7 +310,7 @@ def titles() -> dict[str, str]:
 def opened_example(name: str) -> Design:
     """A bundled machine."""
     if name not in titles():
-        raise UsageError(f"there is no example of the name {printable(name)!r}")
+        raise UsageError(Note("there is no example of the name {name!r}", name=printable(name)))
     return Design(name, load_linkage(name))
 
 

@@ -47,7 +47,7 @@ def response_of(machine: Machine) -> tuple[Values, bytes] | None:
     try:
         found = respond(machine)
     except EquipoiseError as error:
-        return {"charts": [], "arrays": {}, "notes": [str(error)]}, b""
+        return {"charts": [], "arrays": {}, "notes": [error.told()]}, b""
     return _told(found, block), block.data
 
 
@@ -151,7 +151,7 @@ def _planted(machine: Machine) -> Values:
     try:
         found = plant(machine)
     except EquipoiseError as error:
-        return {"type": "planting", "figures": [], "notes": [str(error)]}
+        return {"type": "planting", "figures": [], "notes": [error.told()]}
     figures = [
         {"name": name, "label": one.words, **_shown(float(value), told.dimension, told.unit)}
         for name, one in FIGURES.items()
