@@ -171,8 +171,10 @@ MOST_SHOWN = 20
 def unknown(given: str, known: Iterable[str], kind: str) -> str:
     """Say that a name is unknown, and what would be right."""
     names = list(known)
-    hint = meant(given, names) or f"there are {_listed(names)}"
-    return f"no {kind} is called {given!r}; {hint}"
+    near = meant(given, names)
+    hint = near or Note("there are {names}", names=_listed(names))
+    what = kind if isinstance(kind, Note) else Note(kind)
+    return Note("no {kind} is called {given!r}; {hint}", kind=what, given=given, hint=hint)
 
 
 def meant(given: str, names: Sequence[str]) -> str:
@@ -181,7 +183,7 @@ def meant(given: str, names: Sequence[str]) -> str:
 
     by_form = {form_of(name): name for name in reversed(names)}
     near = get_close_matches(form_of(given), by_form, 1)
-    return f"did you mean {by_form[near[0]]!r}?" if near else ""
+    return Note("did you mean {name!r}?", name=by_form[near[0]]) if near else ""
 
 
 def form_of(name: str) -> str:
@@ -190,8 +192,9 @@ def form_of(name: str) -> str:
 
 
 def _listed(names: list[str]) -> str:
-    shown = ", ".join(repr(name) for name in names[:MOST_SHOWN]) or "none"
-    return shown if len(names) <= MOST_SHOWN else f"{shown} and {len(names) - MOST_SHOWN} more"
+    shown = ", ".join(repr(name) for name in names[:MOST_SHOWN]) or Note("none")
+    more = len(names) - MOST_SHOWN
+    return Note("{names} and {more} more", names=shown, more=more) if more > 0 else shown
 
 
 EXTRAS = {"distributed": "cluster", "av": "video"}

@@ -160,4 +160,4 @@ def unknown_link(where: str, name: str, bodies: Bodies) -> Iterator[ModelError]:
 def unknown_point(where: str, point: str, body: str, bodies: Bodies) -> Iterator[ModelError]:
     """Complain of a name that no point of a body has."""
     if point not in bodies[body]:
-        yield ModelError(where, unknown(point, bodies[body], f"point of {body}"))
+        yield ModelError(where, unknown(point, bodies[body], Note("point of {body}", body=body)))

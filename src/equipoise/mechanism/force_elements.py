@@ -318,7 +318,7 @@ def wrong_ends(where: str, spring: Any, bodies: Bodies) -> Iterator[ModelError]:
         return
     points, frame = bodies[link], bodies[FRAME]
     if point not in points:
-        sentence = unknown(point, points, f"point of {link}")
+        sentence = unknown(point, points, Note("point of {body}", body=link))
         yield ModelError(f"{where}.point", sentence)
     elif to not in frame:
         yield ModelError(f"{where}.to", unknown(to, frame, "point of the frame"))

@@ -20,7 +20,8 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import Machine
 from equipoise.schema.files import printable
 from equipoise.schema.models import Beside, machine_of, plain_of
-from equipoise.schema.reading import Context, Place, read_table, written_place
+from equipoise.schema.places import Context, Place, written_place
+from equipoise.schema.reading import read_table
 from equipoise.schema.tables import parse_table
 from equipoise.schema.template import named_parts
 

@@ -11,7 +11,7 @@ from equipoise.keys import Frozen, Named, Tables
 from equipoise.mechanism.model import Machine
 from equipoise.quantities import told
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
-from equipoise.schema.reading import Place, written_place
+from equipoise.schema.places import Place, written_place
 from equipoise.schema.words import plain_word
 from equipoise.schema.writing import value_text
 from equipoise.web.design import Design, pin_of

@@ -40,7 +40,7 @@ TRANSLATED = sorted(set(LANGUAGES) - {"en"})
 
 @cache
 def said() -> set[str]:
-    """First arguments of `say`, `to_say` and `Note` in the package; `to_say` has a plain text."""
+    """Texts of `say`, `to_say`, `Note` and `unknown` in the package; `to_say` has a plain text."""
     found = set()
     for path in SOURCES.rglob("*.py"):
         if path.parent.name == "i18n":
@@ -50,7 +50,10 @@ def said() -> set[str]:
                 first = node.args[0] if node.args else None
                 if node.func.id == "to_say":
                     assert isinstance(first, ast.Constant), f"{path}:{node.lineno}"
-                if node.func.id in ("say", "to_say", "Note") and isinstance(first, ast.Constant):
+                if node.func.id == "unknown" and len(node.args) > 2:  # what kind of name it is
+                    first = node.args[2]
+                says = node.func.id in ("say", "to_say", "Note", "unknown")
+                if says and isinstance(first, ast.Constant):
                     found.add(first.value)
     return found
 
