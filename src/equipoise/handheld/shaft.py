@@ -204,10 +204,10 @@ def _material(given: Mapping[str, Any]) -> Material:
         raise ModelError(own[0], Note("has no place beside material; give one of both"))
     if given["material"] not in MATERIALS:
         sentence = unknown(given["material"], MATERIALS, "material")
-        others = "youngs_modulus and density stand for any other"
-        raise ModelError(
-            "material", Note("{sentence} ({others})", sentence=sentence, others=others)
+        others = Note(
+            "{sentence} (youngs_modulus and density stand for any other)", sentence=sentence
         )
+        raise ModelError("material", others)
     return MATERIALS[given["material"]]
 
 

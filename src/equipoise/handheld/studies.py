@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.i18n import Note
 from equipoise.errors import UsageError
 from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.frequencies import characteristic, natural_frequencies, scale_of
 from equipoise.handheld.layout import Layout
 from equipoise.handheld.model import NOTHING, Station, Tool
+from equipoise.i18n import Note
 from equipoise.mechanism.checks import unknown
 from equipoise.results.result import Result
 from equipoise.signals import Array

@@ -121,14 +121,15 @@ def in_english(text: Note | str) -> Note | str:
     return Note("in English: {sentence}", sentence=str(text))
 
 
-def all_of(parts: Sequence[Note | str], comma: str = "") -> Note | str:
-    """Parts of a sentence with "and" between the last two, and between the others where no comma
-    is given.
-    """
+def all_of(parts: Sequence[Note | str], commas: bool = False) -> Note | str:
+    """Parts of a sentence with "and" between the last two; commas, or "and" between the others."""
     *first, last = parts or [""]
     if not first:
         return last
-    before = comma.join(map(str, first)) if comma else all_of(first)
+    before = first[0]
+    for one in first[1:]:
+        template = to_say("{first}, {last}") if commas else to_say("{first} and {last}")
+        before = Note(template, first=before, last=one)
     return Note("{first} and {last}", first=before, last=last)
 
 

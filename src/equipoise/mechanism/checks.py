@@ -69,14 +69,7 @@ def check_kept(where: str, old: Iterable[str], new: Any) -> None:
     lost = [one for one in old if one not in new] if new and isinstance(new, Mapping) else ()
     if lost:
         all_of_them = "give all points, or move one by with_point"
-        raise ModelError(
-            where,
-            Note(
-                "{names} would be lost; {all_of_them}",
-                names=", ".join(lost),
-                all_of_them=all_of_them,
-            ),
-        )
+        raise ModelError(where, f"{', '.join(lost)} would be lost; {all_of_them}")
 
 
 def numbered(key: str, items: Sequence[Any]) -> Iterator[tuple[str, Any]]:

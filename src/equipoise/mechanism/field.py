@@ -218,5 +218,5 @@ def _wrong_table(where: str, table: SoilTable) -> Iterator[ModelError]:
         yield ModelError(where, Note("the depths must rise from row to row, from 0 or more"))
     elif min(table.resistance) < 0:
         yield ModelError(
-            where, Note("got {min:g} N; soil resists, give 0 or more", min=min(table.resistance))
+            where, Note("got {least:g} N; {right}", right=RESISTS, least=min(table.resistance))
         )

@@ -248,7 +248,7 @@ def _within_rows(load: Load) -> bool:
 
 
 def _wrong_loads(where: str, table: LoadTable, known: bool) -> Iterator[ModelError]:
-    at, angles, named = f"{where}.table", table.crank_angle, table.file or "the table"
+    at, angles, named = f"{where}.table", table.crank_angle, table.file or Note("the table")
     if not angles:
         yield ModelError(at, Note("the table has no rows"))
     elif any(b <= a for a, b in pairwise(angles)):
@@ -305,9 +305,9 @@ def _contradiction(where: str, table: LoadTable, named: str) -> Iterator[ModelEr
             return
 
 
-def _from_to(table: LoadTable) -> str:
+def _from_to(table: LoadTable) -> Note:
     first, last = (f"{degrees(table.crank_angle[end]):.6g} deg" for end in (0, -1))
-    return f"from {first} to {last}"
+    return Note("from {low} to {high}", low=first, high=last)
 
 
 def wrong_ends(where: str, spring: Any, bodies: Bodies) -> Iterator[ModelError]:

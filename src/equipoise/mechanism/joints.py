@@ -221,4 +221,4 @@ def _number(count: int, words: tuple[str, str]) -> Note:
 
 
 def _names(links: Sequence[str]) -> Note | str:
-    return all_of([repr(link) for link in links], ", ") or Note("the drive link")
+    return all_of([repr(link) for link in links], commas=True) or Note("the drive link")

@@ -208,12 +208,7 @@ def placed(
         several = {2: "two", 3: "three"}[count]
         raise ModelError(
             "points",
-            Note(
-                "got {names}; {words} with {several} names, each once",
-                names=len(names),
-                words=words,
-                several=several,
-            ),
+            f"got {len(names)}; {words} with {several} names, each once",
         )
     first, second, *third = names
     if length is not None:
@@ -222,11 +217,12 @@ def placed(
     x, square, closes = _apex(a, b, c)
     if closes is False:
         told = ", ".join(f"{1e3 * side:.6g}" for side in (a, b, c))
-        right = "the longest must be shorter than the other two together"
         raise ModelError(
             "sides",
             Note(
-                "got {told} mm, which do not close to a triangle; {right}", told=told, right=right
+                "got {sides} mm, which do not close to a triangle; the longest must be shorter "
+                "than the other two together",
+                sides=told,
             ),
         )
     return {first: (0.0, 0.0), second: (a, 0.0), third[0]: (x, abs(square) ** 0.5)}
@@ -250,9 +246,7 @@ def _sides_of(names: Sequence[str], sides: Mapping[str, Any]) -> Iterator[Any]:
         if not either:
             more = [f"{one}-{other}" for one, other in ends]
             wrong = next((f"; {unknown(name, more, 'side')}" for name in left), "")
-            raise ModelError(
-                f"sides.{one}-{other}", Note("missing; give that length{wrong}", wrong=wrong)
-            )
+            raise ModelError(f"sides.{one}-{other}", f"missing; give that length{wrong}")
         yield left.pop(either[0])
     for name in left:
         raise ModelError(f"sides.{name}", Note("given beside three others; leave it out"))

@@ -229,7 +229,9 @@ class Machine(Frozen):
             raise ModelError(f"links.{body}", unknown(body, self.bodies, "link"))
         where = "frame" if body == FRAME else f"links.{body}"
         if point not in (points := self.points_of(body)):
-            raise ModelError(f"{where}.points", unknown(point, points, Note("point of {body}", body=body)))
+            raise ModelError(
+                f"{where}.points", unknown(point, points, Note("point of {body}", body=body))
+            )
         moved = {**points, point: place}
         return replace(self, frame=moved) if body == FRAME else self.with_link(body, points=moved)
 

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ChangePointError, RangeError, UsageError
-from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import Named, Vector, bodies_at
 from equipoise.mechanism.linkage import Linkage, assemble, middle_angle, solve_swinging
@@ -300,9 +299,7 @@ def move(
     """
     linkage = assemble(machine)
     if isinstance(angles, bool):
-        raise UsageError(
-            Note("got {angles}; give a number of crank angles, or angles", angles=angles)
-        )
+        raise UsageError(f"got {angles}; give a number of crank angles, or angles")
     whole_cycle = isinstance(angles, int | np.integer)
     theta = _cycle_angles(linkage, int(angles)) if whole_cycle else _given_angles(angles)  # type: ignore[arg-type]
     rates = _rates(machine.drive, speed, acceleration)
@@ -317,16 +314,12 @@ def move(
 
 def _cycle_angles(linkage: Linkage, count: int) -> Array:
     if count < 1:
-        raise UsageError(Note("got {count} crank angles; give at least 1", count=count))
+        raise UsageError(f"got {count} crank angles; give at least 1")
     turns = linkage.cycle.turns
     if count * turns > MOST_ANGLES:
         raise UsageError(
-            Note(
-                "got {count} crank angles in each of {turns} turns; give at most {most_angles}",
-                count=count,
-                turns=turns,
-                most_angles=MOST_ANGLES // turns,
-            )
+            f"got {count} crank angles in each of {turns} turns; give at most "
+            f"{MOST_ANGLES // turns}"
         )
     return np.arange(count * turns) * (2 * pi / count)
 
@@ -335,11 +328,9 @@ def _given_angles(angles: Any) -> Array:
     try:
         theta = np.atleast_1d(np.asarray(angles, dtype=float))
     except (TypeError, ValueError, OverflowError):
-        raise UsageError(
-            Note("got {angles!r}; give a number of crank angles, or angles", angles=angles)
-        ) from None
+        raise UsageError(f"got {angles!r}; give a number of crank angles, or angles") from None
     if theta.ndim != 1 or theta.size == 0 or not np.all(np.isfinite(theta)):
-        raise UsageError(Note("the crank angles must be one or more finite numbers, in a row"))
+        raise UsageError("the crank angles must be one or more finite numbers, in a row")
     return theta
 
 
@@ -349,12 +340,6 @@ def _rates(usual: Drive | Motion, *given: float | None) -> tuple[float, float]:
     for name, value in zip(("speed", "acceleration"), given, strict=True):
         rate = getattr(usual, name) if value is None else value
         if not isinstance(rate, Real) or not abs(rate) < HUGE:  # type: ignore[operator]
-            raise UsageError(
-                Note(
-                    "got {rate!r} for {name}; give a finite number in SI units",
-                    rate=rate,
-                    name=name,
-                )
-            )
+            raise UsageError(f"got {rate!r} for {name}; give a finite number in SI units")
         rates.append(float(rate))
     return rates[0], rates[1]

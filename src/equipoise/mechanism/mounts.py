@@ -7,7 +7,7 @@ from math import cos, hypot, pi, sin
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, all_of, to_say
 from equipoise.keys import Conditions, Flag, Frozen, Key, Keys, Point, Quantity, Text, declared, key
 from equipoise.keys import Direction as DirectionKind
 
@@ -54,7 +54,7 @@ def _check_company(given: Mapping[str, Any]) -> None:
     """Refuse keys of a point beside an axis, and the other way round."""
     if ("point" in given) == ("axis" in given):
         return  # told by the checks of the machine
-    others, has = (OF_AXIS, "a point") if "point" in given else (OF_POINT, "an axis")
+    others, has = (OF_AXIS, Note("a point")) if "point" in given else (OF_POINT, Note("an axis"))
     for one in others:
         if one in given:
             raise ModelError(one, Note("has no place beside {has}; leave it out", has=has))
@@ -169,8 +169,8 @@ def wrong_mount(where: str, mount: Mount) -> Iterator[ModelError]:
     about = {key: getattr(mount, key) for key in ("torsional_stiffness", "torsional_damping")}
     own, other = (along, about) if mount.axis is None else (about, along)
     if not any(own.values()):
-        yield ModelError(where, Note("give at least one of {names}", names=" and ".join(own)))
-    place = "a point" if mount.axis is None else "an axis"
+        yield ModelError(where, Note("give at least one of {names}", names=all_of([*own])))
+    place = Note("a point") if mount.axis is None else Note("an axis")
     for name, value in other.items():
         if value:
             yield ModelError(

@@ -19,8 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.i18n import Note
 from equipoise.errors import MassError, UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.dynamics import (
     Forces,

@@ -55,7 +55,14 @@ __all__ = [
 
 
 PLANAR = ("surge", "heave", "pitch")
-FREEDOMS = ("surge", "heave", "sway", "roll", "yaw", "pitch")
+FREEDOMS = (
+    to_say("surge"),
+    to_say("heave"),
+    to_say("sway"),
+    to_say("roll"),
+    to_say("yaw"),
+    to_say("pitch"),
+)
 """Along x, y, z and about x, y, z: the order of coordinates in `equipoise.vibration`."""
 HELD = ("surge", "heave", "sway")
 """What a pivot takes away."""
@@ -238,7 +245,7 @@ def _wrong_body(support: Support) -> Iterator[ModelError]:
 
 
 def _out_of_plane(support: Support) -> Note | str:
-    return all_of([name for name in support.coordinates if name not in PLANAR])
+    return all_of([Note(name) for name in support.coordinates if name not in PLANAR])
 
 
 def _wrong_moments(support: Support) -> Iterator[ModelError]:

@@ -268,5 +268,7 @@ def wrong_added(where: str, added: AddedMass, machine: Mechanism) -> Iterator[Mo
     if added.link not in links:
         yield ModelError(f"{where}.link", unknown(added.link, links, "link"))
     elif added.at not in (points := links[added.link].points):
-        yield ModelError(f"{where}.at", unknown(added.at, points, Note("point of {body}", body=added.link)))
+        yield ModelError(
+            f"{where}.at", unknown(added.at, points, Note("point of {body}", body=added.link))
+        )
     yield from wrong_weight(where, added.weight)

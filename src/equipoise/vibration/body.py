@@ -208,7 +208,7 @@ def _shared(body: Body, load: Array) -> dict[str, float]:
 def _uncarried(body: Body, over: Array) -> Note:
     is_loose = np.abs(over) > 0.05 * np.max(np.abs(over))
     names = zip(body.support.coordinates, is_loose, strict=True)
-    loose = all_of([name for name, loose in names if loose])
+    loose = all_of([Note(name) for name, loose in names if loose])
     return Note(
         "they do not carry the weight in {loose}; add a mount there, or give the mounts a preload",
         loose=loose,

@@ -325,7 +325,7 @@ class Linear:
         over = np.abs(self.stiffness @ mean - load) > 1e-9 * scale
         if np.any(over):
             names = zip(self.body.support.coordinates, over, strict=True)
-            loose = all_of([name for name, is_over in names if is_over])
+            loose = all_of([Note(name) for name, is_over in names if is_over])
             raise ModelError(
                 "support.mounts",
                 Note(

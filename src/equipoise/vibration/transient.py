@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import MassError, ResponseError, UsageError
-from equipoise.i18n import Note
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.results.result import Result
@@ -120,24 +119,12 @@ def simulate(
         raise MassError(missing)
     speed = steady_speed(machine, speed, drive)
     if samples is not None and not 2 <= samples <= MOST_SAMPLES:
-        raise UsageError(
-            Note(
-                "got {samples!r} for samples; give 2 to {most_samples}",
-                samples=samples,
-                most_samples=MOST_SAMPLES,
-            )
-        )
+        raise UsageError(f"got {samples!r} for samples; give 2 to {MOST_SAMPLES}")
     turns = abs(speed) * duration / (2 * pi)
     if not 0 < turns <= MOST_TURNS:
         raise UsageError(
-            Note(
-                "got {duration:g} s, in which the crank makes {turns:.4g} turns; give a "
-                "time of more than 0 and at most {most_turns} turns, {most_turns_2:.4g} s",
-                duration=duration,
-                turns=turns,
-                most_turns=MOST_TURNS,
-                most_turns_2=MOST_TURNS * 2 * pi / abs(speed),
-            )
+            f"got {duration:g} s, in which the crank makes {turns:.4g} turns; give a time of more "
+            f"than 0 and at most {MOST_TURNS} turns, {MOST_TURNS * 2 * pi / abs(speed):.4g} s"
         )
     system, _ = equations(machine, speed, drive)
     shift = _shift(machine, speed) if drive else 0.0

@@ -114,7 +114,10 @@ class Design:
         ------
         UsageError : its mass or radius is below 0.
         """
-        for value, what, unit in ((weight.mass, "mass", "g"), (weight.radius, "radius", "mm")):
+        for value, what, unit in (
+            (weight.mass, Note("mass"), "g"),
+            (weight.radius, Note("radius"), "mm"),
+        ):
             if value < 0:
                 text = f"{1e3 * value:.6g} {unit}"
                 raise UsageError(

@@ -43,8 +43,6 @@ def said() -> set[str]:
     """Texts of `say`, `to_say`, `Note` and `unknown` in the package; `to_say` has a plain text."""
     found = set()
     for path in SOURCES.rglob("*.py"):
-        if path.parent.name == "i18n":
-            continue
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
                 first = node.args[0] if node.args else None
