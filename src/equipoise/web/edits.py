@@ -11,12 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from equipoise.errors import EquipoiseError, ModelError, MotionError, UsageError
+from equipoise.errors import EquipoiseError, MotionError, UsageError
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, Position, Vector
 from equipoise.mechanism.motion import Motion
-from equipoise.quantities import parse
 from equipoise.results.analysis import LEAST_ANGLES, Analysis, analyze
 from equipoise.web.design import DRAGGED, Design, clean, clean_place
 from equipoise.web.fields import fields_of
@@ -85,19 +84,7 @@ def _set(design: Design, change: Setting) -> Design:
     field = fields.get(change.path)
     if field is None:
         raise UsageError(unknown(change.path, fields, "number of this machine"))
-    if not isinstance(change.to, str):
-        return field.put(design, clean(change.to, field.dimension))
-    typed = change.to.strip()
-    value = parse(typed, field.dimension)
-    try:
-        return field.put(design, value)
-    except (ModelError, UsageError) as error:
-        given = error.given
-        if given is None or given.value != value:  # of another number
-            raise
-        if isinstance(error, ModelError):
-            raise ModelError(error.where, given.retold(error.what, typed)) from error
-        raise UsageError(given.retold(str(error), typed)) from error
+    return field.typed(design, change.to)  # type: ignore[no-any-return]
 
 
 def _moved(base: Solved, design: Design, change: Drag) -> Design:

@@ -71,15 +71,7 @@ def state_of(
     analysis, block = found.analysis, Block()
     machine, motion = analysis.machine, analysis.motion
     scene = Scene.of(motion)
-    block.add("crank_angle", scene.crank_angle)
-    for name, place in scene.places.items():
-        block.add(f"place.{name}", place)
-    for name, place in scene.mass_centers.items():
-        block.add(f"mass_center.{name}", place)
-    for name, link in motion.links.items():
-        block.add(f"angle.{name}", link.angle)
-    for guide in scene.guides:
-        block.add(f"guide.{guide.name}", guide.way)
+    add_places(block, scene)
     signals = signals_of(analysis)
     _add_signals(block, signals, analysis)
     _add_outputs(block, analysis, wanted)
@@ -119,10 +111,35 @@ def state_of(
         "orders": _orders(analysis),
         "notes": [massless(machine)] if analysis.solved is None else [],
         "before": before is not None,
+        "status": status_of(machine),
         **_ground(found, scene, block),
     }
     content["arrays"] = block.told
     return content, block.data
+
+
+def add_places(block: Block, scene: Scene) -> None:
+    """Where everything of a scene is."""
+    block.add("crank_angle", scene.crank_angle)
+    for name, place in scene.places.items():
+        block.add(f"place.{name}", place)
+    for name, place in scene.mass_centers.items():
+        block.add(f"mass_center.{name}", place)
+    for name, angle in scene.angles.items():
+        block.add(f"angle.{name}", angle)
+    for guide in scene.guides:
+        block.add(f"guide.{guide.name}", guide.way)
+
+
+def status_of(machine: Machine) -> Values:
+    """What is told of the making of a machine.
+
+    mobility : number of free motions.  text : a sentence: what moves, or what is missing.
+    finished : whether it can be computed.  drive : the crank, if there is one.
+    """
+    crank = machine.drive.link
+    text = f"1 free motion; {crank} turns fully"
+    return {"mobility": 1, "text": text, "finished": True, "drive": crank}
 
 
 def _add_outputs(block: Block, analysis: Analysis, names: Sequence[str], prefix: str = "") -> None:
