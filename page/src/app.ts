@@ -19,6 +19,7 @@ import { type Grip, Stage } from "./stage";
 import { Theme } from "./theme";
 import { Toolbar } from "./toolbar";
 import { TransportBar } from "./transport";
+import { language, say } from "./words";
 
 /** What is shown where nothing was asked for. */
 const FIRST = "yamashita-1";
@@ -27,7 +28,7 @@ const FIRST = "yamashita-1";
 const SELDOM = 90;
 
 export class App {
-  private readonly root = h("div", { class: "equipoise" });
+  private readonly root = h("div", { class: "equipoise", lang: language() });
   private readonly talk: Conversation;
   private readonly player = new Player();
   private readonly theme: Theme;
@@ -37,16 +38,16 @@ export class App {
   private readonly charts: Charts;
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
-  private readonly planted = new FigureTable("Figures of the planting finger");
-  private readonly strokes = new FigureTable("Figures of sliders and rockers");
+  private readonly planted = new FigureTable(say("Figures of the planting finger"));
+  private readonly strokes = new FigureTable(say("Figures of sliders and rockers"));
   private readonly balance: BalancePanel;
   private readonly toolbar: Toolbar;
   private readonly transport: TransportBar;
   private readonly help = helpDialog(() => this.hello?.version ?? "");
   private readonly heading = new Heading();
   private readonly lost = h("div", { class: "lost", role: "alert", hidden: true });
-  private readonly aside = h("section", { class: "inspector", "aria-label": "Numbers" });
-  private readonly side = h("section", { class: "side", "aria-label": "Charts" });
+  private readonly aside = h("section", { class: "inspector", "aria-label": say("Numbers") });
+  private readonly side = h("section", { class: "side", "aria-label": say("Charts") });
   private readonly watcher = new ResizeObserver(() => this.measure());
   private readonly frames = new Frames({
     tick: (now) => this.tick(now),
@@ -65,7 +66,8 @@ export class App {
   constructor(
     wire: Wire,
     private readonly el: HTMLElement,
-    memory: Memory | null = null,
+    memory: Memory | null,
+    speak: (language: string) => void,
   ) {
     const events: Events = {
       hello: (message) => this.greet(message),
@@ -118,6 +120,7 @@ export class App {
       balance: () => this.command({ type: "balance" }),
       download: (kind, language) => this.download(kind, language),
       help: () => this.help.showModal(),
+      speak,
     });
     this.lay();
     this.listen();
@@ -135,7 +138,7 @@ export class App {
   }
 
   private lay(): void {
-    const stage = h("section", { class: "stage", "aria-label": "Linkage and motion" });
+    const stage = h("section", { class: "stage", "aria-label": say("Linkage and motion") });
     stage.append(this.heading.about, this.board.root);
     stage.append(this.transport.root, this.heading.notes, this.readings.root);
     stage.append(this.strokes.root, this.planted.root);
@@ -302,7 +305,9 @@ export class App {
       this.lost,
       up
         ? ""
-        : "The server does not answer; trying again. If it was ended, start it again and open the address that it prints.",
+        : say(
+            "The server does not answer; trying again. If it was ended, start it again and open the address that it prints.",
+          ),
     );
   }
 
@@ -313,7 +318,7 @@ export class App {
     if (!this.state) return;
     // What is named is what is drawn, until the other machine is there.
     this.toolbar.show(this.state);
-    this.board.say(`Opening ${name} …`, false);
+    this.board.say(say("Opening {name} …", { name }), false);
   }
 
   private async read(file: File): Promise<void> {

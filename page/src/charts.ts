@@ -10,6 +10,7 @@ import { capital } from "./readings";
 import { Abscissa, column } from "./signals";
 import { Strip } from "./strip";
 import type { Role, Theme } from "./theme";
+import { say } from "./words";
 
 /** What stands before the names of all rows together. */
 const ROWS = "rows.";
@@ -19,12 +20,18 @@ export class Charts {
   readonly root: HTMLElement;
   private readonly x = new Abscissa();
   private readonly squares = h("div", { class: "squares" });
-  private readonly whose = chooser("Forces of", () => this.chosen());
+  private readonly whose = chooser(say("Forces of"), () => this.chosen());
   private readonly whoseRow = h("div", { class: "whose" }, this.whose.label);
-  private readonly pathOf = chooser("Path of", () => this.chosen());
-  private readonly outputOf = finder("Any output over crank angle", (name) => this.ask(name));
-  private readonly polar = new Plane("Shaking force, polar", true, h("b", {}, "Polar force"));
-  private readonly path = new Plane("Path", false, this.pathOf.label);
+  private readonly pathOf = chooser(say("Path of"), () => this.chosen());
+  private readonly outputOf = finder(say("Any output over crank angle"), (name) =>
+    this.ask(name),
+  );
+  private readonly polar = new Plane(
+    say("Shaking force, polar"),
+    true,
+    h("b", {}, say("Polar force")),
+  );
+  private readonly path = new Plane(say("Path"), false, this.pathOf.label);
   private readonly forces = h("div", { class: "group" });
   private readonly answers = h("div", { class: "group" });
   private readonly output: Strip;
@@ -139,13 +146,13 @@ export class Charts {
     const first = state.traced;
     const points = [...first, ...moving.filter((name) => !first.includes(name))];
     const ground: [string, string][] = state.planting
-      ? [[`ground.${state.planting.tip}`, `${state.planting.tip} over ground`]]
+      ? [[`ground.${state.planting.tip}`, say("{point} over ground", { point: state.planting.tip })]]
       : [];
-    const paths = points.map((point): [string, string] => [point, `Path of ${point}`]);
+    const paths = points.map((point): [string, string] => [point, say("Path of {point}", { point })]);
     this.pathOf.offer([...ground, ...paths]);
     this.whose.offer([
-      [ROWS, "Forces of all rows together"],
-      ["", "Forces of one row"],
+      [ROWS, say("Forces of all rows together")],
+      ["", say("Forces of one row")],
     ]);
   }
 
@@ -223,7 +230,7 @@ export class Charts {
     const every = state.angles / (24 * state.turns);
     const level = over ? state.planting?.surface : undefined;
     const traces: Trace[] = [{ points, kind: "now", closed: !over }];
-    this.path.show({ title: "Path", ...lengths(), traces, every, level, least: 1e-6 });
+    this.path.show({ title: say("Path"), ...lengths(), traces, every, level, least: 1e-6 });
   }
 
   /** Ask for the numbers of an output; they come with the state, now and after every change. */
@@ -236,7 +243,7 @@ export class Charts {
     const one = state.outputs.find(({ name }) => state.numbers.has(`output.${name}`));
     const found = one && column(state, `output.${one.name}`);
     const curves = found ? [{ label: "", role: THIRD, ...scaled(found, one) }] : [];
-    const [title, unit] = [capital(one?.label ?? "output"), one?.unit ?? ""];
+    const [title, unit] = [capital(one?.label ?? say("output")), one?.unit ?? ""];
     this.outputOf.tell(one?.label ?? "");
     this.output.root.classList.toggle("empty", !found);
     this.output.show({ title, x: this.x.of(state.angles, state.turns), unit, curves });

@@ -3,6 +3,7 @@
 import type { Asked, Edit, Told, Wire } from "./protocol";
 import { mark } from "./frames";
 import { Numbers, type Planted, type ResponseMessage, type State } from "./protocol";
+import { language } from "./words";
 
 export interface Events {
   hello(message: Extract<Told, { type: "hello" }>): void;
@@ -179,6 +180,7 @@ export class Conversation {
     if (this.aside.size) this.events.busy(null);
     this.aside.clear();
     if (!up) return;
+    this.wire.send({ type: "speak", languages: [language()] });
     if (this.story.length) this.repeat(this.story);
     else this.ask({ type: "ready" });
   }

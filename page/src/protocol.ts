@@ -12,6 +12,8 @@ export type FileKind = "model" | "csv" | "report";
 
 export type Asked =
   | { type: "ready" }
+  /** Codes of languages, the one that is liked best first. */
+  | { type: "speak"; languages: string[] }
   | { type: "open"; example: string }
   | { type: "open"; name: string; text: string }
   | { type: "edit"; commit: boolean; label: string; edits: Edit[] }
@@ -34,6 +36,16 @@ export interface Hello {
   /** Whether the server holds a machine already. */
   machine?: boolean;
   numbers: NumberRules;
+}
+
+/** The language that is spoken from now on. */
+export interface Spoken {
+  type: "spoken";
+  language: string;
+  /** Code of each language there is, and its own name. */
+  languages: Record<string, string>;
+  /** English text of the page -> text in the language. */
+  words: Record<string, string>;
 }
 
 /** In which something is read, and how many of it one SI unit is. */
@@ -236,6 +248,7 @@ export interface Refused {
 
 export type Told =
   | Hello
+  | Spoken
   | StateMessage
   | ResponseMessage
   | Planted

@@ -14,6 +14,7 @@ import {
   RIGHT,
   TOP,
 } from "./uplot_options";
+import { say } from "./words";
 
 /** Values with null in place of those that are none, where a line breaks off. */
 function gapped(values: Float64Array): uPlot.TypedArray | (number | null)[] {
@@ -213,7 +214,9 @@ export class Strip {
         if (value < low) low = value;
         if (value > high) high = value;
       }
-      const range = `from ${shown(low, 3)} to ${shown(high, 3)} ${this.content.unit}`;
+      const { unit } = this.content;
+      const values = { low: shown(low, 3), high: shown(high, 3), unit };
+      const range = say("from {low} to {high} {unit}", values);
       return `${curve.label} ${range}`.trim();
     });
     set(this.root, { "aria-label": `${this.content.title}: ${said.join("; ")}` });

@@ -2,6 +2,7 @@
 
 import { h, icon, set } from "./dom";
 import type { Example, FileKind, State } from "./protocol";
+import { language as spoken, languages, say } from "./words";
 
 const ICONS = {
   undo: "M5.5 3 2.5 6l3 3M3 6h6.5a3.5 3.5 0 0 1 0 7H6",
@@ -12,8 +13,6 @@ const ICONS = {
   open: "M2 12.5v-9h4l1.5 2H14v7z",
 };
 
-const LANGUAGES = { en: "English", ja: "日本語", ko: "한국어" };
-
 export interface Commands {
   example(name: string): void;
   file(file: File): void;
@@ -22,6 +21,8 @@ export interface Commands {
   balance(): void;
   download(kind: FileKind, language?: string): void;
   help(): void;
+  /** Speak a language from now on. */
+  speak(language: string): void;
 }
 
 export class Toolbar {
@@ -35,14 +36,14 @@ export class Toolbar {
 
   constructor(commands: Commands) {
     this.examples = h("select", {
-      "aria-label": "Example",
+      "aria-label": say("Example"),
       onchange: () => commands.example(this.examples.value),
     });
     const file = h("input", {
       type: "file",
       hidden: true,
       accept: ".toml",
-      "aria-label": "Model file",
+      "aria-label": say("Model file"),
       tabindex: -1,
     });
     file.addEventListener("change", () => {
@@ -50,12 +51,12 @@ export class Toolbar {
       file.value = "";
       if (chosen) commands.file(chosen);
     });
-    const open = button("Choose file", "open", () => file.click());
-    this.undo = button("", "undo", () => commands.undo(), "Undo");
-    this.redo = button("", "redo", () => commands.redo(), "Redo");
-    this.balance = button("Balance", "balance", () => commands.balance());
+    const open = button(say("Choose file"), "open", () => file.click());
+    this.undo = button("", "undo", () => commands.undo(), say("Undo"));
+    this.redo = button("", "redo", () => commands.redo(), say("Redo"));
+    this.balance = button(say("Balance"), "balance", () => commands.balance());
     this.menu = downloads(commands);
-    const help = button("", "keys", () => commands.help(), "Keys");
+    const help = button("", "keys", () => commands.help(), say("Keys"));
     this.root = h(
       "header",
       { class: "bar" },
@@ -67,6 +68,7 @@ export class Toolbar {
       h("span", { class: "together" }, this.undo, this.redo),
       this.balance,
       this.menu,
+      choiceOfLanguage(commands),
       help,
     );
   }
@@ -88,8 +90,8 @@ export class Toolbar {
       this.examples.prepend(this.own);
     }
     if (this.examples.value !== state.name) this.examples.value = state.name;
-    label(this.undo, "Undo", state.undo);
-    label(this.redo, "Redo", state.redo);
+    label(this.undo, say("Undo"), state.undo);
+    label(this.redo, say("Redo"), state.redo);
     this.balance.disabled = !state.has_forces;
   }
 
@@ -99,14 +101,25 @@ export class Toolbar {
   }
 }
 
-function downloads(commands: Commands): HTMLDetailsElement {
-  const language = h(
+function choiceOfLanguage(commands: Commands): HTMLSelectElement {
+  const select = named(say("Language"));
+  select.addEventListener("change", () => commands.speak(select.value));
+  return select;
+}
+
+/** A choice of languages, of which the one that is spoken is chosen. */
+function named(label: string): HTMLSelectElement {
+  return h(
     "select",
-    { "aria-label": "Language of the report" },
-    ...Object.entries(LANGUAGES).map(([code, name]) =>
-      h("option", { value: code, lang: code }, name),
+    { class: "language", "aria-label": label, title: label },
+    ...Object.entries(languages()).map(([code, name]) =>
+      h("option", { value: code, lang: code, selected: code === spoken() }, name),
     ),
   );
+}
+
+function downloads(commands: Commands): HTMLDetailsElement {
+  const language = named(say("Language of the report"));
   const menu: HTMLDetailsElement = h("details", { class: "menu" });
   const item = (text: string, kind: FileKind) =>
     h(
@@ -123,16 +136,16 @@ function downloads(commands: Commands): HTMLDetailsElement {
   menu.append(
     h(
       "summary",
-      { "aria-label": "Download", title: "Download" },
+      { "aria-label": say("Download"), title: say("Download") },
       icon(ICONS.save),
-      h("span", { class: "word" }, "Download"),
+      h("span", { class: "word" }, say("Download")),
     ),
     h(
       "div",
       { class: "sheet" },
-      item("Download model", "model"),
-      item("Download CSV", "csv"),
-      h("div", { class: "line" }, item("Download report", "report"), language),
+      item(say("Download model"), "model"),
+      item(say("Download CSV"), "csv"),
+      h("div", { class: "line" }, item(say("Download report"), "report"), language),
     ),
   );
   menu.addEventListener("keydown", (event) => {

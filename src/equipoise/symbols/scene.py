@@ -14,7 +14,7 @@ from equipoise.mechanism.bodies import place_of
 from equipoise.mechanism.body_checks import Outline, outlines
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.joints import Structure, gear_pins
-from equipoise.mechanism.model import FRAME, Link, Machine
+from equipoise.mechanism.model import FRAME, Link
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.tip import surface_of
 from equipoise.symbols.carrier import MOUNT, Carrier, Swing
@@ -115,6 +115,7 @@ class Scene:
     springs : ends of each, on its link and on the frame, as names of points.
     angles : of each link, counted on through the turns; (N,) rad.
     planned : springs that balancing may set, likewise.
+    room : places besides that are to be in sight, complex, m.
     swing : how the support moves, where it is to be seen; places are in the frame's axes all along.
     """
 
@@ -133,6 +134,7 @@ class Scene:
     field: Field | None = None
     carrier: Carrier | None = None
     swing: Swing | None = None
+    room: tuple[complex, ...] = ()
 
     @classmethod
     def of(cls, motion: Motion) -> Scene:
@@ -193,7 +195,7 @@ class Scene:
     @cached_property
     def linkage_box(self) -> tuple[complex, complex]:
         """Lower left and upper right corner of all places, wheels and ways of blocks, m."""
-        every = [*self.places.values(), *self.mass_centers.values()]
+        every = [*self.places.values(), *self.mass_centers.values(), np.array(self.room, complex)]
         for guide in self.guides:
             place = self.places[guide.point]
             every += [place - guide.behind * guide.way, place + guide.ahead * guide.way]

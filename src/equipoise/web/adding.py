@@ -50,7 +50,8 @@ def check_link(sketch: Sketch, name: str) -> None:
 def new_point(sketch: Sketch, taken: Iterable[str] = ()) -> str:
     """A name that no point has: A to Z, then P1, P2 and so on."""
     used = {*sketch.places, *taken}
-    names = (*ascii_uppercase, *(f"P{number}" for number in range(1, len(used) + 2)))
+    numbered = (f"P{number}" for number in range(1, len(used) + 2))
+    names: tuple[str, ...] = (*ascii_uppercase, *numbered)
     return next(name for name in names if name not in used)
 
 
@@ -78,6 +79,9 @@ def put(sketch: Sketch, spot: Spot, taken: Iterable[str] = ()) -> tuple[Sketch, 
     if spot.on is None:
         return sketch, name, spot.place
     check_body(sketch, spot.on)
+    if spot.on == FRAME:  # as it was given, without rounding
+        given = (spot.place.real, spot.place.imag)
+        return sketch.with_points(FRAME, {**sketch.frame, name: given}), name, spot.place
     return sketch.with_place(spot.on, name, spot.place), name, spot.place
 
 

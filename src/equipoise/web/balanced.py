@@ -31,6 +31,7 @@ from equipoise.results.outputs import objective_named, shown_in
 from equipoise.web.design import Counterweight, Design, clean, joined, pin_of, place_of_pin
 from equipoise.web.edits import Solved
 from equipoise.web.figures import compared, figures_of, signals_of
+from equipoise.web.words import read
 
 Values = dict[str, Any]
 MAIN = ("rms", "peak")
@@ -169,7 +170,7 @@ def balanced_told(base: Solved, after: Solved, found: Balanced) -> Values:
         "figures": [_figure(found, name, *figures[name]) for name in names],
         "worse": list(worse_told(found)),
         "proof": proof_told(found),
-        "notes": list(map(str, found.notes)),
+        "notes": list(map(read, found.notes)),
     }
 
 

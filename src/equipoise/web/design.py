@@ -15,6 +15,7 @@ from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.links import MASS_FIELDS
 from equipoise.mechanism.model import Link, Machine, Vector
+from equipoise.mechanism.shown_units import ShownUnits
 from equipoise.quantities import SI, chosen_unit, parse, rounded
 from equipoise.quantities.units import HUGE, TINY, Dimension
 
@@ -84,6 +85,11 @@ class Design:
     own: Machine
     counterweights: Mapping[str, Counterweight] = field(default_factory=dict)
     plan: Balance | None = None
+
+    @property
+    def units(self) -> ShownUnits | None:
+        """In which its file has values shown."""
+        return self.own.units
 
     @cached_property
     def machine(self) -> Machine:

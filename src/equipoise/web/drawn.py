@@ -13,16 +13,18 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import FRAME
 from equipoise.quantities import display
 from equipoise.symbols.scene import Drive, Guide, Scene, Wheel, bodies_of, wheels_of
-from equipoise.web.design import DIGITS
-from equipoise.web.edits import Solved
+from equipoise.web.design import DIGITS, Design
+from equipoise.web.edits import Solved, solved
 from equipoise.web.fields import Field
 from equipoise.web.lacking import lacking
 from equipoise.web.measures import Measure, held, measures_of
 from equipoise.web.messages import Change, Setting
 from equipoise.web.moving import moved
 from equipoise.web.sketch import Sketch
-from equipoise.web.state import Block, Values, add_places, stage_of
+from equipoise.web.state import Block, Values, add_places, stage_of, turning
 
+EMPTY = (-0.1 - 0.08j, 0.2 + 0.1j)
+"""What is in sight of a machine that has no links yet, m."""
 RAIL = 0.35
 """How far a line reaches from its block to either side, over the size of the machine."""
 
@@ -45,10 +47,36 @@ def drawn(sketch: Sketch) -> Solved | Drawn:
     told = lacking(sketch)
     if not told:
         try:
-            return sketch.finished()
+            return replace(sketch.finished(), stand=sketch.crank_angle)
         except EquipoiseError as error:
             told = to_paste(str(error))[0]
     return Drawn(sketch, told)
+
+
+def tried(sketch: Sketch) -> Drawn:
+    """What is dragged: it stands where it is drawn until it is let go."""
+    found = drawn(sketch)
+    return found if isinstance(found, Drawn) else Drawn(sketch, turning(found.design.machine))
+
+
+def seen(design: Design | Sketch) -> Solved | Drawn:
+    """A step of what was done, computed."""
+    return solved(design) if isinstance(design, Design) else drawn(design)
+
+
+def sketch_of(found: Solved | Drawn, at: int) -> Sketch:
+    """What is shown as a sketch that can be changed; a machine as at a sample of its crank angle.
+
+    Raises
+    ------
+    UsageError : there is no such sample.
+    """
+    if isinstance(found, Drawn):
+        return found.design
+    count = len(found.motion.crank_angle)
+    if not 0 <= at < count:
+        raise UsageError(f"at: got {at}; there are the crank angles 0 to {count - 1}")
+    return Sketch.of(found, at)
 
 
 def status_of_sketch(found: Drawn) -> Values:
@@ -149,6 +177,7 @@ def scene_of(sketch: Sketch) -> Scene:
         springs,
         {name: pose.angle * one for name, pose in sketch.poses.items()},
         drive,
+        room=() if sketch.links else EMPTY,
     )
 
 

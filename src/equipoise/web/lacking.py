@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.joints import Structure, held_too_often, undetermined
 from equipoise.mechanism.model import FRAME
 from equipoise.web.sketch import Sketch
 
-BEGIN = "nothing moves yet: draw a link from a point of the frame"
-HELD_NOWHERE = "nothing holds the machine: pin a point of it to the frame"
+AND = to_say("{names} and {last}")
+OR = to_say("{names} or {last}")
 
 
 def lacking(sketch: Sketch) -> str:
@@ -15,48 +18,38 @@ def lacking(sketch: Sketch) -> str:
     and the drive are concerned.
     """
     if not sketch.links:
-        return BEGIN
+        return say("nothing moves yet: draw a link from a point of the frame")
     joints = sketch.joints
     if not any(FRAME in bodies for bodies in joints.pins.values()):
-        return HELD_NOWHERE
+        return say("nothing holds the machine: pin a point of it to the frame")
     mobility, drive = sketch.mobility, sketch.drive
     if mobility > 1:
-        return f"{_counted(mobility - 1)} too many: {_loose(sketch, joints)}"
+        too_many = say("free motions too many: {count}", count=mobility - 1)
+        return f"{too_many}; {_loose(sketch, joints)}"
     if mobility < 1:
-        held = _all_of(held_too_often(joints, drive.link if drive else ""))
-        told = "no free motion" if not mobility else f"{_counted(1 - mobility)} too few"
-        return f"{told}: too many joints hold {held}; free one of its points"
-    if drive is None:
-        return f"no drive: choose the crank, {_cranks(sketch)}"
-    return ""
+        links = _listed(held_too_often(joints, drive.link if drive else ""), AND)
+        return say("no free motion: too many joints hold {links}; free a point", links=links)
+    return _without_drive(_pivoted(sketch)) if drive is None else ""
 
 
-def moves(sketch: Sketch) -> str:
-    """What is told of mobility: one free motion is what a machine has."""
-    return _counted(sketch.mobility)
-
-
-def _counted(number: int) -> str:
-    return f"{number} free motion{'' if number == 1 else 's'}"
+def _without_drive(cranks: Sequence[str]) -> str:
+    if not cranks:
+        return say("no drive: pin a link to the frame at one point, for the crank")
+    return say("no drive: choose the crank, {links}", links=_listed(cranks, OR))
 
 
 def _loose(sketch: Sketch, joints: Structure) -> str:
     """What moves besides, and what to do about it."""
-    drive = sketch.drive.link if sketch.drive else ""
-    left = undetermined(joints, drive)
-    sliding = {one.point for one in sketch.sliders}
+    left = undetermined(joints, sketch.drive.link if sketch.drive else "")
     for link in left:
-        ends = [point for point in sketch.links[link].points if point not in joints.pins]
-        held = len(sketch.links[link].points) - len(ends)
+        free = [point for point in sketch.links[link].points if point not in joints.pins]
+        held = len(sketch.links[link].points) - len(free)
         held += sum(link in (slider.link, slider.on) for slider in sketch.sliders)
-        free = [point for point in ends if point not in sliding]
         if held < 2 and free:
-            return f"{free[-1]} of {link} hangs free; pin it to something"
-    if not drive and (cranks := _pivoted(sketch)):
-        return (
-            f"{_all_of(left)} can move freely; choose the crank, such as {cranks[0]}, or add joints"
-        )
-    return f"{_all_of(left or list(sketch.links))} can move freely; add a link or another joint"
+            points = _listed(free, OR)
+            return say("{link} hangs free: pin {points} to something", link=link, points=points)
+    links = _listed(left or [*sketch.links], AND)
+    return say("{links} can move freely: add a link or a joint", links=links)
 
 
 def _pivoted(sketch: Sketch) -> list[str]:
@@ -68,13 +61,9 @@ def _pivoted(sketch: Sketch) -> list[str]:
     ]
 
 
-def _cranks(sketch: Sketch) -> str:
-    cranks = _pivoted(sketch)
-    return " or ".join(cranks) if cranks else "a link that is pinned to the frame at one point"
-
-
-def _all_of(names: tuple[str, ...] | list[str]) -> str:
-    names = [name for name in names if name]
-    if len(names) < 2:
-        return "".join(names) or "the links"
-    return f"{', '.join(names[:-1])} and {names[-1]}"
+def _listed(names: Sequence[str], several: str) -> str:
+    """Names in a sentence; several : how the last is joined to those before."""
+    found = [name for name in names if name]
+    if len(found) < 2:
+        return "".join(found)
+    return say(several, names=", ".join(found[:-1]), last=found[-1])

@@ -14,11 +14,22 @@ from equipoise.quantities.reading import described
 from equipoise.quantities.units import HUGE
 from equipoise.schema.files import LARGEST
 
-KINDS = ("ready", "open", "edit", "make", "undo", "redo", "balance", "compare", "outputs",
-         "download")  # fmt: skip
+KINDS = (
+    "ready",
+    "speak",
+    "open",
+    "edit",
+    "make",
+    "undo",
+    "redo",
+    "balance",
+    "compare",
+    "outputs",
+    "download",
+)
 SLOW = ("balance", "download")
 """Those that take more than a moment."""
-MOST_EDITS, MOST_OUTPUTS = 100, 20
+MOST_EDITS, MOST_OUTPUTS, MOST_LANGUAGES = 100, 20, 50
 LONGEST_LABEL = 200
 LARGEST_MESSAGE = 3 * LARGEST
 """Bytes: of a model file as JSON, in which signs take up to six times their place, but few do."""
@@ -111,12 +122,12 @@ class Message:
             _wrong(f"{self.kind}: {key}", value, wanted)
         return Spot(point) if point else Spot(None, _place(key, value.get("place")), on)
 
-    def names(self) -> tuple[str, ...]:
-        """Names of the outputs that a message of the kind `outputs` asks for."""
-        names = self.values.get("names")
+    def names(self, key: str = "names", most: int = MOST_OUTPUTS) -> tuple[str, ...]:
+        """A list of names of the message, each once; of `outputs`, those that it asks for."""
+        names = self.values.get(key)
         good = isinstance(names, list) and all(isinstance(name, str) for name in names)
-        if not isinstance(names, list) or not good or len(names) > MOST_OUTPUTS:
-            _wrong("outputs: names", names, f"a list of at most {MOST_OUTPUTS} names")
+        if not isinstance(names, list) or not good or len(names) > most:
+            _wrong(f"{self.kind}: {key}", names, f"a list of at most {most} names")
         return tuple(dict.fromkeys(names))
 
     @property

@@ -29,7 +29,7 @@ class View(anywidget.AnyWidget):
     @property
     def machine(self) -> Machine:
         """The machine as it has been changed by now."""
-        return self._session.shown.design.machine
+        return self._session.shown_machine.design.machine
 
     def _answer(self, _: object, content: object, buffers: object) -> None:
         for reply in _replies(self._session, content):

@@ -108,7 +108,8 @@ def without_entry(sketch: Sketch, key: str, number: int) -> Sketch:
     if not 0 < number <= len(entries):
         raise UsageError(f"{key}: got number {number}; there are {len(entries)}")
     del entries[number - 1]
-    return replace(sketch, **{key: tuple(entries)})
+    one: dict[str, Any] = {key: tuple(entries)}
+    return replace(sketch, **one)
 
 
 def _tidied(sketch: Sketch) -> Sketch:
@@ -158,14 +159,15 @@ def renamed_point(sketch: Sketch, old: str, new: str) -> Sketch:
             link = sketch.links[body].altered(points=points, bodies=tuple(made))
             sketch = replace(sketch, links={**sketch.links, body: link})
         elif body != FRAME and sketch.links[body].length is not None:  # which goes on to hold
-            link = replace(sketch.links[body], points=(*points,))
+            names: Any = (*points,)
+            link = replace(sketch.links[body], points=names)
             sketch = replace(sketch, links={**sketch.links, body: link})
         else:
             sketch = sketch.with_points(body, points)
     sketch = sketch.with_entries([*_renamed(sketch, "point", old, new)])
     planting = sketch.rest.get("planting")
     changes = {key: new for key in OF_PLANTING if getattr(planting, key, None) == old}
-    if changes:
+    if changes and planting is not None:
         sketch = replace(sketch, rest={**sketch.rest, "planting": replace(planting, **changes)})
     return sketch
 
@@ -177,7 +179,9 @@ def _respotted(body: Body, old: str, new: str) -> Body:
         return new if one == old else one
 
     holes = tuple(replace(hole, at=spot(hole.at)) for hole in body.holes)
-    ends = {key: tuple(map(spot, getattr(body, key))) for key in ("between", "corners")}
+    ends: dict[str, Any] = {
+        key: tuple(map(spot, getattr(body, key))) for key in ("between", "corners")
+    }
     return replace(body, at=spot(body.at), holes=holes, **ends)
 
 

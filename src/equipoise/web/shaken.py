@@ -25,6 +25,7 @@ from equipoise.vibration.sweep import sweep_speed
 from equipoise.web.edits import Solved
 from equipoise.web.figures import chart, gauge_choice, text_of
 from equipoise.web.state import Block
+from equipoise.web.words import read
 
 Values = dict[str, Any]
 SAMPLES = 360
@@ -88,7 +89,7 @@ def _told(found: Response, block: Block) -> Values:
         label = f"response of {_spoken(name)}"
         choices.append(gauge_choice(name, label, gauge.rotation, array))
     charts = [chart("response", choices, chooser="Response of")]
-    return {"charts": charts, "arrays": block.told, "notes": list(map(str, found.notes))}
+    return {"charts": charts, "arrays": block.told, "notes": list(map(read, found.notes))}
 
 
 def _spoken(name: str) -> str:
@@ -160,4 +161,4 @@ def _planted(machine: Machine) -> Values:
         for told in [cell(float(value), name)]
         if told is not None
     ]
-    return {"type": "planting", "figures": figures, "notes": list(map(str, found.notes))}
+    return {"type": "planting", "figures": figures, "notes": list(map(read, found.notes))}

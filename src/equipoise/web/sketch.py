@@ -16,6 +16,7 @@ from typing import Any
 from equipoise.mechanism.joints import Structure, joined
 from equipoise.mechanism.linkage import assemble, sides_at_position
 from equipoise.mechanism.model import FRAME, Drive, Gear, Link, Machine, Position, Slider, Vector
+from equipoise.mechanism.shown_units import ShownUnits
 from equipoise.web.design import Counterweight, Design, clean, clean_place
 from equipoise.web.edits import Solved, solved
 
@@ -87,6 +88,17 @@ class Sketch:
         weights = {name: one for name, one in found.design.counterweights.items() if one.mass}
         return cls(found.design.name, own.frame, own.links, poses, own.drive, own.sliders,
                    own.gears, rest, weights)  # fmt: skip
+
+    @property
+    def units(self) -> ShownUnits | None:
+        """In which its file has values shown."""
+        units: ShownUnits | None = self.rest.get("units")
+        return units
+
+    @property
+    def crank_angle(self) -> float:
+        """At which it is drawn, rad; 0 without a drive."""
+        return self.poses[self.drive.link].angle if self.drive else 0.0
 
     @property
     def bodies(self) -> dict[str, Mapping[str, Vector]]:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.figures.points import traced
+from equipoise.i18n import say
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import GROUPS
@@ -111,7 +112,7 @@ def state_of(
         "orders": _orders(analysis),
         "notes": [massless(machine)] if analysis.solved is None else [],
         "before": before is not None,
-        "status": status_of(machine),
+        "status": status_of(found),
         **_ground(found, scene, block),
     }
     content["arrays"] = block.told
@@ -131,15 +132,26 @@ def add_places(block: Block, scene: Scene) -> None:
         block.add(f"guide.{guide.name}", guide.way)
 
 
-def status_of(machine: Machine) -> Values:
+def status_of(found: Solved) -> Values:
     """What is told of the making of a machine.
 
     mobility : number of free motions.  text : a sentence: what moves, or what is missing.
     finished : whether it can be computed.  drive : the crank, if there is one.
+    stand : crank angle at which it was drawn, deg; None where it has not just been made.
     """
-    crank = machine.drive.link
-    text = f"1 free motion; {crank} turns fully"
-    return {"mobility": 1, "text": text, "finished": True, "drive": crank}
+    machine, stand = found.design.machine, found.stand
+    return {
+        "mobility": 1,
+        "text": turning(machine),
+        "finished": True,
+        "drive": machine.drive.link,
+        "stand": None if stand is None else float(np.degrees(stand)),
+    }
+
+
+def turning(machine: Machine) -> str:
+    """That a machine is finished."""
+    return say("1 free motion; {link} turns fully", link=machine.drive.link)
 
 
 def _add_outputs(block: Block, analysis: Analysis, names: Sequence[str], prefix: str = "") -> None:
