@@ -2,6 +2,7 @@
 
 import { type Chooser, chooser } from "./chooser";
 import type { ChartData, Choice, Numbers, State, Unit } from "./protocol";
+import { turning } from "./scale";
 import { Abscissa, type Columns, column } from "./signals";
 import { Strip } from "./strip";
 import type { Role, Theme } from "./theme";
@@ -37,7 +38,7 @@ export class Chart {
   ) {
     const { x } = data;
     if (data.chooser !== null) this.choices = chooser(data.chooser, () => whole.chosen());
-    const over = { xLabel: "°", xStep: (span: number) => (span > 400 ? 180 : 90) };
+    const over = { xLabel: "°", xStep: turning };
     this.strip = new Strip(
       {
         height: xAxis ? WITH_X : PLAIN,
@@ -87,7 +88,7 @@ export class Chart {
       typeof this.data.x === "object"
         ? say("{unit}, over {x}", { unit: choice.unit, x: this.data.x.unit })
         : choice.unit;
-    this.strip.show({ title: choice.label, x, unit, curves, least });
+    this.strip.show({ title: choice.label, x, unit, curves, least, log: choice.log });
     if (typeof this.data.x === "object") this.strip.point(this.data.x.at * this.data.x.factor, null);
   }
 

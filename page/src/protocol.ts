@@ -188,6 +188,8 @@ export interface Choice extends Unit {
   label: string;
   /** Whose forces have to be shown for it: "rows." or "" for one row; null for any. */
   of: string | null;
+  /** Whether it is drawn over a logarithmic scale. */
+  log: boolean;
   curves: CurveOf[];
 }
 

@@ -10,18 +10,19 @@ import numpy as np
 
 from equipoise.errors import EquipoiseError, UsageError, to_paste
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.model import FRAME, Machine
 from equipoise.quantities import display
 from equipoise.symbols.scene import Drive, Guide, Scene, Wheel, bodies_of, wheels_of
 from equipoise.web.design import DIGITS, Design
-from equipoise.web.edits import Solved, solved
+from equipoise.web.edits import Solved, edited, settled, solved
 from equipoise.web.fields import Field
 from equipoise.web.lacking import lacking
 from equipoise.web.measures import Measure, held, measures_of
-from equipoise.web.messages import Change, Setting
+from equipoise.web.messages import Change, Entry, Setting
 from equipoise.web.moving import moved
 from equipoise.web.sketch import Sketch
 from equipoise.web.state import Block, Values, add_places, stage_of, turning
+from equipoise.web.tables import entered
 
 EMPTY = (-0.1 - 0.08j, 0.2 + 0.1j)
 """What is in sight of a machine that has no links yet, m."""
@@ -77,6 +78,43 @@ def sketch_of(found: Solved | Drawn, at: int) -> Sketch:
     if not 0 <= at < count:
         raise UsageError(f"at: got {at}; there are the crank angles 0 to {count - 1}")
     return Sketch.of(found, at)
+
+
+def finished(found: Solved | Drawn) -> Solved:
+    """A machine that can be computed, or why it cannot yet."""
+    if isinstance(found, Drawn):
+        raise found.refusal
+    return found
+
+
+def changed(base: Solved | Drawn, changes: list[Change], commit: bool) -> Solved | Drawn:
+    """What is shown with numbers set and points dragged; commit : whether it is let go."""
+    if isinstance(base, Solved):
+        return edited(base, changes)
+    sketch = redrawn(base.design, changes)
+    return drawn(sketch) if commit else tried(sketch)
+
+
+def with_entry(base: Solved | Drawn, entry: Entry) -> Solved | Drawn:
+    """What is shown with another table of its file."""
+    if isinstance(base, Solved):
+        return settled(solved(entered(base.design, entry)))
+    own = entered(Design(base.design.name, plain_of(base)), entry).own
+    return drawn(base.design.taking(own))
+
+
+def plain_of(found: Solved | Drawn) -> Machine:
+    """The machine whose file has the tables that are shown: of a sketch what is known by now.
+
+    Raises
+    ------
+    UsageError : it has no link yet.
+    """
+    if isinstance(found, Solved):
+        return found.design.own
+    if not found.design.links:
+        raise UsageError("the machine has no links yet; draw one first")
+    return replace(found.design.machine(), position=None)
 
 
 def status_of_sketch(found: Drawn) -> Values:

@@ -13,7 +13,7 @@ from typing import Any
 
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError, to_paste
-from equipoise.i18n import LANGUAGES, say, speaking
+from equipoise.i18n import LANGUAGES, said, say, speaking
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
 from equipoise.schema.files import LARGEST
@@ -22,23 +22,26 @@ from equipoise.web.design import Design
 from equipoise.web.downloads import downloaded
 from equipoise.web.drawn import (
     Drawn,
+    changed,
     drawn,
     fields_of_sketch,
-    redrawn,
+    finished,
+    plain_of,
     seen,
     sketch_of,
     state_of_sketch,
-    tried,
+    with_entry,
 )
-from equipoise.web.edits import Solved, edited, settled, solved
+from equipoise.web.edits import Solved, settled, solved
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.history import History, Step
 from equipoise.web.making import made
-from equipoise.web.messages import MOST_LANGUAGES, Change, Message
+from equipoise.web.messages import MOST_LANGUAGES, Message
 from equipoise.web.openings import opened_example, opened_text, titles
 from equipoise.web.shaken import more, response_of
 from equipoise.web.sketch import Sketch
 from equipoise.web.state import first_of, state_of
+from equipoise.web.tables import tables_of
 from equipoise.web.words import language_of, words_of
 
 LONGEST = 800
@@ -111,7 +114,7 @@ class Session:
         with self.lock, self._telling():
             base, found = self._current(), None
             try:
-                found = _edited(base, message.changes(), commit)
+                found = changed(base, message.changes(), commit)
             except EquipoiseError as error:
                 problem = error
             if found is None and commit:  # the last place of a drag at which it could be
@@ -137,6 +140,17 @@ class Session:
             step = Step(found.design, label)
             self._go(past.then(found.design, label) if past else History(step), found)
             self._measure(found)
+        yield from self._shown(message.seq)
+
+    def _tables(self, message: Message) -> Iterator[Reply]:
+        with self._telling():
+            told = tables_of(plain_of(self._current()))
+        yield Reply({"type": "tables", "seq": message.seq, **told})
+
+    def _entry(self, message: Message) -> Iterator[Reply]:
+        with self.lock, self._telling():
+            found = with_entry(self._current(), message.entry())
+            self._go(self._past.then(found.design, message.label), found)
         yield from self._shown(message.seq)
 
     def _undo(self, message: Message) -> Iterator[Reply]:
@@ -198,7 +212,9 @@ class Session:
             {
                 "type": "hello",
                 "version": __version__,
-                "examples": [{"name": name, "title": title} for name, title in titles().items()],
+                "examples": [
+                    {"name": name, "title": said(title)} for name, title in titles().items()
+                ],
                 "largest": LARGEST,
                 "numbers": display_rules(),
                 "machine": self.found is not None,
@@ -257,7 +273,7 @@ class Session:
     @property
     def shown_machine(self) -> Solved:
         """The same of a machine that is finished, or a `UsageError`."""
-        return _finished(self.shown)
+        return finished(self.shown)
 
     @property
     def _past(self) -> History:
@@ -266,7 +282,7 @@ class Session:
         return self.history
 
     def _finished(self) -> Solved:
-        return _finished(self._current())
+        return finished(self._current())
 
     def _current(self) -> Solved | Drawn:
         if self.found is None:
@@ -308,24 +324,11 @@ class Session:
         return Reply({"type": "state", "seq": seq, **told, **content}, data)
 
 
-def _edited(base: Solved | Drawn, changes: list[Change], commit: bool) -> Solved | Drawn:
-    if isinstance(base, Solved):
-        return edited(base, changes)
-    sketch = redrawn(base.design, changes)
-    return drawn(sketch) if commit else tried(sketch)
-
-
-def _finished(found: Solved | Drawn) -> Solved:
-    if isinstance(found, Drawn):
-        raise found.refusal
-    return found
-
-
 def refused(seq: int | None, error: Exception) -> Reply:
     """Say why something cannot be done."""
     content: dict[str, Any] = {"type": "refused", "seq": seq, "message": _shortened(str(error))}
     if isinstance(error, ModelError) and error.where:
-        content["path"] = error.where
+        content |= {"path": error.where, "what": _shortened(error.what)}
     return Reply(content)
 
 

@@ -7,7 +7,7 @@ from math import isfinite
 from typing import Any
 
 from equipoise.errors import EquipoiseError
-from equipoise.i18n import say
+from equipoise.i18n import said, say
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import joint_named
@@ -25,7 +25,6 @@ from equipoise.vibration.sweep import sweep_speed
 from equipoise.web.edits import Solved
 from equipoise.web.figures import chart, gauge_choice, text_of
 from equipoise.web.state import Block
-from equipoise.web.words import read
 
 Values = dict[str, Any]
 SAMPLES = 360
@@ -71,7 +70,7 @@ def swept(machine: Machine, progress: Callable[[int, int], None]) -> tuple[Value
         array = f"sweep.{name}"
         block.add(array, curve.peak_to_peak)
         label = f"{_spoken(name)} against speed, peak to peak"
-        choices.append(gauge_choice(name, label, curve.rotation, array))
+        choices.append(gauge_choice(name, label, curve.rotation, array, log=True))
     rpm = display("angular speed", (), "rpm")
     over = {"array": "sweep.speed", "unit": rpm.name, "factor": rpm.factor, "at": found.speed}
     content["charts"].append(chart("sweep", choices, x=over))
@@ -89,7 +88,7 @@ def _told(found: Response, block: Block) -> Values:
         label = f"response of {_spoken(name)}"
         choices.append(gauge_choice(name, label, gauge.rotation, array))
     charts = [chart("response", choices, chooser="Response of")]
-    return {"charts": charts, "arrays": block.told, "notes": list(map(read, found.notes))}
+    return {"charts": charts, "arrays": block.told, "notes": list(map(said, found.notes))}
 
 
 def _spoken(name: str) -> str:
@@ -161,4 +160,4 @@ def _planted(machine: Machine) -> Values:
         for told in [cell(float(value), name)]
         if told is not None
     ]
-    return {"type": "planting", "figures": figures, "notes": list(map(read, found.notes))}
+    return {"type": "planting", "figures": figures, "notes": list(map(said, found.notes))}

@@ -178,6 +178,21 @@ class Sketch:
         rest = {**self.rest, "loads": of["loads"], "springs": of["springs"]}
         return replace(self, sliders=of["sliders"], gears=of["gears"], rest=rest)
 
+    def taking(self, machine: Machine) -> Sketch:
+        """The same drawing of a machine whose tables are other ones; a link that is new lies in
+        the axes of the frame.
+        """
+        old = self.drive or self._usual_drive()
+        drive = None if self.drive is None and machine.drive == old else machine.drive
+        poses = {name: self.poses.get(name, STILL) for name in machine.links}
+        rest = {key: getattr(machine, key) for key in REST}
+        return replace(self, frame=machine.frame, links=machine.links, poses=poses, drive=drive,
+                       sliders=machine.sliders, gears=machine.gears, rest=rest)  # fmt: skip
+
+    def _usual_drive(self) -> Drive:
+        """In the place of one that has not been chosen."""
+        return Drive(next(iter(self.links), ""), 0.0)
+
     # -- as a machine ------------------------------------------------------------------------------
 
     def machine(self) -> Machine:
@@ -187,7 +202,7 @@ class Sketch:
         ------
         ModelError : what it has contradicts itself, or it has no drive.
         """
-        drive = self.drive or Drive(next(iter(self.links), ""), 0.0)
+        drive = self.drive or self._usual_drive()
         return Machine(
             drive=drive,
             frame=self.frame,

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.figures.points import traced
-from equipoise.i18n import say
+from equipoise.i18n import said, say
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import GROUPS
@@ -84,8 +84,8 @@ def state_of(
     length = display("length", [extent_of(machine)])
     content: Values = {
         "name": found.design.name,
-        "title": machine.title,
-        "description": machine.description,
+        "title": said(machine.title),
+        "description": said(machine.description),
         "angles": len(scene.crank_angle),
         "turns": motion.turns,
         "speed": motion.speed,

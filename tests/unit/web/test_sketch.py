@@ -281,3 +281,17 @@ def test_locked_lengths_stay_while_a_point_is_dragged() -> None:
         after = state(ask(page.session, "edit", edits=[drag], label="move C")[0])
         assert abs(after.place("C")[0] - after.place("B")[0]) == pytest.approx(size, rel=1e-6)
         assert abs(after.place("C")[0] - before.place("C")[0]) > 1e-3
+
+
+def test_tables_of_a_file_are_added_while_a_machine_is_unfinished() -> None:
+    page = four_bar()
+    values: Content = {"between": ["crank", "rocker"], "teeth": [20, 40]}
+    told = ask(page.session, "entry", place=["gears", 0], values=values, label="gears")[0]
+    assert state(told).content["status"]["text"].startswith("no free motion: too many joints")
+    ask(page.session, "undo")
+    values = {"points": {"A": ["0 mm", "0 mm"], "B": ["33.5 mm", "0 mm"]}, "mass": "200 g"}
+    values |= {"center_of_mass": ["10 mm", "0 mm"], "inertia": "30 kg mm^2"}
+    told = ask(page.session, "entry", place=["links", "crank"], values=values, label="mass")[0]
+    assert state(told).content["scene"]["mass_centers"] == ["crank"]
+    assert page.do("drive", link="crank") == "1 free motion; crank turns fully"
+    assert page.machine.links["crank"].mass == 0.2
