@@ -23,7 +23,7 @@ def refused(seq: int | None, error: Exception) -> Reply:
     """Say why something cannot be done."""
     content: dict[str, Any] = {"type": "refused", "seq": seq, "message": _shortened(str(error))}
     if isinstance(error, ModelError) and error.where:
-        content["path"] = error.where
+        content |= {"path": error.where, "what": _shortened(error.what)}
     return Reply(content)
 
 

@@ -14,7 +14,7 @@ from threading import Lock
 
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError
-from equipoise.i18n import LANGUAGES, say, speaking
+from equipoise.i18n import LANGUAGES, said, say, speaking
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
 from equipoise.schema.files import LARGEST, printable
@@ -30,6 +30,7 @@ from equipoise.web.replies import Reply, refused
 from equipoise.web.seen import ASKED, Seen
 from equipoise.web.shaken import more, response_of
 from equipoise.web.state import first_of, state_of
+from equipoise.web.tables import entered, tables_of
 from equipoise.web.words import language_of, words_of
 
 TOOLS = "this is the file of a hand-held tool; `equipoise report` and `equipoise plot` show those"
@@ -113,6 +114,17 @@ class Session:
         if found is not None:
             yield from self.told(message.seq)
 
+    def _tables(self, message: Message) -> Iterator[Reply]:
+        with self._telling():
+            told = tables_of(self.current().design.own)
+        yield Reply({"type": "tables", "seq": message.seq, **told})
+
+    def _entry(self, message: Message) -> Iterator[Reply]:
+        with self.lock, self._telling():
+            found = settled(solved(entered(self.current().design, message.entry())))
+            self._go(self._past.then(found.design, message.label), found)
+        yield from self.told(message.seq)
+
     def _undo(self, message: Message) -> Iterator[Reply]:
         with self.lock:
             self._go(self._past.undone())
@@ -171,7 +183,9 @@ class Session:
             {
                 "type": "hello",
                 "version": __version__,
-                "examples": [{"name": name, "title": title} for name, title in titles().items()],
+                "examples": [
+                    {"name": name, "title": said(title)} for name, title in titles().items()
+                ],
                 "largest": LARGEST,
                 "numbers": display_rules(),
                 "machine": self.found is not None,

@@ -8,7 +8,7 @@ from typing import Any
 
 from equipoise.errors import EquipoiseError
 from equipoise.figures.swing import ModeSwing, swinging
-from equipoise.i18n import say
+from equipoise.i18n import said, say
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import joint_named
@@ -28,7 +28,6 @@ from equipoise.vibration.sweep import sweep_speed
 from equipoise.web.block import Block
 from equipoise.web.edits import Solved
 from equipoise.web.figures import chart, gauge_choice, text_of
-from equipoise.web.words import read
 
 Values = dict[str, Any]
 SAMPLES = 360
@@ -93,7 +92,7 @@ def _told(shown: Solved, found: Response, block: Block) -> Values:
         label = f"response of {_spoken(name)}"
         choices.append(gauge_choice(name, label, gauge.rotation, array))
     charts = [chart("response", choices, chooser="Response of")]
-    notes = list(map(read, found.notes))
+    notes = list(map(said, found.notes))
     swing = _swing(swinging(shown.scene, found), block)
     modes = [*_modes(shown.scene, found)]
     return {"charts": charts, "notes": notes, "swing": swing, "modes": modes, "arrays": block.told}
@@ -194,4 +193,4 @@ def _planted(machine: Machine) -> Values:
         for told in [cell(float(value), name)]
         if told is not None
     ]
-    return {"type": "planting", "figures": figures, "notes": list(map(read, found.notes))}
+    return {"type": "planting", "figures": figures, "notes": list(map(said, found.notes))}

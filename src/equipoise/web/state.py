@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from equipoise.figures.points import traced
+from equipoise.i18n import said
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import GROUPS
@@ -57,8 +58,8 @@ def state_of(
     length = display("length", [extent_of(machine)])
     content: Values = {
         "name": found.design.name,
-        "title": machine.title,
-        "description": machine.description,
+        "title": said(machine.title),
+        "description": said(machine.description),
         "angles": len(scene.crank_angle),
         "turns": motion.turns,
         "speed": motion.speed,
