@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from threading import Lock
+from typing import Any, Protocol
 
 from equipoise.errors import UsageError
 from equipoise.i18n import say
@@ -16,9 +17,6 @@ from equipoise.web.edits import Solved
 from equipoise.web.messages import Message
 from equipoise.web.replies import Reply
 from equipoise.web.variants import NOTHING, OPENED, STEP, VARIANT, Variants
-
-if TYPE_CHECKING:
-    from equipoise.web.session import Session
 
 
 @dataclass
@@ -85,6 +83,26 @@ def _ghost(pale: Solved | None) -> Reply:
 
 
 # -- what a page may ask ---------------------------------------------------------------------------
+
+
+class Session(Protocol):
+    """What answers need of a session."""
+
+    seen: Seen
+    lock: Lock
+
+    @property
+    def shown(self) -> Solved:
+        """What the page sees."""
+
+    def current(self) -> Solved:
+        """The design that is."""
+
+    def go_to(self, found: Solved, label: str) -> None:
+        """Make another design the one that is."""
+
+    def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:
+        """Tell of what is shown."""
 
 
 def _arrows(session: Session, message: Message) -> Iterator[Reply]:
