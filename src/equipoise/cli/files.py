@@ -143,7 +143,7 @@ def serve(
     def begin() -> Session:
         session = Session()
         if first.found is not None:
-            session.open(first.shown_machine.design, first.shown_machine)
+            session.open(first.shown.design, first.shown)
         return session
 
     def tell(address: str) -> None:

@@ -13,15 +13,17 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.quantities import display
 from equipoise.symbols.scene import Drive, Guide, Scene, Wheel, bodies_of, wheels_of
+from equipoise.web.block import Block, Values
 from equipoise.web.design import DIGITS, Design
+from equipoise.web.drawing import moves_of, stage_of
 from equipoise.web.edits import Solved, edited, settled, solved
-from equipoise.web.fields import Field
+from equipoise.web.fields import Field, Scale
 from equipoise.web.lacking import lacking
 from equipoise.web.measures import Measure, held, measures_of
 from equipoise.web.messages import Change, Entry, Setting
 from equipoise.web.moving import moved
 from equipoise.web.sketch import Sketch
-from equipoise.web.state import Block, Values, add_places, stage_of, turning
+from equipoise.web.state import turning
 from equipoise.web.tables import entered
 
 EMPTY = (-0.1 - 0.08j, 0.2 + 0.1j)
@@ -60,7 +62,7 @@ def tried(sketch: Sketch) -> Drawn:
     return found if isinstance(found, Drawn) else Drawn(sketch, turning(found.design.machine))
 
 
-def seen(design: Design | Sketch) -> Solved | Drawn:
+def computed(design: Design | Sketch) -> Solved | Drawn:
     """A step of what was done, computed."""
     return solved(design) if isinstance(design, Design) else drawn(design)
 
@@ -237,11 +239,11 @@ def _sense(sketch: Sketch) -> Drive:
     return Drive(drive.link, pivots[0], int(np.sign(drive.speed)))
 
 
-def state_of_sketch(found: Drawn) -> tuple[Values, bytes]:
+def state_of_sketch(found: Drawn, scale: Scale) -> tuple[Values, bytes]:
     """Everything that a page draws of an unfinished machine: its place, and no charts."""
     sketch, block = found.design, Block()
     scene = scene_of(sketch)
-    add_places(block, scene)
+    moves_of(scene, block)
     length = display("length", [sketch.size])
     content: Values = {
         "name": sketch.name,
@@ -258,6 +260,7 @@ def state_of_sketch(found: Drawn) -> tuple[Values, bytes]:
         "least": 0,
         "before": False,
         "status": status_of_sketch(found),
+        "fields": [scale.told(one) for one in fields_of_sketch(sketch).values()],
         **{key: [] for key in ("traced", "figures", "outputs", "charts", "orders", "notes")},
     }
     content["arrays"] = block.told

@@ -25,6 +25,8 @@ KINDS = (
     "balance",
     "compare",
     "outputs",
+    "arrows",
+    "variant",
     "download",
     "tables",
     "entry",

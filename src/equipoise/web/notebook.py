@@ -10,8 +10,9 @@ import traitlets
 from equipoise.errors import EquipoiseError
 from equipoise.mechanism.model import Machine
 from equipoise.web.messages import message_of
+from equipoise.web.replies import Reply, refused
 from equipoise.web.server import assets
-from equipoise.web.session import Reply, Session, refused
+from equipoise.web.session import Session
 
 
 class View(anywidget.AnyWidget):
@@ -29,7 +30,7 @@ class View(anywidget.AnyWidget):
     @property
     def machine(self) -> Machine:
         """The machine as it has been changed by now."""
-        return self._session.shown_machine.design.machine
+        return self._session.shown.design.machine
 
     def _answer(self, _: object, content: object, buffers: object) -> None:
         for reply in _replies(self._session, content):

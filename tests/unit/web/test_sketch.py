@@ -34,7 +34,7 @@ class Maker:
 
     @property
     def machine(self) -> eq.Machine:
-        return self.session.shown_machine.design.machine
+        return self.session.shown.design.machine
 
 
 def at(place: complex, on: str | None = None) -> Content:
@@ -191,7 +191,7 @@ def test_an_example_goes_on_being_made_and_finishes_again() -> None:
     """Taken apart at some crank angle, and put together: the same machine."""
     for name in ("yamashita-1", "quick-return", "class-three", "stephenson-six-bar"):
         session, _ = opened(name)
-        page, like = Maker(session), session.shown_machine.design.machine
+        page, like = Maker(session), session.shown.design.machine
         crank = like.drive.link
         told = page.do("rename", what="link", name=crank, to="wheel", at=123)
         assert told == "1 free motion; wheel turns fully"
