@@ -23,6 +23,7 @@ KINDS = (
     "balance",
     "compare",
     "outputs",
+    "save",
     "download",
 )
 SLOW = ("balance", "download")

@@ -18,11 +18,13 @@ from equipoise.errors import EquipoiseError, ModelError, UsageError, to_paste
 from equipoise.i18n import LANGUAGES, say, speaking
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
+from equipoise.schema.documents import dumps
 from equipoise.schema.files import LARGEST, printable
 from equipoise.schema.models import load_linkage, loads_linkage
 from equipoise.schema.opening import examples, kind_of_text, opened
 from equipoise.web.balanced import balanced, balanced_design, balanced_told, nothing_gained
 from equipoise.web.design import Design, History, Step
+from equipoise.web.disk import Disk
 from equipoise.web.downloads import downloaded
 from equipoise.web.edits import Solved, edited, settled, solved
 from equipoise.web.fields import Scale, fields_of
@@ -53,7 +55,7 @@ class Session:
     before : with which it is compared, if with any.
     scale : of the sliders.  more_told : the design of which `tell_more` has told.
     wanted : outputs that the page draws besides those that it always does.
-    language : that its reader speaks.
+    language : that its reader speaks.  disk : the file that is open, if it can be saved.
     lock : held while a design takes the place of another, since balancing has a thread of its own.
     """
 
@@ -65,6 +67,7 @@ class Session:
     more_told: Solved | None = None
     wanted: tuple[str, ...] = ()
     language: str = "en"
+    disk: Disk | None = None
     lock: Lock = field(default_factory=Lock)
 
     def receive(self, message: Message) -> Iterator[Reply]:
@@ -91,10 +94,12 @@ class Session:
             design = opened_example(message.text("example"))
         else:
             design = opened_text(message.text("name", "machine.toml"), message.text("text"))
+        disk = self.disk if message.flag("file", False) else None
         try:
             self.open(design)
         except EquipoiseError as error:
             raise _in_file(error, design.name) from error
+        self.disk = disk
         yield from self._shown(message.seq)
 
     def _edit(self, message: Message) -> Iterator[Reply]:
@@ -161,6 +166,15 @@ class Session:
         yield Reply({"type": "balanced", "seq": message.seq, **told})
         yield from self._shown(message.seq)
 
+    def _save(self, message: Message) -> Iterator[Reply]:
+        if self.disk is None:
+            raise UsageError("this machine was not opened from a file; download the model instead")
+        first = dumps(self._past.first.machine)
+        self.disk.save(self._current())
+        told = {"name": self.disk.name, "base": self.disk.base, "text": first}
+        yield from self._shown(message.seq)
+        yield Reply({"type": "saved", "seq": message.seq, **told})
+
     def _download(self, message: Message) -> Iterator[Reply]:
         language = message.text("language", "en")
         with self._telling():
@@ -179,6 +193,7 @@ class Session:
                 "largest": LARGEST,
                 "numbers": display_rules(),
                 "machine": self.found is not None,
+                "base": "" if self.disk is None else self.disk.base,
             }
         )
 
@@ -253,12 +268,24 @@ class Session:
             content, data = shaken
             yield Reply({"type": "response", "seq": seq, **content}, data)
 
+    def _kept(self, disk: Disk) -> dict[str, Any]:
+        """The file on disk, and whether it holds what is done; not what is tried."""
+        saved = self.preview is None and disk.holds(self._current().design.machine)
+        return {"name": disk.name, "saved": saved, "comments": disk.has_comments}
+
     def _state(self, seq: int | None) -> Reply:
         assert self.scale is not None
         found, history = self.shown, self._past
         content, data = state_of(found, self.before, self.wanted)
         fields = [self.scale.told(one) for one in fields_of(found.design).values()]
-        told = {"undo": history.undo, "redo": history.redo, "fields": fields}
+        steps = [len(history.past), len(history.future)]
+        told: dict[str, Any] = {
+            "undo": history.undo,
+            "redo": history.redo,
+            "steps": steps,
+            "fields": fields,
+        }
+        told["file"] = None if self.disk is None else self._kept(self.disk)
         return Reply({"type": "state", "seq": seq, **told, **content}, data)
 
 
