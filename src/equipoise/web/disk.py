@@ -7,6 +7,7 @@ import re
 from dataclasses import dataclass, field
 from hashlib import sha256
 from threading import Lock
+from typing import Any
 
 from equipoise.errors import UsageError
 from equipoise.mechanism.model import Machine
@@ -46,9 +47,10 @@ class Disk:
         """Whether saving would lose comments, which a model does not hold."""
         return COMMENT.search(self.text) is not None
 
-    def holds(self, machine: Machine) -> bool:
-        """Whether the file tells just this machine."""
-        return self.found.design.machine == machine
+    def kept(self, machine: Machine | None) -> dict[str, Any]:
+        """Name of the file, and whether it tells just this machine; None of one that is tried."""
+        saved = machine is not None and self.found.design.machine == machine
+        return {"name": self.name, "saved": saved, "comments": self.has_comments}
 
     def save(self, found: Solved) -> None:
         """Put a design in the place of what the file holds.

@@ -24,11 +24,17 @@ KINDS = (
     "compare",
     "outputs",
     "save",
+    "arrows",
+    "variant",
     "download",
+    "tables",
+    "entry",
 )
 SLOW = ("balance", "download")
 """Those that take more than a moment."""
 MOST_EDITS, MOST_OUTPUTS, MOST_LANGUAGES = 100, 20, 50
+DEEPEST = 8
+"""Steps on the way to a value of a file."""
 LONGEST_LABEL = 200
 LARGEST_MESSAGE = 3 * LARGEST
 """Bytes: of a model file as JSON, in which signs take up to six times their place, but few do."""
@@ -57,6 +63,21 @@ class Drag:
 
 
 Change = Setting | Drag
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A table of the file that is put, or deleted.
+
+    place : keys, names and numbers from 0 on the way to it.  values : of its keys, as in a file;
+        None to delete it.  name : what it is called from now on, if it has a name.
+    files : texts of CSV files that it names.
+    """
+
+    place: tuple[str | int, ...]
+    values: Mapping[str, Any] | None
+    name: str | None
+    files: Mapping[str, str]
 
 
 @dataclass(frozen=True)
@@ -110,6 +131,25 @@ class Message:
             _wrong("edit: edits", edits, f"a list of 1 to {MOST_EDITS} edits")
         return [_change(edit) for edit in edits]
 
+    def entry(self) -> Entry:
+        """What a message of the kind `entry` does.
+
+        Raises
+        ------
+        UsageError : something of it is not as it should be.
+        """
+        place, values = self.values.get("place"), self.values.get("values")
+        name, files = self.values.get("name"), self.values.get("files", {})
+        if not isinstance(place, list) or not all(map(_is_step, place)) or len(place) > DEEPEST:
+            _wrong("entry: place", place, 'a list of keys and numbers such as ["springs", 0]')
+        if values is not None and not (isinstance(values, dict) and _is_plain(values, DEEPEST)):
+            _wrong("entry: values", values, "a table of values as in a file")
+        if name is not None and not isinstance(name, str):
+            _wrong("entry: name", name, "a text")
+        if not isinstance(files, dict) or not all(isinstance(one, str) for one in files.values()):
+            _wrong("entry: files", files, "texts of files by their names")
+        return Entry(tuple(place), values, name, files)
+
     @property
     def preview(self) -> bool:
         """Whether a newer edit makes this one needless."""
@@ -147,6 +187,20 @@ def message_of(values: object) -> Message:
     if kind not in KINDS:
         _wrong("type", kind, f"one of {', '.join(KINDS)}")
     return Message(kind, seq, values)
+
+
+def _is_step(step: object) -> bool:
+    """Whether it is a key, a name, or a number of a list."""
+    number = isinstance(step, int) and not isinstance(step, bool)
+    return isinstance(step, str) or (number and 0 <= step < HUGE)  # type: ignore[operator]
+
+
+def _is_plain(value: object, deep: int) -> bool:
+    """Whether a file could have it, so deep at most."""
+    if isinstance(value, dict | list):
+        inner = value.values() if isinstance(value, dict) else value
+        return deep > 0 and all(_is_plain(one, deep - 1) for one in inner)
+    return isinstance(value, str | int | float)
 
 
 def _change(edit: object) -> Change:
