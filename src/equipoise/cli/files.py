@@ -133,19 +133,19 @@ def serve(
     """
     from equipoise.web import server
     from equipoise.web.disk import on_disk
-    from equipoise.web.session import Session, opened_file
+    from equipoise.web.openings import opened_file
+    from equipoise.web.session import Session
 
     first = Session()
     if file is not None:
         with naming(file):  # what is wrong with the machine is told before a page is opened
             first.open(opened_file(file))
-            assert first.found is not None
-            first.disk = on_disk(file, first.found)
+            first.disk = on_disk(file, first.shown)
 
     def begin() -> Session:
         session = Session(disk=first.disk)
-        found = first.found if first.disk is None else first.disk.found
-        if found is not None:
+        if first.found is not None:
+            found = first.shown if first.disk is None else first.disk.found
             session.open(found.design, found)
         return session
 

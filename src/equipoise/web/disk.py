@@ -10,7 +10,6 @@ from threading import Lock
 from typing import Any
 
 from equipoise.errors import UsageError
-from equipoise.mechanism.model import Machine
 from equipoise.schema.documents import dumps
 from equipoise.schema.files import FileError, printable, read_text, write
 from equipoise.web.design import Design
@@ -47,8 +46,9 @@ class Disk:
         """Whether saving would lose comments, which a model does not hold."""
         return COMMENT.search(self.text) is not None
 
-    def kept(self, machine: Machine | None) -> dict[str, Any]:
-        """Name of the file, and whether it tells just this machine; None of one that is tried."""
+    def kept(self, found: object) -> dict[str, Any]:
+        """Name of the file, and whether it tells just this design, which may be unfinished."""
+        machine = found.design.machine if isinstance(found, Solved) else None
         saved = machine is not None and self.found.design.machine == machine
         return {"name": self.name, "saved": saved, "comments": self.has_comments}
 

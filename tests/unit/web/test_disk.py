@@ -8,7 +8,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.web.disk import on_disk
-from equipoise.web.session import Session, opened_file
+from equipoise.web.openings import opened_file
+from equipoise.web.session import Session
 from surface.running import example_text
 from unit.web.pages import ask, edit, refusal, state
 
@@ -26,8 +27,7 @@ def session_of(path: Path | str) -> Session:
     """What a page of `equipoise serve FILE` begins with."""
     session = Session()
     session.open(opened_file(path))
-    assert session.found is not None
-    session.disk = on_disk(str(path), session.found)
+    session.disk = on_disk(str(path), session.shown)
     return session
 
 
