@@ -8,7 +8,7 @@ export type Edit =
   | { move: string; to: Pair; at: number }
   | { move_mass: string; to: Pair; at: number };
 
-export type FileKind = "model" | "csv" | "report";
+export type FileKind = "model" | "csv" | "report" | "drawing" | "film" | "played";
 
 export type Asked =
   | { type: "ready" }
@@ -21,7 +21,8 @@ export type Asked =
   | { type: "undo" | "redo" | "balance" | "save" }
   | { type: "compare"; on: false }
   | { type: "outputs"; names: string[] }
-  | { type: "download"; kind: FileKind; language?: string };
+  | { type: "download"; kind: FileKind; language?: string; at?: number; format?: "svg" | "png" }
+  | { type: "download"; kind: "chart"; chart: string; choice: string; format: "svg" | "png" };
 
 export interface Example {
   name: string;
@@ -49,6 +50,8 @@ export interface Spoken {
   languages: Record<string, string>;
   /** English text of the page -> text in the language. */
   words: Record<string, string>;
+  /** Chart -> what it shows, and what to look for. */
+  explained: Record<string, string>;
 }
 
 /** In which something is read, and how many of it one SI unit is. */
