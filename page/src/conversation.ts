@@ -1,6 +1,6 @@
 /** One question at a time: of edits that wait, the newest is enough. */
 
-import type { Asked, Edit, Told, Wire } from "./protocol";
+import type { Asked, Edit, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
 import { Numbers, type Planted, type ResponseMessage, type State } from "./protocol";
 import { language } from "./words";
@@ -13,6 +13,7 @@ export interface Events {
   refused(message: string, edit: boolean): void;
   balanced(message: Extract<Told, { type: "balanced" }>): void;
   busy(what: string | null): void;
+  tables(message: Tables): void;
   file(name: string, mime: string, bytes: DataView | undefined): void;
   line(up: boolean): void;
 }
@@ -22,17 +23,20 @@ export interface Memory {
   write(text: string): void;
 }
 
+/** Hears that something was done, or why not. */
+type Answered = (refusal: string | null, told: Refused | null) => void;
+
 interface Question {
   seq: number;
   asked: Asked;
-  answered?: ((refusal: string | null) => void) | undefined;
+  answered?: Answered | undefined;
 }
 
 /** What takes long: other questions do not wait for it. */
 const SLOW = new Set(["balance", "download"]);
 
 /** What makes the machine on the server other than it was; said again after a broken line. */
-const REMEMBERED = new Set(["edit", "undo", "redo", "balance", "compare", "outputs"]);
+const REMEMBERED = new Set(["edit", "undo", "redo", "balance", "compare", "outputs", "entry"]);
 
 export class Conversation {
   /** Drags and held keys under way; each ends before something else is asked. */
@@ -69,7 +73,7 @@ export class Conversation {
   }
 
   /** Ask; every question gets its answer, in this order. */
-  ask(asked: Asked, answered?: (refusal: string | null) => void): void {
+  ask(asked: Asked, answered?: Answered): void {
     this.dropWaiting();
     this.queue.push({ seq: ++this.seq, asked, answered });
     this.next();
@@ -117,7 +121,10 @@ export class Conversation {
         return this.events.planting(told);
       case "refused":
         if (!this.repeating) this.refuse(told.seq, told.message);
-        return this.end(told.seq, told.message);
+        return this.end(told.seq, told.message, told);
+      case "tables":
+        this.events.tables(told);
+        return this.end(told.seq, null);
       case "balanced":
         return this.events.balanced(told);
       case "busy":
@@ -133,19 +140,20 @@ export class Conversation {
 
   private refuse(seq: number, message: string): void {
     const asked = this.flight?.seq === seq ? this.flight.asked : null;
+    if (asked?.type === "entry" && this.flight?.answered) return;
     if (asked?.type !== "edit") return this.events.refused(message, false);
     // Who asks for a number and waits for the answer says it beside that number.
     if (!asked.commit || !this.flight?.answered) this.events.refused(message, true);
   }
 
-  private end(seq: number, refusal: string | null): void {
+  private end(seq: number, refusal: string | null, told: Refused | null = null): void {
     const question = this.flight?.seq === seq ? this.flight : this.aside.get(seq);
     if (!question) return;
     if (question === this.flight) this.flight = null;
     else if (this.aside.delete(seq)) this.events.busy(null);
     if (refusal === null && !this.repeating) this.remember(question.asked);
     if (this.repeating && !this.queue.length) this.repeating = false;
-    question.answered?.(refusal);
+    question.answered?.(refusal, told);
     this.next();
   }
 
