@@ -54,6 +54,7 @@ from equipoise.keys.kinds import Tables as Tables
 from equipoise.keys.kinds import Text as Text
 from equipoise.keys.kinds import Told as Told
 from equipoise.keys.kinds import Whole as Whole
+from equipoise.keys.kinds import Wording as Wording
 from equipoise.keys.kinds import choice as choice
 from equipoise.keys.kinds import innermost as innermost
 from equipoise.keys.kinds import items_of as items_of

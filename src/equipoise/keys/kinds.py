@@ -9,6 +9,7 @@ from numbers import Integral, Real
 from types import MappingProxyType
 from typing import Any, Literal
 
+from equipoise.i18n import LANGUAGES, Worded
 from equipoise.keys.base import Kind, Record
 from equipoise.quantities import Dimension
 
@@ -44,6 +45,18 @@ class Text(Kind):
         if not isinstance(value, str):
             raise TypeError
         return value
+
+
+@dataclass(frozen=True)
+class Wording(Text):
+    """Text for readers: one for all of them, or one for each of some languages."""
+
+    def check(self, value: Any) -> str:
+        if not isinstance(value, Mapping):
+            return super().check(value)
+        if not value or not value.keys() <= LANGUAGES.keys() or not all(value.values()):
+            raise ValueError
+        return Worded({code: super(Wording, self).check(one) for code, one in value.items()})
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from equipoise.mechanism.model import Machine, Position, Vector
 from equipoise.mechanism.motion import Motion
 from equipoise.quantities import parse
 from equipoise.results.analysis import LEAST_ANGLES, Analysis, analyze
+from equipoise.symbols.scene import Scene
 from equipoise.web.design import DRAGGED, Design, clean, clean_place
 from equipoise.web.fields import fields_of
 from equipoise.web.messages import Change, Drag, Setting
@@ -42,6 +44,11 @@ class Solved:
     @property
     def motion(self) -> Motion:
         return self.analysis.motion
+
+    @cached_property
+    def scene(self) -> Scene:
+        """What there is to draw of it."""
+        return Scene.of(self.motion)
 
 
 def solved(design: Design) -> Solved:

@@ -23,6 +23,8 @@ KINDS = (
     "balance",
     "compare",
     "outputs",
+    "arrows",
+    "variant",
     "download",
     "tables",
     "entry",

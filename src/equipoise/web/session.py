@@ -11,11 +11,10 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from functools import cache
 from threading import Lock
-from typing import Any
 
 from equipoise import __version__
-from equipoise.errors import EquipoiseError, ModelError, UsageError, to_paste
-from equipoise.i18n import LANGUAGES, say, speaking
+from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.i18n import LANGUAGES, said, say, speaking
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
 from equipoise.schema.files import LARGEST, printable
@@ -27,22 +26,14 @@ from equipoise.web.downloads import downloaded
 from equipoise.web.edits import Solved, edited, settled, solved
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.messages import MOST_LANGUAGES, Message
+from equipoise.web.replies import Reply, refused
+from equipoise.web.seen import ASKED, Seen
 from equipoise.web.shaken import more, response_of
 from equipoise.web.state import first_of, state_of
 from equipoise.web.tables import entered, tables_of
 from equipoise.web.words import language_of, words_of
 
-LONGEST = 800
-"""Signs of a sentence."""
 TOOLS = "this is the file of a hand-held tool; `equipoise report` and `equipoise plot` show those"
-
-
-@dataclass(frozen=True)
-class Reply:
-    """What a page is sent: values for JSON, and a block of 32-bit floats or of a file."""
-
-    content: dict[str, Any]
-    buffer: bytes = b""
 
 
 @dataclass
@@ -55,6 +46,7 @@ class Session:
     scale : of the sliders.  more_told : the design of which `tell_more` has told.
     wanted : outputs that the page draws besides those that it always does.
     language : that its reader speaks.
+    seen : what else the page shows.
     lock : held while a design takes the place of another, since balancing has a thread of its own.
     """
 
@@ -66,12 +58,16 @@ class Session:
     more_told: Solved | None = None
     wanted: tuple[str, ...] = ()
     language: str = "en"
+    seen: Seen = field(default_factory=Seen)
     lock: Lock = field(default_factory=Lock)
 
     def receive(self, message: Message) -> Iterator[Reply]:
         """Answer a message; what takes long comes last, and may be left unasked."""
         try:
-            yield from getattr(self, f"_{message.kind}")(message)
+            if message.kind in ASKED:
+                yield from ASKED[message.kind](self, message)
+            else:
+                yield from getattr(self, f"_{message.kind}")(message)
         except EquipoiseError as error:
             yield refused(message.seq, error)
 
@@ -80,7 +76,7 @@ class Session:
     def _ready(self, message: Message) -> Iterator[Reply]:
         yield self.hello()
         if self.found is not None:
-            yield from self._shown(message.seq)
+            yield from self.told(message.seq)
 
     def _speak(self, message: Message) -> Iterator[Reply]:
         self.language = language_of(message.names("languages", MOST_LANGUAGES))
@@ -96,12 +92,12 @@ class Session:
             self.open(design)
         except EquipoiseError as error:
             raise _in_file(error, design.name) from error
-        yield from self._shown(message.seq)
+        yield from self.told(message.seq)
 
     def _edit(self, message: Message) -> Iterator[Reply]:
         commit, problem = message.flag("commit", True), None
         with self.lock, self._telling():
-            base, found = self._current(), None
+            base, found = self.current(), None
             try:
                 found = edited(base, message.changes())
             except EquipoiseError as error:
@@ -116,43 +112,43 @@ class Session:
         if problem is not None:
             yield refused(message.seq, problem)
         if found is not None:
-            yield from self._shown(message.seq)
+            yield from self.told(message.seq)
 
     def _tables(self, message: Message) -> Iterator[Reply]:
         with self._telling():
-            told = tables_of(self._current().design.own)
+            told = tables_of(self.current().design.own)
         yield Reply({"type": "tables", "seq": message.seq, **told})
 
     def _entry(self, message: Message) -> Iterator[Reply]:
         with self.lock, self._telling():
-            found = settled(solved(entered(self._current().design, message.entry())))
+            found = settled(solved(entered(self.current().design, message.entry())))
             self._go(self._past.then(found.design, message.label), found)
-        yield from self._shown(message.seq)
+        yield from self.told(message.seq)
 
     def _undo(self, message: Message) -> Iterator[Reply]:
         with self.lock:
             self._go(self._past.undone())
-        yield from self._shown(message.seq)
+        yield from self.told(message.seq)
 
     def _redo(self, message: Message) -> Iterator[Reply]:
         with self.lock:
             self._go(self._past.redone())
-        yield from self._shown(message.seq)
+        yield from self.told(message.seq)
 
     def _compare(self, message: Message) -> Iterator[Reply]:
         first = self._past.first
         self.before = solved(first) if message.flag("on", False) else None
-        yield from self._shown(message.seq)
+        yield from self.told(message.seq)
 
     def _outputs(self, message: Message) -> Iterator[Reply]:
         names = message.names()
         for name in names:
-            _ = self._current().analysis.outputs[name]
+            _ = self.current().analysis.outputs[name]
         self.wanted = names
-        yield from self._shown(message.seq)
+        yield from self.told(message.seq)
 
     def _balance(self, message: Message) -> Iterator[Reply]:
-        base = self._current()
+        base = self.current()
         with self._telling():
             what = say("balancing")
         yield Reply({"type": "busy", "seq": message.seq, "what": what})
@@ -160,7 +156,7 @@ class Session:
         with self._telling():
             nothing = nothing_gained(found)
         if nothing is not None:
-            yield from self._shown(message.seq, nothing)
+            yield from self.told(message.seq, nothing)
             return
         after = solved(balanced_design(base.design, found))
         with self._telling():
@@ -171,12 +167,12 @@ class Session:
             self._go(self._past.then(after.design, "balance"), after)
             self.before = base
         yield Reply({"type": "balanced", "seq": message.seq, **told})
-        yield from self._shown(message.seq)
+        yield from self.told(message.seq)
 
     def _download(self, message: Message) -> Iterator[Reply]:
         language = message.text("language", "en")
         with self._telling():
-            content, data = downloaded(self._current(), message.text("kind"), language)
+            content, data = downloaded(self.current(), message.text("kind"), language)
         yield Reply({"type": "file", "seq": message.seq, **content}, data)
 
     # -- its state ---------------------------------------------------------------------------------
@@ -187,7 +183,9 @@ class Session:
             {
                 "type": "hello",
                 "version": __version__,
-                "examples": [{"name": name, "title": title} for name, title in titles().items()],
+                "examples": [
+                    {"name": name, "title": said(title)} for name, title in titles().items()
+                ],
                 "largest": LARGEST,
                 "numbers": display_rules(),
                 "machine": self.found is not None,
@@ -204,6 +202,11 @@ class Session:
             self.scale = Scale.of(design)
             self._go(History(Step(design, "")), found)
             self.before, self.wanted = None, first_of(design.machine)[1]
+            self.seen = self.seen.opening(found)
+
+    def go_to(self, found: Solved, label: str) -> None:
+        """Make a design that has been computed the one that is, as one step of undo."""
+        self._go(self._past.then(found.design, label), found)
 
     @property
     def has_more(self) -> bool:
@@ -233,34 +236,39 @@ class Session:
     @property
     def shown(self) -> Solved:
         """What the page sees: what is dragged, or the design that is."""
-        return self.preview or self._current()
+        return self.preview or self.current()
 
     @property
     def _past(self) -> History:
-        self._current()
+        self.current()
         assert self.history is not None
         return self.history
 
-    def _current(self) -> Solved:
+    def current(self) -> Solved:
+        """The design that is; a `UsageError` where there is none."""
         if self.found is None:
             raise UsageError("no machine is open; pick an example, or drop a model file")
         return self.found
 
     def _go(self, history: History, found: Solved | None = None) -> None:
         """Show where a history has come to; nothing has changed where that cannot be computed."""
-        self.found = found or solved(history.now.design)
+        found = found or solved(history.now.design)
+        self.seen.last, self.found = self.found, found
         self.history, self.preview = history, None
         if self.before is not None and self.before.design is history.now.design:
             self.before = None  # nothing differs from itself
 
-    def _shown(self, seq: int | None, *notes: str) -> Iterator[Reply]:
+    def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:
         """The design that is shown, and how its support is shaken; notes come before its own."""
         with self._telling():
             state = self._state(seq)
         state.content["notes"] = [*notes, *state.content["notes"]]
         yield state
         with self._telling():
-            shaken = response_of(self.shown.design.machine)
+            compared = [*self.seen.compared(None if self.preview else self.found)]
+        yield from compared
+        with self._telling():
+            shaken = response_of(self.shown)
         if shaken is not None:
             content, data = shaken
             yield Reply({"type": "response", "seq": seq, **content}, data)
@@ -268,18 +276,17 @@ class Session:
     def _state(self, seq: int | None) -> Reply:
         assert self.scale is not None
         found, history = self.shown, self._past
-        content, data = state_of(found, self.before, self.wanted)
+        seen, held = self.seen, None if self.preview is None else self.found
+        content, data = state_of(
+            found,
+            seen.pale or self.before,
+            self.wanted,
+            against=seen.against(held),
+            arrows_at=seen.arrows_at,
+        )
         fields = [self.scale.told(one) for one in fields_of(found.design).values()]
         told = {"undo": history.undo, "redo": history.redo, "fields": fields}
         return Reply({"type": "state", "seq": seq, **told, **content}, data)
-
-
-def refused(seq: int | None, error: Exception) -> Reply:
-    """Say why something cannot be done."""
-    content: dict[str, Any] = {"type": "refused", "seq": seq, "message": _shortened(str(error))}
-    if isinstance(error, ModelError) and error.where:
-        content |= {"path": error.where, "what": _shortened(error.what)}
-    return Reply(content)
 
 
 def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:
@@ -287,12 +294,6 @@ def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:
     if isinstance(error, ModelError):
         return error.in_file(name)
     return UsageError(f"{name}: {error}")
-
-
-def _shortened(text: str) -> str:
-    sentence, *lines = to_paste(text)
-    text = "\n".join([" ".join(sentence.split()), *lines])
-    return text if len(text) <= LONGEST else f"{text[: LONGEST - 200]} ... {text[-190:]}"
 
 
 @cache

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from functools import cache
 from importlib.resources import files
 
-from equipoise.i18n import LANGUAGES, Note, catalogue
+from equipoise.i18n import LANGUAGES, catalogue
 
 WORDS = "words.json"
 """Beside the bundle: the texts that its page says."""
@@ -26,8 +26,3 @@ def words_of(language: str) -> dict[str, str]:
     said = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else []
     known = catalogue(language)
     return {text: known[text] for text in said if text in known}
-
-
-def read(note: Note | str) -> str:
-    """A sentence that a result carries, in the language that is spoken."""
-    return note.said() if isinstance(note, Note) else note

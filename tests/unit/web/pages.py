@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from equipoise.web.messages import message_of
-from equipoise.web.session import Reply, Session, opened_example
+from equipoise.web.replies import Reply
+from equipoise.web.session import Session, opened_example
 
 Array = np.ndarray[Any, Any]
 Content = dict[str, Any]
