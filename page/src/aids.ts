@@ -2,14 +2,11 @@
 
 import type { Aim } from "./aim";
 import { h, s, set, write } from "./dom";
-import { degrees, length, lengths, plain } from "./format";
+import { degrees, length, lengths, metres, plain } from "./format";
 import type { Pair } from "./protocol";
 import type { Stage } from "./stage";
 import { Underlay } from "./underlay";
 import { say } from "./words";
-
-/** What a length may be typed in, m; that of the drawing where no unit is typed. */
-const METRES: Record<string, number> = { m: 1, mm: 1e-3, cm: 1e-2, km: 1e3, um: 1e-6, in: 0.0254, ft: 0.3048 };
 
 export class Aids {
   readonly root: HTMLDetailsElement;
@@ -133,14 +130,13 @@ export class Aids {
   }
 
   private stretch(): void {
-    const metres = metresOf(this.distance.value);
-    if (metres === null) {
+    const given = metresOf(this.distance.value);
+    if (given === null) {
       set(this.distance, { "aria-invalid": "true" });
-      const units = Object.keys(METRES).join(", ");
-      return write(this.said, say("Give a length above 0, such as 250 mm; its unit is one of {units}.", { units }));
+      return write(this.said, say("Give a length above 0 with its unit, such as 250 mm."));
     }
     set(this.distance, { "aria-invalid": null });
-    if (this.two) this.underlay.stretch(...this.two, metres);
+    if (this.two) this.underlay.stretch(...this.two, given);
     this.scaling.hidden = true;
     write(this.said, "");
   }
@@ -196,7 +192,6 @@ function numberOf(text: string): number {
 /** A typed length, m; null where it is none. */
 function metresOf(text: string): number | null {
   const found = /^([\d.eE+-]+) *([a-z]*)$/.exec(text.trim());
-  const unit = found?.[2] || lengths().unit;
-  const metres = Number(found?.[1]) * (METRES[unit] ?? NaN);
-  return metres > 0 && Number.isFinite(metres) ? metres : null;
+  const given = Number(found?.[1]) * metres(found?.[2] || lengths().unit);
+  return given > 0 && Number.isFinite(given) ? given : null;
 }

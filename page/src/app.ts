@@ -1,5 +1,6 @@
 /** The page as a whole: what it shows, and who tells whom. */
 
+import { Bench } from "./bench";
 import { Charts } from "./charts";
 import { Conversation, type Events, type Memory } from "./conversation";
 import { h, write } from "./dom";
@@ -35,6 +36,7 @@ export class App {
   private readonly hands: Hands;
   private readonly stage: Stage;
   private readonly board: Board;
+  private readonly bench: Bench;
   private readonly charts: Charts;
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
@@ -80,6 +82,7 @@ export class App {
       refused: (message, edit) => this.refuse(message, edit),
       balanced: (message) => this.balance.show(message),
       busy: (what) => this.busy(what),
+      tables: (message) => this.bench.show(message),
       file: save,
       line: (up) => this.line(up),
     };
@@ -97,6 +100,8 @@ export class App {
     this.hands = new Hands(page, (dress) => new Stage(dress));
     this.stage = this.hands.made;
     this.board = new Board(this.stage, (link) => this.chooseLink(link));
+    const root = this.full ? document : this.root;
+    this.bench = new Bench({ ...page, root, stage: this.stage, board: this.board });
     this.charts = new Charts(
       this.theme,
       (angle) => this.turn(angle),
@@ -130,6 +135,7 @@ export class App {
   close(): void {
     this.frames.close();
     this.charts.close();
+    this.bench.close();
     this.talk.close();
     this.theme.close();
     this.watcher.disconnect();
@@ -143,7 +149,7 @@ export class App {
     stage.append(this.transport.root, this.heading.notes, this.readings.root);
     stage.append(this.strokes.root, this.planted.root);
     this.side.append(this.charts.root);
-    this.aside.append(this.balance.root, this.inspector.root);
+    this.aside.append(this.balance.root, ...this.bench.roots, this.inspector.root);
     this.root.append(
       this.toolbar.root,
       this.lost,
@@ -209,6 +215,7 @@ export class App {
         state.speed !== 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches;
     } else this.player.angle = angle;
     if (other) this.heading.forget();
+    if (other) this.bench.forget();
     if (other || !state.planting) this.planted.hide();
     if (other) this.strokes.hide();
     if (!state.before) this.balance.hide();
@@ -253,6 +260,7 @@ export class App {
     this.toolbar.show(state);
     this.readings.show(state);
     this.inspector.show(state);
+    if (!this.held) this.bench.follow();
     if (!this.held) {
       this.theme.update();
       this.charts.settle();
@@ -322,6 +330,7 @@ export class App {
   }
 
   private async read(file: File): Promise<void> {
+    if (this.bench.take(file)) return;
     const problem = tooLarge(file, this.hello?.largest ?? Infinity);
     if (problem) return this.board.say(problem, true);
     this.open({ type: "open", name: file.name, text: await file.text() }, file.name);

@@ -1,6 +1,6 @@
 /** Lines of a DXF drawing, read by dxf-parser: what can be traced, and where a trace may snap. */
 
-import DxfParser from "dxf-parser";
+import DxfParser from "dxf-parser/dist/dxf-parser.js";
 import type { Pair } from "./protocol";
 import { say } from "./words";
 

@@ -27,6 +27,9 @@ export interface FormEvents {
   pick(body: string, named: boolean, taken: (picked: Picked) => void): void;
 }
 
+/** What a value is given in. */
+const GIVEN = "input, select";
+
 export class Form {
   readonly root: HTMLFormElement;
   private readonly inputs = new Map<string, Input>();
@@ -41,7 +44,7 @@ export class Form {
     private readonly events: FormEvents,
   ) {
     const { heading, text, deletable } = subject;
-    this.root = h("form", { class: "entry", "aria-label": heading, novalidate: true });
+    this.root = h("form", { class: "part-form", "aria-label": heading, novalidate: true });
     this.name = subject.name === null ? null : h("input", { type: "text", class: "value" });
     this.root.append(h("h2", {}, heading), h("p", { class: "quiet" }, text));
     if (this.name) this.root.append(this.named(this.name, subject.name ?? ""));
@@ -74,8 +77,8 @@ export class Form {
     if (!line) return this.say(this.problem, message);
     this.say(line, what ?? message);
     const row = line.parentElement as HTMLElement;
-    const first = row.querySelector<HTMLElement>(".value, select, input");
-    set(first ?? row, { "aria-invalid": "true", "aria-describedby": line.id });
+    const first = row.querySelector<HTMLElement>(GIVEN);
+    set(first ?? row, { "aria-invalid": "true", "aria-errormessage": line.id });
     first?.focus();
   }
 
@@ -92,7 +95,7 @@ export class Form {
   private hush(): void {
     for (const line of [this.problem, ...this.errors.values()]) this.say(line, "");
     for (const one of this.root.querySelectorAll("[aria-invalid]"))
-      set(one, { "aria-invalid": null, "aria-describedby": null });
+      set(one, { "aria-invalid": null, "aria-errormessage": null });
   }
 
   private listen(): void {
@@ -146,10 +149,12 @@ export class Form {
     one.set(this.subject.values[key]);
     this.inputs.set(key, one);
     this.errors.set(key, error);
+    const first = one.element.matches(GIVEN) ? one.element : one.element.querySelector(GIVEN);
+    if (first) set(first, { "aria-describedby": told });
     const marked = required ? h("span", { class: "needed", title: say("required") }, " *") : null;
     return h(
       "div",
-      { class: "key", "data-key": key, role: "group", "aria-label": word, "aria-describedby": told },
+      { class: "key", "data-key": key },
       h("span", { class: "word" }, word, marked, unit ? h("span", { class: "unit" }, ` ${unit}`) : null),
       one.element,
       h("p", { class: "quiet", id: told }, text),

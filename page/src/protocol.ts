@@ -63,6 +63,8 @@ export interface NumberRules {
   most: number;
   /** What may follow a number in a sentence; longer ones first. */
   units: string[];
+  /** m in each unit in which a length may be typed. */
+  lengths: Record<string, number>;
 }
 
 export interface Field extends Unit {
