@@ -132,7 +132,8 @@ def serve(
         Print the address, and open no browser.
     """
     from equipoise.web import server
-    from equipoise.web.session import Session, opened_file
+    from equipoise.web.openings import opened_file
+    from equipoise.web.session import Session
 
     first = Session()
     if file is not None:
@@ -142,7 +143,7 @@ def serve(
     def begin() -> Session:
         session = Session()
         if first.found is not None:
-            session.open(first.found.design, first.found)
+            session.open(first.shown.design, first.shown)
         return session
 
     def tell(address: str) -> None:

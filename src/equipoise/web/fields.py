@@ -8,15 +8,25 @@ from functools import lru_cache, partial
 from math import pi
 from typing import Any
 
+from equipoise.errors import ModelError, UsageError
 from equipoise.keys import Frozen, Quantity, quantities_of
 from equipoise.mechanism.links import MASS_FIELDS
 from equipoise.mechanism.model import Link, Machine, Vector, size_of
 from equipoise.mechanism.mounts import OF_AXIS, OF_POINT
-from equipoise.quantities import Display, chosen_unit, format_exact, in_unit, rounded, typeset
+from equipoise.quantities import (
+    Display,
+    chosen_unit,
+    format_exact,
+    in_unit,
+    parse,
+    rounded,
+    typeset,
+)
 from equipoise.quantities.units import KINDS, Dimension
-from equipoise.web.design import Design, pin_of
+from equipoise.web.design import Design, clean, pin_of
 
-Put = Callable[[Design, float], Design]
+Put = Callable[[Any, float], Any]
+"""From a design or a sketch, and the value, to another one."""
 FINE = 1000
 """Steps of a slider over its range."""
 FREE = 0.5
@@ -38,6 +48,27 @@ class Field:
     dimension: Dimension
     value: float
     put: Put
+
+    def typed(self, of: Any, to: str | float) -> Any:
+        """What it is a number of, with the number set to a value or to what was typed.
+
+        Raises
+        ------
+        EquipoiseError : that is no such number, or it cannot be.
+        """
+        if not isinstance(to, str):
+            return self.put(of, clean(to, self.dimension))
+        typed = to.strip()
+        value = parse(typed, self.dimension)
+        try:
+            return self.put(of, value)
+        except (ModelError, UsageError) as error:
+            given = error.given
+            if given is None or given.value != value:  # of another number
+                raise
+            if isinstance(error, ModelError):
+                raise ModelError(error.where, given.retold(error.what, typed)) from error
+            raise UsageError(given.retold(str(error), typed)) from error
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import pytest
 import equipoise as eq
 from equipoise.web.design import Design
 from equipoise.web.fields import Scale, fields_of
-from equipoise.web.session import opened_example
+from equipoise.web.openings import opened_example
 from unit.web.pages import edit, opened
 
 

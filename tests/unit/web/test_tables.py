@@ -12,7 +12,7 @@ from equipoise.keys import Named, Tables
 from equipoise.mechanism.model import Machine
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
 from equipoise.web.forms import forms_of
-from equipoise.web.session import opened_example, titles
+from equipoise.web.openings import opened_example, titles
 from equipoise.web.tables import tables_of
 from unit.web.pages import Content, ask, opened, refusal, state
 
