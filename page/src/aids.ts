@@ -179,7 +179,7 @@ export class Aids {
     const [nx, ny] = [((ay - by) / away) * turn, ((bx - ax) / away) * turn];
     const end = (x: number, y: number) => `M${x - nx} ${y - ny}L${x + nx} ${y + ny}`;
     set(this.tape, { d: `${end(ax, ay)}${end(bx, by)}M${ax} ${ay}L${bx} ${by}` });
-    set(this.written, { x: (ax + bx) / 2 + 2 * nx, y: (ay + by) / 2 + 2 * ny });
+    set(this.written, { x: (ax + bx) / 2 + 3 * nx, y: (ay + by) / 2 + 3 * ny });
     const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     write(this.written, `${length(Math.hypot(dx, dy))} ${lengths().unit}`);
   }

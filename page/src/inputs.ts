@@ -95,6 +95,21 @@ const text: Maker = ({ options }, name, _, hint) => {
   return { element: h("span", { class: "several" }, field, list), value, set: put };
 };
 
+/** A text, or one for each of some languages. */
+const wording: Maker = (asking, name, around, hint) => {
+  const held = h("span", { class: "several" });
+  let one = text(asking, name, around, hint);
+  const put = (value: Plain | undefined) => {
+    const spoken = typeof value === "object";
+    const item: Asking = { kind: "text" };
+    one = spoken ? names({ kind: "names", item }, name, around, "") : text(asking, name, around, hint);
+    one.set(value);
+    held.replaceChildren(one.element);
+  };
+  put(undefined);
+  return { element: held, value: () => one.value(), set: put };
+};
+
 /** The first option stands for nothing given. */
 function offer(select: HTMLSelectElement, options: (string | number)[], none: string): void {
   const chosen = select.value;
@@ -139,7 +154,7 @@ const called: Maker = ({ of, on }, name, around, hint) => {
     const found = of === "point" ? point : link;
     if (!found) return;
     if (of === "point" && on && on !== FRAME) {
-      const has = namesOf(of, on, around).includes(found);
+      const has = Object.hasOwn(around.bodies[String(around.beside(on) ?? "")] ?? {}, found);
       if (!has && link) around.put(on, link);
       refresh();
     }
@@ -346,4 +361,5 @@ const MAKERS: Record<Asking["kind"], Maker> = {
   list,
   names,
   file,
+  wording,
 };

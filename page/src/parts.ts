@@ -84,7 +84,7 @@ export class Parts {
         {},
         h(
           "button",
-          { type: "button", class: "plain", "aria-label": say("Change {name}", { name }), onclick: edit },
+          { type: "button", class: "plain", title: say("Change {name}", { name }), onclick: edit },
           h("b", {}, name),
           ` ${entry.words}`,
         ),

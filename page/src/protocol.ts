@@ -276,7 +276,7 @@ export interface EntryAsked {
 /** What is asked for: how, and in which unit. */
 export interface Asking {
   kind: "quantity" | "number" | "text" | "choice" | "flag" | "name" | "place" | "direction"
-    | "list" | "names" | "file";
+    | "list" | "names" | "file" | "wording";
   unit?: string;
   options?: (string | number)[];
   /** Of what it is the name, and the key beside it that names the body of a point. */

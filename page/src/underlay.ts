@@ -66,9 +66,10 @@ export class Underlay {
   /** Read a file; returns what there is to say of it. Throws an `Error` of one sentence. */
   async take(file: File): Promise<string> {
     if (file.size > LARGEST) {
-      const size = (file.size / 1e6).toFixed(1);
-      const text = "{name} has {size} MB; at most {most} MB are drawn below the linkage.";
-      throw new Error(say(text, { name: file.name, size, most: LARGEST / 1e6 }));
+      const values = { name: file.name, size: (file.size / 1e6).toFixed(1), most: LARGEST / 1e6 };
+      throw new Error(
+        say("{name} has {size} MB; at most {most} MB are drawn below the linkage.", values),
+      );
     }
     const common = { name: file.name, opacity: 0.5, hidden: false, turn: 0 };
     if (DXF.test(file.name)) {
