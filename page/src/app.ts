@@ -2,7 +2,7 @@
 
 import { Bench } from "./bench";
 import { Charts } from "./charts";
-import { Conversation, type Events, type Memory } from "./conversation";
+import { Conversation, type Events } from "./conversation";
 import { h, write } from "./dom";
 import { dropZone, save, tooLarge } from "./files";
 import { follow, measure } from "./format";
@@ -11,12 +11,14 @@ import { Hands } from "./hands";
 import { Heading } from "./heading";
 import { helpDialog } from "./help";
 import { Inspector } from "./inspector";
+import { Keeping } from "./keeping";
 import { Player } from "./player";
 import type { Asked, FileKind, Hello, Planted, State, Wire } from "./protocol";
 import { BalancePanel, FigureTable, Readings } from "./readings";
 import { Board } from "./board";
 import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
+import type { Shelf } from "./story";
 import { Theme } from "./theme";
 import { Toolbar } from "./toolbar";
 import { TransportBar } from "./transport";
@@ -47,6 +49,7 @@ export class App {
   private readonly transport: TransportBar;
   private readonly help = helpDialog(() => this.hello?.version ?? "");
   private readonly heading = new Heading();
+  private readonly keeping: Keeping;
   private readonly lost = h("div", { class: "lost", role: "alert", hidden: true });
   private readonly aside = h("section", { class: "inspector", "aria-label": say("Numbers") });
   private readonly side = h("section", { class: "side", "aria-label": say("Charts") });
@@ -68,7 +71,7 @@ export class App {
   constructor(
     wire: Wire,
     private readonly el: HTMLElement,
-    memory: Memory | null,
+    shelf: Shelf | null,
     speak: (language: string) => void,
   ) {
     const events: Events = {
@@ -84,9 +87,10 @@ export class App {
       busy: (what) => this.busy(what),
       tables: (message) => this.bench.show(message),
       file: save,
+      saved: (name) => this.keeping.saved(name),
       line: (up) => this.line(up),
     };
-    this.talk = new Conversation(wire, events, memory);
+    this.talk = new Conversation(wire, events, shelf);
     el.append(this.root);
     this.theme = new Theme(this.root, () => this.charts.repaint());
     const page = {
@@ -97,6 +101,14 @@ export class App {
       holding: (on: boolean) => this.hold(on),
       hint: (text: string) => this.board.hint(text),
     };
+    this.keeping = new Keeping({
+      root: this.root,
+      talk: this.talk,
+      full: this.full,
+      state: page.state,
+      say: (text, bad) => this.board.say(text, bad),
+      open: (asked, name) => void this.open(asked, name),
+    });
     this.hands = new Hands(page, (dress) => new Stage(dress));
     this.stage = this.hands.made;
     this.board = new Board(this.stage, (link) => this.chooseLink(link));
@@ -118,10 +130,12 @@ export class App {
       () => this.crank(),
     );
     this.toolbar = new Toolbar({
-      example: (name) => this.open({ type: "open", example: name }, name),
+      example: (name) => void this.open({ type: "open", example: name }, name),
       file: (file) => void this.read(file),
       undo: () => this.step("undo"),
       redo: () => this.step("redo"),
+      save: () => void this.keeping.save(),
+      link: () => this.keeping.link(),
       balance: () => this.command({ type: "balance" }),
       download: (kind, language) => this.download(kind, language),
       help: () => this.help.showModal(),
@@ -137,6 +151,7 @@ export class App {
     this.charts.close();
     this.bench.close();
     this.talk.close();
+    this.keeping.close();
     this.theme.close();
     this.watcher.disconnect();
     this.undone.forEach((undo) => undo());
@@ -153,6 +168,7 @@ export class App {
     this.root.append(
       this.toolbar.root,
       this.lost,
+      this.keeping.offer,
       h("div", { class: "body" }, stage, this.side, this.aside),
     );
     this.root.append(
@@ -168,6 +184,7 @@ export class App {
       board: this.board.root,
       undo: () => this.step("undo"),
       redo: () => this.step("redo"),
+      save: () => void this.keeping.save(),
       help: () => this.help.showModal(),
       toggle: () => this.toggle(),
       turn: (by: number) => this.turn(this.player.angle + by),
@@ -193,10 +210,14 @@ export class App {
     follow(hello.numbers);
     this.toolbar.offer(hello.examples);
     if (this.state) this.toolbar.show(this.state);
-    else if (first && !this.talk.recall() && !hello.machine) {
+    else if (first) void this.begin(hello);
+  }
+
+  private async begin(hello: Hello): Promise<void> {
+    if (!(await this.keeping.begin(hello)) && !hello.machine) {
       const names = hello.examples.map(({ name }) => name);
       const example = names.find((name) => name === FIRST) ?? names[0];
-      if (example) this.open({ type: "open", example }, example);
+      if (example) void this.open({ type: "open", example }, example);
     }
   }
 
@@ -319,7 +340,8 @@ export class App {
     );
   }
 
-  private open(asked: Asked, name: string): void {
+  private async open(asked: Asked, name: string): Promise<void> {
+    if (!(await this.keeping.mayLeave(name))) return this.state ? this.toolbar.show(this.state) : undefined;
     this.talk.release();
     this.opened = "asked";
     this.talk.ask(asked);
@@ -333,7 +355,7 @@ export class App {
     if (this.bench.take(file)) return;
     const problem = tooLarge(file, this.hello?.largest ?? Infinity);
     if (problem) return this.board.say(problem, true);
-    this.open({ type: "open", name: file.name, text: await file.text() }, file.name);
+    void this.open({ type: "open", name: file.name, text: await file.text() }, file.name);
   }
 
   private command(asked: Asked): void {

@@ -46,7 +46,11 @@ export class Parts {
     const state = this.page.state();
     if (!state || !this.root.open || state.seq === this.seen) return;
     this.seen = state.seq;
-    this.page.talk.ask({ type: "tables" });
+    this.page.talk.ask({ type: "tables" }, (refusal) => {
+      if (refusal === null) return;
+      this.select.replaceChildren();
+      this.list.replaceChildren(h("p", { class: "quiet" }, refusal));
+    });
   }
 
   /** Another file is open: what was being typed belongs to the old one. */

@@ -15,9 +15,10 @@ export type Asked =
   /** Codes of languages, the one that is liked best first. */
   | { type: "speak"; languages: string[] }
   | { type: "open"; example: string }
-  | { type: "open"; name: string; text: string }
+  /** `file`: it is what the file held that the server was started with. */
+  | { type: "open"; name: string; text: string; file?: true }
   | { type: "edit"; commit: boolean; label: string; edits: Edit[] }
-  | { type: "undo" | "redo" | "balance" }
+  | { type: "undo" | "redo" | "balance" | "save" }
   | { type: "compare"; on: false }
   | { type: "tables" }
   | EntryAsked
@@ -37,6 +38,8 @@ export interface Hello {
   largest: number;
   /** Whether the server holds a machine already. */
   machine?: boolean;
+  /** Sign of the file that it can save; empty where there is none. */
+  base: string;
   numbers: NumberRules;
 }
 
@@ -154,6 +157,10 @@ export interface StateMessage {
   description: string;
   undo: string | null;
   redo: string | null;
+  /** How many steps can be undone and redone. */
+  steps: Pair;
+  /** The file that can be saved, and whether it holds what is shown. */
+  file: { name: string; saved: boolean; comments: boolean } | null;
   angles: number;
   turns: number;
   speed: number;
@@ -348,6 +355,8 @@ export type Told =
   | Balanced
   | Refused
   | Tables
+  /** Sign of the file as it is now, and the model that its steps began with. */
+  | { type: "saved"; seq: number; name: string; base: string; text: string }
   | { type: "busy"; seq?: number; what: string }
   | { type: "file"; seq: number; name: string; mime: string }
   /** Said by the page's own transport, never by a server. */

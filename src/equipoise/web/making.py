@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from equipoise.errors import UsageError
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import FRAME
 from equipoise.web.adding import with_drive, with_gears, with_link, with_point, with_slider
@@ -71,17 +72,26 @@ def _rename(sketch: Sketch, asked: Message) -> Sketch:
 
 
 OPERATIONS: Mapping[str, tuple[str, Operation]] = {
-    "point": ("add a point", _point),
-    "link": ("add a link", _link),
-    "slider": ("add a slider", _slider),
-    "gears": ("add a pair of gears", _gears),
-    "drive": ("set the drive", lambda sketch, asked: with_drive(sketch, asked.text("link"))),
-    "pin": ("pin", _pin),
-    "separate": ("separate", _separate),
-    "ground": ("pin to the frame", lambda sketch, asked: grounded(sketch, asked.text("point"))),
-    "free": ("free from the frame", lambda sketch, asked: freed(sketch, asked.text("point"))),
-    "delete": ("delete", _delete),
-    "rename": ("rename", _rename),
+    "point": (to_say("add a point"), _point),
+    "link": (to_say("add a link"), _link),
+    "slider": (to_say("add a slider"), _slider),
+    "gears": (to_say("add a pair of gears"), _gears),
+    "drive": (
+        to_say("set the drive"),
+        lambda sketch, asked: with_drive(sketch, asked.text("link")),
+    ),
+    "pin": (to_say("pin"), _pin),
+    "separate": (to_say("separate"), _separate),
+    "ground": (
+        to_say("pin to the frame"),
+        lambda sketch, asked: grounded(sketch, asked.text("point")),
+    ),
+    "free": (
+        to_say("free from the frame"),
+        lambda sketch, asked: freed(sketch, asked.text("point")),
+    ),
+    "delete": (to_say("delete"), _delete),
+    "rename": (to_say("rename"), _rename),
 }
 """What a page may ask for, with what the step is called."""
 
@@ -98,4 +108,5 @@ def made(sketch: Sketch, asked: Message) -> tuple[Sketch, str]:
         raise UsageError(unknown(do, OPERATIONS, "operation"))
     label, operation = OPERATIONS[do]
     named = asked.values.get("name") or asked.values.get("point") or asked.values.get("link")
-    return operation(sketch, asked), f"{label} {named}" if isinstance(named, str) else label
+    told = say(label)
+    return operation(sketch, asked), f"{told} {named}" if isinstance(named, str) else told

@@ -25,6 +25,7 @@ KINDS = (
     "balance",
     "compare",
     "outputs",
+    "save",
     "arrows",
     "variant",
     "download",

@@ -15,10 +15,12 @@ from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.i18n import LANGUAGES, said, say, speaking
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
+from equipoise.schema.documents import dumps
 from equipoise.schema.files import LARGEST
 from equipoise.web.balanced import balanced, balanced_design, balanced_told, nothing_gained
 from equipoise.web.block import Values
 from equipoise.web.design import Design
+from equipoise.web.disk import Disk
 from equipoise.web.downloads import downloaded
 from equipoise.web.drawn import (
     Drawn,
@@ -55,7 +57,7 @@ class Session:
     before : with which it is compared, if with any.
     scale : of the sliders.  more_told : the design of which `tell_more` has told.
     wanted : outputs that the page draws besides those that it always does.
-    language : that its reader speaks.
+    language : that its reader speaks.  disk : the file that is open, if it can be saved.
     seen : what else the page shows.
     lock : held while a design takes the place of another, since balancing has a thread of its own.
     """
@@ -68,6 +70,7 @@ class Session:
     more_told: Solved | None = None
     wanted: tuple[str, ...] = ()
     language: str = "en"
+    disk: Disk | None = None
     seen: Seen = field(default_factory=Seen)
     lock: Lock = field(default_factory=Lock)
 
@@ -98,10 +101,12 @@ class Session:
             design = opened_example(message.text("example"))
         else:
             design = opened_text(message.text("name", "machine.toml"), message.text("text"))
+        disk = self.disk if message.flag("file", False) else None
         try:
             self.open(design)
         except EquipoiseError as error:
             raise _in_file(error, design.name) from error
+        self.disk = disk
         yield from self.told(message.seq)
 
     def _edit(self, message: Message) -> Iterator[Reply]:
@@ -193,6 +198,16 @@ class Session:
         yield Reply({"type": "balanced", "seq": message.seq, **told})
         yield from self.told(message.seq)
 
+    def _save(self, message: Message) -> Iterator[Reply]:
+        if self.disk is None:
+            raise UsageError("this machine was not opened from a file; download the model instead")
+        first = self._past.first
+        text = dumps(first.machine) if isinstance(first, Design) else self.disk.text
+        self.disk.save(self.current())
+        told = {"name": self.disk.name, "base": self.disk.base, "text": text}
+        yield from self.told(message.seq)
+        yield Reply({"type": "saved", "seq": message.seq, **told})
+
     def _download(self, message: Message) -> Iterator[Reply]:
         language = message.text("language", "en")
         with self._telling():
@@ -213,6 +228,7 @@ class Session:
                 "largest": LARGEST,
                 "numbers": display_rules(),
                 "machine": self.found is not None,
+                "base": "" if self.disk is None else self.disk.base,
             }
         )
 
@@ -329,7 +345,13 @@ class Session:
             content, data = self._state_of(found)
             fields = fields_of(found.design).values()
             content["fields"] = [self.scale.told(one) for one in fields]
-        told = {"undo": history.undo, "redo": history.redo}
+        file = (
+            None
+            if self.disk is None
+            else self.disk.kept(self.found if found is self.found else None)
+        )
+        steps = [len(history.past), len(history.future)]
+        told = {"undo": history.undo, "redo": history.redo, "steps": steps, "file": file}
         return Reply({"type": "state", "seq": seq, **told, **content}, data)
 
     def _state_of(self, found: Solved) -> tuple[Values, bytes]:
