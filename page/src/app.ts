@@ -1,7 +1,7 @@
 /** The page as a whole: what it shows, and who tells whom. */
 
 import { Charts } from "./charts";
-import { Conversation, type Events, type Memory } from "./conversation";
+import { Conversation, type Events } from "./conversation";
 import { h, write } from "./dom";
 import { dropZone, save, tooLarge } from "./files";
 import { follow, measure } from "./format";
@@ -10,15 +10,18 @@ import { Hands } from "./hands";
 import { Heading } from "./heading";
 import { helpDialog } from "./help";
 import { Inspector } from "./inspector";
+import { Keeping } from "./keeping";
 import { Player } from "./player";
 import type { Asked, FileKind, Hello, Planted, State, Wire } from "./protocol";
 import { BalancePanel, FigureTable, Readings } from "./readings";
 import { Board } from "./board";
 import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
+import type { Shelf } from "./story";
 import { Theme } from "./theme";
 import { Toolbar } from "./toolbar";
 import { TransportBar } from "./transport";
+import { language, say } from "./words";
 
 /** What is shown where nothing was asked for. */
 const FIRST = "yamashita-1";
@@ -27,7 +30,7 @@ const FIRST = "yamashita-1";
 const SELDOM = 90;
 
 export class App {
-  private readonly root = h("div", { class: "equipoise" });
+  private readonly root = h("div", { class: "equipoise", lang: language() });
   private readonly talk: Conversation;
   private readonly player = new Player();
   private readonly theme: Theme;
@@ -37,16 +40,17 @@ export class App {
   private readonly charts: Charts;
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
-  private readonly planted = new FigureTable("Figures of the planting finger");
-  private readonly strokes = new FigureTable("Figures of sliders and rockers");
+  private readonly planted = new FigureTable(say("Figures of the planting finger"));
+  private readonly strokes = new FigureTable(say("Figures of sliders and rockers"));
   private readonly balance: BalancePanel;
   private readonly toolbar: Toolbar;
   private readonly transport: TransportBar;
   private readonly help = helpDialog(() => this.hello?.version ?? "");
   private readonly heading = new Heading();
+  private readonly keeping: Keeping;
   private readonly lost = h("div", { class: "lost", role: "alert", hidden: true });
-  private readonly aside = h("section", { class: "inspector", "aria-label": "Numbers" });
-  private readonly side = h("section", { class: "side", "aria-label": "Charts" });
+  private readonly aside = h("section", { class: "inspector", "aria-label": say("Numbers") });
+  private readonly side = h("section", { class: "side", "aria-label": say("Charts") });
   private readonly watcher = new ResizeObserver(() => this.measure());
   private readonly frames = new Frames({
     tick: (now) => this.tick(now),
@@ -65,7 +69,8 @@ export class App {
   constructor(
     wire: Wire,
     private readonly el: HTMLElement,
-    memory: Memory | null = null,
+    shelf: Shelf | null,
+    speak: (language: string) => void,
   ) {
     const events: Events = {
       hello: (message) => this.greet(message),
@@ -79,9 +84,10 @@ export class App {
       balanced: (message) => this.balance.show(message),
       busy: (what) => this.busy(what),
       file: save,
+      saved: (name) => this.keeping.saved(name),
       line: (up) => this.line(up),
     };
-    this.talk = new Conversation(wire, events, memory);
+    this.talk = new Conversation(wire, events, shelf);
     el.append(this.root);
     this.theme = new Theme(this.root, () => this.charts.repaint());
     const page = {
@@ -92,6 +98,14 @@ export class App {
       holding: (on: boolean) => this.hold(on),
       hint: (text: string) => this.board.hint(text),
     };
+    this.keeping = new Keeping({
+      root: this.root,
+      talk: this.talk,
+      full: this.full,
+      state: page.state,
+      say: (text, bad) => this.board.say(text, bad),
+      open: (asked, name) => void this.open(asked, name),
+    });
     this.hands = new Hands(page, (dress) => new Stage(dress));
     this.stage = this.hands.made;
     this.board = new Board(this.stage, (link) => this.chooseLink(link));
@@ -111,13 +125,16 @@ export class App {
       () => this.crank(),
     );
     this.toolbar = new Toolbar({
-      example: (name) => this.open({ type: "open", example: name }, name),
+      example: (name) => void this.open({ type: "open", example: name }, name),
       file: (file) => void this.read(file),
       undo: () => this.step("undo"),
       redo: () => this.step("redo"),
+      save: () => void this.keeping.save(),
+      link: () => this.keeping.link(),
       balance: () => this.command({ type: "balance" }),
       download: (kind, language) => this.download(kind, language),
       help: () => this.help.showModal(),
+      speak,
     });
     this.lay();
     this.listen();
@@ -128,6 +145,7 @@ export class App {
     this.frames.close();
     this.charts.close();
     this.talk.close();
+    this.keeping.close();
     this.theme.close();
     this.watcher.disconnect();
     this.undone.forEach((undo) => undo());
@@ -135,7 +153,7 @@ export class App {
   }
 
   private lay(): void {
-    const stage = h("section", { class: "stage", "aria-label": "Linkage and motion" });
+    const stage = h("section", { class: "stage", "aria-label": say("Linkage and motion") });
     stage.append(this.heading.about, this.board.root);
     stage.append(this.transport.root, this.heading.notes, this.readings.root);
     stage.append(this.strokes.root, this.planted.root);
@@ -144,6 +162,7 @@ export class App {
     this.root.append(
       this.toolbar.root,
       this.lost,
+      this.keeping.offer,
       h("div", { class: "body" }, stage, this.side, this.aside),
     );
     this.root.append(
@@ -159,6 +178,7 @@ export class App {
       board: this.board.root,
       undo: () => this.step("undo"),
       redo: () => this.step("redo"),
+      save: () => void this.keeping.save(),
       help: () => this.help.showModal(),
       toggle: () => this.toggle(),
       turn: (by: number) => this.turn(this.player.angle + by),
@@ -184,10 +204,14 @@ export class App {
     follow(hello.numbers);
     this.toolbar.offer(hello.examples);
     if (this.state) this.toolbar.show(this.state);
-    else if (first && !this.talk.recall() && !hello.machine) {
+    else if (first) void this.begin(hello);
+  }
+
+  private async begin(hello: Hello): Promise<void> {
+    if (!(await this.keeping.begin(hello)) && !hello.machine) {
       const names = hello.examples.map(({ name }) => name);
       const example = names.find((name) => name === FIRST) ?? names[0];
-      if (example) this.open({ type: "open", example }, example);
+      if (example) void this.open({ type: "open", example }, example);
     }
   }
 
@@ -302,24 +326,27 @@ export class App {
       this.lost,
       up
         ? ""
-        : "The server does not answer; trying again. If it was ended, start it again and open the address that it prints.",
+        : say(
+            "The server does not answer; trying again. If it was ended, start it again and open the address that it prints.",
+          ),
     );
   }
 
-  private open(asked: Asked, name: string): void {
+  private async open(asked: Asked, name: string): Promise<void> {
+    if (!(await this.keeping.mayLeave(name))) return this.state ? this.toolbar.show(this.state) : undefined;
     this.talk.release();
     this.opened = "asked";
     this.talk.ask(asked);
     if (!this.state) return;
     // What is named is what is drawn, until the other machine is there.
     this.toolbar.show(this.state);
-    this.board.say(`Opening ${name} …`, false);
+    this.board.say(say("Opening {name} …", { name }), false);
   }
 
   private async read(file: File): Promise<void> {
     const problem = tooLarge(file, this.hello?.largest ?? Infinity);
     if (problem) return this.board.say(problem, true);
-    this.open({ type: "open", name: file.name, text: await file.text() }, file.name);
+    void this.open({ type: "open", name: file.name, text: await file.text() }, file.name);
   }
 
   private command(asked: Asked): void {

@@ -2,6 +2,7 @@
 
 import { h, icon, write } from "./dom";
 import type { Stage } from "./stage";
+import { say } from "./words";
 
 /** How long a sentence about a mistake stays at least, once nothing is held any more, ms. */
 const READING = 4000;
@@ -22,9 +23,9 @@ export class Board {
     const zooms = h(
       "div",
       { class: "zooms" },
-      button("M8 3v10M3 8h10", "Zoom in", () => stage.zoom(1.25)),
-      button("M3 8h10", "Zoom out", () => stage.zoom(0.8)),
-      button("M2.5 6V2.5H6M10 2.5h3.5V6M13.5 10v3.5H10M6 13.5H2.5V10", "Show all", () =>
+      button("M8 3v10M3 8h10", say("Zoom in"), () => stage.zoom(1.25)),
+      button("M3 8h10", say("Zoom out"), () => stage.zoom(0.8)),
+      button("M2.5 6V2.5H6M10 2.5h3.5V6M13.5 10v3.5H10M6 13.5H2.5V10", say("Show all"), () =>
         stage.fit(),
       ),
     );

@@ -2,10 +2,12 @@
 
 import { type Chooser, chooser } from "./chooser";
 import type { ChartData, Choice, Numbers, State, Unit } from "./protocol";
+import { turning } from "./scale";
 import { Abscissa, type Columns, column } from "./signals";
 import { Strip } from "./strip";
 import type { Role, Theme } from "./theme";
 import type { Curve } from "./uplot_options";
+import { say } from "./words";
 
 /** Highest order whose bars are drawn. */
 const HIGHEST = 10;
@@ -36,7 +38,7 @@ export class Chart {
   ) {
     const { x } = data;
     if (data.chooser !== null) this.choices = chooser(data.chooser, () => whole.chosen());
-    const over = { xLabel: "°", xStep: (span: number) => (span > 400 ? 180 : 90) };
+    const over = { xLabel: "°", xStep: turning };
     this.strip = new Strip(
       {
         height: xAxis ? WITH_X : PLAIN,
@@ -82,8 +84,11 @@ export class Chart {
     if (!choice || !curves.length) return;
     const x = this.across(source, curves[0]?.values.length ?? 0);
     const least = (source.least ?? 0) * choice.factor;
-    const over = typeof this.data.x === "object" ? `, over ${this.data.x.unit}` : "";
-    this.strip.show({ title: choice.label, x, unit: choice.unit + over, curves, least });
+    const unit =
+      typeof this.data.x === "object"
+        ? say("{unit}, over {x}", { unit: choice.unit, x: this.data.x.unit })
+        : choice.unit;
+    this.strip.show({ title: choice.label, x, unit, curves, least, log: choice.log });
     if (typeof this.data.x === "object") this.strip.point(this.data.x.at * this.data.x.factor, null);
   }
 

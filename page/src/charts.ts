@@ -1,15 +1,16 @@
 /** All charts beside the linkage. */
 
-import { Chart, scaled, type Source } from "./chart";
-import { chooser, finder } from "./chooser";
+import { Chart, type Source } from "./chart";
+import { chooser } from "./chooser";
 import { h } from "./dom";
 import { lengths } from "./format";
 import { Plane, type Trace } from "./plane";
 import type { ChartData, Numbers, ResponseMessage, State } from "./protocol";
 import { capital } from "./readings";
-import { Abscissa, column } from "./signals";
-import { Strip } from "./strip";
+import { Outputs } from "./outputs";
+import type { Strip } from "./strip";
 import type { Role, Theme } from "./theme";
+import { say } from "./words";
 
 /** What stands before the names of all rows together. */
 const ROWS = "rows.";
@@ -17,17 +18,19 @@ const THIRD: Role = "third";
 
 export class Charts {
   readonly root: HTMLElement;
-  private readonly x = new Abscissa();
   private readonly squares = h("div", { class: "squares" });
-  private readonly whose = chooser("Forces of", () => this.chosen());
+  private readonly whose = chooser(say("Forces of"), () => this.chosen());
   private readonly whoseRow = h("div", { class: "whose" }, this.whose.label);
-  private readonly pathOf = chooser("Path of", () => this.chosen());
-  private readonly outputOf = finder("Any output over crank angle", (name) => this.ask(name));
-  private readonly polar = new Plane("Shaking force, polar", true, h("b", {}, "Polar force"));
-  private readonly path = new Plane("Path", false, this.pathOf.label);
+  private readonly pathOf = chooser(say("Path of"), () => this.chosen());
+  private readonly polar = new Plane(
+    say("Shaking force, polar"),
+    true,
+    h("b", {}, say("Polar force")),
+  );
+  private readonly path = new Plane(say("Path"), false, this.pathOf.label);
   private readonly forces = h("div", { class: "group" });
   private readonly answers = h("div", { class: "group" });
-  private readonly output: Strip;
+  private readonly outputs: Outputs;
   /** Those that the server declares, by name. */
   private readonly declared = new Map<string, Chart>();
   private state: State | null = null;
@@ -44,14 +47,11 @@ export class Charts {
   constructor(
     private readonly theme: Theme,
     private readonly picked: (degrees: number) => void,
-    private readonly wanted: (names: string[]) => void,
+    wanted: (names: string[]) => void,
   ) {
-    const xStep = (span: number) => (span > 400 ? 180 : 90);
-    const look = { height: 110, xAxis: true, xLabel: "°", xStep, picked };
-    this.output = new Strip({ ...look, control: this.outputOf.label }, theme);
+    this.outputs = new Outputs(theme, picked, wanted, (strip) => this.watcher.observe(strip.root));
     this.squares.append(this.polar.root, this.path.root);
     this.root = h("div", { class: "charts" });
-    this.watcher.observe(this.output.root);
   }
 
   close(): void {
@@ -59,7 +59,7 @@ export class Charts {
   }
 
   private get strips(): Strip[] {
-    return [...[...this.declared.values()].map(({ strip }) => strip), this.output];
+    return [...[...this.declared.values()].map(({ strip }) => strip), ...this.outputs.strips];
   }
 
   /** What stands before the names of the forces that are shown. */
@@ -79,6 +79,7 @@ export class Charts {
     if (width < 40) return;
     this.width = width;
     for (const strip of this.strips) strip.resize(width);
+    this.outputs.resize(width);
     const side = Math.floor((width - 12) / 2);
     const height = Math.max(Math.min(side, 216), 150);
     this.polar.resize(side, height);
@@ -95,7 +96,6 @@ export class Charts {
     this.whoseRow.hidden = !state.numbers.has(`${ROWS}shaking_force`);
     if (other) this.arrange(state.first);
     if (other) this.offer(state);
-    this.outputOf.offer(state.outputs);
     this.again(other);
   }
 
@@ -116,7 +116,7 @@ export class Charts {
     this.at = k;
     this.polar.point(k);
     this.path.point(k);
-    this.output.point(degrees, k);
+    this.outputs.point(degrees, k);
     const share = k / (this.state?.angles ?? 1);
     for (const chart of this.declared.values()) chart.point(share, degrees);
   }
@@ -128,7 +128,7 @@ export class Charts {
   /** Charts in their order, but first those that tell what the machine is for. */
   private arrange(first: State["first"]): void {
     const { squares, forces, answers } = this;
-    const groups = { squares, forces, output: this.output.root, answers };
+    const groups = { squares, forces, output: this.outputs.root, answers };
     this.root.append(this.whoseRow, ...Object.values(groups));
     this.whoseRow.after(groups[first]);
   }
@@ -139,13 +139,13 @@ export class Charts {
     const first = state.traced;
     const points = [...first, ...moving.filter((name) => !first.includes(name))];
     const ground: [string, string][] = state.planting
-      ? [[`ground.${state.planting.tip}`, `${state.planting.tip} over ground`]]
+      ? [[`ground.${state.planting.tip}`, say("{point} over ground", { point: state.planting.tip })]]
       : [];
-    const paths = points.map((point): [string, string] => [point, `Path of ${point}`]);
+    const paths = points.map((point): [string, string] => [point, say("Path of {point}", { point })]);
     this.pathOf.offer([...ground, ...paths]);
     this.whose.offer([
-      [ROWS, "Forces of all rows together"],
-      ["", "Forces of one row"],
+      [ROWS, say("Forces of all rows together")],
+      ["", say("Forces of one row")],
     ]);
   }
 
@@ -162,7 +162,7 @@ export class Charts {
     this.drawPath(state);
     if (!this.polar.root.hidden) this.drawPolar(state);
     this.draw(state.charts, source, this.forces, other);
-    this.drawOutput(state);
+    this.outputs.show(state);
     this.point(this.at, (this.at / state.angles) * 360 * state.turns);
   }
 
@@ -223,22 +223,6 @@ export class Charts {
     const every = state.angles / (24 * state.turns);
     const level = over ? state.planting?.surface : undefined;
     const traces: Trace[] = [{ points, kind: "now", closed: !over }];
-    this.path.show({ title: "Path", ...lengths(), traces, every, level, least: 1e-6 });
-  }
-
-  /** Ask for the numbers of an output; they come with the state, now and after every change. */
-  private ask(name: string): void {
-    const known = this.state?.outputs.some((one) => one.name === name);
-    this.wanted(known ? [name] : []);
-  }
-
-  private drawOutput(state: State): void {
-    const one = state.outputs.find(({ name }) => state.numbers.has(`output.${name}`));
-    const found = one && column(state, `output.${one.name}`);
-    const curves = found ? [{ label: "", role: THIRD, ...scaled(found, one) }] : [];
-    const [title, unit] = [capital(one?.label ?? "output"), one?.unit ?? ""];
-    this.outputOf.tell(one?.label ?? "");
-    this.output.root.classList.toggle("empty", !found);
-    this.output.show({ title, x: this.x.of(state.angles, state.turns), unit, curves });
+    this.path.show({ title: say("Path"), ...lengths(), traces, every, level, least: 1e-6 });
   }
 }

@@ -1,13 +1,14 @@
 /** Files that are dropped on the page, and files that it hands out. */
 
 import { h } from "./dom";
+import { say } from "./words";
 
 /** Let files be dropped on an element; returns the veil that is over it meanwhile. */
 export function dropZone(root: HTMLElement, dropped: (file: File) => void): HTMLElement {
   const veil = h(
     "div",
     { class: "veil", hidden: true },
-    h("span", {}, "Drop a model file (.toml)"),
+    h("span", {}, say("Drop a model file (.toml)")),
   );
   for (const name of ["dragenter", "dragover", "dragleave", "drop"] as const) {
     root.addEventListener(name, (event) => {
@@ -26,7 +27,8 @@ export function dropZone(root: HTMLElement, dropped: (file: File) => void): HTML
 export function tooLarge(file: File, largest: number): string | null {
   if (file.size <= largest) return null;
   const [size, most] = [(file.size / 1e6).toFixed(1), (largest / 1e6).toFixed(0)];
-  return `${file.name} has ${size} MB; at most ${most} MB are read: give a model file.`;
+  const values = { name: file.name, size, most };
+  return say("{name} has {size} MB; at most {most} MB are read: give a model file.", values);
 }
 
 /** Hand a file to the browser's own downloads. */

@@ -6,6 +6,7 @@ import { length, lengths, round } from "./format";
 import { Gesture } from "./gesture";
 import type { Edit, Pair, State } from "./protocol";
 import { type Grip, keyOf, type Stage } from "./stage";
+import { say } from "./words";
 
 const ARROWS: Record<string, Pair> = {
   ArrowLeft: [-1, 0],
@@ -82,7 +83,9 @@ export class Hands {
       role: "slider",
       "aria-label": label,
       "aria-roledescription":
-        grip.kind === "point" ? "joint that can be moved" : "centre of mass that can be moved",
+        grip.kind === "point"
+          ? say("joint that can be moved")
+          : say("centre of mass that can be moved"),
       "data-kind": grip.kind,
       "data-name": grip.name,
     });
@@ -98,8 +101,9 @@ export class Hands {
 
   private focus(grip: Grip): void {
     this.page.chosen(grip);
-    const step = this.step();
-    this.tell(grip, `arrow keys ${length(step)} ${lengths().unit}, Shift × ${COARSE}, Alt ÷ ${1 / FINE}`);
+    const step = `${length(this.step())} ${lengths().unit}`;
+    const values = { step, coarse: COARSE, fine: 1 / FINE };
+    this.tell(grip, say("arrow keys {step}, Shift × {coarse}, Alt ÷ {fine}", values));
   }
 
   private blur(): void {
@@ -127,7 +131,9 @@ export class Hands {
     this.target = this.stage.place(grip);
     this.page.holding(true);
     const what =
-      grip.kind === "point" ? `move ${grip.name}` : `move centre of mass of ${grip.name}`;
+      grip.kind === "point"
+        ? say("move {name}", { name: grip.name })
+        : say("move centre of mass of {name}", { name: grip.name });
     const gesture: Gesture = new Gesture(this.page.talk, what, () => {
       if (this.gesture !== gesture) return;
       this.gesture = this.grip = null;
@@ -200,7 +206,10 @@ export class Hands {
 }
 
 export function nameOf(grip: Grip): string {
-  return grip.kind === "point" ? `Joint ${grip.name}` : `Centre of mass of ${grip.name}`;
+  const { name } = grip;
+  return grip.kind === "point"
+    ? say("Joint {name}", { name })
+    : say("Centre of mass of {name}", { name });
 }
 
 function gripOf(element: SVGElement): Grip {

@@ -1,13 +1,23 @@
 /** The live page: anywidget's `render` for notebooks, `connect` for the served page. */
 
 import { App } from "./app";
-import type { Memory } from "./conversation";
 import type { Wire } from "./protocol";
 import { Socket } from "./socket";
+import { shelf } from "./story";
+import { agree, keep, language, wished } from "./words";
 
 /** Show the machine of a model (anywidget's, or a connection) in an element; returns a clean-up. */
-function render({ model, el }: { model: Wire; el: HTMLElement }): () => void {
-  const app = new App(model, el);
+async function render({ model, el }: { model: Wire; el: HTMLElement }): Promise<() => void> {
+  let app: App;
+  const show = async (languages: string[]): Promise<void> => {
+    await agree(model, languages);
+    app = new App(model, el, null, (code) => {
+      keep(code);
+      app.close();
+      void show([code]);
+    });
+  };
+  await show(wished());
   return () => app.close();
 }
 
@@ -19,25 +29,18 @@ export function connect(el: HTMLElement, address: string): Socket {
   return new Socket(url.href);
 }
 
-/** What is done in a tab is kept while the server runs that its address belongs to. */
-function memory(address: string): Memory {
-  const key = `equipoise ${address}`;
-  return {
-    read: () => sessionStorage.getItem(key),
-    write: (text) => {
-      try {
-        sessionStorage.setItem(key, text);
-      } catch {
-        sessionStorage.removeItem(key); // more than the browser keeps
-      }
-    },
-  };
+/** The served page; in another language it is loaded again, and tells anew what was done. */
+async function begin(el: HTMLElement, address: string): Promise<void> {
+  const wire = connect(el, address);
+  await agree(wire, wished());
+  document.documentElement.lang = language();
+  new App(wire, el, shelf(), (code) => {
+    keep(code);
+    location.reload();
+  });
 }
 
 const main = document.querySelector<HTMLElement>("#equipoise-live[data-live]");
-if (main?.dataset.live && !main.childElementCount) {
-  const { live } = main.dataset;
-  new App(connect(main, live), main, memory(live));
-}
+if (main?.dataset.live && !main.childElementCount) void begin(main, main.dataset.live);
 
 export default { render };

@@ -3,6 +3,7 @@
 import { h, s, set, write } from "./dom";
 import type { Unit } from "./protocol";
 import { degrees, multiples, plain, round, shown, signed } from "./format";
+import { FEWEST, spacing } from "./scale";
 
 export interface Trace {
   /** x and y in turn. */
@@ -26,6 +27,8 @@ export interface Plot extends Unit {
 const EDGE = { polar: 26, path: 18 };
 /** Marks nearer than this are one, pixels. */
 const TOGETHER = 5;
+/** Between two circles of the polar diagram, pixels: the widest with enough numbers is taken. */
+const APART = [34, 28, 22];
 /** Steps of the crank from mark to mark in the polar diagram, degrees. */
 const TWELFTH = 30;
 
@@ -245,16 +248,21 @@ export class Plane {
     const [ox, oy] = this.place(0, 0);
     const [width, height] = this.size;
     const reach = Math.hypot(Math.max(ox, width - ox), Math.max(oy, height - oy));
-    const step = round((34 / this.scale) * plot.factor) / plot.factor;
-    const radii = multiples(step, step, reach / this.scale).map((radius) => radius * this.scale);
-    const [ux, uy] = this.freest(radii.slice(0, 3));
-    let d = "";
-    for (const r of radii) {
-      d += `M${ox + r} ${oy}A${r} ${r} 0 1 0 ${ox - r} ${oy}A${r} ${r} 0 1 0 ${ox + r} ${oy}`;
-      const [x, y] = [ox + ux * r, oy + uy * r];
-      if (this.inside(x, y)) this.text(x, y + 4, (r / this.scale) * plot.factor);
+    let radii: number[] = [];
+    let numbers: [radius: number, x: number, y: number][] = [];
+    for (const apart of APART) {
+      const step = round((apart / this.scale) * plot.factor) / plot.factor;
+      radii = multiples(step, step, reach / this.scale).map((radius) => radius * this.scale);
+      const [ux, uy] = this.freest(radii.slice(0, FEWEST));
+      numbers = radii.map((r) => [r, ox + ux * r, oy + uy * r]);
+      numbers = numbers.filter(([, x, y]) => this.inside(x, y));
+      if (numbers.length >= FEWEST) break;
     }
-    set(this.grid, { d });
+    if (numbers.length < FEWEST) this.text(ox + 6, oy - 3, 0);
+    for (const [r, x, y] of numbers) this.text(x, y + 4, (r / this.scale) * plot.factor);
+    const circle = (r: number) =>
+      `M${ox + r} ${oy}A${r} ${r} 0 1 0 ${ox - r} ${oy}A${r} ${r} 0 1 0 ${ox + r} ${oy}`;
+    set(this.grid, { d: radii.map(circle).join("") });
     set(this.axes, { d: `M0 ${oy}H${width}M${ox} 0V${height}` });
   }
 
@@ -284,18 +292,22 @@ export class Plane {
 
   private lines(plot: Plot): void {
     const [width, height] = this.size;
-    const step = round((34 / this.scale) * plot.factor) / plot.factor;
-    const [reachX, reachY] = [width / 2 / this.scale, height / 2 / this.scale];
+    const { factor } = plot;
+    const metres = (px: number) => ((px - width / 2) / this.scale + this.middle[0]) * factor;
+    const rising = (py: number) => ((height / 2 - py) / this.scale + this.middle[1]) * factor;
+    const most = round((34 / this.scale) * factor);
     let d = "";
-    for (const x of multiples(step, this.middle[0] - reachX, this.middle[0] + reachX)) {
-      const [px] = this.place(x, 0);
+    const across = spacing(metres(40), metres(width - 34), most);
+    for (const x of multiples(across, metres(0), metres(width))) {
+      const [px] = this.place(x / factor, 0);
       d += `M${px.toFixed(1)} 0V${height}`;
-      if (px > 40 && px < width - 34) this.text(px, height - 4, x * plot.factor);
+      if (px >= 40 && px <= width - 34) this.text(px, height - 4, x);
     }
-    for (const y of multiples(step, this.middle[1] - reachY, this.middle[1] + reachY)) {
-      const [, py] = this.place(0, y);
+    const up = spacing(rising(height - 14), rising(8), most);
+    for (const y of multiples(up, rising(height), rising(0))) {
+      const [, py] = this.place(0, y / factor);
       d += `M0 ${py.toFixed(1)}H${width}`;
-      if (py > 8 && py < height - 14) this.text(3, py - 2, y * plot.factor, "start");
+      if (py >= 8 && py <= height - 14) this.text(3, py - 2, y, "start");
     }
     set(this.grid, { d });
     const level = plot.level === undefined ? height : this.place(0, plot.level)[1];

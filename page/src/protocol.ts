@@ -12,10 +12,13 @@ export type FileKind = "model" | "csv" | "report";
 
 export type Asked =
   | { type: "ready" }
+  /** Codes of languages, the one that is liked best first. */
+  | { type: "speak"; languages: string[] }
   | { type: "open"; example: string }
-  | { type: "open"; name: string; text: string }
+  /** `file`: it is what the file held that the server was started with. */
+  | { type: "open"; name: string; text: string; file?: true }
   | { type: "edit"; commit: boolean; label: string; edits: Edit[] }
-  | { type: "undo" | "redo" | "balance" }
+  | { type: "undo" | "redo" | "balance" | "save" }
   | { type: "compare"; on: false }
   | { type: "outputs"; names: string[] }
   | { type: "download"; kind: FileKind; language?: string };
@@ -33,7 +36,19 @@ export interface Hello {
   largest: number;
   /** Whether the server holds a machine already. */
   machine?: boolean;
+  /** Sign of the file that it can save; empty where there is none. */
+  base: string;
   numbers: NumberRules;
+}
+
+/** The language that is spoken from now on. */
+export interface Spoken {
+  type: "spoken";
+  language: string;
+  /** Code of each language there is, and its own name. */
+  languages: Record<string, string>;
+  /** English text of the page -> text in the language. */
+  words: Record<string, string>;
 }
 
 /** In which something is read, and how many of it one SI unit is. */
@@ -138,6 +153,10 @@ export interface StateMessage {
   description: string;
   undo: string | null;
   redo: string | null;
+  /** How many steps can be undone and redone. */
+  steps: Pair;
+  /** The file that can be saved, and whether it holds what is shown. */
+  file: { name: string; saved: boolean; comments: boolean } | null;
   angles: number;
   turns: number;
   speed: number;
@@ -176,6 +195,8 @@ export interface Choice extends Unit {
   label: string;
   /** Whose forces have to be shown for it: "rows." or "" for one row; null for any. */
   of: string | null;
+  /** Whether it is drawn over a logarithmic scale. */
+  log: boolean;
   curves: CurveOf[];
 }
 
@@ -236,11 +257,14 @@ export interface Refused {
 
 export type Told =
   | Hello
+  | Spoken
   | StateMessage
   | ResponseMessage
   | Planted
   | Balanced
   | Refused
+  /** Sign of the file as it is now, and the model that its steps began with. */
+  | { type: "saved"; seq: number; name: string; base: string; text: string }
   | { type: "busy"; seq?: number; what: string }
   | { type: "file"; seq: number; name: string; mime: string }
   /** Said by the page's own transport, never by a server. */

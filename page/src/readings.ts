@@ -3,6 +3,7 @@
 import { h, write } from "./dom";
 import { unbroken } from "./format";
 import type { Balanced, Change, Figure, Planted, State } from "./protocol";
+import { say } from "./words";
 
 interface Line {
   label: string;
@@ -34,7 +35,7 @@ export class Readings {
     this.cells.clear();
     this.root.classList.toggle("compared", state.before);
     if (!lines.length) {
-      return this.root.replaceChildren(h("p", { class: "quiet" }, "Motion only, no forces."));
+      return this.root.replaceChildren(h("p", { class: "quiet" }, say("Motion only, no forces.")));
     }
     const cell = (figure: Figure | undefined) => {
       if (!figure) return h("td");
@@ -46,7 +47,7 @@ export class Readings {
     const head = h(
       "tr",
       {},
-      ...["", "RMS", "peak", ""].map((t, i) => h(i ? "th" : "td", i ? { scope: "col" } : {}, t)),
+      ...["", say("RMS"), say("peak"), ""].map((t, i) => h(i ? "th" : "td", i ? { scope: "col" } : {}, t)),
     );
     head.lastElementChild?.replaceWith(h("td"));
     const rows = lines.map((line) =>
@@ -62,7 +63,7 @@ export class Readings {
     const caption = h(
       "caption",
       { class: "unseen" },
-      state.before ? "Figures, and what they were before" : "Figures",
+      state.before ? say("Figures, and what they were before") : say("Figures"),
     );
     this.root.replaceChildren(
       h("table", {}, caption, h("thead", {}, head), h("tbody", {}, ...rows)),
@@ -115,7 +116,7 @@ export function capital(text: string): string {
 export class BalancePanel {
   readonly root = h("section", {
     class: "balance",
-    "aria-label": "Balancing",
+    "aria-label": say("Balancing"),
     hidden: true,
     tabindex: -1,
   });
@@ -134,17 +135,17 @@ export class BalancePanel {
     const main = [...found.aims, ...rest];
     const others = found.figures.filter(({ label }) => !main.some((one) => one.label === label));
     this.root.replaceChildren(
-      h("h2", {}, "Balanced"),
+      h("h2", {}, say("Balanced")),
       h("ul", {}, ...found.changes.map((change) => h("li", {}, unbroken(change)))),
       h(
         "div",
         { class: "buttons" },
-        h("button", { type: "button", class: "strong", onclick: () => this.keep() }, "Keep"),
-        h("button", { type: "button", onclick: () => this.takeBack() }, "Take back"),
+        h("button", { type: "button", class: "strong", onclick: () => this.keep() }, say("Keep")),
+        h("button", { type: "button", onclick: () => this.takeBack() }, say("Take back")),
       ),
       comparison(main),
       ...(others.length
-        ? [h("details", {}, h("summary", {}, "All other figures"), comparison(others))]
+        ? [h("details", {}, h("summary", {}, say("All other figures")), comparison(others))]
         : []),
       ...found.worse.map((text) => h("p", { class: "worse" }, unbroken(text))),
       ...[found.proof, ...found.notes].map((text) => h("p", { class: "quiet" }, unbroken(text))),
@@ -175,6 +176,7 @@ function comparison(figures: Change[]): HTMLTableElement {
       h("td", { class: way }, change),
     ),
   );
-  const head = ["before", "after", "change"].map((text) => h("th", { scope: "col" }, text));
+  const words = [say("before"), say("after"), say("change")];
+  const head = words.map((text) => h("th", { scope: "col" }, text));
   return h("table", {}, h("thead", {}, h("tr", {}, h("td"), ...head)), h("tbody", {}, ...rows));
 }

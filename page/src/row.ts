@@ -5,6 +5,7 @@ import { fresh, h, set, write } from "./dom";
 import { Gesture } from "./gesture";
 import type { Field } from "./protocol";
 import { breakable } from "./format";
+import { say } from "./words";
 
 const STEPS = 1000;
 /** Of a number that is dragged. */
@@ -53,7 +54,7 @@ export class Row {
     });
     this.input.addEventListener("blur", () => this.commit());
     this.input.addEventListener("keydown", (event) => this.key(event));
-    if (slider) this.slider = this.makeSlider(`${name} slider`);
+    if (slider) this.slider = this.makeSlider(say("{name} slider", { name }));
     const axis = field.path.slice(-1);
     const label = slider
       ? h("span", { class: "name", "aria-hidden": "true" }, breakable(field.label))

@@ -6,6 +6,7 @@ import { at, curve, outside, quarters } from "./shapes";
 import { ruled } from "./sheet";
 import { build, Piece } from "./signs";
 import { View } from "./view";
+import { say } from "./words";
 
 /** From below to above. */
 const LAYERS = ["far", "paths", "signs", "ghost", "grips", "labels"] as const;
@@ -32,7 +33,7 @@ export interface Grip {
 }
 
 export class Stage {
-  readonly svg = s("svg", { class: "linkage", role: "group", "aria-label": "Linkage" });
+  readonly svg = s("svg", { class: "linkage", role: "group", "aria-label": say("Linkage") });
   /** Fine lines and scales, apart, so that they are not painted with every frame. */
   readonly lines = s("svg", { class: "sheet-lines", "aria-hidden": "true" });
   readonly view = new View();

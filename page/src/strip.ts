@@ -2,7 +2,8 @@
 
 import uPlot from "uplot";
 import { h, set, write } from "./dom";
-import { limits, multiples, plain, round, shown, steady } from "./format";
+import { multiples, plain, shown, steady } from "./format";
+import { extremes, levels, marked, type Scale, scaleOf, share, spacing } from "./scale";
 import type { Theme } from "./theme";
 import {
   BELOW,
@@ -14,13 +15,17 @@ import {
   RIGHT,
   TOP,
 } from "./uplot_options";
+import { say } from "./words";
 
-/** Values with null in place of those that are none, where a line breaks off. */
-function gapped(values: Float64Array): uPlot.TypedArray | (number | null)[] {
-  if (!values.some(Number.isNaN)) return values;
-  return Array.from(values, (value) => (Number.isNaN(value) ? null : value));
+/** Values with null in place of those that are none, or have no logarithm: a line breaks off there. */
+function gapped(values: Float64Array, log: boolean): uPlot.TypedArray | (number | null)[] {
+  const none = (value: number) => Number.isNaN(value) || (log && value <= 0);
+  if (!values.some(none)) return values;
+  return Array.from(values, (value) => (none(value) ? null : value));
 }
 
+/** Of numbers below each other, pixels. */
+const LINE = 13;
 const NONE = new Float64Array(0);
 
 /** One chart with a heading that tells the values at the cursor. */
@@ -38,8 +43,9 @@ export class Strip {
   private plot: uPlot | null = null;
   private content: Content = { title: "", x: NONE, unit: "", curves: [] };
   private shape = "";
-  private range: [number, number] = [-1, 1];
-  private ticks = 1;
+  private scale: Scale = { ends: [-1, 1], log: false };
+  /** Where its numbers are. */
+  private levels: number[] = [];
   private width = 0;
   private at = 0;
   private seen = true;
@@ -52,7 +58,7 @@ export class Strip {
     this.root = h(
       "figure",
       { class: "strip" },
-      h("figcaption", {}, look.control ?? this.title, this.unit, this.legend),
+      h("figcaption", {}, look.control ?? this.title, this.unit, this.legend, look.button),
       this.holder,
     );
     this.holder.append(this.numbers);
@@ -61,21 +67,13 @@ export class Strip {
   /** Take new values; only their shape (names, before or not) makes a new plot. */
   show(content: Content): void {
     this.content = content;
-    let [low, high] = [Infinity, -Infinity];
-    for (const curve of content.curves) {
-      for (const values of [curve.values, curve.before ?? NONE]) {
-        for (const value of values) {
-          if (value < low) low = value;
-          if (value > high) high = value;
-        }
-      }
-    }
-    const zero = Math.max(-low, high) < (content.least ?? 0);
-    this.range = zero ? [-1, 1] : limits(low, high);
-    this.ticks = this.spacing();
+    const every = content.curves.flatMap(({ values, before }) => [values, before ?? NONE]);
+    this.scale = scaleOf(every, content.least ?? 0, content.log ?? false);
+    this.levels = levels(this.scale, (this.look.height - BELOW) / LINE);
     write(this.unit, content.unit);
     write(this.title, content.title);
-    const shape = content.curves.map((c) => `${c.label}|${c.role}|${!!c.before}`).join();
+    const drawn = content.curves.map((c) => `${c.label}|${c.role}|${!!c.before}`);
+    const shape = [this.scale.log, ...drawn].join();
     if (shape !== this.shape || !this.plot) this.build(shape);
     else if (this.seen) this.plot.setData(this.data(), true);
     else this.stale = true;
@@ -107,10 +105,12 @@ export class Strip {
     if (!this.plot) return;
     this.cursor.style.transform = `translateX(${this.across(x).toFixed(1)}px)`;
     if (k === null) return;
-    const largest = Math.max(-this.range[0], this.range[1]);
+    const { ends, log } = this.scale;
+    const largest = log ? 0 : Math.max(-ends[0], ends[1]);
     this.content.curves.forEach((curve, i) => {
       const reading = this.readings[i];
-      if (reading) write(reading, steady(curve.values[k] ?? NaN, largest, 4));
+      const value = curve.values[k] ?? NaN;
+      if (reading) write(reading, log ? shown(value) : steady(value, largest, 4));
     });
   }
 
@@ -128,7 +128,7 @@ export class Strip {
 
   private data(): uPlot.AlignedData {
     const rows = this.content.curves.flatMap((c) => (c.before ? [c.before, c.values] : [c.values]));
-    return [this.content.x, ...rows.map(gapped)];
+    return [this.content.x, ...rows.map((row) => gapped(row, this.scale.log))];
   }
 
   private build(shape: string): void {
@@ -138,8 +138,8 @@ export class Strip {
     this.heading();
     if (!this.width || !this.content.curves.length) return;
     const ways = {
-      range: () => this.range,
-      levels: () => this.levels(),
+      scale: () => this.scale,
+      levels: () => this.levels,
       marks: (low: number, high: number) => this.marks(low, high),
     };
     const options = optionsOf(this.look, this.theme, this.content.curves, this.width, ways);
@@ -181,16 +181,15 @@ export class Strip {
   }
 
   private down(y: number): number {
-    const [low, high] = this.range;
     const height = this.look.height - TOP - (this.look.xAxis ? BELOW : NARROW);
-    return TOP + (1 - (y - low) / (high - low)) * height;
+    return TOP + (1 - share(y, this.scale)) * height;
   }
 
   /** Write numbers at the scales, where they are others than before. */
   private number(): void {
     const { content } = this;
     const [low, high] = [content.x[0] ?? 0, content.x[content.x.length - 1] ?? 1];
-    const shape = [...this.range, this.ticks, low, high, this.width].join();
+    const shape = [...this.scale.ends, ...this.levels, low, high, this.width].join();
     if (shape === this.numbered) return;
     this.numbered = shape;
     const texts: HTMLElement[] = [];
@@ -199,7 +198,7 @@ export class Strip {
       label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
       texts.push(label);
     };
-    for (const y of this.levels()) put("y", steady(y, this.ticks, 1), 0, this.down(y));
+    for (const y of this.levels) put("y", marked(y, this.scale, this.levels), 0, this.down(y));
     const marks = this.look.xAxis ? this.marks(low, high) : [];
     for (const x of marks) put("x", this.named(x), LEFT + this.across(x), this.look.height - 17);
     this.numbers.replaceChildren(...texts);
@@ -208,12 +207,10 @@ export class Strip {
   /** What a chart says to those who cannot see it: each curve's extremes. */
   describe(): void {
     const said = this.content.curves.map((curve) => {
-      let [low, high] = [Infinity, -Infinity];
-      for (const value of curve.values) {
-        if (value < low) low = value;
-        if (value > high) high = value;
-      }
-      const range = `from ${shown(low, 3)} to ${shown(high, 3)} ${this.content.unit}`;
+      const [low, high] = extremes([curve.values]);
+      const { unit } = this.content;
+      const values = { low: shown(low, 3), high: shown(high, 3), unit };
+      const range = say("from {low} to {high} {unit}", values);
       return `${curve.label} ${range}`.trim();
     });
     set(this.root, { "aria-label": `${this.content.title}: ${said.join("; ")}` });
@@ -238,27 +235,12 @@ export class Strip {
     pick(event);
   };
 
-  /** The widest round distance of levels that leaves three of them or more. */
-  private spacing(): number {
-    const span = this.range[1] - this.range[0];
-    const most = Math.max(Math.floor(this.look.height / 20), 3);
-    for (let parts = 2; parts <= most + 0.5; parts += 0.5) {
-      const step = round(span / parts);
-      if (multiples(step, ...this.range).length >= 3) return step;
-    }
-    return round(span / most);
-  }
-
   private marks(low: number, high: number): number[] {
-    const step = this.look.xStep?.(high - low) ?? (this.look.bars ? 1 : round((high - low) / 6));
-    return multiples(step, low, high);
+    const usual = this.look.xStep?.(high - low) ?? (this.look.bars ? 1 : spacing(low, high, (high - low) / 4));
+    return multiples(usual, low, high);
   }
 
   private named(x: number): string {
     return this.look.xLabel === "°" ? `${Math.round(x)}°` : plain(x);
-  }
-
-  private levels(): number[] {
-    return multiples(this.ticks, ...this.range);
   }
 }

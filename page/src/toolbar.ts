@@ -2,26 +2,30 @@
 
 import { h, icon, set } from "./dom";
 import type { Example, FileKind, State } from "./protocol";
+import { language as spoken, languages, say } from "./words";
 
 const ICONS = {
   undo: "M5.5 3 2.5 6l3 3M3 6h6.5a3.5 3.5 0 0 1 0 7H6",
   redo: "M10.5 3l3 3-3 3M13 6H6.5a3.5 3.5 0 0 0 0 7H10",
   balance: "M8 2.5v11M4.5 13.5h7M2.5 5h11M4 5 2 9.5h4zM12 5l-2 4.5h4z",
+  disk: "M2.5 2.5h9l2 2v9h-11zM5 2.500v4h5.500v-4M5 13.500v-4.500h6v4.500",
   save: "M8 2v7.5M4.800 6.7 8 9.900l3.200-3.200M2.5 13.5h11",
   keys: "M1.5 4h13v8.5h-13zM4 6.5h.01M6.7 6.5h.01M9.400 6.5h.01M12 6.5h.01M4.5 10h7",
   open: "M2 12.5v-9h4l1.5 2H14v7z",
 };
 
-const LANGUAGES = { en: "English", ja: "日本語", ko: "한국어" };
-
 export interface Commands {
   example(name: string): void;
   file(file: File): void;
   undo(): void;
+  save(): void;
+  link(): void;
   redo(): void;
   balance(): void;
   download(kind: FileKind, language?: string): void;
   help(): void;
+  /** Speak a language from now on. */
+  speak(language: string): void;
 }
 
 export class Toolbar {
@@ -30,19 +34,20 @@ export class Toolbar {
   private readonly undo: HTMLButtonElement;
   private readonly redo: HTMLButtonElement;
   private readonly balance: HTMLButtonElement;
+  private readonly save: HTMLButtonElement;
   private readonly own = h("option", { value: "" }, "");
   private readonly menu: HTMLDetailsElement;
 
   constructor(commands: Commands) {
     this.examples = h("select", {
-      "aria-label": "Example",
+      "aria-label": say("Example"),
       onchange: () => commands.example(this.examples.value),
     });
     const file = h("input", {
       type: "file",
       hidden: true,
       accept: ".toml",
-      "aria-label": "Model file",
+      "aria-label": say("Model file"),
       tabindex: -1,
     });
     file.addEventListener("change", () => {
@@ -50,12 +55,14 @@ export class Toolbar {
       file.value = "";
       if (chosen) commands.file(chosen);
     });
-    const open = button("Choose file", "open", () => file.click());
-    this.undo = button("", "undo", () => commands.undo(), "Undo");
-    this.redo = button("", "redo", () => commands.redo(), "Redo");
-    this.balance = button("Balance", "balance", () => commands.balance());
+    const open = button(say("Choose file"), "open", () => file.click());
+    this.undo = button("", "undo", () => commands.undo(), say("Undo"));
+    this.redo = button("", "redo", () => commands.redo(), say("Redo"));
+    this.balance = button(say("Balance"), "balance", () => commands.balance());
+    this.save = button("", "disk", () => commands.save(), say("Save"));
+    this.save.hidden = true;
     this.menu = downloads(commands);
-    const help = button("", "keys", () => commands.help(), "Keys");
+    const help = button("", "keys", () => commands.help(), say("Keys"));
     this.root = h(
       "header",
       { class: "bar" },
@@ -64,9 +71,10 @@ export class Toolbar {
       open,
       file,
       h("span", { class: "gap" }),
-      h("span", { class: "together" }, this.undo, this.redo),
+      h("span", { class: "together" }, this.undo, this.redo, this.save),
       this.balance,
       this.menu,
+      choiceOfLanguage(commands),
       help,
     );
   }
@@ -88,9 +96,11 @@ export class Toolbar {
       this.examples.prepend(this.own);
     }
     if (this.examples.value !== state.name) this.examples.value = state.name;
-    label(this.undo, "Undo", state.undo);
-    label(this.redo, "Redo", state.redo);
+    label(this.undo, say("Undo"), state.undo);
+    label(this.redo, say("Redo"), state.redo);
     this.balance.disabled = !state.has_forces;
+    this.save.hidden = !state.file;
+    this.save.disabled = state.file?.saved !== false;
   }
 
   busy(what: string | null): void {
@@ -99,40 +109,53 @@ export class Toolbar {
   }
 }
 
-function downloads(commands: Commands): HTMLDetailsElement {
-  const language = h(
+function choiceOfLanguage(commands: Commands): HTMLSelectElement {
+  const select = named(say("Language"));
+  select.addEventListener("change", () => commands.speak(select.value));
+  return select;
+}
+
+/** A choice of languages, of which the one that is spoken is chosen. */
+function named(label: string): HTMLSelectElement {
+  return h(
     "select",
-    { "aria-label": "Language of the report" },
-    ...Object.entries(LANGUAGES).map(([code, name]) =>
-      h("option", { value: code, lang: code }, name),
+    { class: "language", "aria-label": label, title: label },
+    ...Object.entries(languages()).map(([code, name]) =>
+      h("option", { value: code, lang: code, selected: code === spoken() }, name),
     ),
   );
+}
+
+function downloads(commands: Commands): HTMLDetailsElement {
+  const language = named(say("Language of the report"));
   const menu: HTMLDetailsElement = h("details", { class: "menu" });
+  const close = (then: () => void) => {
+    menu.open = false;
+    then();
+  };
   const item = (text: string, kind: FileKind) =>
     h(
       "button",
       {
         type: "button",
-        onclick: () => {
-          menu.open = false;
-          commands.download(kind, language.value);
-        },
+        onclick: () => close(() => commands.download(kind, language.value)),
       },
       text,
     );
   menu.append(
     h(
       "summary",
-      { "aria-label": "Download", title: "Download" },
+      { "aria-label": say("Download"), title: say("Download") },
       icon(ICONS.save),
-      h("span", { class: "word" }, "Download"),
+      h("span", { class: "word" }, say("Download")),
     ),
     h(
       "div",
       { class: "sheet" },
-      item("Download model", "model"),
-      item("Download CSV", "csv"),
-      h("div", { class: "line" }, item("Download report", "report"), language),
+      item(say("Download model"), "model"),
+      item(say("Download CSV"), "csv"),
+      h("div", { class: "line" }, item(say("Download report"), "report"), language),
+      h("button", { type: "button", onclick: () => close(commands.link) }, say("Copy link")),
     ),
   );
   menu.addEventListener("keydown", (event) => {

@@ -3,6 +3,7 @@
 import { h, icon, set, write } from "./dom";
 import { signed } from "./format";
 import { type Player, RATES } from "./player";
+import { say } from "./words";
 
 const PLAY = "M4.5 2.5v11l8.5-5.5z";
 const PAUSE = "M4 2.5h2.5v11H4zM9.5 2.5H12v11H9.5z";
@@ -26,7 +27,7 @@ export class TransportBar {
       min: 0,
       max: 359,
       step: 1,
-      "aria-label": "Crank angle",
+      "aria-label": say("Crank angle"),
     });
     this.slider.addEventListener("input", () => {
       player.sample = Number(this.slider.value);
@@ -34,15 +35,22 @@ export class TransportBar {
     });
     this.rates = h(
       "select",
-      { "aria-label": "Speed of playing", title: "Speed of playing, of the true speed" },
+      {
+        "aria-label": say("Speed of playing"),
+        title: say("Speed of playing, of the true speed"),
+      },
       ...RATES.map((rate) =>
-        h("option", { value: rate }, rate === 1 ? "true speed" : `1/${Math.round(1 / rate)} speed`),
+        h(
+          "option",
+          { value: rate },
+          rate === 1 ? say("true speed") : say("1/{part} speed", { part: Math.round(1 / rate) }),
+        ),
       ),
     );
     this.rates.addEventListener("change", () => (player.rate = Number(this.rates.value)));
     this.root = h(
       "div",
-      { class: "transport", role: "group", "aria-label": "Motion" },
+      { class: "transport", role: "group", "aria-label": say("Motion") },
       this.play,
       this.slider,
       this.told,
@@ -63,8 +71,8 @@ export class TransportBar {
     if (this.shown === playing && this.play.hasAttribute("aria-label")) return;
     this.shown = playing;
     set(this.play, {
-      "aria-label": playing ? "Pause" : "Play",
-      title: playing ? "Pause (Space)" : "Play (Space)",
+      "aria-label": playing ? say("Pause") : say("Play"),
+      title: playing ? say("Pause (Space)") : say("Play (Space)"),
     });
     this.play.replaceChildren(icon(playing ? PAUSE : PLAY));
   }
@@ -77,6 +85,6 @@ export class TransportBar {
       "--part",
       (this.player.sample / Math.max(Number(this.slider.max), 1)).toFixed(3),
     );
-    set(this.slider, { "aria-valuetext": `${this.player.angle.toFixed(1)} degrees` });
+    set(this.slider, { "aria-valuetext": say("{angle} degrees", { angle: this.player.angle.toFixed(1) }) });
   }
 }

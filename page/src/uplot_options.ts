@@ -1,6 +1,7 @@
 /** How uPlot draws curves and bars; numbers on the scales are not its own. */
 
 import uPlot from "uplot";
+import type { Scale } from "./scale";
 import type { Role, Theme } from "./theme";
 
 export interface Curve {
@@ -18,6 +19,8 @@ export interface Content {
   curves: Curve[];
   /** What is smaller than this is rounding, and shown as zero. */
   least?: number;
+  /** Whether the scale of the values is logarithmic. */
+  log?: boolean;
 }
 
 export interface Look {
@@ -32,6 +35,8 @@ export interface Look {
   /** Told where on x was pressed. */
   picked?: (x: number) => void;
   control?: HTMLElement;
+  /** At the end of the heading. */
+  button?: HTMLElement;
 }
 
 /** Room around the plot, pixels. */
@@ -43,7 +48,7 @@ export const NARROW = 4;
 
 /** What depends on the values of the moment. */
 interface Ways {
-  range(): [number, number];
+  scale(): Scale;
   levels(): number[];
   marks(low: number, high: number): number[];
 }
@@ -75,14 +80,14 @@ export function optionsOf(
         time: false,
         range: (_u, low, high) => (look.bars ? [low - 0.5, high + 0.5] : [low, high]),
       },
-      y: { range: () => ways.range() },
+      y: { range: () => ways.scale().ends, distr: ways.scale().log ? 3 : 1 },
     },
     axes: [
       { ...axis, ...across, splits: (_u, _i, low, high) => ways.marks(low, high) },
       { ...axis, size: LEFT, gap: 4, splits: () => ways.levels() },
     ],
     series: [{}, ...curves.flatMap((curve, i) => series(curve, look, theme, i, curves.length))],
-    hooks: { drawAxes: [(u) => zero(u, theme.colours.axis, ways.range())] },
+    hooks: { drawAxes: [(u) => zero(u, theme.colours.axis, ways.scale())] },
   };
 }
 
@@ -125,8 +130,8 @@ function hatching(ctx: CanvasRenderingContext2D, colour: string): CanvasPattern 
 }
 
 /** The line of zero, a little stronger than the grid. */
-function zero(u: uPlot, colour: string, [low, high]: [number, number]): void {
-  if (low > 0 || high < 0) return;
+function zero(u: uPlot, colour: string, { ends: [low, high], log }: Scale): void {
+  if (log || low > 0 || high < 0) return;
   const y = Math.round(u.valToPos(0, "y", true)) + 0.5;
   u.ctx.save();
   u.ctx.strokeStyle = colour;

@@ -15,6 +15,8 @@ from equipoise import Machine
 ROOT = Path(__file__).parents[2]
 SCREENSHOTS = ROOT / "build" / "screenshots"
 AXE = ROOT / "page" / "node_modules" / "axe-core" / "axe.min.js"
+FITS = "document.documentElement.scrollWidth <= document.documentElement.clientWidth"
+"""Nothing is to be moved from side to side."""
 NUMBER = re.compile(r"[-−]?\d+(?:\.\d+)?")
 
 
@@ -29,7 +31,8 @@ class Live:
         """Open the address and wait for the machine, and for everything to be in its place."""
         page.goto(address)
         live = cls(page)
-        expect(live.joint("B")).to_have_attribute("aria-valuetext", re.compile("mm"))
+        joint = page.locator("[data-kind=point][data-name=B]")  # whatever its language calls it
+        expect(joint).to_have_attribute("aria-valuetext", re.compile("mm"))
         page.evaluate("new Promise(done => setTimeout(() => requestAnimationFrame(done), 50))")
         return live
 

@@ -12,12 +12,12 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Page, expect
 
-from browser.live import SCREENSHOTS, Live
+from browser.live import FITS, SCREENSHOTS, Live
 from surface.running import equipoise, succeeded
 
 WIDTHS = (1280, 400)
 SCHEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
-FITS = "document.documentElement.scrollWidth <= document.documentElement.clientWidth"
+
 
 TOPS = "() => [...document.querySelectorAll('#forces figure')].map(one => one.offsetTop)"
 """Where the pictures of the forces begin."""

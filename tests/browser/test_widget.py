@@ -29,7 +29,7 @@ SHOW = """async ([script, style]) => {
     const file = new Blob([script], { type: "text/javascript" });
     const module = await import(URL.createObjectURL(file));
     const cell = document.createElement("div");  // Jupyter puts it into the page later
-    window.end = module.default.render({ model, el: cell });
+    window.end = await module.default.render({ model, el: cell });
     await new Promise((done) => setTimeout(done, 200));
     const sheet = new CSSStyleSheet();
     await sheet.replace(style);

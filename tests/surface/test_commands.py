@@ -228,7 +228,7 @@ def test_no_page_shows_a_command_that_does_not_exist(page: str) -> None:
 def test_examples_are_listed_with_their_titles() -> None:
     lines = succeeded(equipoise("examples")).splitlines()
     listed = dict(line.split(maxsplit=1) for line in lines)
-    assert listed == {name: example(name)["title"] for name in (*EXAMPLES, *TOOLS, *STUDIES)}
+    assert listed == {name: example(name)["title"]["en"] for name in (*EXAMPLES, *TOOLS, *STUDIES)}
     there = (file.name for file in files("equipoise").joinpath("examples").iterdir())
     assert {f"{name}.toml" for name in listed} == {name for name in there if "toml" in name}
 
@@ -236,7 +236,7 @@ def test_examples_are_listed_with_their_titles() -> None:
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_check_of_an_example(name: str) -> None:
     text = succeeded(equipoise("check", name))
-    assert unfolded(text).startswith(example(name)["title"])
+    assert unfolded(text).startswith(example(name)["title"]["en"])
     assert text.splitlines()[-1] == READY
     assert f"driven: {example(name)['drive']['link']} at" in text
 
@@ -260,7 +260,7 @@ def test_a_file_beats_the_example_of_its_name() -> None:
 def test_tables_of_an_example(name: str) -> None:
     result = equipoise("analyze", name)
     text = succeeded(result)
-    assert unfolded(text).startswith(example(name)["title"])
+    assert unfolded(text).startswith(example(name)["title"]["en"])
     for title in ("Links", "Moving points", "On frame and drive", "Force in each joint"):
         assert re.search(rf"^{title}", text, re.MULTILINE)
     for row in ("shaking force x", "shaking moment", "drive torque", *example(name)["links"]):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from equipoise.balancing.compared import PRICE, WORTH, too_dear
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.workshop import sentences
-from equipoise.i18n import Note, say, to_say
+from equipoise.i18n import said, say, to_say
 from equipoise.mechanism.balance import CUT, Balance, Objective, Weight, material_of
 from equipoise.mechanism.outputs import GROUPS
 from equipoise.quantities import PER_RPM, brief, change, percent, told
@@ -33,11 +33,6 @@ EXACT, SMALL = 1e-12, 1.01e-4
 """Gap below which nothing more is told of it; above which it is told in percent."""
 FEW = 0.1
 """Growth below which a digit more is told."""
-
-
-def said(text: Note | str) -> str:
-    """A sentence or a part of one, in the language that is spoken."""
-    return text.said() if isinstance(text, Note) else text
 
 
 def listed(parts: Iterable[str]) -> str:

@@ -25,6 +25,7 @@ from equipoise.cli.outputs import Outputs, Printed, check_new, sources_of, write
 from equipoise.cli.plan import Freed, plan_of, read_objective
 from equipoise.cli.progress import counted
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
@@ -96,7 +97,7 @@ def _save(found: Balanced, out: str) -> None:
     from equipoise.balancing.workshop import sentences
 
     changes = " ".join(f"{line}." for change in found.changes for line in sentences(change))
-    write_model(found.machine, out, ", balanced", f"Changed by equipoise balance: {changes}")
+    write_model(found.machine, out, Note(", balanced"), f"Changed by equipoise balance: {changes}")
 
 
 @app.command

@@ -17,6 +17,7 @@ from equipoise.cli.outputs import (
 )
 from equipoise.cli.progress import Watched, swept
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 
 if TYPE_CHECKING:
     import numpy as np
@@ -179,7 +180,7 @@ def _own(study: Study) -> tuple[Array, Array] | None:
 
 
 def _save(model: Any, out: str, number: int, of: str) -> None:
-    write_model(model, out, f", design {number}", f"Design {number} of {of}.")
+    write_model(model, out, Note(", design {number}", number=number), f"Design {number} of {of}.")
 
 
 def _columns(

@@ -45,6 +45,7 @@ from equipoise.cli.outputs import (
 )
 from equipoise.cli.progress import counted, generations
 from equipoise.errors import EquipoiseError, UsageError
+from equipoise.i18n import Note
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
@@ -337,7 +338,7 @@ def fit(
             progress=progress,
         )
     origin = f"Geometry found by equipoise plant fit {Path(targets).name}, seed {fitted.seed}."
-    write_model(fitted.machine, new, ", fitted", origin)
+    write_model(fitted.machine, new, Note(", fitted"), origin)
     outputs.write(lambda: table(fitted.after))
     outputs.draw_result(fitted.after)
     outputs.show(fitted)

@@ -13,6 +13,7 @@ from cyclopts import Parameter
 
 from equipoise.cli.options import NewFile, NewFolder, Out, ShownIn, check_belonging, count
 from equipoise.errors import UsageError
+from equipoise.i18n import Note, in_each, said
 from equipoise.partial import afterwards
 
 if TYPE_CHECKING:
@@ -219,7 +220,7 @@ def tell_pictures(number: int, folder: str) -> None:
 
 
 def write_model(
-    model: Machine | Tool, path: str, title: str = "", origin: str = "", what_next: str = ""
+    model: Machine | Tool, path: str, title: Note | str = "", origin: str = "", what_next: str = ""
 ) -> None:
     """Save a model and say so.
 
@@ -229,9 +230,13 @@ def write_model(
     from equipoise.schema.models import files_of
 
     start = f"{origin} Started from: " if origin else ""
-    description = f"{start}{model.description}".removesuffix(" Started from: ").strip()
-    titled = f"{model.title.removesuffix(title)}{title}"
-    made: Any = replace(model, title=titled, description=description)
+    made: Any = replace(
+        model,
+        title=in_each(model.title, lambda one: f"{one.removesuffix(said(title))}{said(title)}"),
+        description=in_each(
+            model.description, lambda one: f"{start}{one}".removesuffix(" Started from: ").strip()
+        ),
+    )
     save(made, path)
     wrote(" and ".join(map(os.fspath, files_of(made, path))) + what_next)
 

@@ -19,7 +19,7 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.figures.captions import Label, captions, ruler_ends
 from equipoise.figures.stage import Arrow, Moves, Stage, check_seconds, check_width
-from equipoise.i18n import say
+from equipoise.i18n import said, say
 from equipoise.mechanism.model import unknown
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, pixels
 from equipoise.symbols.pieces import pieces
@@ -209,7 +209,7 @@ def animated_svg(
     return f"""\
 <svg xmlns="http://www.w3.org/2000/svg" class="linkage {mark}" role="img" \
 viewBox="0 0 {stage.width} {stage.height}" width="{stage.width}" height="{stage.height}">
-<title>{escape(title)}</title>
+<title>{escape(said(title))}</title>
 <desc>{escape(" ".join(words))}</desc>
 <style>
 {style}

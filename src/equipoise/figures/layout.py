@@ -14,6 +14,7 @@ from equipoise.figures.panel import LEAD, draw, flag_height, frame
 from equipoise.figures.sheet import Sheet, Words, lines_of, width_of
 from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL
 from equipoise.figures.view import Scale, View, ticks_of
+from equipoise.i18n import said
 from equipoise.results.charts import Axis, Chart
 
 WIDE, HALF = 518.4, 340.0
@@ -38,7 +39,7 @@ def lay_out(chart: Chart, wide: float = WIDE, headed: bool = True) -> Sheet:
 
     wide : of the sheet, points.  headed : whether the chart's heading stands on it.
     """
-    sheet = Sheet(wide, 0.0, chart.title)
+    sheet = Sheet(wide, 0.0, said(chart.title))
     top = _heading(sheet, chart) if headed else TOP
     keys = [Key(role, name, kind_of(role)) for role, name in chart.keys]
     keys += [key for panel in chart.panels for key in keys_of(panel, chart_level=True)]
@@ -57,7 +58,7 @@ def lay_out(chart: Chart, wide: float = WIDE, headed: bool = True) -> Sheet:
 def _heading(sheet: Sheet, chart: Chart) -> float:
     """The machine, what is shown, and further words; where they end."""
     room, top = sheet.width - 2 * EDGE, 3.0
-    for line in lines_of(chart.title, room, LARGE, bold=True):
+    for line in lines_of(said(chart.title), room, LARGE, bold=True):
         sheet.add(Words(EDGE, top + 14.0, line, LARGE, INK, bold=True), 7)
         top += LARGE + 4
     top += 2.5

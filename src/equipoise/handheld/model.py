@@ -44,6 +44,7 @@ from equipoise.keys import (
     Table,
     Tables,
     Text,
+    Wording,
     declared,
     inside,
     key,
@@ -215,7 +216,7 @@ class Tool(Frozen):
     beside: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "description", "units")
 
-    title: str = key(Text(), "shown in reports", example="Brush cutter")
+    title: str = key(Wording(), "shown in reports", example="Brush cutter")
     shaft: Shaft = key(Table(ShaftTable), "the beam")
     stations: tuple[Station, ...] = inside(Tables(Table(Station)), default=())
     excitations: tuple[Excitation, ...] = key(
@@ -226,7 +227,7 @@ class Tool(Frozen):
     design: DesignPlan | None = key(
         Table(DesignPlan), "what may be changed so that the hands feel less", default=None
     )
-    description: str = key(Text(), "further text", default="")
+    description: str = key(Wording(), "further text", default="")
     units: ShownUnits | None = key(
         Table(ShownUnits), "in which values are shown, as by `--units`", default=None
     )

@@ -6,13 +6,13 @@ The catalogues beside this file hold a line for each text: ``"shaking force" = "
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
-from typing import Any
+from typing import Any, Self
 
 LANGUAGES = {"en": "English", "ja": "日本語", "ko": "한국어"}
 """Code of a language -> its own name."""
@@ -62,16 +62,62 @@ class Note:
 
     def said(self) -> str:
         """The sentence in the language that is spoken."""
-        values = {
-            name: value.said() if isinstance(value, Note) else value
-            for name, value in self.values.items()
-        }
+        values = {name: said(value) for name, value in self.values.items()}
         return say(self.template, **values)
 
     @property
     def is_translated(self) -> bool:
         """Whether the language that is spoken has the sentence."""
         return spoken() == "en" or self.template in catalogue(spoken())
+
+
+class Worded(str):
+    """A text of a file in several languages; as a `str` the English one, or the first there is.
+
+    texts : by code of the language, in the order of `LANGUAGES`.
+    """
+
+    texts: Mapping[str, str]
+
+    def __new__(cls, texts: Mapping[str, str]) -> Self:
+        own = {code: texts[code] for code in LANGUAGES if code in texts}
+        made = super().__new__(cls, next(iter(own.values())))
+        made.texts = own
+        return made
+
+    def __getnewargs__(self) -> tuple[Any]:
+        return (dict(self.texts),)
+
+    def __eq__(self, other: object) -> bool:
+        """Against another such text all languages count, against a plain one its own `str`."""
+        if isinstance(other, Worded):
+            return self.texts == other.texts
+        return super().__eq__(other)
+
+    def __ne__(self, other: object) -> bool:
+        return not self == other
+
+    __hash__ = str.__hash__
+
+    def said(self) -> str:
+        """The text in the language that is spoken, as a `str` where it has none."""
+        return self.texts.get(_spoken.get()) or str(self)
+
+
+def said(text: Note | str) -> str:
+    """A sentence, a part of one, or a text of a file, in the language that is spoken."""
+    return text.said() if isinstance(text, Note | Worded) else text
+
+
+def in_each(text: str, change: Callable[[str], str]) -> str:
+    """A text of a file changed in each of its languages, while that is spoken."""
+    if not isinstance(text, Worded):
+        return change(text)
+    changed = {}
+    for code, one in text.texts.items():
+        with speaking(code):
+            changed[code] = change(one)
+    return Worded(changed)
 
 
 @contextmanager

@@ -12,6 +12,8 @@ the tables of the documentation and access by path (`equipoise.schema`).  Rules 
 plain functions beside the class.
 """
 
+from equipoise.keys.base import Kind as Kind
+from equipoise.keys.base import Record as Record
 from equipoise.keys.conditions import any_of as any_of
 from equipoise.keys.conditions import lacks as lacks
 from equipoise.keys.conditions import needs as needs
@@ -40,7 +42,6 @@ from equipoise.keys.kinds import Anything as Anything
 from equipoise.keys.kinds import Direction as Direction
 from equipoise.keys.kinds import File as File
 from equipoise.keys.kinds import Flag as Flag
-from equipoise.keys.kinds import Kind as Kind
 from equipoise.keys.kinds import Listing as Listing
 from equipoise.keys.kinds import Named as Named
 from equipoise.keys.kinds import Number as Number
@@ -48,12 +49,12 @@ from equipoise.keys.kinds import OneOr as OneOr
 from equipoise.keys.kinds import Planes as Planes
 from equipoise.keys.kinds import Point as Point
 from equipoise.keys.kinds import Quantity as Quantity
-from equipoise.keys.kinds import Record as Record
 from equipoise.keys.kinds import Table as Table
 from equipoise.keys.kinds import Tables as Tables
 from equipoise.keys.kinds import Text as Text
 from equipoise.keys.kinds import Told as Told
 from equipoise.keys.kinds import Whole as Whole
+from equipoise.keys.kinds import Wording as Wording
 from equipoise.keys.kinds import choice as choice
 from equipoise.keys.kinds import innermost as innermost
 from equipoise.keys.kinds import items_of as items_of

@@ -11,15 +11,14 @@ from typing import Any, ClassVar, Self, TypeVar, dataclass_transform
 
 from equipoise.errors import ModelError
 from equipoise.guarding import keyworded
+from equipoise.keys.base import Kind, Record
 from equipoise.keys.kinds import (
     PLANES,
-    Kind,
     Listing,
     Number,
     OneOr,
     Planes,
     Quantity,
-    Record,
     Table,
     Whole,
     choice,

@@ -7,39 +7,13 @@ from dataclasses import dataclass
 from importlib import import_module
 from numbers import Integral, Real
 from types import MappingProxyType
-from typing import Any, ClassVar
+from typing import Any, Literal
 
+from equipoise.i18n import LANGUAGES, Worded
+from equipoise.keys.base import Kind, Record
 from equipoise.quantities import Dimension
 
 MOST_WHOLE = 1_000_000
-
-
-class Record:
-    """What a table of a file is read to, and holds by the names of its fields."""
-
-    wanted: ClassVar[str] = "such an object"
-
-    @classmethod
-    def checked(cls, value: Any) -> Any:
-        """The value of a field that holds such an object; a `TypeError` where it is none."""
-        if not isinstance(value, Record):
-            raise TypeError
-        return value
-
-
-class Kind:
-    """What a value is: `check` takes one that Python gives, `wanted` says what it has to be."""
-
-    wanted: str
-
-    def check(self, value: Any) -> Any:
-        """The value as it is kept.
-
-        Raises
-        ------
-        TypeError, ValueError, OverflowError : it is something else.
-        """
-        return value
 
 
 NO_INERTIA = "no body has a negative moment of inertia"
@@ -56,10 +30,14 @@ class Text(Kind):
     """Text; `names` are the only ones, if there are any.
 
     suggested : those that editors offer; what else is wrong with it is said elsewhere.
+    of : what it is the name of: ``link``, ``body`` (a link or the frame) or ``point``.
+    on : key beside it that names the body of that point, or ``frame``; any body where not given.
     """
 
     names: tuple[str, ...] = ()
     suggested: tuple[str, ...] = ()
+    of: Literal["", "link", "body", "point"] = ""
+    on: str = ""
 
     wanted = "text"
 
@@ -67,6 +45,18 @@ class Text(Kind):
         if not isinstance(value, str):
             raise TypeError
         return value
+
+
+@dataclass(frozen=True)
+class Wording(Text):
+    """Text for readers: one for all of them, or one for each of some languages."""
+
+    def check(self, value: Any) -> str:
+        if not isinstance(value, Mapping):
+            return super().check(value)
+        if not value or not value.keys() <= LANGUAGES.keys() or not all(value.values()):
+            raise ValueError
+        return Worded({code: super(Wording, self).check(one) for code, one in value.items()})
 
 
 @dataclass(frozen=True)
@@ -183,10 +173,13 @@ class Point(Kind):
 
     space : with a third length along z, which may be left out.
     named : or the name of a point of the body that it lies on.
+    axes : key beside it that names the link in whose axes it is; where not given, they are those of
+        the link that has its table, or the frame's.
     """
 
     space: bool = False
     named: bool = False
+    axes: str = ""
 
     @property
     def wanted(self) -> str:  # type: ignore[override]

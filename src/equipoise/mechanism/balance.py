@@ -77,9 +77,11 @@ class SpringChoice(Frozen):
 
     called = to_say("{what} of spring {number} to be chosen")
 
-    link: str = key(Text(), "name of the link", example="rocker")
-    point: str = key(Text(), "its point, not one that is pinned to the frame", example="C")
-    to: str = key(Text(), "point of the frame", example="D2")
+    link: str = key(Text(of="link"), "name of the link", example="rocker")
+    point: str = key(
+        Text(of="point", on="link"), "its point, not one that is pinned to the frame", example="C"
+    )
+    to: str = key(Text(of="point", on="frame"), "point of the frame", example="D2")
     stiffness: float = key("stiffness", "the most that it may have", example="5 kN/m", above=0)
     free_length: Pair | None = key(
         RANGE,

@@ -7,6 +7,7 @@ from math import pi
 from typing import Any, TypeVar
 
 from equipoise.errors import ModelError, form_of, meant, unknown
+from equipoise.i18n import Worded
 
 __all__ = [
     "FRAME",
@@ -84,7 +85,10 @@ def too_many(key: str, items: Sequence[Any] | Mapping[str, Any], most: int) -> I
 
 def wrong_text(where: str, text: str) -> Iterator[ModelError]:
     """Complain of a title or name that cannot be printed."""
-    if len(text) > LONGEST_NAME:
+    if isinstance(text, Worded):
+        for code, one in text.texts.items():
+            yield from wrong_text(f"{where}.{code}", one)
+    elif len(text) > LONGEST_NAME:
         yield ModelError(where, f"{len(text)} characters; give at most {LONGEST_NAME}")
     elif not text.isprintable():
         yield ModelError(where, f"got {text!r}; give printable characters")

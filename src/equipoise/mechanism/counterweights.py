@@ -80,7 +80,7 @@ class GearedWeight(Frozen):
     conditions: ClassVar[Conditions] = {"allOf": [*WEIGHT, *GEARED]}
 
     driver: str = key(
-        Text(), "link that carries the other gear, pinned to the frame", example="rocker"
+        Text(of="link"), "link that carries the other gear, pinned to the frame", example="rocker"
     )
     weight: Weight = key(Table(Weight, flat=True))
     ratio: Pair | None = key(
@@ -133,7 +133,7 @@ class GearedWeight(Frozen):
         "density", "of both gears, instead of `gear_material`", default=None, above=0
     )
     clear_of: tuple[str, ...] = key(
-        Listing(Text(), right='a list of names such as ["coupler"]'),
+        Listing(Text(of="link"), right='a list of names such as ["coupler"]'),
         "links that the counterweight must not touch",
         default=(),
         example=["coupler"],

@@ -107,7 +107,7 @@ class Planting(Frozen):
         ]
     }
 
-    tip: str = key(Text(), "point of a moving link that goes into the soil", example="P")
+    tip: str = key(Text(of="point"), "point of a moving link that goes into the soil", example="P")
     forward_speed: float | None = key(
         "speed",
         "of the machine over ground, 0 or more",
@@ -142,7 +142,7 @@ class Planting(Frozen):
         "length", "height of the soil's surface in the frame, instead of `depth`", default=None
     )
     finger_from: str | None = key(
-        Text(),
+        Text(of="point"),
         "root of the finger, from which it points to the tip; the first other point of the tip's "
         "link if left out",
         default=None,

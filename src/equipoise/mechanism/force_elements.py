@@ -82,8 +82,10 @@ class Load(Frozen):
         },
     }  # fmt: skip
 
-    link: str = key(Text(), "the loaded link", example="coupler")
-    point: str | None = key(Text(), "where a force acts; not for torques", default=None)
+    link: str = key(Text(of="link"), "the loaded link", example="coupler")
+    point: str | None = key(
+        Text(of="point", on="link"), "where a force acts; not for torques", default=None
+    )
     force: Vector | None = key(
         Listing(Quantity("force"), (2,)), "along x and y of the frame", default=None
     )
@@ -123,11 +125,13 @@ class Spring(Frozen):
 
     called = to_say("{what} of spring {number}")
 
-    link: str = key(Text(), "the link that it pulls", example="rocker")
+    link: str = key(Text(of="link"), "the link that it pulls", example="rocker")
     point: str = key(
-        Text(), "its point on the link, not one that is pinned to the frame", example="C"
+        Text(of="point", on="link"),
+        "its point on the link, not one that is pinned to the frame",
+        example="C",
     )
-    to: str = key(Text(), "its point on the frame", example="S")
+    to: str = key(Text(of="point", on="frame"), "its point on the frame", example="S")
     stiffness: float = key("stiffness", "more than 0", example="2 kN/m", above=0)
     free_length: float = key(
         "length",

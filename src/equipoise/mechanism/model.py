@@ -24,6 +24,7 @@ from equipoise.keys import (
     Table,
     Tables,
     Text,
+    Wording,
     changed,
     declared,
     key,
@@ -137,7 +138,7 @@ class Machine(Frozen):
                   "assembly", "sliders", "gears", "loads", "springs", "position", "planting",
                   "support", "rows", "balance")  # fmt: skip
 
-    title: str = key(Text(), "shown in reports", example="Slider-crank")
+    title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(Table(Drive), "the link that is driven")
     frame: Mapping[str, Vector] = key(Table(Frame), "the part that stands still")
     links: Mapping[str, Link] = key(Named(Table(Link)), "moving links by name")
@@ -160,7 +161,7 @@ class Machine(Frozen):
     position: Position | None = key(
         Table(Position), "rough position, needed only where dyads do not suffice", default=None
     )
-    description: str = key(Text(), "further text", default="")
+    description: str = key(Wording(), "further text", default="")
     planting: Planting | None = key(
         Table(Planting), "what a finger does in the field", default=None
     )

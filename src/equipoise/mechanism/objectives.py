@@ -74,7 +74,7 @@ class Objective(Frozen):
         at_least=0,
     )
     about: str | None = key(
-        Text(),
+        Text(of="point", on="frame"),
         "point of the frame about which `shaking_moment` or `frame_moment` is taken; the drive's "
         "pivot if left out",
         default=None,

@@ -41,7 +41,7 @@ class Drive(Frozen):
     file_order = ("link", "speed", "speeds")
 
     link: str = key(
-        Text(),
+        Text(of="link"),
         "the driven link; it shares exactly one point with the frame, about which it turns",
         example="crank",
     )
@@ -81,10 +81,10 @@ class Slider(Frozen):
 
     called = to_say("{what} of the guide of the {link}")
 
-    link: str = key(Text(), "the sliding link", example="piston")
-    point: str = key(Text(), "its point on the line", example="C")
-    on: str = key(Text(), 'the guiding link, or `"frame"`', example="frame")
-    through: str = key(Text(), "a point of the guide on the line", example="A")
+    link: str = key(Text(of="link"), "the sliding link", example="piston")
+    point: str = key(Text(of="point", on="link"), "its point on the line", example="C")
+    on: str = key(Text(of="body"), 'the guiding link, or `"frame"`', example="frame")
+    through: str = key(Text(of="point", on="on"), "a point of the guide on the line", example="A")
     direction: float = key("angle", "of the line, in the axes of the guide", example="0 deg")
     angle: float = key("angle", "of the sliding link's x axis, from the line", default=0.0)
 
@@ -101,7 +101,7 @@ class Gear(Frozen):
     beside: ClassVar[Keys] = {
         "between": Key(
             "between",
-            Listing(Text(), (2,)),
+            Listing(Text(of="body"), (2,)),
             "driver and driven link; the driver is the one that is moved already, and may be "
             '`"frame"` where the carrier turns',
             example=["crank", "wheel"],
@@ -130,7 +130,9 @@ class Gear(Frozen):
         word=to_say("number of teeth"),
     )
     mesh: Literal["external", "internal"] = inside(Text(MESHES), default="external")
-    carrier: str = key(Text(), "link to which both are pinned", default=FRAME, example="frame")
+    carrier: str = key(
+        Text(of="body"), "link to which both are pinned", default=FRAME, example="frame"
+    )
     start: float = key(
         "angle",
         "of the driven link in the frame at crank angle 0",

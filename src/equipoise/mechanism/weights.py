@@ -123,8 +123,10 @@ class AddedMass(Frozen):
     called = to_say("{what} of added mass {number}")
     conditions: ClassVar[Conditions] = {"allOf": [*WEIGHT]}
 
-    link: str = key(Text(), "name of the link", example="crank")
-    at: str = key(Text(), "point of the link, the centre of the room", example="A")
+    link: str = key(Text(of="link"), "name of the link", example="crank")
+    at: str = key(
+        Text(of="point", on="link"), "point of the link, the centre of the room", example="A"
+    )
     weight: Weight = key(Table(Weight, flat=True))
 
 
@@ -140,7 +142,7 @@ class CenterMove(Frozen):
         "dependentSchemas": {"center": {"properties": {"x": False, "y": False}}},
     }
 
-    link: str = key(Text(), "a link with a mass", example="coupler")
+    link: str = key(Text(of="link"), "a link with a mass", example="coupler")
     x: Pair | None = key(
         RANGE,
         "lowest and highest, in the link's axes; without limit if left out",
@@ -149,7 +151,7 @@ class CenterMove(Frozen):
     )
     y: Pair | None = key(RANGE, "as `x`", default=None, example=["-30 mm", "30 mm"])
     center: Pair | None = key(
-        Point(),
+        Point(axes="link"),
         "of a circle that the centre of mass does not leave, instead of `x` and `y`",
         default=None,
         word=to_say("centre"),

@@ -9,11 +9,11 @@ from typing import Any
 
 import equipoise
 from equipoise.balancing.blocks import outcome_blocks
-from equipoise.balancing.told import nothing_told, said
+from equipoise.balancing.told import nothing_told
 from equipoise.errors import UsageError
 from equipoise.handheld import blocks as of_tools
 from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
-from equipoise.i18n import LANGUAGES, say, speaking, to_say
+from equipoise.i18n import LANGUAGES, said, say, speaking, to_say
 from equipoise.mechanism.shown_units import units_of
 from equipoise.planting.blocks import planting_blocks
 from equipoise.present.drawing import drawings
@@ -113,9 +113,9 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
     seen = {name: seen_in(name, found) for name in blocks}
     return Document(
         language,
-        machine.title,
+        said(machine.title),
         driven(machine, analysis.motion.speed),
-        machine.description,
+        said(machine.description),
         tuple(tiles(found)),
         tuple(answers(found)),
         _animation(found),
@@ -161,9 +161,9 @@ def _of_tool(found: ToolFindings, language: str, command: str) -> Document:
     named: Parts = {"model": [*of_tools.model_blocks(found.tool)], "tool": blocks}
     return Document(
         language,
-        found.tool.title,
+        said(found.tool.title),
         subtitle,
-        found.tool.description,
+        said(found.tool.description),
         tuple(tool_tiles(found)),
         tuple(tool_answers(found)),
         "",

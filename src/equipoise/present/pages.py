@@ -20,7 +20,7 @@ from markupsafe import Markup
 import equipoise
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.figures.style import GRID, STUBBLE
-from equipoise.i18n import LANGUAGES, say, speaking, spoken
+from equipoise.i18n import LANGUAGES, said, say, speaking, spoken
 from equipoise.present.cells import Grid, Head, Text, grid, noted, printed, sign_of
 from equipoise.present.layout import Looks
 from equipoise.quantities import Units, showing
@@ -142,7 +142,9 @@ def colors(dark: bool) -> str:
 def html_of(result: Result) -> str:
     """What a result shows as a part of a page; a notebook asks for it."""
     template = _environment().get_template("notebook.html.j2")
-    return template.render(language=spoken(), title=result.title, blocks=tuple(result.blocks()))
+    return template.render(
+        language=spoken(), title=said(result.title), blocks=tuple(result.blocks())
+    )
 
 
 def page(document: Document) -> str:

@@ -162,7 +162,12 @@ class Beside:
 
 
 def text_of(model: Machine | Tool, names: Mapping[str, str]) -> str:
-    """The text of a file; `names` are those of other files, by the key that names each.
+    """The text of a file; as `plain_of`."""
+    return toml_text(type(model), plain_of(model, names))
+
+
+def plain_of(model: Machine | Tool, names: Mapping[str, str]) -> dict[str, Any]:
+    """The content of a file; `names` are those of other files, by the key that names each.
 
     Raises
     ------
@@ -174,8 +179,7 @@ def text_of(model: Machine | Tool, names: Mapping[str, str]) -> str:
 
         makers[Limit] = partial(_limit_table, model)
     with showing_by_default(units_of(model)):
-        content = Writer(names, makers).content(type(model), model)
-    return toml_text(type(model), content)
+        return Writer(names, makers).content(type(model), model)
 
 
 def _limit_table(machine: Machine, limit: Any) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.keys import SCHEMA_VERSION, Frozen
+from equipoise.keys import SCHEMA_VERSION, Frozen, Wording
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities.reading import described
 from equipoise.schema.files import LARGEST, FileError, printable, quoted, read_text, written_key
@@ -133,7 +133,7 @@ def examples(kind: FileKind | None = None) -> dict[str, str]:
     for name, file in bundled().items():
         content = tomllib.loads(file.read_text(encoding="utf-8"))
         if kind in {None, kind_of(content)}:
-            titles[name] = str(content["title"])
+            titles[name] = Wording().check(content["title"])
     return titles
 
 

@@ -16,6 +16,7 @@ from typing import Any
 
 from equipoise import keys
 from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import LANGUAGES, Worded
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import KINDS, described, parse
 from equipoise.schema.files import quoted, written_key
@@ -199,6 +200,21 @@ def _text(kind: keys.Text, given: Any, place: Place, context: Context) -> Any:
     return given if isinstance(given, str) else context.wrong(place, given, "give text in quotes")
 
 
+def _wording(kind: keys.Wording, given: Any, place: Place, context: Context) -> Any:
+    if not isinstance(given, dict):
+        return _text(kind, given, place, context)
+    example = f'{place[-1]}.en = "..."'
+    if not given:
+        return context.wrong(place, given, f"give text in quotes, or by language: {example}")
+    for code, text in given.items():
+        if code not in LANGUAGES:
+            return context.say((*place, code), unknown(code, LANGUAGES, "language"))
+        if text == "":
+            return context.say((*place, code), "is empty; give text, or leave it out")
+    read = {code: _text(kind, one, (*place, code), context) for code, one in given.items()}
+    return WRONG if WRONG in read.values() else Worded(read)
+
+
 def _number(kind: keys.Number, given: Any, place: Place, context: Context) -> Any:
     if isinstance(given, bool) or not isinstance(given, int | float):
         return context.wrong(place, given, "give a plain number without unit and quotes")
@@ -336,4 +352,5 @@ READERS: dict[type[keys.Kind], Callable[[Any, Any, Place, Context], Any]] = {
         given if isinstance(given, str) else context.wrong(place, given, kind.right)
     ),
     keys.Whole: _whole,
+    keys.Wording: _wording,
 }

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from equipoise import keys
+from equipoise.i18n import LANGUAGES
 from equipoise.quantities import KINDS, Dimension, pattern
 from equipoise.schema.numbers import Polar
 from equipoise.schema.opening import FileKind, document_of
@@ -91,6 +92,22 @@ def _described(dimension: Dimension, more: str = "") -> Schema:
 def _text(kind: keys.Text, definitions: Definitions) -> Schema:
     names = kind.names or kind.suggested
     return {"type": "string", **({"enum": [*names]} if names else {})}
+
+
+def _wording(kind: keys.Wording, definitions: Definitions) -> Schema:
+    text = {"type": "string", "minLength": 1}
+    table = {
+        "type": "object",
+        "properties": dict.fromkeys(LANGUAGES, text),
+        "minProperties": 1,
+        "additionalProperties": False,
+    }
+    told = "text for all readers, or one for each of some languages"
+    return _defined(
+        "Wording",
+        lambda: {"anyOf": [{"type": "string"}, table], "description": told},
+        definitions,
+    )
 
 
 def _whole(kind: keys.Whole, definitions: Definitions) -> Schema:
@@ -195,4 +212,5 @@ SCHEMAS: Mapping[type[keys.Kind], Callable[[Any, Definitions], Schema]] = {
     keys.Text: _text,
     keys.Told: lambda kind, _: {"type": "string", **(kind.schema or {})},
     keys.Whole: _whole,
+    keys.Wording: _wording,
 }

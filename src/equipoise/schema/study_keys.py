@@ -17,6 +17,7 @@ from equipoise.keys import (
     Tables,
     Text,
     Whole,
+    Wording,
     declared,
     key,
 )
@@ -136,7 +137,7 @@ class StudyTable(Frozen):
         Table(SamplingTable), "which designs are computed", example={"method": "sobol"}
     )
     outputs: tuple[OutputTable, ...] = key(Tables(Table(OutputTable)), "what is computed")
-    title: str | None = key(Text(), "that of the model if left out", default=None)
+    title: str | None = key(Wording(), "that of the model if left out", default=None)
     correlations: tuple[CorrelationTable, ...] = key(
         Tables(Table(CorrelationTable)), "what goes together", default=()
     )

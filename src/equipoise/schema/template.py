@@ -88,7 +88,7 @@ class Template:
         ------
         ModelError : a tool has what no file can tell.
         """
-        names, known = _named(model)
+        names, known = named_parts(model)
         return cls(text_of(model, names), model.title, known=known)
 
     @property
@@ -259,7 +259,7 @@ class _Carried(Beside):
 # -- what lies beside ------------------------------------------------------------------------------
 
 
-def _named(model: Machine | Tool) -> tuple[dict[str, str], Known]:
+def named_parts(model: Machine | Tool) -> tuple[dict[str, str], Known]:
     """A name for each table and linkage of a model, by its key, and what has that name."""
     names: dict[str, str] = {}
     known: Known = {}

@@ -8,6 +8,7 @@ from typing import Any
 
 from equipoise import keys
 from equipoise.errors import ModelError
+from equipoise.i18n import Worded
 from equipoise.quantities import format_exact
 from equipoise.schema.numbers import written_point
 from equipoise.schema.reading import Place, within, written_place
@@ -161,6 +162,9 @@ WRITERS: dict[type[keys.Kind], Callable[[Any, Any, Place, Writer], Any]] = {
     keys.Text: lambda kind, value, place, writer: value,
     keys.Told: lambda kind, value, place, writer: value,
     keys.Whole: lambda kind, value, place, writer: value,
+    keys.Wording: lambda kind, value, place, writer: (
+        dict(value.texts) if isinstance(value, Worded) else value
+    ),
 }
 
 # -- text ------------------------------------------------------------------------------------------
@@ -168,11 +172,16 @@ WRITERS: dict[type[keys.Kind], Callable[[Any, Any, Place, Writer], Any]] = {
 
 def toml_text(of: type[keys.Frozen], content: Mapping[str, Any]) -> str:
     """Write the content of a file as TOML, with one line a key and one table a link or mount."""
-    plain = {name: value for name, value in content.items() if not _is_tables(value)}
+    known = keys.all_keys(of)
+    plain = {
+        name: value
+        for name, value in content.items()
+        if not _is_tables(value) or isinstance(known[name].kind, keys.Wording)
+    }
     blocks = ["".join(_lines(plain))]
     for name, value in content.items():
         if name not in plain:
-            blocks += _headed(name, keys.all_keys(of)[name].kind, value)
+            blocks += _headed(name, known[name].kind, value)
     return "\n".join(blocks)
 
 

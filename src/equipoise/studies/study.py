@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import Worded
 from equipoise.mechanism.checks import unknown, wrong_text
 from equipoise.studies.design_space import (
     COMMANDS,
@@ -127,6 +128,8 @@ class Study:
 def to_plain(study: Study) -> dict[str, Any]:
     """All but the model and the file as plain values, such as JSON takes; numbers in SI units."""
     plain = {one.name: getattr(study, one.name) for one in fields(study)}
+    if isinstance(study.title, Worded):
+        plain["title"] = study.title.texts
     for name in ("outputs", "correlations"):
         plain[name] = [asdict(one) for one in plain[name]]
     plain["vary"] = [
@@ -143,7 +146,9 @@ def from_plain(plain: Mapping[str, Any], model: Model, file: str = "") -> Study:
     for one in plain["vary"]:
         spread = dict(one["spread"])
         vary.append(Vary(**{**one, "spread": SPREADS[spread.pop("kind")](**spread)}))
+    title = plain["title"]
     made = {
+        "title": Worded(title) if isinstance(title, Mapping) else title,
         "vary": tuple(vary),
         "outputs": tuple(Output(**one) for one in plain["outputs"]),
         "sampling": Sampling(**plain["sampling"]),

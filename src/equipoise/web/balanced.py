@@ -23,6 +23,7 @@ from equipoise.balancing.told import (
     worse_told,
 )
 from equipoise.balancing.workshop import SPREAD, sentences
+from equipoise.i18n import said
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Link, Machine
 from equipoise.mechanism.outputs import declared
@@ -169,7 +170,7 @@ def balanced_told(base: Solved, after: Solved, found: Balanced) -> Values:
         "figures": [_figure(found, name, *figures[name]) for name in names],
         "worse": list(worse_told(found)),
         "proof": proof_told(found),
-        "notes": list(map(str, found.notes)),
+        "notes": list(map(said, found.notes)),
     }
 
 

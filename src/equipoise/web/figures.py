@@ -228,6 +228,7 @@ def _choice(analysis: Analysis, signals: Signals, name: str) -> Values | None:
         "of": of,
         "unit": shown.name,
         "factor": shown.factor,
+        "log": False,
         "curves": [
             {"array": name, "stride": len(parts), "part": number, "label": part}
             for number, part in enumerate(parts)
@@ -258,8 +259,11 @@ def _by_order(analysis: Analysis, signals: Signals) -> Iterator[Values]:
         yield {**whole, "of": of, "label": f"{whole['label']}, by order", "curves": curves}
 
 
-def gauge_choice(name: str, label: str, rotation: bool, array: str) -> Values:
-    """What a gauge reads as one that can be chosen, in the unit in which supports move."""
+def gauge_choice(name: str, label: str, rotation: bool, array: str, log: bool = False) -> Values:
+    """What a gauge reads as one that can be chosen, in the unit in which supports move.
+
+    log : whether it is drawn over a logarithmic scale.
+    """
     shown = display("angle", (), "mrad") if rotation else display("length")
     return {
         "name": name,
@@ -267,6 +271,7 @@ def gauge_choice(name: str, label: str, rotation: bool, array: str) -> Values:
         "of": None,
         "unit": shown.name,
         "factor": shown.factor,
+        "log": log,
         "curves": [{"array": array, "stride": 1, "part": 0, "label": ""}],
     }
 

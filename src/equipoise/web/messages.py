@@ -9,17 +9,50 @@ from math import isfinite
 from typing import Any, NoReturn
 
 from equipoise.errors import UsageError
+from equipoise.keys import MOST_WHOLE
 from equipoise.quantities.reading import described
 from equipoise.quantities.units import HUGE
 from equipoise.schema.files import LARGEST
 
-KINDS = ("ready", "open", "edit", "undo", "redo", "balance", "compare", "outputs", "download")
+KINDS = (
+    "ready",
+    "speak",
+    "open",
+    "edit",
+    "make",
+    "undo",
+    "redo",
+    "balance",
+    "compare",
+    "outputs",
+    "save",
+    "arrows",
+    "variant",
+    "download",
+    "tables",
+    "entry",
+)
 SLOW = ("balance", "download")
 """Those that take more than a moment."""
-MOST_EDITS, MOST_OUTPUTS = 100, 20
+MOST_EDITS, MOST_OUTPUTS, MOST_LANGUAGES = 100, 20, 50
+DEEPEST = 8
+"""Steps on the way to a value of a file."""
 LONGEST_LABEL = 200
 LARGEST_MESSAGE = 3 * LARGEST
 """Bytes: of a model file as JSON, in which signs take up to six times their place, but few do."""
+
+
+@dataclass(frozen=True)
+class Spot:
+    """Where something is put: at a point that is there, or at a place.
+
+    point : name.  place : in the frame, m.  on : the body that gets a point at that place; None
+    where there is nothing.
+    """
+
+    point: str | None = None
+    place: complex = 0j
+    on: str | None = None
 
 
 @dataclass(frozen=True)
@@ -36,15 +69,32 @@ class Drag:
 
     name : of the point, or of the link.  of_mass : whether it is a centre of mass.
     to : place in the frame, m.  at : sample of the crank angle at which it is there.
+    keep : points whose distance from it is locked.
     """
 
     name: str
     of_mass: bool
     to: complex
     at: int
+    keep: tuple[str, ...] = ()
 
 
 Change = Setting | Drag
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A table of the file that is put, or deleted.
+
+    place : keys, names and numbers from 0 on the way to it.  values : of its keys, as in a file;
+        None to delete it.  name : what it is called from now on, if it has a name.
+    files : texts of CSV files that it names.
+    """
+
+    place: tuple[str | int, ...]
+    values: Mapping[str, Any] | None
+    name: str | None
+    files: Mapping[str, str]
 
 
 @dataclass(frozen=True)
@@ -72,12 +122,34 @@ class Message:
             _wrong(f"{self.kind}: {key}", value, "true or false")
         return value
 
-    def names(self) -> tuple[str, ...]:
-        """Names of the outputs that a message of the kind `outputs` asks for."""
-        names = self.values.get("names")
+    def optional(self, key: str) -> str | None:
+        """A text of the message, if it has one there."""
+        return None if self.values.get(key) is None else self.text(key)
+
+    def whole(self, key: str, usual: int | None = None) -> int:
+        """A whole number of the message."""
+        value = self.values.get(key, usual)
+        if isinstance(value, bool) or not isinstance(value, int) or abs(value) > MOST_WHOLE:
+            _wrong(f"{self.kind}: {key}", value, "a whole number")
+        return value
+
+    def spot(self, key: str) -> Spot:
+        """Where something is put: ``{"point": "B"}``, or ``{"place": [x, y], "on": "frame"}``."""
+        value = self.values.get(key)
+        wanted = 'a point such as {"point": "B"}, or a place such as {"place": [0.1, 0]}'
+        if not isinstance(value, dict):
+            _wrong(f"{self.kind}: {key}", value, wanted)
+        point, on = value.get("point"), value.get("on")
+        if not isinstance(point, str | None) or not isinstance(on, str | None):
+            _wrong(f"{self.kind}: {key}", value, wanted)
+        return Spot(point) if point else Spot(None, _place(key, value.get("place")), on)
+
+    def names(self, key: str = "names", most: int = MOST_OUTPUTS) -> tuple[str, ...]:
+        """A list of names of the message, each once; of `outputs`, those that it asks for."""
+        names = self.values.get(key)
         good = isinstance(names, list) and all(isinstance(name, str) for name in names)
-        if not isinstance(names, list) or not good or len(names) > MOST_OUTPUTS:
-            _wrong("outputs: names", names, f"a list of at most {MOST_OUTPUTS} names")
+        if not isinstance(names, list) or not good or len(names) > most:
+            _wrong(f"{self.kind}: {key}", names, f"a list of at most {most} names")
         return tuple(dict.fromkeys(names))
 
     @property
@@ -97,6 +169,25 @@ class Message:
         if not isinstance(edits, list) or not 0 < len(edits) <= MOST_EDITS:
             _wrong("edit: edits", edits, f"a list of 1 to {MOST_EDITS} edits")
         return [_change(edit) for edit in edits]
+
+    def entry(self) -> Entry:
+        """What a message of the kind `entry` does.
+
+        Raises
+        ------
+        UsageError : something of it is not as it should be.
+        """
+        place, values = self.values.get("place"), self.values.get("values")
+        name, files = self.values.get("name"), self.values.get("files", {})
+        if not isinstance(place, list) or not all(map(_is_step, place)) or len(place) > DEEPEST:
+            _wrong("entry: place", place, 'a list of keys and numbers such as ["springs", 0]')
+        if values is not None and not (isinstance(values, dict) and _is_plain(values, DEEPEST)):
+            _wrong("entry: values", values, "a table of values as in a file")
+        if name is not None and not isinstance(name, str):
+            _wrong("entry: name", name, "a text")
+        if not isinstance(files, dict) or not all(isinstance(one, str) for one in files.values()):
+            _wrong("entry: files", files, "texts of files by their names")
+        return Entry(tuple(place), values, name, files)
 
     @property
     def preview(self) -> bool:
@@ -137,6 +228,20 @@ def message_of(values: object) -> Message:
     return Message(kind, seq, values)
 
 
+def _is_step(step: object) -> bool:
+    """Whether it is a key, a name, or a number of a list."""
+    number = isinstance(step, int) and not isinstance(step, bool)
+    return isinstance(step, str) or (number and 0 <= step < HUGE)  # type: ignore[operator]
+
+
+def _is_plain(value: object, deep: int) -> bool:
+    """Whether a file could have it, so deep at most."""
+    if isinstance(value, dict | list):
+        inner = value.values() if isinstance(value, dict) else value
+        return deep > 0 and all(_is_plain(one, deep - 1) for one in inner)
+    return isinstance(value, str | int | float)
+
+
 def _change(edit: object) -> Change:
     if not isinstance(edit, dict):
         _wrong("an edit", edit, 'an object such as {"set": "drive.speed", "text": "193 rpm"}')
@@ -149,10 +254,10 @@ def _change(edit: object) -> Change:
     at = edit.get("at", 0)
     if isinstance(at, bool) or not isinstance(at, int):
         _wrong("at", at, "the number of a crank angle")
-    to = edit.get("to")
-    if not isinstance(to, list) or len(to) != 2:
-        _wrong("to", to, "x and y in m")
-    return Drag(name, kind == "move_mass", complex(_number("to", to[0]), _number("to", to[1])), at)
+    keep = edit.get("keep", [])
+    if not isinstance(keep, list) or not all(isinstance(one, str) for one in keep):
+        _wrong("keep", keep, "a list of points")
+    return Drag(name, kind == "move_mass", _place("to", edit.get("to")), at, tuple(keep))
 
 
 def _typed(edit: Mapping[str, Any]) -> str | float:
@@ -161,6 +266,12 @@ def _typed(edit: Mapping[str, Any]) -> str | float:
         text: str = edit["text"]
         return text
     return _number("value", edit.get("value"))
+
+
+def _place(what: str, value: object) -> complex:
+    if not isinstance(value, list) or len(value) != 2:
+        _wrong(what, value, "x and y in m")
+    return complex(_number(what, value[0]), _number(what, value[1]))
 
 
 def _number(what: str, value: object) -> float:

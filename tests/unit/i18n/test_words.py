@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+import runpy
 from functools import cache
 from pathlib import Path
 from string import Formatter
@@ -33,6 +34,7 @@ from equipoise.schema.opening import document_of
 from equipoise.schema.words import plain_word
 
 SOURCES = Path(equipoise.__file__).parent
+TOP = Path(__file__).parents[3]
 TRANSLATED = sorted(set(LANGUAGES) - {"en"})
 
 
@@ -72,13 +74,21 @@ def words_of_keys() -> set[str]:
     return found - {"points", "schema"}
 
 
+@cache
+def words_of_the_page() -> set[str]:
+    """What the live page says of its own, which stands in its TypeScript."""
+    texts = runpy.run_path(str(TOP / "page" / "bundle.py"))["texts"]()
+    assert len(texts) > 80
+    return set(texts)
+
+
 def placeholders(text: str) -> set[str]:
     return {name for _, name, _, _ in Formatter().parse(text) if name is not None}
 
 
 @pytest.mark.parametrize("language", TRANSLATED)
 def test_every_text_is_translated_and_none_is_left_over(language):
-    texts, held = said() | words_of_keys(), catalogue(language)
+    texts, held = said() | words_of_keys() | words_of_the_page(), catalogue(language)
     assert texts - held.keys() == set()
     assert held.keys() - texts == set()
     assert {text for text in texts if placeholders(text) != placeholders(held[text])} == set()

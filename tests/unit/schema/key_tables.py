@@ -16,6 +16,7 @@ WORDS: dict[type[keys.Kind], str] = {
     keys.Flag: "true or false",
     keys.Number: "number",
     keys.Whole: "whole number",
+    keys.Wording: "text, or by language",
 }
 """What values of kinds without a choice are called; all others are text."""
 

@@ -38,6 +38,8 @@ from equipoise.schema.template import Template
 from equipoise.schema.writing import Writer, toml_text
 from equipoise.web.design import Design
 from equipoise.web.fields import fields_of
+from equipoise.web.messages import Entry
+from equipoise.web.tables import entered, tables_of
 from unit.schema.key_tables import key_table
 from unit.schema.samples import FOUR_BAR
 
@@ -213,6 +215,20 @@ def test_a_new_key_is_reached_by_its_path(text: str) -> None:
     field = fields_of(design)["springs.1.loss"]
     assert (field.label, field.dimension) == ("C to A, loss", "damping")
     own: Any = field.put(design, 4.0).own
+    assert own.springs[0].loss == 4.0
+
+
+@pytest.mark.usefixtures("lossy")
+def test_a_new_key_is_in_the_form_of_the_live_page() -> None:
+    machine = loads(FOUR_BAR + LOSSY)
+    told = tables_of(machine)
+    (springs,) = [one for one in told["groups"] if one["where"] == "springs"]
+    form = told["forms"][springs["form"]]
+    (loss,) = [one for one in form["controls"] if one["key"] == "loss"]
+    assert (loss["text"], loss["unit"]) == ("of the spring itself", "N s/m")
+    values = springs["entries"][0]["values"] | {"loss": "4 N s/m"}
+    design = entered(Design("lossy", machine), Entry(("springs", 0), values, None, {}))
+    own: Any = design.own
     assert own.springs[0].loss == 4.0
 
 

@@ -18,6 +18,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from equipoise.errors import ModelError
+from equipoise.i18n import LANGUAGES
 from equipoise.keys import (
     Direction,
     Flag,
@@ -35,6 +36,7 @@ from equipoise.keys import (
     Tables,
     Text,
     Whole,
+    Wording,
     all_keys,
 )
 from equipoise.quantities import KINDS
@@ -66,6 +68,9 @@ def value_of(kind: Kind, one: Key) -> st.SearchStrategy[Any] | None:
         return st.floats(LEAST if one.at_least is None else one.at_least, 10.0).map(float)
     if isinstance(kind, Text) and kind.names:
         return st.sampled_from(kind.names)
+    if isinstance(kind, Wording):
+        text = st.text("aé語글", min_size=1)
+        return text | st.dictionaries(st.sampled_from([*LANGUAGES]), text, min_size=1)
     if isinstance(kind, Point):
         length = quantity(Quantity(dimension="length"), one)
         polar = {"distance": length, "direction": quantity(Quantity(dimension="angle"), one)}

@@ -1,0 +1,68 @@
+/** The page's texts in the reader's language: English in the code, the rest told by the server. */
+
+import type { Spoken, Told, Wire } from "./protocol";
+
+/** Where a reader's choice of a language is kept. */
+const KEPT = "equipoise language";
+
+let told: Pick<Spoken, "language" | "languages" | "words"> = {
+  language: "en",
+  languages: { en: "English" },
+  words: {},
+};
+
+/** A text in the language that is spoken, its `{placeholders}` filled in. */
+export function say(text: string, values: Record<string, string | number> = {}): string {
+  const said = told.words[text] ?? text;
+  return said.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
+}
+
+/** Mark a text that is said later, by `say` of a name. */
+export function toSay(text: string): string {
+  return text;
+}
+
+/** The code of the language that is spoken. */
+export function language(): string {
+  return told.language;
+}
+
+/** Code of each language there is, and its own name. */
+export function languages(): Record<string, string> {
+  return told.languages;
+}
+
+/** Speak a language from now on, also when the page is loaded again. */
+export function keep(code: string): void {
+  try {
+    localStorage.setItem(KEPT, code);
+  } catch {
+    // a browser that keeps nothing: it is spoken until the page is loaded again
+  }
+}
+
+/** What the reader has chosen, then what the browser asks for. */
+export function wished(): string[] {
+  let chosen: string | null = null;
+  try {
+    chosen = localStorage.getItem(KEPT);
+  } catch {
+    // nothing is kept
+  }
+  return [...(chosen ? [chosen] : []), ...navigator.languages];
+}
+
+/** Agree with the server on a language, by a wire that nobody else hears yet. */
+export function agree(wire: Wire, wishes: string[]): Promise<void> {
+  return new Promise((done) => {
+    const hear = (content: Told): void => {
+      // Who is turned away, or has lost the server, reads so in English.
+      if (content.type !== "spoken" && content.type !== "refused" && content.type !== "lost") return;
+      wire.off("msg:custom", hear);
+      if (content.type === "spoken") told = content;
+      done();
+    };
+    wire.on("msg:custom", hear);
+    wire.send({ type: "speak", languages: wishes });
+  });
+}

@@ -1,0 +1,244 @@
+"""Tables of a file that are added, changed and deleted, such as one spring or one mount.
+
+All is done to the content of the file, as plain values, so that the reader of files tells what is
+wrong.  A place is the keys, names and numbers on the way: ``("springs", 0)``,
+``("support", "mounts", "front")``; the number after the last one is that of a new entry.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import suppress
+from copy import deepcopy
+from dataclasses import dataclass, field
+from typing import Any
+
+from equipoise.errors import ModelError
+from equipoise.keys import Frozen, Key, Named, Table, Tables, Whole, all_keys, innermost, keys_of
+from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.model import Machine
+from equipoise.schema.files import printable
+from equipoise.schema.models import Beside, machine_of, plain_of
+from equipoise.schema.reading import Context, Place, read_table, written_place
+from equipoise.schema.tables import parse_table
+from equipoise.schema.template import named_parts
+
+Content = dict[str, Any]
+
+
+class Held(Beside):
+    """Reads what lies beside a file out of what is held already, by sort and name; of no disk.
+
+    tables : those that there are.  texts : of CSV files that are given now, by name.
+    """
+
+    def __init__(self, tables: Mapping[tuple[str, str], Any], texts: Mapping[str, str]) -> None:
+        super().__init__(None)
+        self.tables, self.texts = tables, texts
+
+    def read(self, sort: str, file: str) -> Any:
+        if file in self.texts:
+            return parse_table(sort, self.texts[file], file)
+        if (sort, file) not in self.tables:
+            raise ModelError(
+                "", f"got {printable(file)!r}, which is not known here; choose that file"
+            )
+        return self.tables[sort, file]
+
+
+@dataclass(frozen=True)
+class Document:
+    """The file of a linkage as plain values, and what lies in files beside it.
+
+    of : class of the whole.  beside : by sort and the name of its file.
+    """
+
+    of: type[Frozen]
+    content: Content
+    beside: Mapping[tuple[str, str], Any] = field(default_factory=dict)
+
+    @classmethod
+    def of_machine(cls, machine: Machine) -> Document:
+        """As `save` would write it."""
+        names, beside = named_parts(machine)
+        return cls(type(machine), plain_of(machine, names), beside)
+
+    def machine(self, texts: Mapping[str, str] | None = None) -> Machine:
+        """The machine that it stands for.
+
+        texts : of CSV files that it names and that are not beside it, by name.
+
+        Raises
+        ------
+        ModelError : there is none.
+        """
+        return machine_of(self.content, Held(self.beside, texts or {}))
+
+    def put(self, place: Place, values: Content, name: str | None = None) -> Document:
+        """With other values of the plain keys of an entry, or with a new entry.
+
+        name : what an entry that has a name is called from now on.
+
+        Raises
+        ------
+        ModelError : there can be no such entry.
+        """
+        kind = kind_at(self.of, place)
+        if not place:
+            return self._with({**kept(kind.type, self.content), **values})
+        content = deepcopy(self.content)
+        above = _above(self.of, content, place)
+        if not _held(above, place[-1]):
+            _make_room(self.of, content, place)
+        old = above[place[-1]] if _held(above, place[-1]) else {}
+        _set(above, place, {**kept(kind.type, old), **values}, name)
+        return self._with(content)
+
+    def without(self, place: Place) -> Document:
+        """Without an entry, and without a list that is empty then.
+
+        Raises
+        ------
+        ModelError : there is none.
+        """
+        content = deepcopy(self.content)
+        above = _above(self.of, content, place) if place else {}
+        if not place or not _held(above, place[-1]):
+            raise ModelError(written_place(place), "there is no such entry; it may be deleted")
+        del above[place[-1]]
+        if not above and len(place) > 1:
+            del _above(self.of, content, place[:-1])[place[-2]]
+        return self._with(content)
+
+    def at(self, place: Place) -> Any:
+        """What stands at a place; None where nothing does."""
+        here: Any = self.content
+        for step in place:
+            if not _held(here, step):
+                return None
+            here = here[step]
+        return here
+
+    def _with(self, content: Content) -> Document:
+        return Document(self.of, content, self.beside)
+
+
+def entry_of(kind: Any) -> Table | None:
+    """The table that is one entry of a key: itself, or one of a list or of those with names."""
+    item = kind.item if isinstance(kind, Tables | Named) else kind
+    return item if isinstance(item, Table) else None
+
+
+def own_keys(of: type[Frozen]) -> dict[str, Key]:
+    """Keys of a table that a user sets: no tables, and nothing that can only be what it is."""
+    return {name: one for name, one in all_keys(of).items() if not (_fixed(one) or _below(one))}
+
+
+def tables_below(of: type[Frozen]) -> dict[str, Key]:
+    """Keys of a table below which there are others."""
+    return {name: one for name, one in all_keys(of).items() if _below(one)}
+
+
+def kept(of: type[Frozen], entry: Mapping[str, Any]) -> Content:
+    """What stays of an entry when its own keys are given anew."""
+    own = own_keys(of)
+    return {name: value for name, value in entry.items() if name not in own}
+
+
+def kind_at(of: type[Frozen], place: Place) -> Table:
+    """The kind of an entry.
+
+    Raises
+    ------
+    ModelError : no file has entries there.
+    """
+    held = Table(of)
+    steps = iter(place)
+    for step in steps:
+        known = tables_below(held.type)
+        if step not in known:
+            raise ModelError(written_place(place), unknown(str(step), known, "table"))
+        one = known[str(step)].kind
+        inner = entry_of(one)
+        assert inner is not None
+        if isinstance(one, Tables | Named):
+            last = next(steps, None)
+            if isinstance(last, int) != isinstance(one, Tables) or last is None:
+                what = "the number" if isinstance(one, Tables) else "the name"
+                raise ModelError(written_place(place), f"give {what} of the entry too")
+        held = inner
+    return held
+
+
+# -- inside ----------------------------------------------------------------------------------------
+
+
+def _fixed(one: Key) -> bool:
+    return isinstance(one.kind, Whole) and len(one.kind.names) == 1
+
+
+def _below(one: Key) -> bool:
+    return isinstance(innermost(one.kind), Table | Tables)
+
+
+def _held(above: Any, step: str | int) -> bool:
+    if isinstance(above, list):
+        return isinstance(step, int) and 0 <= step < len(above)
+    return isinstance(above, dict) and step in above
+
+
+def _above(of: type[Frozen], content: Content, place: Place) -> Any:
+    """The table or list in which an entry stands, made where it may be empty."""
+    here: Any = content
+    for length, step in enumerate(place[:-1], 1):
+        if not _held(here, step):
+            # a list, or a table of names, begins with its first entry; another table does not
+            if length != len(place) - 1 or _is_entry(of, place[:length]):
+                first = written_place(place[:length])
+                raise ModelError(written_place(place), f"there is no {first}; add that first")
+            here[step] = [] if isinstance(place[length], int) else {}
+        here = here[step]
+    return here
+
+
+def _is_entry(of: type[Frozen], place: Place) -> bool:
+    with suppress(ModelError):
+        return bool(kind_at(of, place))
+    return False
+
+
+def _set(above: Any, place: Place, entry: Content, name: str | None) -> None:
+    """Put an entry into its list or table; another name takes the same place among the names."""
+    step = place[-1]
+    if isinstance(above, list):
+        assert isinstance(step, int)
+        if step > len(above):
+            number = f"there are {len(above)} entries; the next has the number {len(above) + 1}"
+            raise ModelError(written_place(place), number)
+        above[step : step + 1] = [entry]
+        return
+    new = step if name is None else name
+    if new != step and new in above:
+        raise ModelError(written_place(place), f"{new!r} is taken already; give another name")
+    items = [(new, entry) if key == step else (key, value) for key, value in above.items()]
+    above.clear()
+    above.update(items)
+    above.setdefault(new, entry)
+
+
+def _make_room(of: type[Frozen], content: Content, place: Place) -> None:
+    """Leave out what follows from a new entry, such as the mass of a link from its first body."""
+    length = len(place) - (1 if _is_entry(of, place[:-1]) else 2)
+    here: Any = content
+    for step in place[:length]:
+        here = here[step]
+    above, key = kind_at(of, place[:length]).type, str(place[length])
+    if here is content:
+        return  # nothing of the whole follows from its tables
+    with suppress(ModelError):
+        rest = {name: value for name, value in here.items() if name != key}
+        made: Frozen = read_table(above, rest, Context(lambda *_: None))
+        changes = made.following({keys_of(above)[key].field: (None,)})
+        for name, one in keys_of(above).items():
+            if name != key and one.field in changes and not changes[one.field]:
+                here.pop(name, None)

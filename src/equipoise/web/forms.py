@@ -1,0 +1,112 @@
+"""Forms of the tables of a file: a control for each key, as the key is declared.
+
+Nothing here knows a table or a key; what each kind of value takes is told in `CONTROLS`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from equipoise import keys
+from equipoise.i18n import say
+from equipoise.quantities import display
+from equipoise.schema.entries import entry_of, own_keys, tables_below
+from equipoise.schema.words import plain_word
+from equipoise.schema.writing import plain_default
+
+Values = dict[str, Any]
+
+
+def forms_of(of: type[keys.Frozen]) -> dict[str, Values]:
+    """The form of a table and of all below it, by the name of its class.
+
+    Each has the words of the class and its controls, those of required keys first.
+    """
+    found: dict[str, Values] = {}
+    waiting = [of]
+    while waiting:
+        one = waiting.pop()
+        if one.__name__ in found:
+            continue
+        controls = [control_of(key) for key in own_keys(one).values()]
+        found[one.__name__] = {
+            "text": " ".join((one.__doc__ or "").split("\n\n")[0].split()).replace("`", ""),
+            "controls": sorted(controls, key=lambda control: not control["required"]),
+        }
+        inner = (entry_of(key.kind) for key in tables_below(one).values())
+        waiting += [table.type for table in inner if table is not None]
+    return found
+
+
+def control_of(one: keys.Key) -> Values:
+    """What a page needs to ask for the value of a key."""
+    default = plain_default(one)
+    return {
+        "key": one.name,
+        "word": word_of(one),
+        "text": one.text.replace("`", ""),
+        "required": one.required,
+        "default": None if default in ([], {}) else default,
+        "example": one.example,
+        **_control(one.kind),
+    }
+
+
+def word_of(one: keys.Key) -> str:
+    """What a key is called: as its number is, where that does not take in what is around it."""
+    return say(one.word if one.word and "{" not in one.word else plain_word(one))
+
+
+def _control(kind: keys.Kind) -> Values:
+    return CONTROLS[type(kind)](kind)
+
+
+def _text(kind: keys.Text) -> Values:
+    if kind.names:
+        return {"kind": "choice", "options": [*kind.names]}
+    if kind.of:
+        return {"kind": "name", "of": kind.of, "on": kind.on}
+    return {"kind": "text", "options": [*kind.suggested]}
+
+
+def _whole(kind: keys.Whole) -> Values:
+    return {"kind": "choice", "options": [*kind.names]} if kind.names else {"kind": "number"}
+
+
+def _unit(dimension: Any) -> str:
+    return display(dimension).name
+
+
+def _listing(kind: keys.Listing) -> Values:
+    """Some in a row; how many there can be is none for one and more."""
+    return {"kind": "list", "item": _control(kind.item), "sizes": [*kind.sizes], "bare": False}
+
+
+def _one_or(kind: keys.OneOr) -> Values:
+    return {"kind": "list", "item": _control(kind.item), "sizes": [1, kind.size], "bare": True}
+
+
+def _place(kind: keys.Point) -> Values:
+    told = {"named": kind.named, "space": kind.space, "axes": kind.axes}
+    return {"kind": "place", "unit": _unit("length"), **told}
+
+
+CONTROLS: Mapping[type[keys.Kind], Callable[[Any], Values]] = {
+    keys.Direction: lambda kind: {"kind": "direction", "unit": _unit("angle")},
+    keys.File: lambda kind: {"kind": "file"},
+    keys.Flag: lambda kind: {"kind": "flag"},
+    keys.Listing: _listing,
+    keys.Named: lambda kind: {
+        "kind": "names", "item": _control(kind.item), "listed": kind.listed
+    },
+    keys.Number: lambda kind: {"kind": "number"},
+    keys.OneOr: _one_or,
+    keys.Point: _place,
+    keys.Quantity: lambda kind: {"kind": "quantity", "unit": _unit(kind.dimension)},
+    keys.Text: _text,
+    keys.Told: lambda kind: {"kind": "text", "options": []},
+    keys.Whole: _whole,
+    keys.Wording: lambda kind: {"kind": "text", "options": []},
+}  # fmt: skip
+"""Of kinds that files of linkages have."""

@@ -1,0 +1,151 @@
+"""The tables of a machine's file on a page: what there is, what can be added, and changing it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Any
+
+from equipoise.keys import Frozen, Named, Tables
+from equipoise.mechanism.model import Machine
+from equipoise.quantities import told
+from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
+from equipoise.schema.reading import Place, written_place
+from equipoise.schema.words import plain_word
+from equipoise.schema.writing import value_text
+from equipoise.web.design import Design, pin_of
+from equipoise.web.forms import Values, forms_of, word_of
+from equipoise.web.messages import Entry
+
+MOST_WORDS = 4
+"""Keys of an entry that are told where it is listed."""
+LONGEST_VALUE = 40
+WHOLE = "machine"
+"""What the table around all others is called."""
+
+
+def entered(design: Design, entry: Entry) -> Design:
+    """A design with an entry of its file that is new, other or gone.
+
+    Raises
+    ------
+    ModelError : there can be no such entry; `where` is the key.
+    """
+    document = Document.of_machine(design.own)
+    if entry.values is None:
+        document = document.without(entry.place)
+    else:
+        document = document.put(entry.place, dict(entry.values), entry.name)
+    own = document.machine(entry.files)
+    plan = design.plan if own.balance == design.own.balance else None
+    return replace(design, own=own, plan=plan, counterweights=_that_fit(design, own))
+
+
+def _that_fit(design: Design, own: Machine) -> Mapping[str, Any]:
+    """Counterweights of links that still have a pin and a mass."""
+    weights = design.counterweights.items()
+    return MappingProxyType({
+        name: weight for name, weight in weights
+        if name in own.links and own.links[name].has_mass and pin_of(own, name) is not None
+    })  # fmt: skip
+
+
+def tables_of(machine: Machine) -> Values:
+    """What a page needs to show and change every table of a machine's file.
+
+    groups : a key below which there are tables, or can be, in the order of the file.
+    forms : by the name that groups tell.
+    bodies : points of the frame and of links by name, in their own axes, m.
+    """
+    document = Document.of_machine(machine)
+    of = type(machine)
+    first = {"word": WHOLE, "text": "title, gravity and what else is of the whole", "of": ""}
+    whole = _group((), of, "one", first) | {"required": True}
+    whole["entries"] = [_entry(of, document.content, ())]
+    bodies = {name: dict(points) for name, points in machine.bodies.items()}
+    groups = [whole, *_groups(machine, of, document.content, (), "")]
+    return {"groups": groups, "forms": forms_of(of), "bodies": bodies}
+
+
+def _groups(
+    machine: Machine, of: type[Frozen], entry: Mapping[str, Any] | None, place: Place, name: str
+) -> Iterator[Values]:
+    """The groups below an entry; below one that is not there they tell what has to be added first.
+
+    name : what the entry is called.
+    """
+    for key, one in tables_below(of).items():
+        inner = entry_of(one.kind)
+        assert inner is not None
+        at = (*place, key)
+        many = {Tables: "list", Named: "named"}.get(type(one.kind), "one")
+        words = {"word": plain_word(one), "text": one.text.replace("`", ""), "of": name}
+        group = _group(at, inner.type, many, words)
+        group["required"] = one.required and many == "one"
+        if entry is None:
+            group["needs"] = name
+        held = (entry or {}).get(key)
+        entries = [*_entries(held, at, many)]
+        group["entries"] = [_entry(inner.type, value, place) for place, value in entries]
+        if key == "bodies" and entries:
+            group["result"] = _mass_of(machine, str(place[-1]))
+        yield group
+        for below, value in entries:
+            called = str(below[-1]) if many == "named" else _called(one, below)
+            yield from _groups(machine, inner.type, value, below, called)
+        if not entries and many == "one":
+            yield from _groups(machine, inner.type, None, at, plain_word(one))
+
+
+def _group(place: Place, of: type[Frozen], many: str, words: Values) -> Values:
+    told = {"place": [*place], "where": written_place(place), "form": of.__name__}
+    return {**told, "many": many, "needs": "", **words}
+
+
+def _entries(held: Any, place: Place, many: str) -> Iterator[tuple[Place, Any]]:
+    """The entries of a key, each with its place."""
+    if many == "one":
+        yield from [] if held is None else [(place, held)]
+    elif many == "list":
+        yield from (((*place, number), one) for number, one in enumerate(held or ()))
+    else:
+        yield from (((*place, name), one) for name, one in (held or {}).items())
+
+
+def _called(one: Any, place: Place) -> str:
+    last = place[-1]
+    return f"{plain_word(one)} {last + 1}" if isinstance(last, int) else plain_word(one)
+
+
+def _entry(of: type[Frozen], entry: Mapping[str, Any], place: Place) -> Values:
+    own = own_keys(of)
+    values = {name: value for name, value in entry.items() if name in own}
+    said = [f"{word_of(one)} {_brief(values[name])}" for name, one in own.items() if name in values]
+    return {
+        "place": [*place],
+        "where": written_place(place),
+        "words": ", ".join(said[:MOST_WORDS]),
+        "values": values,
+    }
+
+
+def _brief(value: Any) -> str:
+    """A value of a file in a list of entries."""
+    if isinstance(value, Mapping):
+        text = " ".join(value)
+    elif isinstance(value, list):
+        text = " ".join(map(_brief, value))
+    else:
+        text = value if isinstance(value, str) else value_text(value)
+    return text if len(text) <= LONGEST_VALUE else f"{text[: LONGEST_VALUE - 1]}…"
+
+
+def _mass_of(machine: Machine, name: str) -> str:
+    """What the bodies of a link are together."""
+    link = machine.links[name]
+    if link.mass is None or link.center_of_mass is None or link.inertia is None:
+        return ""
+    x, y = (told(value, "length") for value in link.center_of_mass)
+    mass, inertia = told(link.mass, "mass"), told(link.inertia, "inertia")
+    return f"together {mass}; centre of mass at {x}, {y}; moment of inertia {inertia}"

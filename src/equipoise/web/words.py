@@ -1,0 +1,28 @@
+"""The page's own texts in the reader's language."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from functools import cache
+from importlib.resources import files
+
+from equipoise.i18n import LANGUAGES, catalogue
+
+WORDS = "words.json"
+"""Beside the bundle: the texts that its page says."""
+
+
+def language_of(wishes: Sequence[str]) -> str:
+    """The language that is spoken of those that a browser asks for, such as ``ja-JP``."""
+    codes = (wish.lower().partition("-")[0] for wish in wishes)
+    return next((code for code in codes if code in LANGUAGES), "en")
+
+
+@cache
+def words_of(language: str) -> dict[str, str]:
+    """English text -> text in a language, of what the page says; only those that are translated."""
+    file = files("equipoise.web") / "static" / WORDS
+    said = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else []
+    known = catalogue(language)
+    return {text: known[text] for text in said if text in known}

@@ -1,0 +1,69 @@
+"""Charts of the live page: numbers on their axes, and any output that is looked for."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page, expect
+
+import equipoise as eq
+from browser.live import Live
+
+SHOWN = "yamashita-rig", "class-three", "transplanter", "slider-crank-engine", "drag-link"
+AXES = """() => {
+    const box = (one) => one.getBoundingClientRect();
+    const apart = (all) => all.every((one, i) => all.slice(i + 1).every((other) =>
+        box(one).right <= box(other).left + 1 || box(other).right <= box(one).left + 1 ||
+        box(one).bottom <= box(other).top + 4 || box(other).bottom <= box(one).top + 4));
+    return [...document.querySelectorAll(".charts figure")].flatMap((figure) => {
+        if (!figure.checkVisibility() || !figure.querySelector(".canvas, .plane")) return [];
+        const all = (selector) => [...figure.querySelectorAll(selector)];
+        const polar = figure.ariaLabel.includes("polar");
+        const across = figure.querySelector(".plane")
+            ? all(".texts text[text-anchor=middle]:not(.crank)") : all(".numbers .x");
+        const up = figure.querySelector(".plane")
+            ? all(".texts text[text-anchor=start]") : all(".numbers .y");
+        const axes = polar ? [across] : across.length || figure.querySelector(".plane")
+            ? [across, up] : [up];
+        return axes.map((texts) => [figure.ariaLabel, texts.length, apart(texts)]);
+    });
+}"""
+"""Of each axis of each chart: whose it is, how many numbers it has, whether they stand apart."""
+
+
+@pytest.mark.parametrize("width", [1280, 400])
+def test_every_axis_has_three_numbers(
+    new_page: Callable[..., Page], address: str, width: int
+) -> None:
+    live = Live.open(new_page(viewport={"width": width, "height": 900}), address)
+    for name in SHOWN:
+        live.page.get_by_role("combobox", name="Example").select_option(name)
+        expect(live.page.get_by_role("heading", name=eq.load(name).title)).to_be_visible()
+        if eq.load(name).support is not None:
+            expect(live.page.get_by_text("against speed").first).to_be_visible()
+        live.page.wait_for_timeout(200)
+        axes = live.page.evaluate(AXES)
+        assert len(axes) > 8
+        assert [one for one in axes if one[1] < 3 or not one[2]] == []
+
+
+def test_any_output_is_drawn_over_the_crank_angle(live: Live) -> None:
+    search = live.page.get_by_role("combobox", name="Any output over crank angle")
+    search.fill("angle transm")  # words in any order
+    search.press("Enter")
+    chart = live.page.get_by_role("figure", name="Transmission angle at C")
+    angle = np.degrees(eq.analyze(eq.load("yamashita-1"), 720).motion.transmission["C"])
+    told = f"from {np.min(angle):.3g} to {np.max(angle):.3g} °"
+    expect(chart).to_have_attribute("aria-label", f"Transmission angle at C: {told}")
+    search.fill("no such output")
+    expect(live.page.get_by_text("No output has such a name")).to_be_visible()
+    search.press("Enter")
+    search.fill("velocity of P")
+    live.page.get_by_role("listbox").get_by_role("option").first.click()
+    expect(live.page.get_by_role("figure", name=re.compile("^Velocity of P:"))).to_be_visible()
+    expect(chart).to_be_visible()
+    live.button("Close chart of transmission angle at C").click()
+    expect(chart).to_be_hidden()

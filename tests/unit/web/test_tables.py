@@ -1,0 +1,243 @@
+"""Every table of a machine's file on a page: read into a form, put back, refused at its key."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.keys import Named, Tables
+from equipoise.mechanism.model import Machine
+from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
+from equipoise.web.forms import forms_of
+from equipoise.web.openings import opened_example, titles
+from equipoise.web.tables import tables_of
+from unit.web.pages import Content, ask, opened, refusal, state
+
+SPRING = {"link": "rocker", "point": "C", "to": "A", "stiffness": "2 kN/m"}
+BAR = {"shape": "bar", "between": ["A", "B"], "width": "20 mm", "thickness": "5 mm",
+       "material": "steel"}  # fmt: skip
+LOAD = "crank_angle [deg],torque [N m]\n0,1\n180,3\n360,1\n"
+
+
+def group(told: Content, where: str) -> Content:
+    (found,) = [one for one in told["groups"] if one["where"] == where]
+    return found
+
+
+def tables(session: Any) -> Content:
+    (reply,) = ask(session, "tables", seq=3)
+    assert reply.content["type"] == "tables"
+    return reply.content
+
+
+def enter(session: Any, place: list[Any], values: Content | None, **more: Any) -> Any:
+    return ask(session, "entry", seq=2, label="entry", place=place, values=values, **more)
+
+
+# -- what there is ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", titles())
+def test_each_entry_put_back_as_its_form_has_it_leaves_the_machine_as_it_was(name: str) -> None:
+    machine = opened_example(name).own
+    document, told = Document.of_machine(machine), tables_of(machine)
+    for one in told["groups"]:
+        known = {control["key"] for control in told["forms"][one["form"]]["controls"]}
+        for entry in one["entries"]:
+            assert known >= entry["values"].keys()
+            assert document.put(tuple(entry["place"]), entry["values"]).machine() == machine
+
+
+def test_each_table_that_a_file_can_have_is_offered() -> None:
+    """Or its place below one that is not there yet, which is told."""
+    told = tables_of(opened_example("yamashita-1").own)
+    offered = {one["form"] for one in told["groups"]}
+    waiting, known = [Machine], set()
+    while waiting:
+        of = waiting.pop()
+        known.add(of.__name__)
+        for one in tables_below(of).values():
+            inner = entry_of(one.kind)
+            assert inner is not None
+            listed = isinstance(one.kind, Tables | Named)
+            if inner.type.__name__ not in known:
+                waiting.append(inner.type)
+            if of is Machine or not listed:
+                assert inner.type.__name__ in offered
+    assert known == told["forms"].keys()
+    assert group(told, "support.mounts")["needs"] == "support"
+    assert group(told, "planting.soil")["needs"] == "planting"
+    for name, form in forms_of(Machine).items():
+        needed = [control["required"] for control in form["controls"]]
+        assert needed == sorted(needed, reverse=True), name
+    assert [one["key"] for one in told["forms"]["Spring"]["controls"]] == [
+        "link", "point", "to", "stiffness", "free_length"
+    ]  # fmt: skip
+
+
+def test_names_are_chosen_from_those_that_there_are() -> None:
+    told = tables_of(opened_example("yamashita-1").own)
+    controls = {one["key"]: one for one in told["forms"]["Spring"]["controls"]}
+    assert (controls["link"]["of"], controls["point"]["on"]) == ("link", "link")
+    assert controls["to"]["on"] == "frame"
+    assert told["bodies"]["frame"]["A"] == (0.0, 0.0)
+    assert own_keys(Machine).keys() == {"title", "description", "gravity", "assembly"}
+
+
+# -- adding, changing, deleting --------------------------------------------------------------------
+
+
+def test_a_spring_is_added_changed_and_deleted_each_as_one_step() -> None:
+    session, first = opened("yamashita-1")
+    added = state(enter(session, ["springs", 0], SPRING)[0])
+    assert added.content["undo"] == "entry"
+    assert added.field("springs.1.stiffness")["value"] == 2000.0
+    (entry,) = group(tables(session), "springs")["entries"]
+    assert entry["words"] == "link rocker, point C, to A, stiffness 2000 N/m"
+    enter(session, ["springs", 0], {**SPRING, "free_length": "30 mm"})
+    machine = session.shown.design.machine
+    assert machine == eq.loads(eq.dumps(machine))
+    assert machine.springs[0].free_length == 0.03
+    gone = state(enter(session, ["springs", 0], None)[0])
+    assert gone.block.tobytes() == first.block.tobytes()
+    back = state(ask(session, "undo")[0])
+    assert back.field("springs.1.free_length")["value"] == 0.03
+
+
+def test_mounts_have_names_which_can_change() -> None:
+    session, _ = opened("yamashita-rig")
+    mounts = session.shown.design.own.support.mounts  # type: ignore[union-attr]
+    entries = group(tables(session), "support.mounts")["entries"]
+    enter(session, entries[0]["place"], entries[0]["values"], name="front")
+    renamed = session.shown.design.own.support.mounts  # type: ignore[union-attr]
+    assert [*renamed] == ["front", *[*mounts][1:]]
+    assert [*renamed.values()] == [*mounts.values()]
+    told = refusal(enter(session, ["support", "mounts", "front"], {}, name=[*mounts][1]))
+    assert "is taken already; give another name" in told
+
+
+def test_a_counterweight_leaves_with_the_mass_that_it_was_joined_to() -> None:
+    session, _ = opened("yamashita-1")
+    ask(session, "edit", seq=1, edits=[{"set": "counterweights.crank.mass", "text": "80 g"}])
+    (crank,) = [one for one in group(tables(session), "links")["entries"]
+                if one["where"] == "links.crank"]  # fmt: skip
+    points = {"points": crank["values"]["points"]}
+    shown = state(enter(session, ["links", "crank"], points)[0])
+    assert shown.content["missing"] == ["crank"]
+    assert not session.shown.design.counterweights
+
+
+def test_masses_from_shapes() -> None:
+    """The mass that the link had goes; a bar of steel, beside its own formula."""
+    session, _ = opened("yamashita-1")
+    enter(session, ["links", "crank", "bodies", 0], BAR)
+    link = session.shown.design.machine.links["crank"]
+    mass = 7850 * 0.0335 * 0.02 * 0.005
+    assert link.mass == pytest.approx(mass)
+    assert link.inertia == pytest.approx(mass * (0.0335**2 + 0.02**2) / 12)
+    told = group(tables(session), "links.crank.bodies")
+    assert told["result"].startswith("together 26.30 g; centre of mass at 16.75 mm, 0 mm;")
+    enter(session, ["links", "crank", "bodies", 1],
+          {"shape": "disc", "at": "B", "radius": "10 mm", "mass": "50 g"})  # fmt: skip
+    both = session.shown.design.machine.links["crank"].mass
+    assert both == pytest.approx(mass + 0.05)
+    enter(session, ["links", "crank", "bodies", 1, "holes", 0], {"at": "B", "radius": "2 mm"})
+    assert len(session.shown.design.machine.links["crank"].bodies[1].holes) == 1
+    entry = group(tables(session), "links.crank.bodies")["entries"][1]
+    enter(session, entry["place"], {**entry["values"], "mass": "60 g"})
+    assert len(session.shown.design.machine.links["crank"].bodies[1].holes) == 1  # they stay
+
+
+def test_a_table_from_a_file_that_is_chosen_and_of_one_that_is_there() -> None:
+    session, _ = opened("yamashita-1")
+    load = {"link": "rocker", "table": "load.csv"}
+    assert "got 'load.csv', which is not known here" in refusal(enter(session, ["loads", 0], load))
+    enter(session, ["loads", 0], load, files={"load.csv": LOAD})
+    assert session.shown.design.own.loads[0].table.values == ((1.0, 3.0, 1.0),)  # type: ignore[union-attr]
+    enter(session, ["springs", 0], SPRING)
+    assert session.shown.design.own.loads[0].table.file == "load.csv"  # type: ignore[union-attr]
+
+
+def test_the_whole_and_its_lists_keep_what_is_not_in_their_form() -> None:
+    session, _ = opened("yamashita-1")
+    before = session.shown.design.own
+    (entry,) = group(tables(session), "")["entries"]
+    enter(session, [], {**entry["values"], "gravity": ["0 m/s^2", "0 m/s^2"]})
+    after = session.shown.design.own
+    assert after.gravity == (0.0, 0.0)
+    assert (after.links, after.drive, after.assembly) == (
+        before.links, before.drive, before.assembly
+    )  # fmt: skip
+
+
+# -- refusals --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("place", "values", "path", "what"),
+    [
+        (["springs", 0], {**SPRING, "stiffness": "3 kg"}, "springs[1].stiffness",
+         "got '3 kg'; kg is the unit of a mass"),
+        (["springs", 0], {**SPRING, "stiffness": "-1 N/m"}, "springs[1].stiffness",
+         "got -1 N/m; give more than 0"),
+        (["springs", 0], {"link": "rocker"}, "springs[1].point", 'missing; add point = "C"'),
+        (["springs", 0], {**SPRING, "point": "X"}, "springs[1].point", "no point of rocker"),
+        (["springs", 3], SPRING, "springs[4]", "there are 0 entries; the next has the number 1"),
+        (["springs"], SPRING, "springs", "give the number of the entry too"),
+        (["brakes", 0], {}, "brakes[1]", "no table is called 'brakes'"),
+        (["planting", "soil"], {}, "planting.soil", "there is no planting; add that first"),
+        (["support", "mounts", "m"], {}, "support.mounts.m", "there is no support; add that"),
+        (["links", "crank", "bodies", 0], {"shape": "bar"}, "links.crank.bodies[1].between",
+         "missing"),
+        (["drive"], None, "drive", "missing; add the table [drive]"),
+        (["gears", 0], None, "gears[1]", "there is no such entry"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_told_at_its_key(
+    place: list[Any], values: Content | None, path: str, what: str
+) -> None:
+    session, _ = opened("yamashita-1")
+    before = session.shown
+    (reply,) = enter(session, place, values)
+    assert reply.content["path"] == path
+    assert what in reply.content["what"]
+    assert session.shown is before
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        {"place": "springs", "values": {}},
+        {"place": ["springs", -1], "values": {}},
+        {"place": ["springs", True], "values": {}},
+        {"place": ["springs", 0], "values": [1]},
+        {"place": ["springs", 0], "values": {"link": None}},
+        {"place": ["springs", 0], "values": {}, "name": 3},
+        {"place": ["springs", 0], "values": {}, "files": {"a": 1}},
+        {"place": ["springs", 0], "values": {"link": [[[[[[[[["deep"]]]]]]]]]}},
+    ],
+)
+def test_nonsense_is_refused_in_a_sentence(asked: Content) -> None:
+    session, _ = opened("yamashita-1")
+    assert refusal(ask(session, "entry", seq=1, **asked)).startswith("entry: ")
+
+
+def test_what_could_not_move_is_told_and_nothing_changes() -> None:
+    session, _ = opened("yamashita-1")
+    before = session.shown
+    told = refusal(enter(session, ["links", "loose"], {"points": {"C": ["0 mm", "0 mm"]}}))
+    assert "free motion" in told
+    assert session.shown is before
+
+
+def test_rows_that_are_added_are_computed() -> None:
+    session, one = opened("yamashita-1")
+    for number, phase in enumerate(("0 deg", "180 deg")):
+        enter(session, ["rows", number], {"phase": phase, "lateral": f"{300 * number} mm"})
+    both = state(ask(session, "ready")[1])
+    assert np.abs(both.vector("rows.shaking_force")).max() < np.abs(
+        2 * one.vector("shaking_force")
+    ).max()  # fmt: skip
