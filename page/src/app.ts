@@ -1,5 +1,6 @@
 /** The page as a whole: what it shows, and who tells whom. */
 
+import { Bench } from "./bench";
 import { Charts } from "./charts";
 import { Conversation, type Events } from "./conversation";
 import { h, write } from "./dom";
@@ -37,6 +38,7 @@ export class App {
   private readonly hands: Hands;
   private readonly stage: Stage;
   private readonly board: Board;
+  private readonly bench: Bench;
   private readonly charts: Charts;
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
@@ -83,6 +85,7 @@ export class App {
       refused: (message, edit) => this.refuse(message, edit),
       balanced: (message) => this.balance.show(message),
       busy: (what) => this.busy(what),
+      tables: (message) => this.bench.show(message),
       file: save,
       saved: (name) => this.keeping.saved(name),
       line: (up) => this.line(up),
@@ -109,6 +112,8 @@ export class App {
     this.hands = new Hands(page, (dress) => new Stage(dress));
     this.stage = this.hands.made;
     this.board = new Board(this.stage, (link) => this.chooseLink(link));
+    const root = this.full ? document : this.root;
+    this.bench = new Bench({ ...page, root, stage: this.stage, board: this.board });
     this.charts = new Charts(
       this.theme,
       (angle) => this.turn(angle),
@@ -145,6 +150,7 @@ export class App {
   close(): void {
     this.frames.close();
     this.charts.close();
+    this.bench.close();
     this.talk.close();
     this.keeping.close();
     this.theme.close();
@@ -161,8 +167,8 @@ export class App {
     this.side.append(this.charts.root);
     // A file that plays shows numbers, and takes none.
     const disabled = this.el.classList.contains("equipoise-played");
-    const numbers = h("fieldset", { class: "bare", disabled }, this.inspector.root);
-    this.aside.append(this.balance.root, numbers);
+    const parts = [...this.bench.roots, this.inspector.root];
+    this.aside.append(this.balance.root, h("fieldset", { class: "bare", disabled }, ...parts));
     if (disabled) this.aside.tabIndex = 0; // to be scrolled by keys
     this.root.append(
       this.toolbar.root,
@@ -235,6 +241,7 @@ export class App {
         state.speed !== 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches;
     } else this.player.angle = angle;
     if (other) this.heading.forget();
+    if (other) this.bench.forget();
     if (other || !state.planting) this.planted.hide();
     if (other) this.strokes.hide();
     if (!state.before) this.balance.hide();
@@ -279,6 +286,7 @@ export class App {
     this.toolbar.show(state);
     this.readings.show(state);
     this.inspector.show(state);
+    if (!this.held) this.bench.follow();
     if (!this.held) {
       this.theme.update();
       this.charts.settle();
@@ -350,6 +358,7 @@ export class App {
   }
 
   private async read(file: File): Promise<void> {
+    if (this.bench.take(file)) return;
     const problem = tooLarge(file, this.hello?.largest ?? Infinity);
     if (problem) return this.board.say(problem, true);
     void this.open({ type: "open", name: file.name, text: await file.text() }, file.name);
