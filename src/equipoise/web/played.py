@@ -69,7 +69,7 @@ def _conversation(found: Solved, language: str) -> Iterator[Reply]:
     """What a page would be told that asks for everything about a machine."""
     session = Session()
     session.open(found.design, found)
-    session.wanted = tuple(one.name for one in found.analysis.outputs.ordered)
+    session.wanted = tuple(one.name for one in found.analysis.outputs)
     yield from session.receive(message_of({"type": "speak", "languages": [language]}))
     yield from session.receive(message_of({"type": "ready"}))
     yield from session.tell_more()
