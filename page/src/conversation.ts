@@ -2,6 +2,7 @@
 
 import type { Asked, Edit, Told, Wire } from "./protocol";
 import { mark } from "./frames";
+import type { GhostMessage, VariantsMessage } from "./protocol";
 import { Numbers, type Planted, type ResponseMessage, type State } from "./protocol";
 import { language } from "./words";
 
@@ -10,6 +11,8 @@ export interface Events {
   state(state: State): void;
   response(message: ResponseMessage, numbers: Numbers): void;
   planting(message: Planted): void;
+  ghost(message: GhostMessage, numbers: Numbers): void;
+  variants(message: VariantsMessage): void;
   refused(message: string, edit: boolean): void;
   balanced(message: Extract<Told, { type: "balanced" }>): void;
   busy(what: string | null): void;
@@ -32,7 +35,7 @@ interface Question {
 const SLOW = new Set(["balance", "download"]);
 
 /** What makes the machine on the server other than it was; said again after a broken line. */
-const REMEMBERED = new Set(["edit", "undo", "redo", "balance", "compare", "outputs"]);
+const REMEMBERED = new Set(["edit", "undo", "redo", "balance", "compare", "outputs", "arrows", "variant"]);
 
 export class Conversation {
   /** Drags and held keys under way; each ends before something else is asked. */
@@ -112,6 +115,10 @@ export class Conversation {
         return this.end(told.seq, null);
       case "response":
         return this.events.response(told, new Numbers(told.arrays, buffers[0]));
+      case "ghost":
+        return this.events.ghost(told, new Numbers(told.arrays, buffers[0]));
+      case "variants":
+        return this.events.variants(told);
       case "planting":
       case "strokes":
         return this.events.planting(told);
