@@ -1,7 +1,8 @@
 /** The page as a whole: what it shows, and who tells whom. */
 
+import { Bench } from "./bench";
 import { Charts } from "./charts";
-import { Conversation, type Events, type Memory } from "./conversation";
+import { Conversation, type Events } from "./conversation";
 import { h, write } from "./dom";
 import { dropZone, save, tooLarge } from "./files";
 import { follow, measure } from "./format";
@@ -10,6 +11,7 @@ import { Hands } from "./hands";
 import { Heading } from "./heading";
 import { helpDialog } from "./help";
 import { Inspector } from "./inspector";
+import { Keeping } from "./keeping";
 import { Player } from "./player";
 import type { Asked, FileKind, Hello, Planted, State, Wire } from "./protocol";
 import { BalancePanel, FigureTable, Readings } from "./readings";
@@ -17,6 +19,7 @@ import { Board } from "./board";
 import { Seeing } from "./seeing";
 import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
+import type { Shelf } from "./story";
 import { Theme } from "./theme";
 import { Toolbar } from "./toolbar";
 import { TransportBar } from "./transport";
@@ -36,6 +39,7 @@ export class App {
   private readonly hands: Hands;
   private readonly stage: Stage;
   private readonly board: Board;
+  private readonly bench: Bench;
   private readonly charts: Charts;
   private readonly seeing: Seeing;
   private readonly inspector: Inspector;
@@ -47,6 +51,7 @@ export class App {
   private readonly transport: TransportBar;
   private readonly help = helpDialog(() => this.hello?.version ?? "");
   private readonly heading = new Heading();
+  private readonly keeping: Keeping;
   private readonly lost = h("div", { class: "lost", role: "alert", hidden: true });
   private readonly aside = h("section", { class: "inspector", "aria-label": say("Numbers") });
   private readonly side = h("section", { class: "side", "aria-label": say("Charts") });
@@ -68,7 +73,7 @@ export class App {
   constructor(
     wire: Wire,
     private readonly el: HTMLElement,
-    memory: Memory | null,
+    shelf: Shelf | null,
     speak: (language: string) => void,
   ) {
     const events: Events = {
@@ -85,10 +90,12 @@ export class App {
       refused: (message, edit) => this.refuse(message, edit),
       balanced: (message) => this.balance.show(message),
       busy: (what) => this.busy(what),
+      tables: (message) => this.bench.show(message),
       file: save,
+      saved: (name) => this.keeping.saved(name),
       line: (up) => this.line(up),
     };
-    this.talk = new Conversation(wire, events, memory);
+    this.talk = new Conversation(wire, events, shelf);
     el.append(this.root);
     this.theme = new Theme(this.root, () => this.charts.repaint());
     const page = {
@@ -99,6 +106,14 @@ export class App {
       holding: (on: boolean) => this.hold(on),
       hint: (text: string) => this.board.hint(text),
     };
+    this.keeping = new Keeping({
+      root: this.root,
+      talk: this.talk,
+      full: this.full,
+      state: page.state,
+      say: (text, bad) => this.board.say(text, bad),
+      open: (asked, name) => void this.open(asked, name),
+    });
     this.hands = new Hands(page, (dress) => new Stage(dress));
     this.stage = this.hands.made;
     this.board = new Board(this.stage, (link) => this.chooseLink(link));
@@ -107,6 +122,8 @@ export class App {
       (asked) => this.command(asked),
       () => this.stir(),
     );
+    const root = this.full ? document : this.root;
+    this.bench = new Bench({ ...page, root, stage: this.stage, board: this.board });
     this.charts = new Charts(
       this.theme,
       (angle) => this.turn(angle),
@@ -123,10 +140,12 @@ export class App {
       () => this.crank(),
     );
     this.toolbar = new Toolbar({
-      example: (name) => this.open({ type: "open", example: name }, name),
+      example: (name) => void this.open({ type: "open", example: name }, name),
       file: (file) => void this.read(file),
       undo: () => this.step("undo"),
       redo: () => this.step("redo"),
+      save: () => void this.keeping.save(),
+      link: () => this.keeping.link(),
       balance: () => this.command({ type: "balance" }),
       download: (kind, language) => this.download(kind, language),
       help: () => this.help.showModal(),
@@ -140,7 +159,9 @@ export class App {
   close(): void {
     this.frames.close();
     this.charts.close();
+    this.bench.close();
     this.talk.close();
+    this.keeping.close();
     this.theme.close();
     this.watcher.disconnect();
     this.undone.forEach((undo) => undo());
@@ -154,10 +175,11 @@ export class App {
     stage.append(this.seeing.variants.root);
     stage.append(this.strokes.root, this.planted.root);
     this.side.append(this.charts.root);
-    this.aside.append(this.balance.root, this.inspector.root);
+    this.aside.append(this.balance.root, ...this.bench.roots, this.inspector.root);
     this.root.append(
       this.toolbar.root,
       this.lost,
+      this.keeping.offer,
       h("div", { class: "body" }, stage, this.side, this.aside),
     );
     this.root.append(
@@ -173,6 +195,7 @@ export class App {
       board: this.board.root,
       undo: () => this.step("undo"),
       redo: () => this.step("redo"),
+      save: () => void this.keeping.save(),
       help: () => this.help.showModal(),
       toggle: () => this.toggle(),
       turn: (by: number) => this.turn(this.player.angle + by),
@@ -198,10 +221,14 @@ export class App {
     follow(hello.numbers);
     this.toolbar.offer(hello.examples);
     if (this.state) this.toolbar.show(this.state);
-    else if (first && !this.talk.recall() && !hello.machine) {
+    else if (first) void this.begin(hello);
+  }
+
+  private async begin(hello: Hello): Promise<void> {
+    if (!(await this.keeping.begin(hello)) && !hello.machine) {
       const names = hello.examples.map(({ name }) => name);
       const example = names.find((name) => name === FIRST) ?? names[0];
-      if (example) this.open({ type: "open", example }, example);
+      if (example) void this.open({ type: "open", example }, example);
     }
   }
 
@@ -220,6 +247,7 @@ export class App {
         state.speed !== 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches;
     } else this.player.angle = angle;
     if (other) this.heading.forget();
+    if (other) this.bench.forget();
     if (other || !state.planting) this.planted.hide();
     if (other) this.strokes.hide();
     if (!state.before) this.balance.hide();
@@ -265,6 +293,7 @@ export class App {
     this.toolbar.show(state);
     this.readings.show(state);
     this.inspector.show(state);
+    if (!this.held) this.bench.follow();
     if (!this.held) {
       this.theme.update();
       this.charts.settle();
@@ -324,7 +353,8 @@ export class App {
     );
   }
 
-  private open(asked: Asked, name: string): void {
+  private async open(asked: Asked, name: string): Promise<void> {
+    if (!(await this.keeping.mayLeave(name))) return this.state ? this.toolbar.show(this.state) : undefined;
     this.talk.release();
     this.opened = "asked";
     this.talk.ask(asked);
@@ -335,9 +365,10 @@ export class App {
   }
 
   private async read(file: File): Promise<void> {
+    if (this.bench.take(file)) return;
     const problem = tooLarge(file, this.hello?.largest ?? Infinity);
     if (problem) return this.board.say(problem, true);
-    this.open({ type: "open", name: file.name, text: await file.text() }, file.name);
+    void this.open({ type: "open", name: file.name, text: await file.text() }, file.name);
   }
 
   private command(asked: Asked): void {

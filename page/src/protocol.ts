@@ -15,10 +15,13 @@ export type Asked =
   /** Codes of languages, the one that is liked best first. */
   | { type: "speak"; languages: string[] }
   | { type: "open"; example: string }
-  | { type: "open"; name: string; text: string }
+  /** `file`: it is what the file held that the server was started with. */
+  | { type: "open"; name: string; text: string; file?: true }
   | { type: "edit"; commit: boolean; label: string; edits: Edit[] }
-  | { type: "undo" | "redo" | "balance" }
+  | { type: "undo" | "redo" | "balance" | "save" }
   | { type: "compare"; on: false }
+  | { type: "tables" }
+  | EntryAsked
   | { type: "outputs"; names: string[] }
   | { type: "arrows"; point: string }
   | { type: "variant"; do: "pin" }
@@ -40,6 +43,8 @@ export interface Hello {
   largest: number;
   /** Whether the server holds a machine already. */
   machine?: boolean;
+  /** Sign of the file that it can save; empty where there is none. */
+  base: string;
   numbers: NumberRules;
 }
 
@@ -66,6 +71,8 @@ export interface NumberRules {
   most: number;
   /** What may follow a number in a sentence; longer ones first. */
   units: string[];
+  /** m in each unit in which a length may be typed. */
+  lengths: Record<string, number>;
 }
 
 export interface Field extends Unit {
@@ -169,6 +176,10 @@ export interface StateMessage {
   description: string;
   undo: string | null;
   redo: string | null;
+  /** How many steps can be undone and redone. */
+  steps: Pair;
+  /** The file that can be saved, and whether it holds what is shown. */
+  file: { name: string; saved: boolean; comments: boolean } | null;
   angles: number;
   turns: number;
   speed: number;
@@ -298,6 +309,93 @@ export interface Refused {
   type: "refused";
   seq: number;
   message: string;
+  /** Key of the model file that is wrong, and what is wrong with it. */
+  path?: string;
+  what?: string;
+}
+
+/** Keys, names and numbers from 0 on the way to a table of a model file. */
+export type Steps = (string | number)[];
+
+/** A value as it stands in a model file. */
+export type Plain = string | number | boolean | Plain[] | { [key: string]: Plain };
+export type Values = Record<string, Plain>;
+
+/** A table is put, or deleted where it has no values. */
+export interface EntryAsked {
+  type: "entry";
+  label: string;
+  place: Steps;
+  values: Values | null;
+  name?: string;
+  /** Texts of CSV files that it names. */
+  files?: Record<string, string>;
+}
+
+/** What is asked for: how, and in which unit. */
+export interface Asking {
+  kind: "quantity" | "number" | "text" | "choice" | "flag" | "name" | "place" | "direction"
+    | "list" | "names" | "file" | "wording";
+  unit?: string;
+  options?: (string | number)[];
+  /** Of what it is the name, and the key beside it that names the body of a point. */
+  of?: "link" | "body" | "point";
+  on?: string;
+  /** Of places: or a point's name; with z; the key that names the link whose axes they are in. */
+  named?: boolean;
+  space?: boolean;
+  axes?: string;
+  item?: Asking;
+  /** How many there can be; none for one and more. */
+  sizes?: number[];
+  /** One stands without brackets. */
+  bare?: boolean;
+  /** Names alone may do. */
+  listed?: boolean;
+}
+
+/** A key of a table. */
+export interface Control extends Asking {
+  key: string;
+  word: string;
+  text: string;
+  required: boolean;
+  default: Plain | null;
+  example: Plain | null;
+}
+
+export interface EntryTold {
+  place: Steps;
+  /** Its path, as refusals tell it. */
+  where: string;
+  words: string;
+  values: Values;
+}
+
+/** Tables of one sort that a machine has, or can have. */
+export interface Group {
+  place: Steps;
+  where: string;
+  form: string;
+  many: "one" | "list" | "named";
+  word: string;
+  text: string;
+  /** The entry that it belongs to, and what has to be there first. */
+  of: string;
+  needs: string;
+  required: boolean;
+  entries: EntryTold[];
+  /** What its entries are together. */
+  result?: string;
+}
+
+export interface Tables {
+  type: "tables";
+  seq: number;
+  groups: Group[];
+  forms: Record<string, { text: string; controls: Control[] }>;
+  /** Points of the frame and of links, in their own axes, m. */
+  bodies: Record<string, Record<string, Pair>>;
 }
 
 export type Told =
@@ -310,6 +408,9 @@ export type Told =
   | Planted
   | Balanced
   | Refused
+  | Tables
+  /** Sign of the file as it is now, and the model that its steps began with. */
+  | { type: "saved"; seq: number; name: string; base: string; text: string }
   | { type: "busy"; seq?: number; what: string }
   | { type: "file"; seq: number; name: string; mime: string }
   /** Said by the page's own transport, never by a server. */

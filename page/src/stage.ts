@@ -41,6 +41,8 @@ export class Stage {
   readonly lines = s("svg", { class: "sheet-lines", "aria-hidden": "true" });
   readonly view = new View();
   readonly grips = new Map<string, SVGGElement>();
+  /** Called when another part of the plane is shown. */
+  readonly watchers: (() => void)[] = [];
   private readonly layer: Record<string, SVGGElement> = {};
   private state: State | null = null;
   /** All is shown, and nobody has moved the sheet since. */
@@ -126,6 +128,7 @@ export class Stage {
   private redraw(): void {
     if (!this.state) return;
     this.lines.replaceChildren(...ruled(this.view));
+    for (const watch of this.watchers) watch();
     this.draw();
     this.pose(this.k);
   }
@@ -135,6 +138,18 @@ export class Stage {
     const name = grip.kind === "point" ? `place.${grip.name}` : `mass_center.${grip.name}`;
     const row = this.state?.numbers.get(name);
     return row ? [row[2 * k] as number, row[2 * k + 1] as number] : null;
+  }
+
+  /** Every point by its name, m. */
+  joints(): [name: string, place: Pair][] {
+    const names = this.state?.numbers.names("place.") ?? [];
+    const found = names.map((name) => name.slice("place.".length));
+    return found.map((name) => [name, this.place({ kind: "point", name }) ?? [NaN, NaN]]);
+  }
+
+  /** The first link that has a point. */
+  linkOf(point: string): string | null {
+    return this.state?.scene.bodies.find((body) => body.points.includes(point))?.name ?? null;
   }
 
   select(points: ReadonlySet<string>, link: string | null, grip: Grip | null): void {

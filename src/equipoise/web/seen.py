@@ -52,7 +52,7 @@ class Seen:
         """The design that is drawn pale, with pale curves."""
         return None if self.variants.against == STEP else self.against(None)
 
-    def opening(self, found: Solved) -> Seen:
+    def opening(self, found: Solved | None) -> Seen:
         """The same for a machine that is opened: nothing is kept but what the page knows."""
         return Seen(opened=found, ghost=self.ghost, table=self.table)
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from equipoise.figures.points import traced
-from equipoise.i18n import said
+from equipoise.i18n import said, say
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import GROUPS
@@ -86,6 +86,7 @@ def state_of(
         "orders": _orders(analysis),
         "notes": [massless(machine)] if analysis.solved is None else [],
         "before": before is not None,
+        "status": status_of(found),
         "compared": against is not None,
         "points": points_of(analysis),
         "arrows_at": arrows_at,
@@ -94,6 +95,28 @@ def state_of(
     }
     content["arrays"] = block.told
     return content, block.data
+
+
+def status_of(found: Solved) -> Values:
+    """What is told of the making of a machine.
+
+    mobility : number of free motions.  text : a sentence: what moves, or what is missing.
+    finished : whether it can be computed.  drive : the crank, if there is one.
+    stand : crank angle at which it was drawn, deg; None where it has not just been made.
+    """
+    machine, stand = found.design.machine, found.stand
+    return {
+        "mobility": 1,
+        "text": turning(machine),
+        "finished": True,
+        "drive": machine.drive.link,
+        "stand": None if stand is None else float(np.degrees(stand)),
+    }
+
+
+def turning(machine: Machine) -> str:
+    """That a machine is finished."""
+    return say("1 free motion; {link} turns fully", link=machine.drive.link)
 
 
 def _add_outputs(block: Block, analysis: Analysis, names: Sequence[str], prefix: str = "") -> None:

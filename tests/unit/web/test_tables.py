@@ -12,7 +12,7 @@ from equipoise.keys import Named, Tables
 from equipoise.mechanism.model import Machine
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
 from equipoise.web.forms import forms_of
-from equipoise.web.session import opened_example, titles
+from equipoise.web.openings import opened_example, titles
 from equipoise.web.tables import tables_of
 from unit.web.pages import Content, ask, opened, refusal, state
 
@@ -76,6 +76,15 @@ def test_each_table_that_a_file_can_have_is_offered() -> None:
     assert [one["key"] for one in told["forms"]["Spring"]["controls"]] == [
         "link", "point", "to", "stiffness", "free_length"
     ]  # fmt: skip
+
+
+def test_a_title_in_several_languages_is_told_in_the_one_that_is_spoken() -> None:
+    session, _ = opened("yamashita-1")
+    english = group(tables(session), "")["entries"][0]["words"]
+    ask(session, "speak", languages=["ja"])
+    japanese = group(tables(session), "")["entries"][0]["words"]
+    assert english.startswith("title Planting mechanism type I")
+    assert japanese.split()[1] not in english
 
 
 def test_names_are_chosen_from_those_that_there_are() -> None:
