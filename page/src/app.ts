@@ -16,6 +16,7 @@ import { Player } from "./player";
 import type { Asked, FileKind, Hello, Planted, State, Wire } from "./protocol";
 import { BalancePanel, FigureTable, Readings } from "./readings";
 import { Board } from "./board";
+import { Seeing } from "./seeing";
 import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
 import type { Shelf } from "./story";
@@ -40,6 +41,7 @@ export class App {
   private readonly board: Board;
   private readonly bench: Bench;
   private readonly charts: Charts;
+  private readonly seeing: Seeing;
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
   private readonly planted = new FigureTable(say("Figures of the planting finger"));
@@ -79,9 +81,12 @@ export class App {
       state: (state) => this.take(state),
       response: (message, numbers) => {
         this.charts.answered(message, numbers);
+        this.seeing.answered(message, numbers);
         this.add("response", message.notes);
       },
       planting: (message) => this.plant(message),
+      ghost: (message, numbers) => this.seeing.pale(message.scene, numbers),
+      variants: (message) => this.seeing.variants.show(message),
       refused: (message, edit) => this.refuse(message, edit),
       balanced: (message) => this.balance.show(message),
       busy: (what) => this.busy(what),
@@ -112,6 +117,11 @@ export class App {
     this.hands = new Hands(page, (dress) => new Stage(dress));
     this.stage = this.hands.made;
     this.board = new Board(this.stage, (link) => this.chooseLink(link));
+    this.seeing = new Seeing(
+      this.stage,
+      (asked) => this.command(asked),
+      () => this.stir(),
+    );
     const root = this.full ? document : this.root;
     this.bench = new Bench({ ...page, root, stage: this.stage, board: this.board });
     this.charts = new Charts(
@@ -161,7 +171,8 @@ export class App {
   private lay(): void {
     const stage = h("section", { class: "stage", "aria-label": say("Linkage and motion") });
     stage.append(this.heading.about, this.board.root);
-    stage.append(this.transport.root, this.heading.notes, this.readings.root);
+    stage.append(this.transport.root, this.seeing.root, this.heading.notes, this.readings.root);
+    stage.append(this.seeing.variants.root);
     stage.append(this.strokes.root, this.planted.root);
     this.side.append(this.charts.root);
     this.aside.append(this.balance.root, ...this.bench.roots, this.inspector.root);
@@ -267,6 +278,7 @@ export class App {
       this.toolbar.show(state);
       this.heading.show(state);
     }
+    this.seeing.show(state, other);
     this.stage.show(state, other);
     this.transport.take(state.angles);
     this.charts.show(state, other);
@@ -294,11 +306,12 @@ export class App {
   private point(): void {
     if (!this.state) return;
     this.turned = false;
-    const k = this.player.sample;
+    const k = this.seeing.crank(this.player.sample);
     this.stage.pose(k);
     this.transport.point();
     this.transport.state();
-    this.charts.point(k, this.player.angle);
+    const { angles, turns } = this.state;
+    this.charts.point(k, (k / angles) * 360 * turns);
   }
 
   /** The crank is at another angle, or is to turn. */
@@ -396,6 +409,7 @@ export class App {
     this.stage.select(new Set([grip.name]), grip.kind === "mass" ? grip.name : null, grip);
     this.inspector.choose(link, grip.kind === "point" ? grip.name : null);
     if (grip.kind === "point") this.charts.choose(grip.name);
+    if (grip.kind === "point") this.seeing.choose(grip.name);
   }
 
   private chooseLink(link: string): void {
@@ -407,6 +421,7 @@ export class App {
   /** While something is held, the crank stands still. */
   private hold(on: boolean): void {
     this.held = on;
+    this.seeing.hold(on);
     if (on) {
       this.resumes = this.player.playing;
       this.player.playing = false;

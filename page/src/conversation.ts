@@ -2,6 +2,7 @@
 
 import type { Asked, Edit, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
+import type { GhostMessage, VariantsMessage } from "./protocol";
 import { Numbers, type Planted, type ResponseMessage, type State } from "./protocol";
 import { type Shelf, Story, type Told as Kept } from "./story";
 import { language } from "./words";
@@ -11,6 +12,8 @@ export interface Events {
   state(state: State): void;
   response(message: ResponseMessage, numbers: Numbers): void;
   planting(message: Planted): void;
+  ghost(message: GhostMessage, numbers: Numbers): void;
+  variants(message: VariantsMessage): void;
   refused(message: string, edit: boolean): void;
   balanced(message: Extract<Told, { type: "balanced" }>): void;
   busy(what: string | null): void;
@@ -121,6 +124,10 @@ export class Conversation {
         return this.events.saved(told.name);
       case "response":
         return this.events.response(told, new Numbers(told.arrays, buffers[0]));
+      case "ghost":
+        return this.events.ghost(told, new Numbers(told.arrays, buffers[0]));
+      case "variants":
+        return this.events.variants(told);
       case "planting":
       case "strokes":
         return this.events.planting(told);

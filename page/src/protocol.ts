@@ -23,6 +23,11 @@ export type Asked =
   | { type: "tables" }
   | EntryAsked
   | { type: "outputs"; names: string[] }
+  | { type: "arrows"; point: string }
+  | { type: "variant"; do: "pin" }
+  | { type: "variant"; do: "rename"; name: string; to: string }
+  | { type: "variant"; do: "go" | "drop"; name: string }
+  | { type: "variant"; do: "against"; to: string }
   | { type: "download"; kind: FileKind; language?: string };
 
 export interface Example {
@@ -106,7 +111,19 @@ export interface Sign {
   /** The link that it is, if any. */
   link: string;
   /** Its origin, and what its x axis is: that of a link, the way of a guide, or towards a point. */
-  hold: { point: string; link?: string; guide?: string; to?: string; length?: number } | null;
+  hold: {
+    point?: string;
+    link?: string;
+    guide?: string;
+    to?: string;
+    length?: number;
+    /** Of a mount: its place on the support at rest, m, and from there to its ground, pixels. */
+    mount?: string;
+    at?: Pair;
+    ground?: Pair;
+  } | null;
+  /** Whether it stands on the ground, and not on the support. */
+  still: boolean;
   shapes: Shape[];
 }
 
@@ -120,6 +137,8 @@ export interface Scene {
   movable: string[];
   /** From the back to the front. */
   signs: Sign[];
+  /** What a support turns about, m. */
+  reference: Pair | null;
   /** Role of a shape -> its style. */
   looks: Record<string, string>;
 }
@@ -181,8 +200,21 @@ export interface StateMessage {
   least: number;
   orders: number[];
   notes: string[];
+  /** Whether curves of another design are drawn behind; whether figures of one are told. */
   before: boolean;
+  compared: boolean;
+  /** Points that arrows can be at, the one at which they are, and what there is to draw there. */
+  points: string[];
+  arrows_at: string | null;
+  arrows: ArrowOf[];
   planting?: { tip: string; surface: number } | null;
+}
+
+/** A vector at a point over the crank angle. */
+export interface ArrowOf extends Unit {
+  kind: "velocity" | "acceleration" | "force";
+  array: string;
+  label: string;
 }
 
 /** A curve of a chart: every `stride`th number of an array, from the `part`th on. */
@@ -219,6 +251,26 @@ export interface ResponseMessage {
   charts: ChartData[];
   arrays: Arrays;
   notes: string[];
+  /** What is to be said of how the support moves at work; its arrays are `support.place` and `.angle`. */
+  swing: string[] | null;
+  /** Real and imaginary parts along x, along y (m) and of the rotation, as large as they are drawn. */
+  modes: { told: string[]; seen: boolean; shape: number[] }[];
+}
+
+/** A design that is drawn pale, or none. */
+export interface GhostMessage {
+  type: "ghost";
+  scene: Scene | null;
+  arrays: Arrays;
+}
+
+/** Figures of designs that are kept, by column, and of the one that is. */
+export interface VariantsMessage {
+  type: "variants";
+  kept: string[];
+  /** What figures are told against: a word, or a variant. */
+  against: string;
+  rows: { label: string; unit: string; texts: string[]; best: number[] }[];
 }
 
 /** Figures of a planting finger, or of sliders and rockers; null where they are not finite. */
@@ -368,6 +420,8 @@ export type Told =
   | Spoken
   | StateMessage
   | ResponseMessage
+  | GhostMessage
+  | VariantsMessage
   | Planted
   | Balanced
   | Refused

@@ -39,7 +39,7 @@ const DEEPEST = 500;
 /** What a step is made by. */
 const STEPS = new Set(["edit", "balance", "entry"]);
 /** Of these the last one is enough. */
-const SETTINGS = new Set(["compare", "outputs"]);
+const SETTINGS = new Set(["compare", "outputs", "arrows"]);
 
 export class Story {
   private told: Told = empty("");
