@@ -357,6 +357,21 @@ export interface Asking {
   listed?: boolean;
 }
 
+/** The part of a JSON Schema that tells which keys go together. */
+export interface Rule {
+  required?: string[];
+  properties?: Record<string, false | { const?: Plain; enum?: Plain[] }>;
+  allOf?: Rule[];
+  anyOf?: Rule[];
+  oneOf?: Rule[];
+  not?: Rule;
+  if?: Rule;
+  then?: Rule;
+  else?: Rule;
+  dependentRequired?: Record<string, string[]>;
+  dependentSchemas?: Record<string, Rule>;
+}
+
 /** A key of a table. */
 export interface Control extends Asking {
   key: string;
@@ -373,6 +388,8 @@ export interface EntryTold {
   where: string;
   words: string;
   values: Values;
+  /** Keys of the tables below it. */
+  below: string[];
 }
 
 /** Tables of one sort that a machine has, or can have. */
@@ -396,7 +413,7 @@ export interface Tables {
   type: "tables";
   seq: number;
   groups: Group[];
-  forms: Record<string, { text: string; controls: Control[] }>;
+  forms: Record<string, { controls: Control[]; rule: Rule }>;
   /** Points of the frame and of links, in their own axes, m. */
   bodies: Record<string, Record<string, Pair>>;
 }
