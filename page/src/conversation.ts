@@ -1,8 +1,10 @@
 /** One question at a time: of edits that wait, the newest is enough. */
 
-import type { Asked, Edit, Told, Wire } from "./protocol";
+import type { Asked, Edit, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
+import type { GhostMessage, VariantsMessage } from "./protocol";
 import { Numbers, type Planted, type ResponseMessage, type State } from "./protocol";
+import { type Shelf, Story, type Told as Kept } from "./story";
 import { language } from "./words";
 
 export interface Events {
@@ -10,29 +12,36 @@ export interface Events {
   state(state: State): void;
   response(message: ResponseMessage, numbers: Numbers): void;
   planting(message: Planted): void;
+  ghost(message: GhostMessage, numbers: Numbers): void;
+  variants(message: VariantsMessage): void;
   refused(message: string, edit: boolean): void;
   balanced(message: Extract<Told, { type: "balanced" }>): void;
   busy(what: string | null): void;
+  tables(message: Tables): void;
+  saved(name: string): void;
   file(name: string, mime: string, bytes: DataView | undefined): void;
   line(up: boolean): void;
 }
 
-export interface Memory {
-  read(): string | null;
-  write(text: string): void;
-}
+/** Hears that something was done, or why not. */
+type Answered = (refusal: string | null, told: Refused | null) => void;
 
 interface Question {
   seq: number;
   asked: Asked;
-  answered?: ((refusal: string | null) => void) | undefined;
+  answered?: Answered | undefined;
+  /** Takes the file that is asked for, instead of the browser's downloads. */
+  got?: ((name: string, bytes: DataView | undefined) => void) | undefined;
 }
 
 /** What takes long: other questions do not wait for it. */
 const SLOW = new Set(["balance", "download"]);
 
-/** What makes the machine on the server other than it was; said again after a broken line. */
-const REMEMBERED = new Set(["edit", "undo", "redo", "balance", "compare", "outputs"]);
+/** What leaves the machine on the server as it was; all else is said again after a broken line. */
+const IDLE = new Set(["ready", "speak", "save", "download", "tables"]);
+
+/** Who asks these says himself why not. */
+const ASIDE = new Set(["entry", "tables"]);
 
 export class Conversation {
   /** Drags and held keys under way; each ends before something else is asked. */
@@ -42,15 +51,16 @@ export class Conversation {
   private readonly queue: Question[] = [];
   private waiting: Question | null = null;
   private readonly aside = new Map<number, Question>();
-  private story: Asked[] = [];
+  private readonly story: Story;
   private repeating = false;
 
-  /** `memory` is where what was done outlives a reload. */
+  /** `shelf` is where what was done outlives a reload. */
   constructor(
     private readonly wire: Wire,
     private readonly events: Events,
-    private readonly memory: Memory | null,
+    shelf: Shelf | null,
   ) {
+    this.story = new Story(shelf);
     wire.on("msg:custom", this.hear);
   }
 
@@ -69,9 +79,9 @@ export class Conversation {
   }
 
   /** Ask; every question gets its answer, in this order. */
-  ask(asked: Asked, answered?: (refusal: string | null) => void): void {
+  ask(asked: Asked, answered?: Answered, got?: Question["got"]): void {
     this.dropWaiting();
-    this.queue.push({ seq: ++this.seq, asked, answered });
+    this.queue.push({ seq: ++this.seq, asked, answered, got });
     this.next();
   }
 
@@ -108,22 +118,31 @@ export class Conversation {
         this.events.hello(told);
         return this.next();
       case "state":
-        this.events.state({ ...told, numbers: new Numbers(told.arrays, buffers[0]) });
-        return this.end(told.seq, null);
+        return this.state({ ...told, numbers: new Numbers(told.arrays, buffers[0]) });
+      case "saved":
+        this.story.saved(told.base, told.text);
+        return this.events.saved(told.name);
       case "response":
         return this.events.response(told, new Numbers(told.arrays, buffers[0]));
+      case "ghost":
+        return this.events.ghost(told, new Numbers(told.arrays, buffers[0]));
+      case "variants":
+        return this.events.variants(told);
       case "planting":
       case "strokes":
         return this.events.planting(told);
       case "refused":
         if (!this.repeating) this.refuse(told.seq, told.message);
-        return this.end(told.seq, told.message);
+        return this.end(told.seq, told.message, told);
+      case "tables":
+        this.events.tables(told);
+        return this.end(told.seq, null);
       case "balanced":
         return this.events.balanced(told);
       case "busy":
         return this.events.busy(told.what);
       case "file":
-        this.events.file(told.name, told.mime, buffers[0]);
+        this.file(told, buffers[0]);
         return this.end(told.seq, null);
       case "lost":
       case "back":
@@ -131,44 +150,66 @@ export class Conversation {
     }
   };
 
+  private file(told: Extract<Told, { type: "file" }>, bytes: DataView | undefined): void {
+    const got = this.aside.get(told.seq)?.got ?? this.flight?.got;
+    if (got) got(told.name, bytes);
+    else this.events.file(told.name, told.mime, bytes);
+  }
+
   private refuse(seq: number, message: string): void {
     const asked = this.flight?.seq === seq ? this.flight.asked : null;
+    if (asked && ASIDE.has(asked.type) && this.flight?.answered) return;
     if (asked?.type !== "edit") return this.events.refused(message, false);
     // Who asks for a number and waits for the answer says it beside that number.
     if (!asked.commit || !this.flight?.answered) this.events.refused(message, true);
   }
 
-  private end(seq: number, refusal: string | null): void {
+  private end(seq: number, refusal: string | null, told: Refused | null = null): void {
     const question = this.flight?.seq === seq ? this.flight : this.aside.get(seq);
     if (!question) return;
     if (question === this.flight) this.flight = null;
     else if (this.aside.delete(seq)) this.events.busy(null);
-    if (refusal === null && !this.repeating) this.remember(question.asked);
+    // Without what a story began with, nothing of it can be done.
+    if (this.repeating && refusal !== null && question.asked.type === "open") {
+      this.queue.length = 0;
+      this.story.forget();
+    }
     if (this.repeating && !this.queue.length) this.repeating = false;
-    question.answered?.(refusal);
+    question.answered?.(refusal, told);
     this.next();
   }
 
-  private remember(asked: Asked): void {
-    if (asked.type === "open") this.story = [asked];
-    else if (REMEMBERED.has(asked.type) && !(asked.type === "edit" && !asked.commit)) {
-      this.story.push(asked);
-    } else return;
-    this.memory?.write(JSON.stringify(this.story));
+  private state(state: State): void {
+    this.events.state(state);
+    const { seq } = state;
+    const asked = (this.flight?.seq === seq ? this.flight : this.aside.get(seq))?.asked;
+    const tried = asked?.type === "edit" && !asked.commit;
+    if (asked && !this.repeating && !tried && !IDLE.has(asked.type))
+      this.story.remember(asked, state);
+    this.story.heard(state);
+    this.end(seq, null);
   }
 
-  /** Do again what was done before the page was loaded; tells whether there was anything. */
-  recall(): boolean {
-    const text = this.memory?.read();
-    this.story = text ? (JSON.parse(text) as Asked[]) : [];
-    if (this.story.length) this.repeat(this.story);
-    return this.story.length > 0;
+  /** Do again what was done in this tab; tells whether there was anything. */
+  recall(base: string): boolean {
+    return this.repeat(this.story.begin(base));
   }
 
-  private repeat(story: Asked[]): void {
-    this.repeating = true;
+  /** Go on with what was done in a tab that is closed. */
+  resume(told: Kept, base: string): void {
+    this.repeat(this.story.resume(told, base));
+  }
+
+  /** What was done in tabs that are closed. */
+  offered(base: string): Promise<Kept[]> {
+    return this.story.offered(base);
+  }
+
+  private repeat(story: Asked[]): boolean {
+    this.repeating = story.length > 0;
     for (const asked of story) this.queue.push({ seq: ++this.seq, asked });
     this.next();
+    return story.length > 0;
   }
 
   /** A new connection knows nothing: tell it all that was done. */
@@ -181,7 +222,6 @@ export class Conversation {
     this.aside.clear();
     if (!up) return;
     this.wire.send({ type: "speak", languages: [language()] });
-    if (this.story.length) this.repeat(this.story);
-    else this.ask({ type: "ready" });
+    if (!this.repeat(this.story.all())) this.ask({ type: "ready" });
   }
 }

@@ -15,6 +15,7 @@ export const KEYS: [keys: string, what: string][] = [
   ["↑ ↓", toSay("in a number: a little more, a little less (Shift: ten times)")],
   ["Ctrl + Z", toSay("undo")],
   ["Ctrl + Shift + Z", toSay("redo")],
+  ["Ctrl + S", toSay("save the file that was opened, or download the model")],
   ["?", toSay("this list")],
 ];
 

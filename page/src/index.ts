@@ -1,9 +1,10 @@
 /** The live page: anywidget's `render` for notebooks, `connect` for the served page. */
 
 import { App } from "./app";
-import type { Memory } from "./conversation";
+import { Played } from "./played";
 import type { Wire } from "./protocol";
 import { Socket } from "./socket";
+import { shelf } from "./story";
 import { agree, keep, language, wished } from "./words";
 
 /** Show the machine of a model (anywidget's, or a connection) in an element; returns a clean-up. */
@@ -29,33 +30,28 @@ export function connect(el: HTMLElement, address: string): Socket {
   return new Socket(url.href);
 }
 
-/** What is done in a tab is kept while the server runs that its address belongs to. */
-function memory(address: string): Memory {
-  const key = `equipoise ${address}`;
-  return {
-    read: () => sessionStorage.getItem(key),
-    write: (text) => {
-      try {
-        sessionStorage.setItem(key, text);
-      } catch {
-        sessionStorage.removeItem(key); // more than the browser keeps
-      }
-    },
-  };
-}
-
 /** The served page; in another language it is loaded again, and tells anew what was done. */
 async function begin(el: HTMLElement, address: string): Promise<void> {
   const wire = connect(el, address);
   await agree(wire, wished());
   document.documentElement.lang = language();
-  new App(wire, el, memory(address), (code) => {
+  new App(wire, el, shelf(), (code) => {
     keep(code);
     location.reload();
   });
 }
 
-const main = document.querySelector<HTMLElement>("#equipoise-live[data-live]");
+/** A file that plays without a server. */
+async function play(el: HTMLElement, text: string): Promise<void> {
+  const wire = new Played(text);
+  el.classList.add("equipoise-page", "equipoise-played");
+  await agree(wire, []);
+  new App(wire, el, null, () => undefined);
+}
+
+const main = document.querySelector<HTMLElement>("#equipoise-live");
 if (main?.dataset.live && !main.childElementCount) void begin(main, main.dataset.live);
+const recorded = main?.dataset.played && document.getElementById(main.dataset.played);
+if (main && recorded) void play(main, recorded.textContent ?? "");
 
 export default { render };

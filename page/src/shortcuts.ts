@@ -4,6 +4,7 @@ export interface Shortcuts {
   board: HTMLElement;
   undo(): void;
   redo(): void;
+  save(): void;
   help(): void;
   toggle(): void;
   /** Turn the crank by some degrees. */
@@ -17,7 +18,8 @@ export function pressed(event: KeyboardEvent, page: Shortcuts): void {
   const typing = target instanceof HTMLInputElement && target.type === "text";
   if (event.ctrlKey || event.metaKey) {
     // A text that is being typed has its own undo.
-    if (!(typing && target.dataset.typed !== undefined)) step(event, page);
+    const own = typing && target.dataset.typed !== undefined;
+    if (!own || event.key.toLowerCase() === "s") step(event, page);
   } else if (!typing && event.key === "?") page.help();
   else if (!event.altKey && page.board.contains(target) && !(target instanceof HTMLButtonElement)) {
     draw(event, page);
@@ -26,6 +28,10 @@ export function pressed(event: KeyboardEvent, page: Shortcuts): void {
 
 function step(event: KeyboardEvent, page: Shortcuts): void {
   const key = event.key.toLowerCase();
+  if (key === "s" && !event.shiftKey) {
+    event.preventDefault();
+    page.save();
+  }
   if (key !== "z" && key !== "y") return;
   event.preventDefault();
   if (event.shiftKey || key === "y") page.redo();

@@ -8,6 +8,7 @@ const ICONS = {
   undo: "M5.5 3 2.5 6l3 3M3 6h6.5a3.5 3.5 0 0 1 0 7H6",
   redo: "M10.5 3l3 3-3 3M13 6H6.5a3.5 3.5 0 0 0 0 7H10",
   balance: "M8 2.5v11M4.5 13.5h7M2.5 5h11M4 5 2 9.5h4zM12 5l-2 4.5h4z",
+  disk: "M2.5 2.5h9l2 2v9h-11zM5 2.500v4h5.500v-4M5 13.500v-4.500h6v4.500",
   save: "M8 2v7.5M4.800 6.7 8 9.900l3.200-3.200M2.5 13.5h11",
   keys: "M1.5 4h13v8.5h-13zM4 6.5h.01M6.7 6.5h.01M9.400 6.5h.01M12 6.5h.01M4.5 10h7",
   open: "M2 12.5v-9h4l1.5 2H14v7z",
@@ -17,9 +18,11 @@ export interface Commands {
   example(name: string): void;
   file(file: File): void;
   undo(): void;
+  save(): void;
+  link(): void;
   redo(): void;
   balance(): void;
-  download(kind: FileKind, language?: string): void;
+  download(kind: FileKind, language?: string, format?: "svg" | "png"): void;
   help(): void;
   /** Speak a language from now on. */
   speak(language: string): void;
@@ -31,6 +34,7 @@ export class Toolbar {
   private readonly undo: HTMLButtonElement;
   private readonly redo: HTMLButtonElement;
   private readonly balance: HTMLButtonElement;
+  private readonly save: HTMLButtonElement;
   private readonly own = h("option", { value: "" }, "");
   private readonly menu: HTMLDetailsElement;
 
@@ -55,6 +59,8 @@ export class Toolbar {
     this.undo = button("", "undo", () => commands.undo(), say("Undo"));
     this.redo = button("", "redo", () => commands.redo(), say("Redo"));
     this.balance = button(say("Balance"), "balance", () => commands.balance());
+    this.save = button("", "disk", () => commands.save(), say("Save"));
+    this.save.hidden = true;
     this.menu = downloads(commands);
     const help = button("", "keys", () => commands.help(), say("Keys"));
     this.root = h(
@@ -65,7 +71,7 @@ export class Toolbar {
       open,
       file,
       h("span", { class: "gap" }),
-      h("span", { class: "together" }, this.undo, this.redo),
+      h("span", { class: "together" }, this.undo, this.redo, this.save),
       this.balance,
       this.menu,
       choiceOfLanguage(commands),
@@ -93,6 +99,8 @@ export class Toolbar {
     label(this.undo, say("Undo"), state.undo);
     label(this.redo, say("Redo"), state.redo);
     this.balance.disabled = !state.has_forces;
+    this.save.hidden = !state.file;
+    this.save.disabled = state.file?.saved !== false;
   }
 
   busy(what: string | null): void {
@@ -121,15 +129,16 @@ function named(label: string): HTMLSelectElement {
 function downloads(commands: Commands): HTMLDetailsElement {
   const language = named(say("Language of the report"));
   const menu: HTMLDetailsElement = h("details", { class: "menu" });
-  const item = (text: string, kind: FileKind) =>
+  const close = (then: () => void) => {
+    menu.open = false;
+    then();
+  };
+  const item = (text: string, kind: FileKind, format?: "svg" | "png") =>
     h(
       "button",
       {
         type: "button",
-        onclick: () => {
-          menu.open = false;
-          commands.download(kind, language.value);
-        },
+        onclick: () => close(() => commands.download(kind, language.value, format)),
       },
       text,
     );
@@ -146,6 +155,11 @@ function downloads(commands: Commands): HTMLDetailsElement {
       item(say("Download model"), "model"),
       item(say("Download CSV"), "csv"),
       h("div", { class: "line" }, item(say("Download report"), "report"), language),
+      item(say("Drawing as SVG"), "drawing", "svg"),
+      item(say("Drawing as PNG"), "drawing", "png"),
+      item(say("Motion as GIF"), "film"),
+      item(say("Page that plays without a server"), "played"),
+      h("button", { type: "button", onclick: () => close(commands.link) }, say("Copy link")),
     ),
   );
   menu.addEventListener("keydown", (event) => {

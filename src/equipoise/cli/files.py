@@ -127,22 +127,26 @@ def serve(
     file
         Path of a model file, or the name of a bundled example; else one is picked on the page.
     port
-        On which it is served; any that is free if not given.
+        On which it is served; if not given 8471, or any that is free.
     no_browser
         Print the address, and open no browser.
     """
     from equipoise.web import server
-    from equipoise.web.session import Session, opened_file
+    from equipoise.web.disk import on_disk
+    from equipoise.web.openings import opened_file
+    from equipoise.web.session import Session
 
     first = Session()
     if file is not None:
         with naming(file):  # what is wrong with the machine is told before a page is opened
             first.open(opened_file(file))
+            first.disk = on_disk(file, first.shown)
 
     def begin() -> Session:
-        session = Session()
+        session = Session(disk=first.disk)
         if first.found is not None:
-            session.open(first.found.design, first.found)
+            found = first.shown if first.disk is None else first.disk.found
+            session.open(found.design, found)
         return session
 
     def tell(address: str) -> None:
@@ -155,4 +159,4 @@ def serve(
 
     gc.enable()  # other commands end before garbage matters
     gc.freeze()
-    server.serve(begin, port or 0, tell)
+    server.serve(begin, port, tell)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from math import floor, log10
 from typing import TYPE_CHECKING
 
@@ -22,7 +22,7 @@ from equipoise.symbols.shapes import Array
 
 if TYPE_CHECKING:
     from equipoise.vibration.free import FreeVibration
-    from equipoise.vibration.response import Response
+    from equipoise.vibration.response import Mode, Response
 
 SEEN = 0.04
 """Largest displacement that is drawn, over the size of the drawing."""
@@ -56,6 +56,44 @@ def swinging(scene: Scene, response: Response, factor: float | None = None) -> S
     return _with(scene, factor * values, told)
 
 
+@dataclass(frozen=True, eq=False)
+class ModeSwing:
+    """How a support swings in a mode, as large as it is drawn.
+
+    amplitudes : (6,) complex, m and rad, in the order of `FREEDOMS`.
+    across : names of what moves across the drawing.  seen : whether anything moves in it.
+    told : what is to be said of it.
+    """
+
+    amplitudes: Array
+    across: tuple[str, ...]
+    seen: bool
+    told: tuple[str, ...]
+
+    @classmethod
+    def of(cls, scene: Scene, number: int, mode: Mode, coordinates: Sequence[str]) -> ModeSwing:
+        """That of a mode, counted from 1, of a machine whose support has some coordinates."""
+        whole = np.zeros(len(FREEDOMS), complex)
+        whole[[*map(FREEDOMS.index, coordinates)]] = mode.shape
+        values = (whole[:, None] * np.exp(1j * _phases(INSTANTS))).real
+        reach = _reach(scene, values)
+        across = [name for name, _ in _across(scene, values, reach)]
+        planar = [*map(FREEDOMS.index, PLANAR)]
+        in_plane = np.zeros_like(values)
+        in_plane[planar] = values[planar]
+        seen = _reach(scene, in_plane) > LEAST * reach
+        told = [say("Mode {number}: {told}", number=number, told=described(mode))]
+        if across:
+            names = ", ".join(say(ACROSS[name]) for name in across)
+            told.append(say("across the drawing, not shown: {sizes}", sizes=names))
+        return cls(whole * (SEEN * _size(scene) / reach), tuple(across), seen, tuple(told))
+
+
+def _phases(instants: int) -> Array:
+    """Even phases in a swing, rad."""
+    return np.asarray(np.arange(instants) * (2 * np.pi / instants))
+
+
 def in_mode(free: FreeVibration, number: int, instants: int = INSTANTS) -> Scene:
     """A machine whose crank stands still while its support swings in a mode, counted from 1.
 
@@ -71,27 +109,17 @@ def in_mode(free: FreeVibration, number: int, instants: int = INSTANTS) -> Scene
     still = Scene.of(move(free.machine, ANGLES))
     angle = still.crank_angle[clear_angle(still)]
     scene = Scene.of(move(free.machine, np.full(instants, angle)))
-    phase = np.arange(instants) * (2 * np.pi / instants)
     drive = Drive(scene.drive.link, scene.drive.pivot, 0)
-    scene = replace(scene, crank_angle=phase, drive=drive)
-    mode, whole = free.modes[number - 1], np.zeros(len(FREEDOMS), complex)
-    whole[free.linear.body.free] = mode.shape
-    values = (whole[:, None] * np.exp(1j * phase)).real
-    reach = _reach(scene, values)
-    across = [name for name, _ in _across(scene, values, reach)]
-    planar = [*map(FREEDOMS.index, PLANAR)]
-    in_plane = np.zeros_like(values)
-    in_plane[planar] = values[planar]
-    if not _reach(scene, in_plane) > LEAST * reach:
+    scene = replace(scene, crank_angle=_phases(instants), drive=drive)
+    mode = ModeSwing.of(scene, number, free.modes[number - 1], free.coordinates)
+    if not mode.seen:
+        across = " and ".join(mode.across)
         raise UsageError(
-            f"mode {number} moves the support across the drawing alone, in {' and '.join(across)}; "
+            f"mode {number} moves the support across the drawing alone, in {across}; "
             f"`equipoise plot --only mode-{number}` shows it from three sides"
         )
-    told = [say("Mode {number}: {told}", number=number, told=described(mode))]
-    if across:
-        names = ", ".join(say(ACROSS[name]) for name in across)
-        told.append(say("across the drawing, not shown: {sizes}", sizes=names))
-    return _with(scene, values * (SEEN * _size(scene) / reach), told)
+    values = (mode.amplitudes[:, None] * np.exp(1j * scene.crank_angle)).real
+    return _with(scene, values, [*mode.told])
 
 
 def _with(scene: Scene, values: Array, told: list[str]) -> Scene:

@@ -50,13 +50,37 @@ class Structure:
 
 def structure(machine: Machine) -> Structure:
     """Read joints off the names that bodies share."""
-    bodies = (FRAME, *machine.links)
-    shared = bodies_at(machine.bodies)
-    pins = {point: tuple(names) for point, names in shared.items() if len(names) > 1}
-    _check_apart(machine, pins)
-    result = Structure(bodies, pins, machine.sliders, machine.gears)
-    _check_mobility(result, machine.drive.link, _alike(machine.bodies, pins))
+    result = joined(machine.bodies, machine.sliders, machine.gears)
+    _check_apart(machine, result.pins)
+    _check_mobility(result, machine.drive.link, _alike(machine.bodies, result.pins))
     return result
+
+
+def joined(bodies: Bodies, sliders: tuple[Slider, ...], gears: tuple[Gear, ...]) -> Structure:
+    """Joints of bodies, the frame first, whether or not they make a linkage."""
+    pins = {point: tuple(names) for point, names in bodies_at(bodies).items() if len(names) > 1}
+    return Structure((*bodies,), pins, sliders, gears)
+
+
+def undetermined(joints: Structure, drive: str) -> list[str]:
+    """Links that do not follow from the drive's motion."""
+    known = [FRAME, drive]
+    others = [link for link in joints.bodies[1:] if link != drive]
+    while others:
+        found = (group for group in subsets(joints, others) if joints.freedom(group, known) <= 0)
+        if not (group := next(found, ())):
+            break
+        known += group
+        others = [link for link in others if link not in group]
+    return others
+
+
+def held_too_often(joints: Structure, drive: str) -> tuple[str, ...]:
+    """The links that too many joints hold; the drive where none but it is."""
+    known = [FRAME, drive]
+    others = [link for link in joints.bodies[1:] if link != drive]
+    held = (group for group in subsets(joints, others) if joints.freedom(group, known) < 0)
+    return next(held, (drive,))
 
 
 def _check_apart(machine: Machine, pins: Mapping[str, tuple[str, ...]]) -> None:
@@ -149,33 +173,23 @@ def _check_mobility(joints: Structure, drive: str, alike: Note | str) -> None:
         sliders=_number(len(joints.sliders), SLIDING_JOINTS),
         gears=_number(len(joints.gears), GEARS),
     )
-    known = [FRAME, drive]
-    others = [link for link in links if link != drive]
     if mobility < 1:
-        held = (group for group in subsets(joints, others) if joints.freedom(group, known) < 0)
-        locked = next(held, (drive,))
         raise MobilityError(
             Note(
                 "the linkage has no free motion (count {mobility}: {count}); too many "
                 "joints hold {names}",
                 mobility=mobility,
                 count=count,
-                names=_names(locked),
+                names=_names(held_too_often(joints, drive)),
             )
         )
-    while others:
-        found = (group for group in subsets(joints, others) if joints.freedom(group, known) <= 0)
-        if not (group := next(found, ())):
-            break
-        known += group
-        others = [link for link in others if link not in group]
     raise MobilityError(
         Note(
             "the linkage has {mobility} free motions ({count}), and one drive can "
             "command only one; the drive leaves {names} undetermined{alike}",
             mobility=mobility,
             count=count,
-            names=_names(others),
+            names=_names(undetermined(joints, drive)),
             alike=alike,
         )
     )

@@ -3,10 +3,6 @@
 Links are taken in the smallest groups that can be solved: a geared link, a dyad, and only where
 neither fits a group for Newton's method.  Each group becomes steps for motion and, in reverse
 order, steps for forces.
-
-A linkage whose crank cannot turn fully is solved at given crank angles, if those can be reached.
-Without a whole cycle nothing tells the running angles of links that drive gears, except the way
-from crank angle 0, where the start angles of gears hold.
 """
 
 from __future__ import annotations
@@ -15,20 +11,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
-from math import ceil, degrees, pi
 from typing import Any
 
 import numpy as np
 
-from equipoise.errors import ChangePointError, MobilityError, ModelError, RangeError
-from equipoise.i18n import Note, to_say
+from equipoise.errors import MobilityError, ModelError
+from equipoise.i18n import Note
 from equipoise.mechanism import groups
 from equipoise.mechanism.checks import meant
-from equipoise.mechanism.cycle import CHANGE_POINT, POINTS_PER_TURN, Cycle, close
+from equipoise.mechanism.cycle import Cycle, close
 from equipoise.mechanism.joints import Structure, drive_pivot, structure, subsets
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.steps import (
-    Array,
     Builder,
     Group,
     Guide,
@@ -39,13 +33,10 @@ from equipoise.mechanism.steps import (
     initial_state,
     needed_references,
     pin_reaction,
-    plain_angle,
     run,
 )
 
 NOTHING: Mapping[str, tuple[int, str]] = {}
-Stuck = RangeError | ChangePointError
-"""Why a crank cannot turn fully."""
 
 
 @dataclass(frozen=True)
@@ -150,10 +141,52 @@ def ordered(
     """
     from equipoise.mechanism import sides
 
+    pivot = drive_pivot(joints, machine.drive.link)
+    builder, groups, choices = _grouped(machine, joints, pivot, start or {}, assumed)
+    idle = [joint for joint in machine.assembly if joint not in builder.sides]
+    if choices:
+        if not assumed and (decided := sides.decided(machine, choices, _turns)):
+            return ordered(machine, joints, start, decided)
+        raise sides.missing(machine, choices, idle)
+    for joint in idle:
+        dyads = ", ".join(sorted(builder.sides)) or "no point"
+        hint = meant(joint, [*builder.sides]) or f"the dyads of this linkage meet at {dyads}"
+        raise ModelError(
+            f"assembly.{joint}",
+            Note(
+                "no dyad has its inner joint there that could be assembled on two sides; {hint}",
+                hint=hint,
+            ),
+        )
+    return Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
+
+
+def sides_at_position(machine: Machine) -> dict[str, str]:
+    """The side of each dyad that has two, as the machine's rough position has it; what its table
+    of sides says is left aside.
+
+    Raises
+    ------
+    MobilityError, ModelError : as of `assemble`.
+    """
+    bare = replace(machine, assembly={})
+    joints = structure(bare)
+    _, _, choices = _grouped(bare, joints, drive_pivot(joints, bare.drive.link), {}, NOTHING)
+    return {one.joint: one.words[one.side] for one in choices}
+
+
+def _grouped(
+    machine: Machine,
+    joints: Structure,
+    pivot: str,
+    start: State,
+    assumed: Mapping[str, tuple[int, str]],
+) -> tuple[Builder, list[Group], list[Any]]:
+    """What the drive determines, group by group, and the sides that the file leaves out."""
+    from equipoise.mechanism import sides
+
     drive = machine.drive.link
-    pivot = drive_pivot(joints, drive)
-    known = {FRAME, drive}
-    builder = Builder(machine, points=set(machine.frame), running=known, told=start or {})
+    builder = Builder(machine, points=set(machine.frame), running={FRAME, drive}, told=start)
     builder.add({FRAME: pivot, drive: pivot})
     unknown = [link for link in machine.links if link != drive]
     groups: list[Group] = []
@@ -171,22 +204,7 @@ def ordered(
         groups.append(group)
         builder.motion += group.motion
         unknown = [link for link in unknown if link not in group.links]
-    idle = [joint for joint in machine.assembly if joint not in builder.sides]
-    if choices:
-        if not assumed and (decided := sides.decided(machine, choices, _turns)):
-            return ordered(machine, joints, start, decided)
-        raise sides.missing(machine, choices, idle)
-    for joint in idle:
-        dyads = ", ".join(sorted(builder.sides)) or "no point"
-        hint = meant(joint, [*builder.sides]) or f"the dyads of this linkage meet at {dyads}"
-        raise ModelError(
-            f"assembly.{joint}",
-            Note(
-                "no dyad has its inner joint there that could be assembled on two sides; {hint}",
-                hint=hint,
-            ),
-        )
-    return Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
+    return builder, groups, choices
 
 
 def _turns(machine: Machine) -> Cycle:
@@ -281,69 +299,3 @@ def outer_joints(builder: Builder, joints: Structure, link: str) -> list[Outer]:
             guide = Guide.seen_from(slider, other)
             result.append(Outer(link, other, guide.base, guide))
     return result
-
-
-# -- cranks that swing -----------------------------------------------------------------------------
-
-
-def solve_swinging(linkage: Linkage, theta: Array, error: Stuck) -> State:
-    """State at crank angles (N,) of a linkage whose cycle ended with `error`.
-
-    Raises
-    ------
-    MotionError : one of the crank angles is out of reach.
-    """
-    if any(group.kind == "loops" for group in linkage.groups):
-        raise error
-    start = linkage.start(theta)
-    if linkage.needed_references:
-        for side in (1, -1):
-            _add_references(linkage, start, theta * side >= 0, side, error)
-    with np.errstate(all="ignore"):
-        state = run(linkage.motion, start)
-    _check(linkage, state, theta, error, to_say("{error} (asked for {angle:.4g} deg)"))
-    return state
-
-
-def middle_angle(linkage: Linkage, link: str, theta: Array, error: Stuck) -> Array:
-    """Angle of a link (N,) in the middle of the range that each crank angle lies in.
-
-    Within a range a link swings less than half a turn to either side of that.
-    """
-    middles = np.zeros_like(theta)
-    for low, high in getattr(error, "ranges", ()):
-        middle = 0.5 * (low + high)
-        inside = np.abs(np.mod(theta - middle + pi, 2 * pi) - pi) <= 0.5 * (high - low)
-        middles[inside] = middle
-    with np.errstate(all="ignore"):
-        state = run(linkage.motion, linkage.start(middles))
-    return plain_angle(state, link)
-
-
-def _add_references(linkage: Linkage, state: State, chosen: Array, side: int, error: Stuck) -> None:
-    """Follow the running angles from crank angle 0 to the farthest on one side."""
-    theta = state["theta"]
-    far = float(np.max(np.abs(theta[chosen]), initial=0.0))
-    way = np.linspace(0.0, far, 2 + ceil(far / (2 * pi) * POINTS_PER_TURN))
-    with np.errstate(all="ignore"):
-        followed = run(linkage.motion, linkage.start(side * way))
-    doing = to_say("{error} (on the way from 0 deg, where gears start, at {angle:.4g} deg)")
-    _check(linkage, followed, side * way, error, doing)
-    for name in linkage.needed_references:
-        reference = state.setdefault(f"reference({name})", np.zeros_like(theta))
-        reference[chosen] = np.interp(np.abs(theta[chosen]), way, followed[f"phi({name})"])
-
-
-def _check(linkage: Linkage, state: State, theta: Array, error: Stuck, doing: str) -> None:
-    """Raise the error again, with the crank angle, where a dyad cannot be closed."""
-    for group in linkage.groups:
-        if group.margin is None:
-            continue
-        margin = np.broadcast_to(state[group.margin], theta.shape)
-        bad = ~(margin > CHANGE_POINT)
-        if np.any(bad):
-            angle = degrees(theta[int(np.argmax(bad))])
-            told = Note(doing, error=error.note, angle=angle)
-            if isinstance(error, RangeError):
-                raise RangeError(told, error.ranges) from None
-            raise ChangePointError(told, error.crank_angle) from None

@@ -16,9 +16,10 @@ import numpy as np
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import Named, Vector, bodies_at
-from equipoise.mechanism.linkage import Linkage, assemble, middle_angle, solve_swinging
+from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import Drive, Machine, Slider
 from equipoise.mechanism.steps import Array, Group, State, p, plain_angle, running_angle, u
+from equipoise.mechanism.swinging import middle_angle, solve_swinging
 from equipoise.quantities.units import HUGE
 
 MOST_ANGLES = 400_000

@@ -12,8 +12,9 @@ import numpy as np
 from equipoise.errors import EquipoiseError
 from equipoise.mechanism.bodies import place_of
 from equipoise.mechanism.body_checks import Outline, outlines
-from equipoise.mechanism.joints import gear_pins
-from equipoise.mechanism.model import FRAME, Link, Machine
+from equipoise.mechanism.checks import Bodies
+from equipoise.mechanism.joints import Structure, gear_pins
+from equipoise.mechanism.model import FRAME, Link
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.tip import surface_of
 from equipoise.symbols.carrier import MOUNT, Carrier, Swing
@@ -114,6 +115,7 @@ class Scene:
     springs : ends of each, on its link and on the frame, as names of points.
     angles : of each link, counted on through the turns; (N,) rad.
     planned : springs that balancing may set, likewise.
+    room : places besides that are to be in sight, complex, m.
     swing : how the support moves, where it is to be seen; places are in the frame's axes all along.
     """
 
@@ -132,6 +134,7 @@ class Scene:
     field: Field | None = None
     carrier: Carrier | None = None
     swing: Swing | None = None
+    room: tuple[complex, ...] = ()
 
     @classmethod
     def of(cls, motion: Motion) -> Scene:
@@ -142,11 +145,11 @@ class Scene:
         return cls(
             motion.crank_angle,
             tuple(machine.frame),
-            tuple(_bodies(machine)),
+            tuple(bodies_of(machine.links)),
             places,
             frozenset(joints.pins),
             {name: center.place for name, center in motion.mass_centers.items()},
-            tuple(_wheels(motion)),
+            tuple(wheels_of(motion.linkage.joints, machine.bodies)),
             tuple(_guides(motion)),
             springs := tuple((spring.point, spring.to) for spring in machine.springs),
             {name: link.angle for name, link in motion.links.items()},
@@ -192,7 +195,7 @@ class Scene:
     @cached_property
     def linkage_box(self) -> tuple[complex, complex]:
         """Lower left and upper right corner of all places, wheels and ways of blocks, m."""
-        every = [*self.places.values(), *self.mass_centers.values()]
+        every = [*self.places.values(), *self.mass_centers.values(), np.array(self.room, complex)]
         for guide in self.guides:
             place = self.places[guide.point]
             every += [place - guide.behind * guide.way, place + guide.ahead * guide.way]
@@ -288,8 +291,9 @@ def _field(motion: Motion) -> Field | None:
     return Field(surface, max(depth, 0.0), tuple(complex(*end) for end in planting.tray or ()))
 
 
-def _bodies(machine: Machine) -> Iterator[Body]:
-    for name, link in machine.links.items():
+def bodies_of(links: Mapping[str, Link]) -> Iterator[Body]:
+    """The links, with what lies around each."""
+    for name, link in links.items():
         named = {complex(*place): point for point, place in reversed(list(link.points.items()))}
         around = tuple(named[complex(place)] for place in hull(np.array(list(named))))
         yield Body(name, tuple(link.points), around, tuple(_solids(link)))
@@ -303,11 +307,11 @@ def _solids(link: Link) -> Iterator[Outline]:
             yield [corner - origin for corner in corners], radius
 
 
-def _wheels(motion: Motion) -> Iterator[Wheel]:
-    joints = motion.linkage.joints
+def wheels_of(joints: Structure, bodies: Bodies) -> Iterator[Wheel]:
+    """The gears, of which each has its pin on the carrier."""
     for gear in joints.gears:
         driver, driven = gear_pins(joints, gear)
-        carrier = motion.machine.points_of(gear.carrier)
+        carrier = bodies[gear.carrier]
         apart = abs(complex(*carrier[driver]) - complex(*carrier[driven]))
         radius = apart / abs(1 - gear.speed_ratio)
         yield Wheel(gear.driver, driver, radius * abs(gear.speed_ratio))

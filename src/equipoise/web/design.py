@@ -1,4 +1,4 @@
-"""What a page edits: a machine, the counterweights that are tried on it, and designs that were."""
+"""What a page edits: a machine, and the counterweights that are tried on it."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.links import MASS_FIELDS
 from equipoise.mechanism.model import Link, Machine, Vector
+from equipoise.mechanism.shown_units import ShownUnits
 from equipoise.quantities import SI, chosen_unit, parse, rounded
 from equipoise.quantities.units import HUGE, TINY, Dimension
 
@@ -85,6 +86,11 @@ class Design:
     own: Machine
     counterweights: Mapping[str, Counterweight] = field(default_factory=dict)
     plan: Balance | None = None
+
+    @property
+    def units(self) -> ShownUnits | None:
+        """In which its file has values shown."""
+        return self.own.units
 
     @cached_property
     def machine(self) -> Machine:
@@ -187,54 +193,3 @@ def joined(link: Link, weight: Counterweight, pin: complex) -> Link:
     assert made.mass is not None and made.center_of_mass is not None and made.inertia is not None
     center = clean_place(complex(*made.center_of_mass))
     return replace(made, mass=clean(made.mass), center_of_mass=center, inertia=clean(made.inertia))
-
-
-MOST_STEPS = 500
-
-
-@dataclass(frozen=True)
-class Step:
-    """A design, and what was done to get there."""
-
-    design: Design
-    label: str
-
-
-@dataclass(frozen=True)
-class History:
-    """Steps in the order in which they were made; `now` stands between `past` and `future`."""
-
-    now: Step
-    past: tuple[Step, ...] = ()
-    future: tuple[Step, ...] = ()
-
-    @property
-    def first(self) -> Design:
-        """The design that was opened, or the oldest that is kept."""
-        return (*self.past, self.now)[0].design
-
-    @property
-    def undo(self) -> str | None:
-        """What would be taken back."""
-        return self.now.label if self.past else None
-
-    @property
-    def redo(self) -> str | None:
-        """What would be done again."""
-        return self.future[0].label if self.future else None
-
-    def then(self, design: Design, label: str) -> History:
-        """One step more; what was taken back is forgotten."""
-        return History(Step(design, label), (*self.past[1 - MOST_STEPS :], self.now))
-
-    def undone(self) -> History:
-        """One step back, or a `UsageError`."""
-        if not self.past:
-            raise UsageError(Note("there is nothing to undo"))
-        return History(self.past[-1], self.past[:-1], (self.now, *self.future))
-
-    def redone(self) -> History:
-        """One step forth again, or a `UsageError`."""
-        if not self.future:
-            raise UsageError(Note("there is nothing to redo"))
-        return History(self.future[0], (*self.past, self.now), self.future[1:])

@@ -8,19 +8,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from equipoise.errors import EquipoiseError, ModelError, MotionError, UsageError
+from equipoise.errors import EquipoiseError, MotionError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, Position, Vector
 from equipoise.mechanism.motion import Motion
-from equipoise.quantities import parse
 from equipoise.results.analysis import LEAST_ANGLES, Analysis, analyze
+from equipoise.symbols.scene import Scene
 from equipoise.web.design import DRAGGED, Design, clean, clean_place
 from equipoise.web.fields import fields_of
+from equipoise.web.measures import held
 from equipoise.web.messages import Change, Drag, Setting
 
 ANGLES, MOST_SAMPLES = 720, 2880
@@ -35,14 +37,23 @@ Goals = dict[str, tuple[int, complex]]
 
 @dataclass(frozen=True, eq=False)
 class Solved:
-    """A design with what it does."""
+    """A design with what it does.
+
+    stand : crank angle at which it was drawn, rad; None where it has not just been made.
+    """
 
     design: Design
     analysis: Analysis
+    stand: float | None = None
 
     @property
     def motion(self) -> Motion:
         return self.analysis.motion
+
+    @cached_property
+    def scene(self) -> Scene:
+        """What there is to draw of it."""
+        return Scene.of(self.motion)
 
 
 def solved(design: Design) -> Solved:
@@ -75,8 +86,8 @@ def edited(base: Solved, changes: Iterable[Change]) -> Solved:
         elif change.of_mass:
             design = _mass_moved(base, design, change)
         else:
-            design = _moved(base, design, change)
-            goals[change.name] = (change.at, change.to)
+            design, place = _moved(base, design, change)
+            goals[change.name] = (change.at, place)
     return _assembled(design, goals)
 
 
@@ -86,27 +97,16 @@ def _set(design: Design, change: Setting) -> Design:
     field = fields.get(change.path)
     if field is None:
         raise UsageError(unknown(change.path, fields, "number of this machine"))
-    if not isinstance(change.to, str):
-        return field.put(design, clean(change.to, field.dimension))
-    typed = change.to.strip()
-    value = parse(typed, field.dimension)
-    try:
-        return field.put(design, value)
-    except (ModelError, UsageError) as error:
-        given = error.given
-        if given is None or given.value != value:  # of another number
-            raise
-        if isinstance(error, ModelError):
-            raise ModelError(error.where, given.retold(error.what, typed)) from error
-        raise UsageError(given.retold(error.note, typed)) from error
+    return field.typed(design, change.to)  # type: ignore[no-any-return]
 
 
-def _moved(base: Solved, design: Design, change: Drag) -> Design:
-    """A point dragged to a place of the frame."""
-    machine, motion, to = design.own, base.motion, change.to
+def _moved(base: Solved, design: Design, change: Drag) -> tuple[Design, complex]:
+    """A point dragged to a place of the frame, or as near as locked lengths let it, m."""
+    machine, motion = design.own, base.motion
     if change.name not in movable(machine):
         raise UsageError(unknown(change.name, movable(machine), "point that can be moved"))
     _check_sample(motion, change)
+    to = held({name: one.place[change.at] for name, one in motion.points.items()}, change)
     frame, links = dict(machine.frame), dict(machine.links)
     if change.name in frame:
         frame[change.name] = clean_place(to, extent_of(machine), DRAGGED)
@@ -114,8 +114,8 @@ def _moved(base: Solved, design: Design, change: Drag) -> Design:
         if change.name in link.points and len(link.points) > 1:
             place = _local(motion, name, change.at, to)
             links[name] = link.altered(points={**link.points, change.name: place})
-    position = _position(motion, change) if machine.position is not None else None
-    return design.with_machine(replace(machine, frame=frame, links=links, position=position))
+    position = _position(motion, replace(change, to=to)) if machine.position is not None else None
+    return design.with_machine(replace(machine, frame=frame, links=links, position=position)), to
 
 
 def _mass_moved(base: Solved, design: Design, change: Drag) -> Design:

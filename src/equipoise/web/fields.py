@@ -8,15 +8,26 @@ from functools import lru_cache, partial
 from math import pi
 from typing import Any
 
+from equipoise.errors import ModelError, UsageError
 from equipoise.keys import Frozen, Quantity, quantities_of
 from equipoise.mechanism.links import MASS_FIELDS
-from equipoise.mechanism.model import Link, Machine, Vector, size_of
+from equipoise.mechanism.model import FRAME, Link, Machine, Vector, size_of
 from equipoise.mechanism.mounts import OF_AXIS, OF_POINT
-from equipoise.quantities import Display, chosen_unit, format_exact, in_unit, rounded, typeset
+from equipoise.quantities import (
+    Display,
+    chosen_unit,
+    format_exact,
+    in_unit,
+    parse,
+    rounded,
+    typeset,
+)
 from equipoise.quantities.units import KINDS, Dimension
-from equipoise.web.design import Design, pin_of
+from equipoise.web.design import Design, clean, clean_place, pin_of
+from equipoise.web.measures import Measure, measures_of
 
-Put = Callable[[Design, float], Design]
+Put = Callable[[Any, float], Any]
+"""From a design or a sketch, and the value, to another one."""
 FINE = 1000
 """Steps of a slider over its range."""
 FREE = 0.5
@@ -38,6 +49,27 @@ class Field:
     dimension: Dimension
     value: float
     put: Put
+
+    def typed(self, of: Any, to: str | float) -> Any:
+        """What it is a number of, with the number set to a value or to what was typed.
+
+        Raises
+        ------
+        EquipoiseError : that is no such number, or it cannot be.
+        """
+        if not isinstance(to, str):
+            return self.put(of, clean(to, self.dimension))
+        typed = to.strip()
+        value = parse(typed, self.dimension)
+        try:
+            return self.put(of, value)
+        except (ModelError, UsageError) as error:
+            given = error.given
+            if given is None or given.value != value:  # of another number
+                raise
+            if isinstance(error, ModelError):
+                raise ModelError(error.where, given.retold(error.what, typed)) from error
+            raise UsageError(given.retold(error.note, typed)) from error
 
 
 @dataclass(frozen=True)
@@ -160,9 +192,10 @@ def _links(machine: Machine) -> Iterator[Field]:
         if link.has_mass and not link.bodies:
             center = link.center_of_mass or CENTER
             yield from _point((*where, "center_of_mass"), name, "centre of mass", center)
-        measured = link.length is not None or link.sides
-        for point, place in link.points.items() if not measured else ():
-            yield from _point((*where, "points", point), name, point, place)
+        if link.length is None and not link.sides:
+            yield from _measures(".".join(where), name, link.points)
+            for point, place in link.points.items():
+                yield from _point((*where, "points", point), name, point, place)
 
 
 def _bodies(where: Place, name: str, link: Link) -> Iterator[Field]:
@@ -176,7 +209,20 @@ def _bodies(where: Place, name: str, link: Link) -> Iterator[Field]:
             yield from _point((*place, "at"), name, f"{of}centre", body.at)
 
 
+def _measures(where: str, body: str, points: Mapping[str, Vector]) -> Iterator[Field]:
+    """Lengths and directions between the points of a body."""
+    for one in measures_of(points):
+        put = partial(_measured, body, one)
+        yield Field(f"{where}.{one.key}", body, one.label, one.dimension, one.value, put)
+
+
+def _measured(body: str, measure: Measure, design: Design, value: float) -> Design:
+    place = clean_place(complex(*measure.place(design.own.points_of(body), value)))
+    return design.with_machine(design.own.with_point(body, measure.moves, place))
+
+
 def _frame(machine: Machine) -> Iterator[Field]:
+    yield from _measures(FRAME, FRAME, machine.frame)
     for point, place in machine.frame.items():
         yield from _point(("frame", "points", point), "frame", point, place)
 

@@ -9,6 +9,7 @@ from math import isfinite
 from typing import Any, NoReturn
 
 from equipoise.errors import UsageError
+from equipoise.keys import MOST_WHOLE
 from equipoise.quantities.reading import described
 from equipoise.quantities.units import HUGE
 from equipoise.schema.files import LARGEST
@@ -18,11 +19,15 @@ KINDS = (
     "speak",
     "open",
     "edit",
+    "make",
     "undo",
     "redo",
     "balance",
     "compare",
     "outputs",
+    "save",
+    "arrows",
+    "variant",
     "download",
     "tables",
     "entry",
@@ -35,6 +40,19 @@ DEEPEST = 8
 LONGEST_LABEL = 200
 LARGEST_MESSAGE = 3 * LARGEST
 """Bytes: of a model file as JSON, in which signs take up to six times their place, but few do."""
+
+
+@dataclass(frozen=True)
+class Spot:
+    """Where something is put: at a point that is there, or at a place.
+
+    point : name.  place : in the frame, m.  on : the body that gets a point at that place; None
+    where there is nothing.
+    """
+
+    point: str | None = None
+    place: complex = 0j
+    on: str | None = None
 
 
 @dataclass(frozen=True)
@@ -51,12 +69,14 @@ class Drag:
 
     name : of the point, or of the link.  of_mass : whether it is a centre of mass.
     to : place in the frame, m.  at : sample of the crank angle at which it is there.
+    keep : points whose distance from it is locked.
     """
 
     name: str
     of_mass: bool
     to: complex
     at: int
+    keep: tuple[str, ...] = ()
 
 
 Change = Setting | Drag
@@ -101,6 +121,28 @@ class Message:
         if not isinstance(value, bool):
             _wrong(f"{self.kind}: {key}", value, "true or false")
         return value
+
+    def optional(self, key: str) -> str | None:
+        """A text of the message, if it has one there."""
+        return None if self.values.get(key) is None else self.text(key)
+
+    def whole(self, key: str, usual: int | None = None) -> int:
+        """A whole number of the message."""
+        value = self.values.get(key, usual)
+        if isinstance(value, bool) or not isinstance(value, int) or abs(value) > MOST_WHOLE:
+            _wrong(f"{self.kind}: {key}", value, "a whole number")
+        return value
+
+    def spot(self, key: str) -> Spot:
+        """Where something is put: ``{"point": "B"}``, or ``{"place": [x, y], "on": "frame"}``."""
+        value = self.values.get(key)
+        wanted = 'a point such as {"point": "B"}, or a place such as {"place": [0.1, 0]}'
+        if not isinstance(value, dict):
+            _wrong(f"{self.kind}: {key}", value, wanted)
+        point, on = value.get("point"), value.get("on")
+        if not isinstance(point, str | None) or not isinstance(on, str | None):
+            _wrong(f"{self.kind}: {key}", value, wanted)
+        return Spot(point) if point else Spot(None, _place(key, value.get("place")), on)
 
     def names(self, key: str = "names", most: int = MOST_OUTPUTS) -> tuple[str, ...]:
         """A list of names of the message, each once; of `outputs`, those that it asks for."""
@@ -212,10 +254,10 @@ def _change(edit: object) -> Change:
     at = edit.get("at", 0)
     if isinstance(at, bool) or not isinstance(at, int):
         _wrong("at", at, "the number of a crank angle")
-    to = edit.get("to")
-    if not isinstance(to, list) or len(to) != 2:
-        _wrong("to", to, "x and y in m")
-    return Drag(name, kind == "move_mass", complex(_number("to", to[0]), _number("to", to[1])), at)
+    keep = edit.get("keep", [])
+    if not isinstance(keep, list) or not all(isinstance(one, str) for one in keep):
+        _wrong("keep", keep, "a list of points")
+    return Drag(name, kind == "move_mass", _place("to", edit.get("to")), at, tuple(keep))
 
 
 def _typed(edit: Mapping[str, Any]) -> str | float:
@@ -224,6 +266,12 @@ def _typed(edit: Mapping[str, Any]) -> str | float:
         text: str = edit["text"]
         return text
     return _number("value", edit.get("value"))
+
+
+def _place(what: str, value: object) -> complex:
+    if not isinstance(value, list) or len(value) != 2:
+        _wrong(what, value, "x and y in m")
+    return complex(_number(what, value[0]), _number(what, value[1]))
 
 
 def _number(what: str, value: object) -> float:

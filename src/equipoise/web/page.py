@@ -18,7 +18,8 @@ from starlette.websockets import WebSocketDisconnect
 from equipoise.errors import UsageError
 from equipoise.web.lanes import MOMENT, Lanes, Work
 from equipoise.web.messages import SLOW, Message, read
-from equipoise.web.session import Reply, Session, refused
+from equipoise.web.replies import Reply, refused
+from equipoise.web.session import Session
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket

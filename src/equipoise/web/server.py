@@ -128,6 +128,8 @@ def assets() -> dict[str, bytes]:
 
 
 ADDRESS = "127.0.0.1"
+USUAL = 8471
+"""Port that is tried first, so that a browser finds again what it keeps for an address."""
 SWITCH = 1e-3
 """s after which a thread that computes makes way for another; five times as often as usual, so
 that a short answer does not wait for long ones.
@@ -200,11 +202,11 @@ def application(port: int, token: str, begin: Callable[[], Session], lanes: Lane
 
 @contextmanager
 def served(
-    begin: Callable[[], Session], port: int = 0
+    begin: Callable[[], Session], port: int | None = 0
 ) -> Iterator[tuple[uvicorn.Server, socket.socket, str]]:
     """A server that is ready to run on a socket that listens, and the address of its page.
 
-    port : 0 for any that is free.
+    port : 0 for any that is free, None for the usual one if that is.
 
     Raises
     ------
@@ -234,7 +236,7 @@ def served(
         yield uvicorn.Server(config), listener, f"http://{ADDRESS}:{port}/?token={token}"
 
 
-def serve(begin: Callable[[], Session], port: int, tell: Callable[[str], None]) -> None:
+def serve(begin: Callable[[], Session], port: int | None, tell: Callable[[str], None]) -> None:
     """Serve pages on this machine until interrupted; errors as `served`.
 
     tell : is given the address of the page, which is served from then on.
@@ -245,8 +247,13 @@ def serve(begin: Callable[[], Session], port: int, tell: Callable[[str], None]) 
         server.run(sockets=[listener])
 
 
-def _listening(port: int) -> socket.socket:
+def _listening(port: int | None) -> socket.socket:
     """A socket that listens on the loopback only."""
+    if port is None:
+        try:
+            return _listening(USUAL)
+        except UsageError:
+            return _listening(0)
     listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
         if os.name == "posix":  # elsewhere it would let another program take the port over

@@ -5,73 +5,83 @@ It knows nothing of how messages travel.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
-from functools import cache
 from threading import Lock
-from typing import Any
 
 from equipoise import __version__
-from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place, to_paste
+from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
 from equipoise.i18n import LANGUAGES, Note, said, say, speaking
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
-from equipoise.schema.files import LARGEST, printable
-from equipoise.schema.models import load_linkage, loads_linkage
-from equipoise.schema.opening import examples, kind_of_text, opened
+from equipoise.schema.documents import dumps
+from equipoise.schema.files import LARGEST
 from equipoise.web.balanced import balanced, balanced_design, balanced_told, nothing_gained
-from equipoise.web.design import Design, History, Step
+from equipoise.web.block import Values
+from equipoise.web.design import Design
+from equipoise.web.disk import Disk
 from equipoise.web.downloads import downloaded
-from equipoise.web.edits import Solved, edited, settled, solved
+from equipoise.web.drawn import (
+    Drawn,
+    changed,
+    computed,
+    drawn,
+    finished,
+    plain_of,
+    sketch_of,
+    state_of_sketch,
+    with_entry,
+)
+from equipoise.web.edits import Solved, settled, solved
+from equipoise.web.explained import explained
 from equipoise.web.fields import Scale, fields_of
+from equipoise.web.history import History, Step
+from equipoise.web.making import made
 from equipoise.web.messages import MOST_LANGUAGES, Message
+from equipoise.web.openings import opened_example, opened_text, titles
+from equipoise.web.replies import Reply, refused
+from equipoise.web.seen import ASKED, Seen
 from equipoise.web.shaken import more, response_of
+from equipoise.web.sketch import USUAL_SIZE, Sketch
 from equipoise.web.state import first_of, state_of
-from equipoise.web.tables import entered, tables_of
+from equipoise.web.tables import tables_of
 from equipoise.web.words import language_of, words_of
-
-LONGEST = 800
-"""Signs of a sentence."""
-TOOLS = "this is the file of a hand-held tool; `equipoise report` and `equipoise plot` show those"
-
-
-@dataclass(frozen=True)
-class Reply:
-    """What a page is sent: values for JSON, and a block of 32-bit floats or of a file."""
-
-    content: dict[str, Any]
-    buffer: bytes = b""
 
 
 @dataclass
 class Session:
     """The state of one page.
 
-    history : of its designs.  found : the one that is, computed.
+    history : of its designs.  found : the one that is, computed, or drawn while it is unfinished.
     preview : what it is while something is dragged; each one starts from `found`.
     before : with which it is compared, if with any.
     scale : of the sliders.  more_told : the design of which `tell_more` has told.
     wanted : outputs that the page draws besides those that it always does.
-    language : that its reader speaks.
+    language : that its reader speaks.  disk : the file that is open, if it can be saved.
+    seen : what else the page shows.
     lock : held while a design takes the place of another, since balancing has a thread of its own.
     """
 
     history: History | None = None
-    found: Solved | None = None
-    preview: Solved | None = None
+    found: Solved | Drawn | None = None
+    preview: Solved | Drawn | None = None
     before: Solved | None = None
     scale: Scale | None = None
     more_told: Solved | None = None
     wanted: tuple[str, ...] = ()
     language: str = "en"
+    disk: Disk | None = None
+    seen: Seen = field(default_factory=Seen)
     lock: Lock = field(default_factory=Lock)
 
     def receive(self, message: Message) -> Iterator[Reply]:
         """Answer a message; what takes long comes last, and may be left unasked."""
         try:
-            yield from getattr(self, f"_{message.kind}")(message)
+            if message.kind in ASKED:
+                yield from ASKED[message.kind](self, message)
+            else:
+                yield from getattr(self, f"_{message.kind}")(message)
         except EquipoiseError as error:
             yield refused(message.seq, error, self.language)
 
@@ -80,11 +90,17 @@ class Session:
     def _ready(self, message: Message) -> Iterator[Reply]:
         yield self.hello()
         if self.found is not None:
-            yield from self._shown(message.seq)
+            yield from self.told(message.seq)
 
     def _speak(self, message: Message) -> Iterator[Reply]:
         self.language = language_of(message.names("languages", MOST_LANGUAGES))
-        told = {"language": self.language, "languages": LANGUAGES, "words": words_of(self.language)}
+        told: Values = {
+            "language": self.language,
+            "languages": LANGUAGES,
+            "words": words_of(self.language),
+        }
+        with speaking(self.language):
+            told["explained"] = explained()
         yield Reply({"type": "spoken", "seq": message.seq, **told})
 
     def _open(self, message: Message) -> Iterator[Reply]:
@@ -92,67 +108,83 @@ class Session:
             design = opened_example(message.text("example"))
         else:
             design = opened_text(message.text("name", "machine.toml"), message.text("text"))
+        disk = self.disk if message.flag("file", False) else None
         try:
             self.open(design)
         except EquipoiseError as error:
             raise _in_file(error, design.name) from error
-        yield from self._shown(message.seq)
+        self.disk = disk
+        yield from self.told(message.seq)
 
     def _edit(self, message: Message) -> Iterator[Reply]:
         commit, problem = message.flag("commit", True), None
         with self.lock, self._telling():
-            base, found = self._current(), None
+            base, found = self.base(), None
             try:
-                found = edited(base, message.changes())
+                found = changed(base, message.changes(), commit)
             except EquipoiseError as error:
                 problem = error
             if found is None and commit:  # the last place of a drag at which it could be
                 found = self.preview
             if found is not None and commit:
-                found = settled(found)
+                found = settled(found) if isinstance(found, Solved) else found
                 self._go(self._past.then(found.design, message.label), found)
             elif found is not None:
                 self.preview = found
         if problem is not None:
             yield refused(message.seq, problem, self.language)
         if found is not None:
-            yield from self._shown(message.seq)
+            yield from self.told(message.seq)
+
+    def _make(self, message: Message) -> Iterator[Reply]:
+        with self.lock, self._telling():
+            new = message.text("do") == "new"
+            if new:
+                sketch, label = Sketch(), say("new machine")
+            else:
+                sketch, label = made(sketch_of(self.base(), message.whole("at", 0)), message)
+            found, past = drawn(sketch), self.history
+            step = Step(found.design, label)
+            self._go(past.then(found.design, label) if past else History(step), found)
+            self._measure(found, new)
+        yield from self.told(message.seq)
 
     def _tables(self, message: Message) -> Iterator[Reply]:
         with self._telling():
-            told = tables_of(self._current().design.own)
+            told = tables_of(plain_of(self.base()))
         yield Reply({"type": "tables", "seq": message.seq, **told})
 
     def _entry(self, message: Message) -> Iterator[Reply]:
         with self.lock, self._telling():
-            found = settled(solved(entered(self._current().design, message.entry())))
+            found = with_entry(self.base(), message.entry())
             self._go(self._past.then(found.design, message.label), found)
-        yield from self._shown(message.seq)
+        yield from self.told(message.seq)
 
     def _undo(self, message: Message) -> Iterator[Reply]:
         with self.lock:
             self._go(self._past.undone())
-        yield from self._shown(message.seq)
+        yield from self.told(message.seq)
 
     def _redo(self, message: Message) -> Iterator[Reply]:
         with self.lock:
             self._go(self._past.redone())
-        yield from self._shown(message.seq)
+        yield from self.told(message.seq)
 
     def _compare(self, message: Message) -> Iterator[Reply]:
         first = self._past.first
-        self.before = solved(first) if message.flag("on", False) else None
-        yield from self._shown(message.seq)
+        on = message.flag("on", False)
+        self.before = solved(first) if on and isinstance(first, Design) else None
+        yield from self.told(message.seq)
 
     def _outputs(self, message: Message) -> Iterator[Reply]:
         names = message.names()
         for name in names:
-            _ = self._current().analysis.outputs[name]
+            _ = self.current().analysis.outputs[name]
         self.wanted = names
-        yield from self._shown(message.seq)
+        yield from self.told(message.seq)
 
     def _balance(self, message: Message) -> Iterator[Reply]:
-        base = self._current()
+        base = self.current()
         with self._telling():
             what = say("balancing")
         yield Reply({"type": "busy", "seq": message.seq, "what": what})
@@ -160,7 +192,7 @@ class Session:
         with self._telling():
             nothing = nothing_gained(found)
         if nothing is not None:
-            yield from self._shown(message.seq, nothing)
+            yield from self.told(message.seq, nothing)
             return
         after = solved(balanced_design(base.design, found))
         with self._telling():
@@ -173,12 +205,27 @@ class Session:
             self._go(self._past.then(after.design, "balance"), after)
             self.before = base
         yield Reply({"type": "balanced", "seq": message.seq, **told})
-        yield from self._shown(message.seq)
+        yield from self.told(message.seq)
+
+    def _save(self, message: Message) -> Iterator[Reply]:
+        if self.disk is None:
+            raise UsageError(
+                Note("this machine was not opened from a file; download the model instead")
+            )
+        first = self._past.first
+        text = dumps(first.machine) if isinstance(first, Design) else self.disk.text
+        self.disk.save(self.current())
+        told = {"name": self.disk.name, "base": self.disk.base, "text": text}
+        yield from self.told(message.seq)
+        yield Reply({"type": "saved", "seq": message.seq, **told})
 
     def _download(self, message: Message) -> Iterator[Reply]:
-        language = message.text("language", "en")
+        found = self.current()
         with self._telling():
-            content, data = downloaded(self._current(), message.text("kind"), language)
+            what = say("making the file")
+        yield Reply({"type": "busy", "seq": message.seq, "what": what})
+        with self._telling():
+            content, data = downloaded(found, message)
         yield Reply({"type": "file", "seq": message.seq, **content}, data)
 
     # -- its state ---------------------------------------------------------------------------------
@@ -195,6 +242,7 @@ class Session:
                 "largest": LARGEST,
                 "numbers": display_rules(),
                 "machine": self.found is not None,
+                "base": "" if self.disk is None else self.disk.base,
             }
         )
 
@@ -205,19 +253,35 @@ class Session:
         """
         found = found or solved(design)
         with self.lock:
-            self.scale = Scale.of(design)
             self._go(History(Step(design, "")), found)
-            self.before, self.wanted = None, first_of(design.machine)[1]
+            self._measure(found, True)
+
+    def _measure(self, found: Solved | Drawn, new: bool) -> None:
+        """What goes by the build of a machine: ranges of sliders, and outputs that are drawn.
+
+        new : whether it has nothing to do with the one before.
+        """
+        machine = found if isinstance(found, Solved) else None
+        self.before = None
+        self.scale = Scale({}, USUAL_SIZE, 1.0) if machine is None else Scale.of(machine.design)
+        if new:
+            self.seen = self.seen.opening(machine)
+        if machine is not None and (new or not self.wanted):
+            self.wanted = first_of(machine.design.machine)[1]
+
+    def go_to(self, found: Solved, label: str) -> None:
+        """Make a design that has been computed the one that is, as one step of undo."""
+        self._go(self._past.then(found.design, label), found)
 
     @property
     def has_more(self) -> bool:
         """Whether there is more to tell of the design, which takes longer."""
-        return self.found is not None and self.shown is not self.more_told
+        return isinstance(self.found, Solved) and self.view is not self.more_told
 
     def tell_more(self) -> Iterator[Reply]:
         """What takes too long to be told at every move of a drag; ends when the design changes."""
         found = self.more_told = self.shown
-        told = more(found, lambda: self.shown is not found)
+        told = more(found, lambda: self.view is not found)
         while True:
             with self._telling():  # left where this waits: whoever goes on may be another thread
                 one = next(told, None)
@@ -231,61 +295,88 @@ class Session:
         """Inside, the reader's language is spoken, in the units of the file that is open."""
         with speaking(self.language), ExitStack() as units:
             if self.found is not None:
-                units.enter_context(showing_by_default(units_of(self.shown.design.own)))
+                units.enter_context(showing_by_default(units_of(self.view.design)))
             yield
 
     @property
-    def shown(self) -> Solved:
+    def view(self) -> Solved | Drawn:
         """What the page sees: what is dragged, or the design that is."""
-        return self.preview or self._current()
+        return self.preview or self.base()
+
+    @property
+    def shown(self) -> Solved:
+        """The same of a machine that is finished, or a `UsageError`."""
+        return finished(self.view)
 
     @property
     def _past(self) -> History:
-        self._current()
+        self.base()
         assert self.history is not None
         return self.history
 
-    def _current(self) -> Solved:
+    def base(self) -> Solved | Drawn:
+        """What is, finished or not; a `UsageError` where there is nothing."""
         if self.found is None:
             raise UsageError(Note("no machine is open; pick an example, or drop a model file"))
         return self.found
 
-    def _go(self, history: History, found: Solved | None = None) -> None:
+    def current(self) -> Solved:
+        """The design that is, or a `UsageError` where it is not finished."""
+        return finished(self.base())
+
+    def _go(self, history: History, found: Solved | Drawn | None = None) -> None:
         """Show where a history has come to; nothing has changed where that cannot be computed."""
-        self.found = found or solved(history.now.design)
+        found = found or computed(history.now.design)
+        self.seen.last = self.found if isinstance(self.found, Solved) else None
+        self.found = found
         self.history, self.preview = history, None
         if self.before is not None and self.before.design is history.now.design:
             self.before = None  # nothing differs from itself
 
-    def _shown(self, seq: int | None, *notes: str) -> Iterator[Reply]:
+    def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:
         """The design that is shown, and how its support is shaken; notes come before its own."""
         with self._telling():
             state = self._state(seq)
         state.content["notes"] = [*notes, *state.content["notes"]]
         yield state
+        if isinstance(self.view, Drawn):
+            return
         with self._telling():
-            shaken = response_of(self.shown.design.machine)
+            compared = [*self.seen.compared(None if self.preview else self.current())]
+        yield from compared
+        with self._telling():
+            shaken = response_of(self.shown)
         if shaken is not None:
             content, data = shaken
             yield Reply({"type": "response", "seq": seq, **content}, data)
 
     def _state(self, seq: int | None) -> Reply:
         assert self.scale is not None
-        found, history = self.shown, self._past
-        content, data = state_of(found, self.before, self.wanted)
-        fields = [self.scale.told(one) for one in fields_of(found.design).values()]
-        told = {"undo": history.undo, "redo": history.redo, "fields": fields}
+        found, history = self.view, self._past
+        if isinstance(found, Drawn):
+            content, data = state_of_sketch(found, self.scale)
+        else:
+            content, data = self._state_of(found)
+            fields = fields_of(found.design).values()
+            content["fields"] = [self.scale.told(one) for one in fields]
+        file = (
+            None
+            if self.disk is None
+            else self.disk.kept(self.found if found is self.found else None)
+        )
+        steps = [len(history.past), len(history.future)]
+        told = {"undo": history.undo, "redo": history.redo, "steps": steps, "file": file}
         return Reply({"type": "state", "seq": seq, **told, **content}, data)
 
-
-def refused(seq: int | None, error: EquipoiseError, language: str = "en") -> Reply:
-    """Say why something cannot be done, in a language."""
-    told = _shortened(error.told(language))
-    content: dict[str, Any] = {"type": "refused", "seq": seq, "message": told}
-    if isinstance(error, ModelError) and error.where:
-        what = EquipoiseError(error.what).told(language)
-        content |= {"path": error.where, "what": _shortened(what)}
-    return Reply(content)
+    def _state_of(self, found: Solved) -> tuple[Values, bytes]:
+        seen, held = self.seen, self.found if self.preview is not None else None
+        return state_of(
+            found,
+            seen.pale or self.before,
+            self.wanted,
+            against=seen.against(held if isinstance(held, Solved) else None),
+            arrows_at=seen.arrows_at,
+        )
 
 
 def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:
@@ -293,39 +384,3 @@ def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:
     if isinstance(error, ModelError):
         return error.in_file(name)
     return UsageError(at_place(name, error.note))
-
-
-def _shortened(text: str) -> str:
-    sentence, *lines = to_paste(text)
-    text = "\n".join([" ".join(sentence.split()), *lines])
-    return text if len(text) <= LONGEST else f"{text[: LONGEST - 200]} ... {text[-190:]}"
-
-
-@cache
-def titles() -> dict[str, str]:
-    """Titles of the bundled machines by name."""
-    return examples("linkage")
-
-
-def opened_example(name: str) -> Design:
-    """A bundled machine."""
-    if name not in titles():
-        raise UsageError(Note("there is no example of the name {name!r}", name=printable(name)))
-    return Design(name, load_linkage(name))
-
-
-def opened_file(path_or_name: str | os.PathLike[str]) -> Design:
-    """A machine from its file, with the tables beside it, or an example."""
-    file = opened(path_or_name)
-    if kind_of_text(file.text) == "tool":
-        raise ModelError("", TOOLS, file.source)
-    machine = loads_linkage(file.text, file.source, file.folder)
-    return Design(printable(os.path.basename(path_or_name)), machine)
-
-
-def opened_text(name: str, text: str) -> Design:
-    """A machine from the text of a model file."""
-    shown = printable(name)
-    if kind_of_text(text) == "tool":
-        raise ModelError("", TOOLS, shown)
-    return Design(shown, loads_linkage(text.removeprefix("\ufeff"), shown))

@@ -3,28 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 from math import isfinite
 from typing import Any
 
 from equipoise.errors import EquipoiseError
+from equipoise.figures.swing import ModeSwing, swinging
 from equipoise.i18n import said, say
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import joint_named
 from equipoise.mechanism.strokes import declared_figures, dimension_of
+from equipoise.mechanism.support import FREEDOMS, PLANAR
 from equipoise.planting.blocks import cell
 from equipoise.planting.names import FIGURES
 from equipoise.planting.summary import plant
 from equipoise.quantities import Dimension, display
 from equipoise.results.analysis import Analysis
+from equipoise.symbols.scene import Scene
 from equipoise.vibration.forced import respond
 from equipoise.vibration.resonance import around
 from equipoise.vibration.response import Response
 from equipoise.vibration.sampling import COARSE
 from equipoise.vibration.sweep import sweep_speed
+from equipoise.web.block import Block
 from equipoise.web.edits import Solved
 from equipoise.web.figures import chart, gauge_choice, text_of
-from equipoise.web.state import Block
 
 Values = dict[str, Any]
 SAMPLES = 360
@@ -36,34 +40,47 @@ def can_be_shaken(machine: Machine) -> bool:
     return machine.support is not None and not massless(machine)
 
 
-def response_of(machine: Machine) -> tuple[Values, bytes] | None:
+@lru_cache(16)
+def responded(shown: Solved) -> Response:
+    """The response of a design at its own speed, with the errors of `respond`."""
+    return respond(shown.design.machine)
+
+
+def response_of(shown: Solved) -> tuple[Values, bytes] | None:
     """What the gauges read over a turn at the machine's speed; None where nothing can be shaken.
 
     Where there is no steady state, no gauges and a note that says so.
     """
+    machine, block = shown.design.machine, Block()
     if not can_be_shaken(machine):
         return None
-    block = Block()
     try:
-        found = respond(machine)
+        found = responded(shown)
     except EquipoiseError as error:
-        return {"charts": [], "arrays": {}, "notes": [error.told()]}, b""
-    return _told(found, block), block.data
+        return {
+            "charts": [],
+            "arrays": {},
+            "notes": [error.told()],
+            "swing": None,
+            "modes": [],
+        }, b""
+    return _told(shown, found, block), block.data
 
 
-def swept(machine: Machine, progress: Callable[[int, int], None]) -> tuple[Values, bytes] | None:
+def swept(shown: Solved, progress: Callable[[int, int], None]) -> tuple[Values, bytes] | None:
     """The same with the response over speeds around the machine's own.
 
     progress : as of `sweep_speed`; what it raises ends the work.
     """
+    machine = shown.design.machine
     try:
-        found = respond(machine)
+        found = responded(shown)
         ends = around(machine.drive, found.speed)
         curves = sweep_speed(machine, *ends, speeds=COARSE, progress=progress)
     except EquipoiseError:  # of which `response_of` has told
         return None
     block = Block()
-    content = _told(found, block)
+    content = _told(shown, found, block)
     block.add("sweep.speed", curves.speed)
     choices: list[Values] = []
     for name, curve in curves.gauges.items():
@@ -78,8 +95,8 @@ def swept(machine: Machine, progress: Callable[[int, int], None]) -> tuple[Value
     return content, block.data
 
 
-def _told(found: Response, block: Block) -> Values:
-    """Displacements against the crank angle, which runs as the crank does."""
+def _told(shown: Solved, found: Response, block: Block) -> Values:
+    """Displacements against the crank angle, which runs as the crank does, and how to draw them."""
     count = SAMPLES * found.turns
     choices: list[Values] = []
     for name, gauge in found.gauges.items():
@@ -88,7 +105,36 @@ def _told(found: Response, block: Block) -> Values:
         label = f"response of {_spoken(name)}"
         choices.append(gauge_choice(name, label, gauge.rotation, array))
     charts = [chart("response", choices, chooser="Response of")]
-    return {"charts": charts, "arrays": block.told, "notes": list(map(said, found.notes))}
+    notes = list(map(said, found.notes))
+    swing = _swing(swinging(shown.scene, found), block)
+    modes = [*_modes(shown.scene, found)]
+    return {"charts": charts, "notes": notes, "swing": swing, "modes": modes, "arrays": block.told}
+
+
+def _swing(scene: Scene, block: Block) -> list[str] | None:
+    """What is to be said of the support's movement over the crank angle, which goes to the block.
+
+    ``support.place`` : (2 N,) m, ``support.angle`` : (N,) rad; larger than true.
+    """
+    if scene.swing is None:
+        return None
+    block.add("support.place", scene.swing.place)
+    block.add("support.angle", scene.swing.angle)
+    return list(scene.swing.told)
+
+
+def _modes(scene: Scene, found: Response) -> Iterator[Values]:
+    """Modes of the support, as large as they are drawn.
+
+    shape : real and imaginary parts of its displacements along x and y (m) and of its rotation.
+    """
+    support = found.machine.support
+    assert support is not None
+    for number, mode in enumerate(found.modes, 1):
+        one = ModeSwing.of(scene, number, mode, support.coordinates)
+        parts = (complex(one.amplitudes[FREEDOMS.index(name)]) for name in PLANAR)
+        shape = [number for part in parts for number in (part.real, part.imag)]
+        yield {"told": list(one.told), "seen": one.seen, "shape": shape}
 
 
 def _spoken(name: str) -> str:
@@ -119,7 +165,7 @@ def more(found: Solved, outdated: Callable[[], bool]) -> Iterator[tuple[Values, 
             raise OutdatedError
 
     try:
-        shaken = swept(machine, progress)
+        shaken = swept(found, progress)
     except OutdatedError:
         return
     if shaken is not None and not outdated():

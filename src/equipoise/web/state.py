@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, field, replace
-from typing import Any
 
 import numpy as np
 
 from equipoise.figures.points import traced
-from equipoise.i18n import said
+from equipoise.i18n import said, say
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import GROUPS
@@ -18,69 +16,35 @@ from equipoise.mechanism.tip import surface_of
 from equipoise.quantities import display
 from equipoise.results.analysis import Analysis
 from equipoise.signals import Periodic
-from equipoise.symbols.looks import LOOKS
-from equipoise.symbols.pieces import Piece, pieces, placed
 from equipoise.symbols.scene import Scene
-from equipoise.symbols.shapes import Shape
+from equipoise.web.arrows import arrows_of, points_of
+from equipoise.web.block import Array, Block, Values
+from equipoise.web.drawing import moves_of, stage_of
 from equipoise.web.edits import Solved, extent_of, movable
 from equipoise.web.figures import charts_of, figures_of, least_of, signals_of
-
-Array = np.ndarray[Any, Any]
-Values = dict[str, Any]
 
 MOST_ORDER = 20
 """Highest order of the spectra."""
 
 
-@dataclass
-class Block:
-    """Arrays one behind the other, as 32-bit floats, and where each begins."""
-
-    places: dict[str, tuple[int, int]] = field(default_factory=dict)
-    parts: list[Array] = field(default_factory=list)
-    size: int = 0
-
-    def add(self, name: str, values: Array) -> None:
-        """Add real (N,) values, or complex ones as (2 N,): x and y in turn."""
-        flat = np.ascontiguousarray(values)
-        if np.iscomplexobj(flat):
-            flat = flat.view(float)
-        with np.errstate(over="ignore"):  # what no drawing could show
-            self.parts.append(flat.astype("<f4"))
-        self.places[name] = (self.size, flat.size)
-        self.size += flat.size
-
-    @property
-    def told(self) -> dict[str, list[int]]:
-        """Offset and length of each array, in numbers."""
-        return {name: list(place) for name, place in self.places.items()}
-
-    @property
-    def data(self) -> bytes:
-        """All arrays, little-endian."""
-        return b"".join(part.tobytes() for part in self.parts)
-
-
 def state_of(
-    found: Solved, before: Solved | None, wanted: Sequence[str] = ()
+    found: Solved,
+    before: Solved | None,
+    wanted: Sequence[str] = (),
+    against: Solved | None = None,
+    arrows_at: str | None = None,
 ) -> tuple[Values, bytes]:
     """Everything that a page draws of a machine.
 
-    before : with which it is compared, if with any.
+    before : whose curves are drawn behind its own, if any's.
     wanted : names of further outputs that it draws, as far as there are such.
+    against : whose figures are told beside its own, if any's; `before` where it is not given.
+    arrows_at : a point of which velocity, acceleration and forces are drawn.
     """
     analysis, block = found.analysis, Block()
     machine, motion = analysis.machine, analysis.motion
-    scene = Scene.of(motion)
-    block.add("crank_angle", scene.crank_angle)
-    for name, place in scene.places.items():
-        block.add(f"place.{name}", place)
-    for name, place in scene.mass_centers.items():
-        block.add(f"mass_center.{name}", place)
-    for name, link in motion.links.items():
-        block.add(f"angle.{name}", link.angle)
-    for guide in scene.guides:
-        block.add(f"guide.{guide.name}", guide.way)
+    scene = found.scene
+    moves_of(scene, block)
     signals = signals_of(analysis)
     _add_signals(block, signals, analysis)
     _add_outputs(block, analysis, wanted)
@@ -89,6 +53,8 @@ def state_of(
         old = signals_of(before.analysis)
         _add_signals(block, old, before.analysis, "before.")
         _add_outputs(block, before.analysis, wanted, "before.")
+    against = against or before
+    compared = old if against is before else signals_of(against.analysis) if against else None
     length = display("length", [extent_of(machine)])
     content: Values = {
         "name": found.design.name,
@@ -103,7 +69,7 @@ def state_of(
         "scene": stage_of(scene, movable(machine)),
         "traced": traced(motion),
         "first": first_of(machine)[0],
-        "figures": figures_of(signals, old, machine),
+        "figures": figures_of(signals, compared, machine),
         "outputs": [
             {
                 "name": one.name,
@@ -120,10 +86,37 @@ def state_of(
         "orders": _orders(analysis),
         "notes": [massless(machine)] if analysis.solved is None else [],
         "before": before is not None,
+        "status": status_of(found),
+        "compared": against is not None,
+        "points": points_of(analysis),
+        "arrows_at": arrows_at,
+        "arrows": arrows_of(analysis, arrows_at, block) if arrows_at else [],
         **_ground(found, scene, block),
     }
     content["arrays"] = block.told
     return content, block.data
+
+
+def status_of(found: Solved) -> Values:
+    """What is told of the making of a machine.
+
+    mobility : number of free motions.  text : a sentence: what moves, or what is missing.
+    finished : whether it can be computed.  drive : the crank, if there is one.
+    stand : crank angle at which it was drawn, deg; None where it has not just been made.
+    """
+    machine, stand = found.design.machine, found.stand
+    return {
+        "mobility": 1,
+        "text": turning(machine),
+        "finished": True,
+        "drive": machine.drive.link,
+        "stand": None if stand is None else float(np.degrees(stand)),
+    }
+
+
+def turning(machine: Machine) -> str:
+    """That a machine is finished."""
+    return say("1 free motion; {link} turns fully", link=machine.drive.link)
 
 
 def _add_outputs(block: Block, analysis: Analysis, names: Sequence[str], prefix: str = "") -> None:
@@ -181,57 +174,6 @@ def _ground(found: Solved, scene: Scene, block: Block) -> Values:
     way = planting.forward(speed) / speed * scene.crank_angle
     block.add(f"ground.{planting.tip}", scene.places[planting.tip] + way)
     return {"planting": {"tip": planting.tip, "surface": surface_of(machine)}}
-
-
-# -- the drawing -----------------------------------------------------------------------------------
-
-UNIT = 1.25
-"""Pixels: size of a unit of signs on a page."""
-
-
-def stage_of(scene: Scene, handles: Sequence[str]) -> Values:
-    """Names and the drawing of a scene.
-
-    signs : from the back to the front, each with its ``layer``, the ``link`` that it is, what it
-        moves with (`symbols.pieces.Hold`, with the ``length`` of which it is stretched), and its
-        shapes: role, whether it is closed, radius (m), and that in pixels, then x and y (m) and
-        offsets from there (pixels) of each corner.
-    looks : role -> style.
-    """
-    low, high = scene.box
-    drawn = pieces(scene)
-    roles = sorted({shape.role for piece in drawn for shape in piece.shapes})
-    return {
-        "frame": list(scene.frame),
-        "standing": list(scene.standing),
-        "bodies": [{"name": body.name, "points": list(body.points)} for body in scene.bodies],
-        "guides": [{"name": guide.name, "point": guide.point} for guide in scene.guides],
-        "mass_centers": list(scene.mass_centers),
-        "box": [low.real, low.imag, high.real, high.imag],
-        "movable": list(handles),
-        "signs": [_sign(scene, piece) for piece in drawn],
-        "looks": {role: LOOKS[role].css(UNIT) for role in roles},
-    }
-
-
-def _sign(scene: Scene, piece: Piece) -> Values:
-    if piece.hold is not None and piece.hold.mount:  # here the support stands still
-        piece = replace(piece, hold=None, shapes=tuple(placed(scene, [piece], 0)))
-    hold = None if piece.hold is None else {k: v for k, v in asdict(piece.hold).items() if v}
-    if hold is not None and "to" in hold:
-        hold["length"] = float(np.max(piece.shapes[0].places.real))
-    shapes = [_shape(shape) for shape in piece.shapes]
-    return {"layer": piece.layer, "link": piece.link, "hold": hold, "shapes": shapes}
-
-
-def _shape(shape: Shape) -> list[Any]:
-    offsets = UNIT * shape.offsets
-    corners = np.column_stack([
-        shape.places.real.round(7), shape.places.imag.round(7),
-        offsets.real.round(2), offsets.imag.round(2),
-    ])  # fmt: skip
-    sizes = shape.radius, round(UNIT * shape.grown, 2)
-    return [shape.role, shape.closed, *sizes, corners.ravel().tolist()]
 
 
 # -- what comes first ------------------------------------------------------------------------------

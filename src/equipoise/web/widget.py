@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from equipoise.errors import UsageError
 from equipoise.mechanism.model import Machine
 from equipoise.web.design import Design
-from equipoise.web.session import Session, opened_file
+from equipoise.web.openings import opened_file
+from equipoise.web.session import Session
 
 if TYPE_CHECKING:
     from equipoise.web.notebook import View

@@ -25,7 +25,8 @@ from equipoise.schema.documents import dumps
 from equipoise.schema.files import json_text, to_csv
 from equipoise.studies.figures import dimension_of
 from equipoise.web.messages import message_of
-from equipoise.web.session import Session, opened_example
+from equipoise.web.openings import opened_example
+from equipoise.web.session import Session
 from support.printing import words
 
 DOCS = Path(__file__).parents[3] / "docs" / "output.md"

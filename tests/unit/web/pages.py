@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 
 from equipoise.web.messages import message_of
-from equipoise.web.session import Reply, Session, opened_example
+from equipoise.web.openings import opened_example
+from equipoise.web.replies import Reply
+from equipoise.web.session import Session
 
 Array = np.ndarray[Any, Any]
 Content = dict[str, Any]

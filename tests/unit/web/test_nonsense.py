@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 
 from equipoise.errors import UsageError
 from equipoise.web.messages import KINDS, read
+from equipoise.web.openings import opened_example
 from equipoise.web.page import packed
-from equipoise.web.session import Session, opened_example
+from equipoise.web.session import Session
 
 NUMBERS = (0, 1, -1, 1e-3, -0.02, 0.05, 1e-9, 1e3, 1e29, -1e29, 1e31, 1e308)
 TEXTS = ("0 mm", "5 mm", "-5 mm", "1e20 mm", "3 kg", "0 kg", "100 rpm", "0 rpm", "90 deg",

@@ -24,9 +24,10 @@ from equipoise.web import session as session_module
 from equipoise.web.balanced import balanced
 from equipoise.web.design import Design
 from equipoise.web.lanes import MOMENT, Work
+from equipoise.web.openings import opened_example
 from equipoise.web.page import MOST_WAITING
 from equipoise.web.server import FULL, HOST, MOST_PAGES, ORIGIN, POLICY, TOKEN, served
-from equipoise.web.session import Session, opened_example
+from equipoise.web.session import Session
 from unit.web.pages import Content, unpacked
 
 FOREIGN = "http://other.example"

@@ -7,7 +7,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.quantities import change, display, display_rules, number, typeset
-from equipoise.web.session import opened_example, titles
+from equipoise.web.openings import opened_example, titles
 from surface.running import example_text, massless
 from unit.web.pages import ask, edit, opened
 

@@ -1,0 +1,161 @@
+/** What is done is kept: in the file, in an address, in the browser; nothing is lost unasked. */
+
+import type { Conversation } from "./conversation";
+import { h } from "./dom";
+import type { Asked, Hello, State } from "./protocol";
+import { question } from "./question";
+import { fragment, LONGEST, read } from "./share";
+import type { Told } from "./story";
+import { say } from "./words";
+
+interface Page {
+  root: HTMLElement;
+  talk: Conversation;
+  /** Whether the page is all there is in its window. */
+  full: boolean;
+  state(): State | null;
+  say(text: string, bad: boolean): void;
+  open(asked: Asked, name: string): void;
+}
+
+export class Keeping {
+  /** What was done in another tab is offered here. */
+  readonly offer = h("div", { class: "lost offer", role: "status", hidden: true });
+  private readonly undone: (() => void)[] = [];
+  private largest = Infinity;
+  private asking = false;
+
+  constructor(private readonly page: Page) {
+    if (!page.full) return;
+    const leave = (event: BeforeUnloadEvent) => this.unsaved && event.preventDefault();
+    const other = () => void this.shared();
+    window.addEventListener("beforeunload", leave);
+    window.addEventListener("hashchange", other);
+    this.undone.push(() => window.removeEventListener("beforeunload", leave));
+    this.undone.push(() => window.removeEventListener("hashchange", other));
+  }
+
+  close(): void {
+    this.undone.forEach((undo) => undo());
+  }
+
+  /** Whether there is a file that does not hold what is shown. */
+  private get unsaved(): boolean {
+    return this.page.state()?.file?.saved === false;
+  }
+
+  /** A page begins: by what its address holds, or by what was done here; tells whether it has. */
+  async begin(hello: Hello): Promise<boolean> {
+    this.largest = hello.largest;
+    if (await this.shared()) return true;
+    if (this.page.talk.recall(hello.base)) return true;
+    const [told] = await this.page.talk.offered(hello.base);
+    if (told) this.show(told, hello.base);
+    return false;
+  }
+
+  /** Whether another machine may take the place of this one. */
+  async mayLeave(name: string): Promise<boolean> {
+    const state = this.page.state();
+    if (!state?.undo || this.asking) return !this.asking;
+    this.asking = true;
+    const text = this.unsaved
+      ? say("{file} is not saved. Opening {name} gives up what was done, and all that can be undone.", {
+          file: state.file?.name ?? "",
+          name,
+        })
+      : say("Opening {name} gives up what was done to {machine}, and all that can be undone.", {
+          machine: state.name,
+          name,
+        });
+    const may = await question(this.page.root, text, say("Open"));
+    this.asking = false;
+    return may;
+  }
+
+  /** Write the file; where there is none, the model is downloaded. */
+  async save(): Promise<void> {
+    const { page } = this;
+    const file = page.state()?.file;
+    page.talk.release();
+    if (!file) return page.talk.ask({ type: "download", kind: "model" });
+    if (file.saved) return page.say(say("{name} is saved", { name: file.name }), false);
+    const text = say("{name} has comments, which a model that is saved does not have.", {
+      name: file.name,
+    });
+    if (file.comments && !(await question(page.root, text, say("Save")))) return;
+    page.talk.ask({ type: "save" });
+  }
+
+  saved(name: string): void {
+    this.page.say(say("{name} is saved", { name }), false);
+  }
+
+  /** Copy an address that holds the model. */
+  link(): void {
+    const { page } = this;
+    page.talk.release();
+    page.talk.ask({ type: "download", kind: "model" }, undefined, (name, bytes) => {
+      void this.copy(name, new TextDecoder().decode(bytes));
+    });
+  }
+
+  private async copy(name: string, text: string): Promise<void> {
+    const address = `${location.href.replace(/#.*/, "")}#${await fragment({ name, text })}`;
+    if (address.length > LONGEST) {
+      const values = { length: address.length, most: LONGEST };
+      return this.page.say(
+        say(
+          "the link would have {length} signs; at most {most} can be relied on: download the model",
+          values,
+        ),
+        true,
+      );
+    }
+    try {
+      await navigator.clipboard.writeText(address);
+      this.page.say(say("The link is copied"), false);
+    } catch {
+      const field = h("input", { class: "address", readonly: true, value: address });
+      field.setAttribute("aria-label", say("Link to this model"));
+      this.offer.replaceChildren(field, this.button(say("Close"), () => undefined));
+      this.offer.hidden = false;
+      field.select();
+    }
+  }
+
+  /** Open what the address holds, which from then on is a machine like others. */
+  private async shared(): Promise<boolean> {
+    if (!this.page.full || !location.hash.includes("model=")) return false;
+    const { hash, pathname, search } = location;
+    history.replaceState(null, "", pathname + search);
+    try {
+      const found = await read(hash, this.largest);
+      if (!found) return false;
+      this.page.open({ type: "open", ...found }, found.name);
+      return true;
+    } catch {
+      this.page.say(say("the address holds no whole model: copy all of the link"), true);
+      return false;
+    }
+  }
+
+  private show(told: Told, base: string): void {
+    const count = told.past.length;
+    this.offer.replaceChildren(
+      say("{name} was changed here before, in {count} steps.", { name: told.name, count }),
+      " ",
+      this.button(say("Go on"), () => this.page.talk.resume(told, base)),
+      this.button(say("Begin anew"), () => undefined),
+    );
+    this.offer.hidden = false;
+  }
+
+  private button(text: string, act: () => void): HTMLButtonElement {
+    const onclick = () => {
+      this.offer.hidden = true;
+      act();
+    };
+    return h("button", { type: "button", onclick }, text);
+  }
+}

@@ -1,0 +1,205 @@
+/** What was done to a machine, kept in the browser: a reload, or another server, does it again. */
+
+import type { Asked, State } from "./protocol";
+
+/** Most signs that are kept of one story, and most stories. */
+const LONGEST = 4_000_000;
+const MOST = 5;
+const PREFIX = "equipoise story ";
+const TAB = "equipoise tab";
+
+/** What was asked, and what followed it that was no step of its own. */
+type Step = Asked[];
+
+export interface Told {
+  /** Sign of the file that it began with; empty where the page has opened something. */
+  base: string;
+  /** Sign of that file as it was saved last, and what it held at first. */
+  saved?: string;
+  text?: string;
+  /** Of the machine that it ends with. */
+  name: string;
+  when: number;
+  start: Step;
+  past: Step[];
+  future: Step[];
+}
+
+/** Where stories outlive the page; a widget in a notebook has none. */
+export interface Shelf {
+  readonly tab: string;
+  read(tab: string): Told | null;
+  write(told: Told): void;
+  /** Stories of tabs that are closed, the newest first. */
+  left(): Promise<Told[]>;
+}
+
+/** Steps that a server keeps; beyond, it forgets the oldest. */
+const DEEPEST = 500;
+/** What a step is made by. */
+const STEPS = new Set(["edit", "balance", "entry"]);
+/** Of these the last one is enough. */
+const SETTINGS = new Set(["compare", "outputs", "arrows"]);
+
+export class Story {
+  private told: Told = empty("");
+  /** Steps that the server could undo when it was heard last. */
+  private depth = 0;
+
+  constructor(private readonly shelf: Shelf | null) {}
+
+  /** What to ask so that a server which has `base` open comes to where this tab was. */
+  begin(base: string): Asked[] {
+    const kept = this.shelf?.read(this.shelf.tab) ?? null;
+    this.told = kept && fits(kept, base) ? kept : empty(base);
+    return asked(this.told, base);
+  }
+
+  /** What was kept cannot be done again. */
+  forget(): void {
+    this.told = empty(this.told.base);
+    this.write();
+  }
+
+  /** The same of a tab that is closed, whose story goes on in this one. */
+  resume(told: Told, base: string): Asked[] {
+    this.told = told;
+    this.write();
+    return asked(told, base);
+  }
+
+  /** Stories of closed tabs that began with what the server has open. */
+  async offered(base: string): Promise<Told[]> {
+    const left = (await this.shelf?.left()) ?? [];
+    return left.filter((one) => one.past.length && fits(one, base));
+  }
+
+  /** Everything, to be asked of a server that knows nothing but what it was started with. */
+  all(): Asked[] {
+    return asked(this.told, this.told.base);
+  }
+
+  /** Whether an answer tells of a step more. */
+  private deeper(question: Asked, { steps: [past, future] }: State): boolean {
+    if (past !== this.depth || past < DEEPEST) return past > this.depth;
+    return future === 0 && STEPS.has(question.type);
+  }
+
+  /** A state was told. */
+  heard(state: State): void {
+    [this.depth] = state.steps;
+  }
+
+  /** A question was answered by a state. */
+  remember(question: Asked, state: State): void {
+    const { told } = this;
+    if (question.type === "open") this.told = { ...empty(told.base), start: [question] };
+    else if (question.type === "undo") move(told.past, told.future, "start");
+    else if (question.type === "redo") move(told.future, told.past, "end");
+    else if (this.deeper(question, state)) {
+      told.past.push([question]);
+      told.future = [];
+    } else follow(told.past[told.past.length - 1] ?? told.start, question);
+    this.told.name = state.name;
+    this.write();
+  }
+
+  /** The file on disk holds what was done. */
+  saved(base: string, text: string): void {
+    this.told.saved = base;
+    this.told.text = text;
+    this.write();
+  }
+
+  private write(): void {
+    this.told.when = Date.now();
+    this.shelf?.write(this.told);
+  }
+}
+
+function empty(base: string): Told {
+  return { base, name: "", when: 0, start: [], past: [], future: [] };
+}
+
+/** Whether it can be told to a server which has that open: nothing, or the same file. */
+function fits(told: Told, base: string): boolean {
+  if (told.start.some(({ type }) => type === "open")) return true;
+  return told.base === base || (told.saved === base && told.text !== undefined);
+}
+
+function asked(told: Told, base: string): Asked[] {
+  const { start, past, future, text, name } = told;
+  const again = told.base !== base && text !== undefined && !start.some((a) => a.type === "open");
+  const open: Asked[] = again ? [{ type: "open", name, text, file: true }] : [];
+  const back = future.map((): Asked => ({ type: "undo" }));
+  return [...open, ...start, ...past.flat(), ...future.flat(), ...back];
+}
+
+/** One step from the end or the start of what was done to what can be done again, or back. */
+function move(from: Step[], to: Step[], end: "start" | "end"): void {
+  const step = end === "start" ? from.pop() : from.shift();
+  if (!step) return;
+  if (end === "start") to.unshift(step);
+  else to.push(step);
+}
+
+/** Of what is no step the last of its kind is enough. */
+function follow(step: Step, question: Asked): void {
+  const last = step.findIndex(({ type }) => type === question.type);
+  if (last >= 0 && SETTINGS.has(question.type)) step.splice(last, 1);
+  step.push(question);
+}
+
+/** The browser's storage; `tab` outlives a reload, but not the tab. */
+export function shelf(): Shelf | null {
+  try {
+    const tab = (sessionStorage[TAB] as string | undefined) ?? Math.random().toString(36).slice(2);
+    sessionStorage[TAB] = tab;
+    // While it is held others know that this tab is open.
+    void navigator.locks.request(PREFIX + tab, () => new Promise(() => undefined));
+    return { tab, read, write: (told) => write(tab, told), left: () => left(tab) };
+  } catch {
+    return null; // a browser that keeps nothing
+  }
+}
+
+function read(tab: string): Told | null {
+  try {
+    return JSON.parse(localStorage.getItem(PREFIX + tab) ?? "null") as Told | null;
+  } catch {
+    return null;
+  }
+}
+
+function write(tab: string, told: Told): void {
+  const text = JSON.stringify(told);
+  const others = stories().filter((one) => one.tab !== tab);
+  for (const { tab: old } of others.slice(MOST - 1)) localStorage.removeItem(PREFIX + old);
+  try {
+    if (text.length > LONGEST) throw new RangeError();
+    localStorage.setItem(PREFIX + tab, text);
+  } catch {
+    localStorage.removeItem(PREFIX + tab); // more than is kept
+  }
+}
+
+/** All that are kept, the newest first. */
+function stories(): { tab: string; told: Told }[] {
+  const tabs = Object.keys(localStorage)
+    .filter((key) => key.startsWith(PREFIX))
+    .map((key) => key.slice(PREFIX.length));
+  return tabs
+    .flatMap((tab) => {
+      const told = read(tab);
+      return told ? [{ tab, told }] : [];
+    })
+    .sort((one, other) => other.told.when - one.told.when);
+}
+
+async function left(own: string): Promise<Told[]> {
+  const { held } = await navigator.locks.query();
+  const open = new Set((held ?? []).map(({ name }) => name));
+  return stories()
+    .filter(({ tab }) => tab !== own && !open.has(PREFIX + tab))
+    .map(({ told }) => told);
+}

@@ -1,0 +1,40 @@
+"""Arrays of a message, in one block of 32-bit floats."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+Array = np.ndarray[Any, Any]
+Values = dict[str, Any]
+
+
+@dataclass
+class Block:
+    """Arrays one behind the other, as 32-bit floats, and where each begins."""
+
+    places: dict[str, tuple[int, int]] = field(default_factory=dict)
+    parts: list[Array] = field(default_factory=list)
+    size: int = 0
+
+    def add(self, name: str, values: Array) -> None:
+        """Add real (N,) values, or complex ones as (2 N,): x and y in turn."""
+        flat = np.ascontiguousarray(values)
+        if np.iscomplexobj(flat):
+            flat = flat.view(float)
+        with np.errstate(over="ignore"):  # what no drawing could show
+            self.parts.append(flat.astype("<f4"))
+        self.places[name] = (self.size, flat.size)
+        self.size += flat.size
+
+    @property
+    def told(self) -> dict[str, list[int]]:
+        """Offset and length of each array, in numbers."""
+        return {name: list(place) for name, place in self.places.items()}
+
+    @property
+    def data(self) -> bytes:
+        """All arrays, little-endian."""
+        return b"".join(part.tobytes() for part in self.parts)

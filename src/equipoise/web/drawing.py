@@ -1,0 +1,101 @@
+"""The drawing of a machine as a page is sent it: signs, and the arrays that move them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from equipoise.symbols.carrier import MOUNT
+from equipoise.symbols.looks import LOOKS
+from equipoise.symbols.pieces import Piece, pieces
+from equipoise.symbols.scene import Scene
+from equipoise.symbols.shapes import Shape
+from equipoise.web.block import Block, Values
+
+UNIT = 1.25
+"""Pixels: size of a unit of signs on a page."""
+
+
+def stage_of(scene: Scene, handles: Sequence[str]) -> Values:
+    """Names and the drawing of a scene.
+
+    signs : from the back to the front, each with its ``layer``, the ``link`` that it is, what it
+        moves with (`symbols.pieces.Hold`, with the ``length`` of which it is stretched), and its
+        shapes: role, whether it is closed, radius (m), and that in pixels, then x and y (m) and
+        offsets from there (pixels) of each corner.
+    looks : role -> style.
+    """
+    low, high = scene.box
+    drawn = pieces(scene)
+    roles = sorted({shape.role for piece in drawn for shape in piece.shapes})
+    return {
+        "frame": list(scene.frame),
+        "standing": list(scene.standing),
+        "bodies": [{"name": body.name, "points": list(body.points)} for body in scene.bodies],
+        "guides": [{"name": guide.name, "point": guide.point} for guide in scene.guides],
+        "mass_centers": list(scene.mass_centers),
+        "box": [low.real, low.imag, high.real, high.imag],
+        "movable": list(handles),
+        "signs": [_sign(scene, piece) for piece in drawn],
+        "looks": {role: LOOKS[role].css(UNIT) for role in roles},
+        "reference": _reference(scene),
+    }
+
+
+def _sign(scene: Scene, piece: Piece) -> Values:
+    hold = None if piece.hold is None else {k: v for k, v in asdict(piece.hold).items() if v}
+    if hold is not None and "to" in hold:
+        hold["length"] = float(np.max(piece.shapes[0].places.real))
+    if hold is not None and "mount" in hold:
+        hold |= _strut(scene, hold["mount"])
+    shapes = [shape_of(shape) for shape in piece.shapes]
+    return {
+        "layer": piece.layer,
+        "link": piece.link,
+        "hold": hold,
+        "still": piece.still,
+        "shapes": shapes,
+    }
+
+
+def _strut(scene: Scene, name: str) -> Values:
+    """Place of a mount on the support at rest (m), and from there to its ground (pixels)."""
+    assert scene.carrier is not None
+    mount = scene.carrier.support.mounts[name]
+    assert mount.point is not None
+    way = UNIT * MOUNT[0] * scene.carrier.way(mount)
+    return {"at": list(mount.point[:2]), "ground": [way.real, way.imag]}
+
+
+def _reference(scene: Scene) -> list[float] | None:
+    """What a support turns about, m; None where there is none."""
+    if scene.carrier is None:
+        return None
+    return [scene.carrier.reference.real, scene.carrier.reference.imag]
+
+
+def shape_of(shape: Shape) -> list[Any]:
+    """A shape as a page is told it, see `stage_of`."""
+    offsets = UNIT * shape.offsets
+    corners = np.column_stack([
+        shape.places.real.round(7), shape.places.imag.round(7),
+        offsets.real.round(2), offsets.imag.round(2),
+    ])  # fmt: skip
+    sizes = shape.radius, round(UNIT * shape.grown, 2)
+    return [shape.role, shape.closed, *sizes, corners.ravel().tolist()]
+
+
+def moves_of(scene: Scene, block: Block) -> None:
+    """Where everything of a drawing is over the crank angle, for the block."""
+    block.add("crank_angle", scene.crank_angle)
+    for name, place in scene.places.items():
+        block.add(f"place.{name}", place)
+    for name, place in scene.mass_centers.items():
+        block.add(f"mass_center.{name}", place)
+    for name, angle in scene.angles.items():
+        block.add(f"angle.{name}", angle)
+    for guide in scene.guides:
+        block.add(f"guide.{guide.name}", guide.way)

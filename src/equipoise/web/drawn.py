@@ -1,0 +1,270 @@
+"""A machine that is unfinished, as a page shows it: where it is drawn, and what it lacks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from equipoise.errors import EquipoiseError, UsageError, to_paste
+from equipoise.i18n import Note
+from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.model import FRAME, Machine
+from equipoise.quantities import display
+from equipoise.symbols.scene import Drive, Guide, Scene, Wheel, bodies_of, wheels_of
+from equipoise.web.block import Block, Values
+from equipoise.web.design import DIGITS, Design
+from equipoise.web.drawing import moves_of, stage_of
+from equipoise.web.edits import Solved, edited, settled, solved
+from equipoise.web.fields import Field, Scale
+from equipoise.web.lacking import lacking
+from equipoise.web.measures import Measure, held, measures_of
+from equipoise.web.messages import Change, Entry, Setting
+from equipoise.web.moving import moved
+from equipoise.web.sketch import Sketch
+from equipoise.web.state import turning
+from equipoise.web.tables import entered
+
+EMPTY = (-0.1 - 0.08j, 0.2 + 0.1j)
+"""What is in sight of a machine that has no links yet, m."""
+RAIL = 0.35
+"""How far a line reaches from its block to either side, over the size of the machine."""
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A sketch, and the sentence that tells why it does not move yet."""
+
+    design: Sketch
+    lacks: str
+
+    @property
+    def refusal(self) -> UsageError:
+        """Why something cannot be had that only a finished machine has."""
+        return UsageError(Note("the machine is not finished: {lacks}", lacks=self.lacks))
+
+
+def drawn(sketch: Sketch) -> Solved | Drawn:
+    """The machine that a sketch is, computed, or what it lacks."""
+    told = lacking(sketch)
+    if not told:
+        try:
+            return replace(sketch.finished(), stand=sketch.crank_angle)
+        except EquipoiseError as error:
+            told = to_paste(error.told())[0]
+    return Drawn(sketch, told)
+
+
+def tried(sketch: Sketch) -> Drawn:
+    """What is dragged: it stands where it is drawn until it is let go."""
+    found = drawn(sketch)
+    return found if isinstance(found, Drawn) else Drawn(sketch, turning(found.design.machine))
+
+
+def computed(design: Design | Sketch) -> Solved | Drawn:
+    """A step of what was done, computed."""
+    return solved(design) if isinstance(design, Design) else drawn(design)
+
+
+def sketch_of(found: Solved | Drawn, at: int) -> Sketch:
+    """What is shown as a sketch that can be changed; a machine as at a sample of its crank angle.
+
+    Raises
+    ------
+    UsageError : there is no such sample.
+    """
+    if isinstance(found, Drawn):
+        return found.design
+    count = len(found.motion.crank_angle)
+    if not 0 <= at < count:
+        raise UsageError(
+            Note("at: got {at}; there are the crank angles 0 to {count}", at=at, count=count - 1)
+        )
+    return Sketch.of(found, at)
+
+
+def finished(found: Solved | Drawn) -> Solved:
+    """A machine that can be computed, or why it cannot yet."""
+    if isinstance(found, Drawn):
+        raise found.refusal
+    return found
+
+
+def changed(base: Solved | Drawn, changes: list[Change], commit: bool) -> Solved | Drawn:
+    """What is shown with numbers set and points dragged; commit : whether it is let go."""
+    if isinstance(base, Solved):
+        return edited(base, changes)
+    sketch = redrawn(base.design, changes)
+    return drawn(sketch) if commit else tried(sketch)
+
+
+def with_entry(base: Solved | Drawn, entry: Entry) -> Solved | Drawn:
+    """What is shown with another table of its file."""
+    if isinstance(base, Solved):
+        return settled(solved(entered(base.design, entry)))
+    own = entered(Design(base.design.name, plain_of(base)), entry).own
+    return drawn(base.design.taking(own))
+
+
+def plain_of(found: Solved | Drawn) -> Machine:
+    """The machine whose file has the tables that are shown: of a sketch what is known by now.
+
+    Raises
+    ------
+    UsageError : it has no link yet.
+    """
+    if isinstance(found, Solved):
+        return found.design.own
+    if not found.design.links:
+        raise UsageError(Note("the machine has no links yet; draw one first"))
+    return replace(found.design.machine(), position=None)
+
+
+def status_of_sketch(found: Drawn) -> Values:
+    """As `status_of` tells of a finished machine."""
+    sketch = found.design
+    drive = sketch.drive.link if sketch.drive else None
+    return {"mobility": sketch.mobility, "text": found.lacks, "finished": False, "drive": drive}
+
+
+# -- changed by numbers and drags ------------------------------------------------------------------
+
+
+def redrawn(sketch: Sketch, changes: list[Change]) -> Sketch:
+    """A sketch with numbers set and points dragged.
+
+    Raises
+    ------
+    UsageError : one of them cannot be.
+    """
+    for change in changes:
+        if isinstance(change, Setting):
+            fields = fields_of_sketch(sketch)
+            if change.path not in fields:
+                raise UsageError(unknown(change.path, fields, "number of this machine"))
+            sketch = fields[change.path].typed(sketch, change.to)
+        elif change.of_mass:
+            raise UsageError(Note("a centre of mass can be dragged once the machine is finished"))
+        else:
+            sketch = moved(sketch, change.name, held(sketch.places, change))
+    return sketch
+
+
+def fields_of_sketch(sketch: Sketch) -> dict[str, Field]:
+    """Every number of a sketch by its path."""
+    return {one.path: one for one in _fields(sketch)}
+
+
+def _fields(sketch: Sketch) -> Iterator[Field]:
+    if sketch.drive is not None:
+        yield Field(
+            "drive.speed", "drive", "speed", "angular speed", sketch.drive.speed, _with_speed
+        )
+    for body, points in sketch.bodies.items():
+        for one in measures_of(points):
+            path = f"{'frame' if body == FRAME else f'links.{body}'}.{one.key}"
+            put = partial(_measured, body, one)
+            yield Field(path, body, one.label, one.dimension, one.value, put)
+    for point, place in sketch.frame.items():
+        for axis, value in zip("xy", place, strict=True):
+            put = partial(_placed, point, axis)
+            path = f"frame.points.{point}.{axis}"
+            yield Field(path, FRAME, f"{point}, {axis}", "length", value, put)
+
+
+def _with_speed(sketch: Sketch, value: float) -> Sketch:
+    assert sketch.drive is not None
+    return replace(sketch, drive=replace(sketch.drive, speed=value))
+
+
+def _measured(body: str, measure: Measure, sketch: Sketch, value: float) -> Sketch:
+    """A point of a body so that it has another length or angle; what it joins goes with it."""
+    place = sketch.pose(body).out(measure.place(sketch.bodies[body], value))
+    return moved(sketch, measure.moves, place, DIGITS)
+
+
+def _placed(point: str, axis: str, sketch: Sketch, value: float) -> Sketch:
+    x, y = sketch.frame[point]
+    return moved(sketch, point, complex(value, y) if axis == "x" else complex(x, value), DIGITS)
+
+
+# -- what a page is sent ---------------------------------------------------------------------------
+
+
+def scene_of(sketch: Sketch) -> Scene:
+    """What there is to draw, at one place."""
+    one = np.ones(1)
+    guides = tuple(
+        Guide(slider.name, slider.point, way * one, slider.on, *2 * (RAIL * sketch.extent * one,))
+        for slider in sketch.sliders
+        for way in [np.exp(1j * (sketch.pose(slider.on).angle + slider.direction))]
+    )
+    centers = {
+        name: sketch.pose(name).out(link.center_of_mass) * one
+        for name, link in sketch.links.items()
+        if link.center_of_mass is not None
+    }
+    springs = tuple((one.point, one.to) for one in sketch.rest.get("springs", ()))
+    joints, drive = sketch.joints, _sense(sketch)
+    return Scene(
+        sketch.pose(drive.link).angle * one if drive.link else 0 * one,
+        tuple(sketch.frame),
+        tuple(bodies_of(sketch.links)),
+        {name: place * one for name, place in sketch.places.items()},
+        frozenset(joints.pins),
+        centers,
+        tuple(_wheels(sketch)),
+        guides,
+        springs,
+        {name: pose.angle * one for name, pose in sketch.poses.items()},
+        drive,
+        room=() if sketch.links else EMPTY,
+    )
+
+
+def _wheels(sketch: Sketch) -> list[Wheel]:
+    """Pitch circles, as far as their gears have their pins by now."""
+    try:
+        return [*wheels_of(sketch.joints, sketch.bodies)]
+    except EquipoiseError:
+        return []
+
+
+def _sense(sketch: Sketch) -> Drive:
+    drive = sketch.drive
+    if drive is None:
+        return Drive("", "", 0)
+    pivots = [point for point in sketch.links[drive.link].points if point in sketch.frame]
+    if len(pivots) != 1:
+        return Drive(drive.link, "", 0)
+    return Drive(drive.link, pivots[0], int(np.sign(drive.speed)))
+
+
+def state_of_sketch(found: Drawn, scale: Scale) -> tuple[Values, bytes]:
+    """Everything that a page draws of an unfinished machine: its place, and no charts."""
+    sketch, block = found.design, Block()
+    scene = scene_of(sketch)
+    moves_of(scene, block)
+    length = display("length", [sketch.size])
+    content: Values = {
+        "name": sketch.name,
+        "title": sketch.rest["title"],
+        "description": sketch.rest.get("description", ""),
+        "angles": 1,
+        "turns": 1,
+        "speed": 0,
+        "length": {"unit": length.name, "factor": length.factor},
+        "has_forces": False,
+        "missing": [name for name, link in sketch.links.items() if not link.has_mass],
+        "scene": stage_of(scene, [*sketch.places]),
+        "first": "squares",
+        "least": 0,
+        "before": False,
+        "status": status_of_sketch(found),
+        "fields": [scale.told(one) for one in fields_of_sketch(sketch).values()],
+        **{key: [] for key in ("traced", "figures", "outputs", "charts", "orders", "notes")},
+    }
+    content["arrays"] = block.told
+    return content, block.data

@@ -1,0 +1,69 @@
+"""What a machine that is made still lacks: one sentence, with what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from equipoise.i18n import say, to_say
+from equipoise.mechanism.joints import Structure, held_too_often, undetermined
+from equipoise.mechanism.model import FRAME
+from equipoise.web.sketch import Sketch
+
+AND = to_say("{names} and {last}")
+OR = to_say("{names} or {last}")
+
+
+def lacking(sketch: Sketch) -> str:
+    """What is missing before a sketch can be computed; empty where nothing is, as far as joints
+    and the drive are concerned.
+    """
+    if not sketch.links:
+        return say("nothing moves yet: draw a link from a point of the frame")
+    joints = sketch.joints
+    if not any(FRAME in bodies for bodies in joints.pins.values()):
+        return say("nothing holds the machine: pin a point of it to the frame")
+    mobility, drive = sketch.mobility, sketch.drive
+    if mobility > 1:
+        too_many = say("free motions too many: {count}", count=mobility - 1)
+        return f"{too_many}; {_loose(sketch, joints)}"
+    if mobility < 1:
+        links = _listed(held_too_often(joints, drive.link if drive else ""), AND)
+        return say("no free motion: too many joints hold {links}; free a point", links=links)
+    return _without_drive(_pivoted(sketch)) if drive is None else ""
+
+
+def _without_drive(cranks: Sequence[str]) -> str:
+    if not cranks:
+        return say("no drive: pin a link to the frame at one point, for the crank")
+    return say("no drive: choose the crank, {links}", links=_listed(cranks, OR))
+
+
+def _loose(sketch: Sketch, joints: Structure) -> str:
+    """What moves besides, and what to do about it."""
+    left = undetermined(joints, sketch.drive.link if sketch.drive else "")
+    for link in left:
+        free = [point for point in sketch.links[link].points if point not in joints.pins]
+        held = len(sketch.links[link].points) - len(free)
+        held += sum(link in (slider.link, slider.on) for slider in sketch.sliders)
+        if held < 2 and free:
+            points = _listed(free, OR)
+            return say("{link} hangs free: pin {points} to something", link=link, points=points)
+    links = _listed(left or [*sketch.links], AND)
+    return say("{links} can move freely: add a link or a joint", links=links)
+
+
+def _pivoted(sketch: Sketch) -> list[str]:
+    """Links that could be the crank."""
+    return [
+        name
+        for name, link in sketch.links.items()
+        if sum(point in sketch.frame for point in link.points) == 1 and len(link.points) > 1
+    ]
+
+
+def _listed(names: Sequence[str], several: str) -> str:
+    """Names in a sentence; several : how the last is joined to those before."""
+    found = [name for name in names if name]
+    if len(found) < 2:
+        return "".join(found)
+    return say(several, names=", ".join(found[:-1]), last=found[-1])

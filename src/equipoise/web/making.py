@@ -1,0 +1,112 @@
+"""Operations on a machine that is made, as a page asks for them: each is one step of undo."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from equipoise.errors import UsageError
+from equipoise.i18n import say, to_say
+from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.model import FRAME
+from equipoise.web.adding import with_drive, with_gears, with_link, with_point, with_slider
+from equipoise.web.messages import Message
+from equipoise.web.remaking import (
+    freed,
+    grounded,
+    pinned,
+    renamed,
+    separated,
+    without_entry,
+    without_link,
+    without_point,
+)
+from equipoise.web.sketch import Sketch
+
+Operation = Callable[[Sketch, Message], Sketch]
+
+
+def _point(sketch: Sketch, asked: Message) -> Sketch:
+    return with_point(sketch, asked.spot("spot"), asked.text("on", FRAME))
+
+
+def _link(sketch: Sketch, asked: Message) -> Sketch:
+    return with_link(sketch, asked.spot("from"), asked.spot("to"))
+
+
+def _slider(sketch: Sketch, asked: Message) -> Sketch:
+    spots = asked.spot("from"), asked.spot("to")
+    return with_slider(sketch, *spots, asked.optional("on"), asked.optional("link"))
+
+
+def _gears(sketch: Sketch, asked: Message) -> Sketch:
+    teeth = asked.whole("teeth"), asked.whole("driven_teeth")
+    links = asked.text("driver"), asked.text("driven")
+    return with_gears(sketch, *links, teeth, asked.text("carrier", FRAME))
+
+
+def _pin(sketch: Sketch, asked: Message) -> Sketch:
+    return pinned(sketch, asked.text("point"), asked.text("to"))
+
+
+def _separate(sketch: Sketch, asked: Message) -> Sketch:
+    return separated(sketch, asked.text("point"), asked.optional("link"))
+
+
+def _delete(sketch: Sketch, asked: Message) -> Sketch:
+    what = asked.text("what")
+    if what == "point":
+        return without_point(sketch, asked.text("name"))
+    if what == "link":
+        return without_link(sketch, asked.text("name"))
+    if what not in {"slider", "gear"}:
+        kinds = ("point", "link", "slider", "gear")
+        raise UsageError(unknown(what, kinds, "part that can be deleted"))
+    return without_entry(sketch, f"{what}s", asked.whole("number"))
+
+
+def _rename(sketch: Sketch, asked: Message) -> Sketch:
+    what = asked.text("what")
+    if what not in {"point", "link"}:
+        raise UsageError(unknown(what, ("point", "link"), "part that can be renamed"))
+    return renamed(sketch, what, asked.text("name"), asked.text("to"))
+
+
+OPERATIONS: Mapping[str, tuple[str, Operation]] = {
+    "point": (to_say("add a point"), _point),
+    "link": (to_say("add a link"), _link),
+    "slider": (to_say("add a slider"), _slider),
+    "gears": (to_say("add a pair of gears"), _gears),
+    "drive": (
+        to_say("set the drive"),
+        lambda sketch, asked: with_drive(sketch, asked.text("link")),
+    ),
+    "pin": (to_say("pin"), _pin),
+    "separate": (to_say("separate"), _separate),
+    "ground": (
+        to_say("pin to the frame"),
+        lambda sketch, asked: grounded(sketch, asked.text("point")),
+    ),
+    "free": (
+        to_say("free from the frame"),
+        lambda sketch, asked: freed(sketch, asked.text("point")),
+    ),
+    "delete": (to_say("delete"), _delete),
+    "rename": (to_say("rename"), _rename),
+}
+"""What a page may ask for, with what the step is called."""
+
+
+def made(sketch: Sketch, asked: Message) -> tuple[Sketch, str]:
+    """The sketch after an operation, and what the step is called.
+
+    Raises
+    ------
+    UsageError : there is no such operation, or it cannot be done.
+    """
+    do = asked.text("do")
+    if do not in OPERATIONS:
+        raise UsageError(unknown(do, OPERATIONS, "operation"))
+    label, operation = OPERATIONS[do]
+    named = asked.values.get("name") or asked.values.get("point") or asked.values.get("link")
+    told = say(label)
+    return operation(sketch, asked), f"{told} {named}" if isinstance(named, str) else told

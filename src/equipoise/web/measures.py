@@ -1,0 +1,111 @@
+"""Lengths and angles of a body: between its points, as they are typed and held."""
+
+from __future__ import annotations
+
+from cmath import phase, rect
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import combinations
+from math import hypot
+from typing import Literal
+
+from equipoise.errors import UsageError
+from equipoise.mechanism.model import Vector
+from equipoise.web.messages import Drag
+
+MOST = 4
+"""Points of a body of which every two have their length told."""
+REACHED = 1e-9
+"""Over the lengths that are held: how far beyond each other they may be."""
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A length, or the direction of a line in the axes of its body.
+
+    start, moves : points of the line; the second one moves when the value changes.
+    """
+
+    dimension: Literal["length", "angle"]
+    start: str
+    moves: str
+    value: float
+
+    @property
+    def key(self) -> str:
+        """In the path of the number."""
+        what = "lengths" if self.dimension == "length" else "directions"
+        return f"{what}.{self.start}-{self.moves}"
+
+    @property
+    def label(self) -> str:
+        """What a page calls it."""
+        line = f"{self.start} to {self.moves}"
+        return line if self.dimension == "length" else f"{line}, direction"
+
+    def place(self, points: Mapping[str, Vector], value: float) -> Vector:
+        """Where the second point goes for another value, in the axes of the body, m.
+
+        Raises
+        ------
+        UsageError : a length is not above 0.
+        """
+        start = complex(*points[self.start])
+        way = complex(*points[self.moves]) - start
+        if self.dimension == "length" and value <= 0:
+            text = f"{1e3 * value:.6g} mm"
+            raise UsageError(f"got a length of {text}; give more than 0").about(value, text)
+        size, angle = hypot(way.real, way.imag), phase(way)
+        found = start + (rect(value, angle) if self.dimension == "length" else rect(size, value))
+        return found.real, found.imag
+
+
+def measures_of(points: Mapping[str, Vector]) -> Iterator[Measure]:
+    """Every length between the first points of a body, and directions of lines from its first.
+
+    Of the first line the direction is what the axes of a link are, so that it is told of further
+    ones only where the body is a link: its second point lies on the x axis.
+    """
+    names = [*points][:MOST]
+    for start, end in combinations(names, 2):
+        way = complex(*points[end]) - complex(*points[start])
+        if not way:
+            continue
+        yield Measure("length", start, end, hypot(way.real, way.imag))
+        if start == names[0] and way.imag:
+            yield Measure("angle", start, end, phase(way))
+
+
+def held(places: Mapping[str, complex], change: Drag) -> complex:
+    """The nearest place to where a point is dragged at which its locked lengths stay, m.
+
+    places : of all points, m.
+
+    Raises
+    ------
+    UsageError : so many lengths are locked that it cannot move.
+    """
+    others = [name for name in change.keep if name in places and name != change.name]
+    if not others:
+        return change.to
+    now = places[change.name]
+    if len(others) > 2:
+        raise UsageError(f"{len(others)} lengths that end in {change.name} are locked; unlock one")
+    centers = [places[name] for name in others]
+    radii = [abs(now - center) for center in centers]
+    if len(centers) == 1:
+        way = change.to - centers[0]
+        return centers[0] + (rect(radii[0], phase(way)) if way else now - centers[0])
+    return min(_crossings(centers, radii), key=lambda place: abs(place - change.to), default=now)
+
+
+def _crossings(centers: list[complex], radii: list[float]) -> Iterator[complex]:
+    """Where two circles meet, m."""
+    line = centers[1] - centers[0]
+    apart = abs(line)
+    if not apart:
+        return
+    along = (apart**2 + radii[0] ** 2 - radii[1] ** 2) / (2 * apart)
+    height = max(radii[0] ** 2 - along**2, 0.0) ** 0.5
+    for side in (1, -1):
+        yield centers[0] + line / apart * complex(along, side * height)

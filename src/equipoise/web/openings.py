@@ -1,0 +1,45 @@
+"""What a page opens: bundled machines, and model files."""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+
+from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import Note
+from equipoise.schema.files import printable
+from equipoise.schema.models import load_linkage, loads_linkage
+from equipoise.schema.opening import examples, kind_of_text, opened
+from equipoise.web.design import Design
+
+TOOLS = "this is the file of a hand-held tool; `equipoise report` and `equipoise plot` show those"
+
+
+@cache
+def titles() -> dict[str, str]:
+    """Titles of the bundled machines by name."""
+    return examples("linkage")
+
+
+def opened_example(name: str) -> Design:
+    """A bundled machine."""
+    if name not in titles():
+        raise UsageError(Note("there is no example of the name {name!r}", name=printable(name)))
+    return Design(name, load_linkage(name))
+
+
+def opened_file(path_or_name: str | os.PathLike[str]) -> Design:
+    """A machine from its file, with the tables beside it, or an example."""
+    file = opened(path_or_name)
+    if kind_of_text(file.text) == "tool":
+        raise ModelError("", TOOLS, file.source)
+    machine = loads_linkage(file.text, file.source, file.folder)
+    return Design(printable(os.path.basename(path_or_name)), machine)
+
+
+def opened_text(name: str, text: str) -> Design:
+    """A machine from the text of a model file."""
+    shown = printable(name)
+    if kind_of_text(text) == "tool":
+        raise ModelError("", TOOLS, shown)
+    return Design(shown, loads_linkage(text.removeprefix("\ufeff"), shown))

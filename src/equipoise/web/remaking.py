@@ -1,0 +1,230 @@
+"""What is joined, taken apart, taken away, renamed in a machine that is made.
+
+Each function takes a sketch to another one, or refuses in a `UsageError`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+from equipoise.errors import UsageError
+from equipoise.i18n import Note
+from equipoise.mechanism.bodies import Body
+from equipoise.mechanism.checks import Bodies
+from equipoise.mechanism.model import FRAME
+from equipoise.web.adding import (
+    check_body,
+    check_link,
+    check_point,
+    new_point,
+    the,
+    with_point,
+)
+from equipoise.web.messages import Spot
+from equipoise.web.moving import straight
+from equipoise.web.sketch import Sketch
+
+NAMING: Mapping[str, tuple[str, ...]] = {
+    "point": ("point", "to", "through"),
+    "link": ("link", "on", "driver", "driven", "carrier"),
+}
+"""Fields of sliders, gears, loads and springs that name points and links."""
+OF_PLANTING = ("tip", "finger_from")
+
+
+# -- pins ------------------------------------------------------------------------------------------
+
+
+def pinned(sketch: Sketch, point: str, to: str) -> Sketch:
+    """One point put on another, which becomes a pin of all bodies of both."""
+    for name in (point, to):
+        check_point(sketch, name)
+    both = [body for body in sketch.holders(point) if to in sketch.bodies[body]]
+    if both:
+        raise UsageError(
+            Note(
+                "{point} and {to} are points of {the}; pin points of two bodies together",
+                point=point,
+                to=to,
+                the=the(both[0]),
+            )
+        )
+    place, bodies = sketch.places[to], sketch.holders(point)
+    for body in bodies:
+        sketch = sketch.with_place(body, point, place)
+    return straight(renamed_point(sketch, point, to), bodies)
+
+
+def separated(sketch: Sketch, point: str, link: str | None = None) -> Sketch:
+    """One body less at a pin: it gets a point of its own there."""
+    check_point(sketch, point)
+    holders = sketch.holders(point)
+    body = link or holders[-1]
+    check_body(sketch, body)
+    if body not in holders or len(holders) < 2:
+        raise UsageError(
+            Note(
+                "{point} is no pin of {the} and another body; choose a pin",
+                point=point,
+                the=the(body),
+            )
+        )
+    if body == FRAME:
+        return freed(sketch, point)
+    name = new_point(sketch)
+    points = {name if one == point else one: place for one, place in sketch.bodies[body].items()}
+    return sketch.with_points(body, points)
+
+
+def grounded(sketch: Sketch, point: str) -> Sketch:
+    """A point pinned to the frame where it is drawn."""
+    return with_point(sketch, Spot(point), FRAME)
+
+
+def freed(sketch: Sketch, point: str) -> Sketch:
+    """A point that the frame no longer has."""
+    check_point(sketch, point)
+    if point not in sketch.frame:
+        raise UsageError(
+            Note("{point} is not pinned to the frame; choose a point of the frame", point=point)
+        )
+    frame = {name: place for name, place in sketch.frame.items() if name != point}
+    return _tidied(replace(sketch, frame=frame))
+
+
+# -- taken away ------------------------------------------------------------------------------------
+
+
+def without_point(sketch: Sketch, point: str) -> Sketch:
+    """No body has a point any more; a link that has no other goes with it."""
+    check_point(sketch, point)
+    for body in sketch.holders(point):
+        points = {name: place for name, place in sketch.bodies[body].items() if name != point}
+        if points or body == FRAME:
+            sketch = sketch.with_points(body, points)
+        else:
+            sketch = without_link(sketch, body)
+    return _tidied(sketch)
+
+
+def without_link(sketch: Sketch, link: str) -> Sketch:
+    """One link less; points of the frame stay."""
+    check_link(sketch, link)
+    links = {name: one for name, one in sketch.links.items() if name != link}
+    poses = {name: sketch.poses[name] for name in links}
+    return _tidied(replace(sketch, links=links, poses=poses))
+
+
+def without_entry(sketch: Sketch, key: str, number: int) -> Sketch:
+    """One slider or pair of gears less, numbered from 1."""
+    entries = [*getattr(sketch, key)]
+    if not 0 < number <= len(entries):
+        raise UsageError(
+            Note(
+                "{key}: got number {number}; there are {entries}",
+                key=key,
+                number=number,
+                entries=len(entries),
+            )
+        )
+    del entries[number - 1]
+    one: dict[str, Any] = {key: tuple(entries)}
+    return replace(sketch, **one)
+
+
+def _tidied(sketch: Sketch) -> Sketch:
+    """Without what names points or links that are gone."""
+    kept = [(key, one) for key, one in sketch.entries() if _held(key, one, sketch.bodies)]
+    drive, planting = sketch.drive, sketch.rest.get("planting")
+    if drive is not None and drive.link not in sketch.links:
+        sketch = replace(sketch, drive=None)
+    if planting is not None and planting.tip not in sketch.places:
+        sketch = replace(sketch, rest={**sketch.rest, "planting": None})
+    return sketch.with_entries(kept)
+
+
+def _held(key: str, entry: Any, bodies: Bodies) -> bool:
+    """Whether all that an entry names is there."""
+    if key == "gears":
+        return {entry.driver, entry.driven, entry.carrier} <= bodies.keys()
+    points = [(entry.link, entry.point)] if entry.point is not None else []
+    if key == "sliders":
+        points.append((entry.on, entry.through))
+    if key == "springs":
+        points.append((FRAME, entry.to))
+    return entry.link in bodies and all(name in bodies.get(body, ()) for body, name in points)
+
+
+# -- renamed ---------------------------------------------------------------------------------------
+
+
+def renamed(sketch: Sketch, what: str, old: str, new: str) -> Sketch:
+    """A point or a link with another name, which nothing else of its kind has."""
+    (check_point if what == "point" else check_link)(sketch, old)
+    known = sketch.places if what == "point" else sketch.bodies
+    name = new.strip()
+    if not name:
+        raise UsageError(Note("a {what} needs a name; give at least one letter", what=Note(what)))
+    if name in known:
+        raise UsageError(
+            Note(
+                "another {what} is called {name!r}; choose another name", what=Note(what), name=name
+            )
+        )
+    return (renamed_point if what == "point" else _renamed_link)(sketch, old, name)
+
+
+def renamed_point(sketch: Sketch, old: str, new: str) -> Sketch:
+    """A point with another name, wherever it is named."""
+    for body in sketch.holders(old):
+        points = {new if one == old else one: at for one, at in sketch.bodies[body].items()}
+        if body != FRAME and sketch.links[body].bodies:
+            made = [_respotted(one, old, new) for one in sketch.links[body].bodies]
+            link = sketch.links[body].altered(points=points, bodies=tuple(made))
+            sketch = replace(sketch, links={**sketch.links, body: link})
+        elif body != FRAME and sketch.links[body].length is not None:  # which goes on to hold
+            names: Any = (*points,)
+            link = replace(sketch.links[body], points=names)
+            sketch = replace(sketch, links={**sketch.links, body: link})
+        else:
+            sketch = sketch.with_points(body, points)
+    sketch = sketch.with_entries([*_renamed(sketch, "point", old, new)])
+    planting = sketch.rest.get("planting")
+    changes = {key: new for key in OF_PLANTING if getattr(planting, key, None) == old}
+    if changes and planting is not None:
+        sketch = replace(sketch, rest={**sketch.rest, "planting": replace(planting, **changes)})
+    return sketch
+
+
+def _respotted(body: Body, old: str, new: str) -> Body:
+    """A body of a link whose places name a point by another name."""
+
+    def spot(one: Any) -> Any:
+        return new if one == old else one
+
+    holes = tuple(replace(hole, at=spot(hole.at)) for hole in body.holes)
+    ends: dict[str, Any] = {
+        key: tuple(map(spot, getattr(body, key))) for key in ("between", "corners")
+    }
+    return replace(body, at=spot(body.at), holes=holes, **ends)
+
+
+def _renamed_link(sketch: Sketch, old: str, new: str) -> Sketch:
+    """A link with another name, wherever it is named."""
+    sketch = sketch.with_entries([*_renamed(sketch, "link", old, new)])
+    found: dict[str, Any] = {
+        key: {new if one == old else one: value for one, value in getattr(sketch, key).items()}
+        for key in ("links", "poses", "counterweights")
+    }
+    drive = sketch.drive
+    if drive is not None and drive.link == old:
+        drive = replace(drive, link=new)
+    return replace(sketch, drive=drive, **found)
+
+
+def _renamed(sketch: Sketch, what: str, old: str, new: str) -> Iterator[tuple[str, Any]]:
+    for key, one in sketch.entries():
+        given = {field: new for field in NAMING[what] if getattr(one, field, None) == old}
+        yield key, replace(one, **given) if given else one

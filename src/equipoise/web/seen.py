@@ -1,0 +1,162 @@
+"""What a page shows besides the machine itself: arrows at a point, and what it is compared with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from threading import Lock
+from typing import Any, Protocol
+
+from equipoise.errors import UsageError
+from equipoise.i18n import say
+from equipoise.mechanism.checks import unknown
+from equipoise.web.arrows import points_of
+from equipoise.web.block import Block
+from equipoise.web.drawing import moves_of, stage_of
+from equipoise.web.edits import Solved
+from equipoise.web.messages import Message
+from equipoise.web.replies import Reply
+from equipoise.web.variants import NOTHING, OPENED, STEP, VARIANT, Variants
+
+
+@dataclass
+class Seen:
+    """What a page shows besides the machine.
+
+    arrows_at : a point.  variants : that are kept.
+    last : the design before the last change.  opened : the first one.
+    ghost, table : the pale drawing, and the table of variants, as the page has them.
+    """
+
+    arrows_at: str | None = None
+    variants: Variants = field(default_factory=Variants)
+    last: Solved | None = None
+    opened: Solved | None = None
+    ghost: Solved | None = None
+    table: dict[str, Any] | None = None
+
+    def against(self, held: Solved | None) -> Solved | None:
+        """The design that figures are told against; None where they are told alone.
+
+        held : the one that a drag, which is under way, began with.
+        """
+        what = self.variants.against
+        if what == NOTHING:
+            return None
+        if what == STEP:
+            return held or self.last
+        return self.opened if what == OPENED else self.variants.of(what.removeprefix(VARIANT))
+
+    @property
+    def pale(self) -> Solved | None:
+        """The design that is drawn pale, with pale curves."""
+        return None if self.variants.against == STEP else self.against(None)
+
+    def opening(self, found: Solved | None) -> Seen:
+        """The same for a machine that is opened: nothing is kept but what the page knows."""
+        return Seen(opened=found, ghost=self.ghost, table=self.table)
+
+    def compared(self, found: Solved | None) -> Iterator[Reply]:
+        """The pale drawing and the table of variants, where the page has others.
+
+        found : the design that is; None while something is dragged.
+        """
+        if self.pale is not self.ghost:
+            self.ghost = self.pale
+            yield _ghost(self.ghost)
+        if found is None:
+            return
+        bare = Variants()
+        table = None if self.variants == bare else self.variants.table(found)
+        if table != self.table:
+            self.table = table
+            yield Reply({"type": "variants", "seq": None, **(table or bare.table(found))})
+
+
+def _ghost(pale: Solved | None) -> Reply:
+    block = Block()
+    if pale is None:
+        return Reply({"type": "ghost", "seq": None, "scene": None, "arrays": {}})
+    moves_of(pale.scene, block)
+    scene = stage_of(pale.scene, ())
+    return Reply({"type": "ghost", "seq": None, "scene": scene, "arrays": block.told}, block.data)
+
+
+# -- what a page may ask ---------------------------------------------------------------------------
+
+
+class Session(Protocol):
+    """What answers need of a session."""
+
+    seen: Seen
+    lock: Lock
+
+    @property
+    def shown(self) -> Solved:
+        """What the page sees."""
+
+    def current(self) -> Solved:
+        """The design that is."""
+
+    def go_to(self, found: Solved, label: str) -> None:
+        """Make another design the one that is."""
+
+    def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:
+        """Tell of what is shown."""
+
+
+def _arrows(session: Session, message: Message) -> Iterator[Reply]:
+    """Show arrows at a point, or at none."""
+    point = message.text("point", "") or None
+    points = points_of(session.shown.analysis)
+    if point is not None and point not in points:
+        raise UsageError(unknown(point, points, "point"))
+    session.seen.arrows_at = point
+    yield from session.told(message.seq)
+
+
+def _variant(session: Session, message: Message) -> Iterator[Reply]:
+    """Keep the design, or do something with one that is kept."""
+    doing = message.text("do")
+    if doing not in DOING:
+        raise UsageError(unknown(doing, DOING, "thing to do with a variant"))
+    with session.lock:
+        DOING[doing](session, message)
+    yield from session.told(message.seq)
+
+
+def _pin(session: Session, _: Message) -> None:
+    session.seen.variants = session.seen.variants.pinned(session.current())
+
+
+def _rename(session: Session, message: Message) -> None:
+    seen = session.seen
+    seen.variants = seen.variants.renamed(message.text("name"), message.text("to"))
+
+
+def _drop(session: Session, message: Message) -> None:
+    session.seen.variants = session.seen.variants.without(message.text("name"))
+
+
+def _go(session: Session, message: Message) -> None:
+    name = message.text("name")
+    found = session.seen.variants.of(name)
+    session.go_to(found, say("go to {name}", name=name))
+
+
+def _against(session: Session, message: Message) -> None:
+    session.seen.variants = session.seen.variants.told_against(message.text("to"))
+
+
+DOING: dict[str, Callable[[Session, Message], None]] = {
+    "pin": _pin,
+    "rename": _rename,
+    "drop": _drop,
+    "go": _go,
+    "against": _against,
+}
+ASKED: dict[str, Callable[[Session, Message], Iterator[Reply]]] = {
+    "arrows": _arrows,
+    "variant": _variant,
+}
+"""Answers to messages, by their kind."""

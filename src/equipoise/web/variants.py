@@ -1,0 +1,150 @@
+"""Designs that are kept beside the one that is: to look at, to go back to, to compare."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from string import ascii_uppercase
+from types import MappingProxyType
+from typing import Any
+
+from equipoise.errors import EquipoiseError, UsageError
+from equipoise.i18n import Note, say
+from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.outputs import DECLARED
+from equipoise.quantities import Dimension, display
+from equipoise.quantities.numbers import SAME
+from equipoise.web.edits import Solved
+from equipoise.web.figures import figures_of, signals_of, text_of
+from equipoise.web.shaken import can_be_shaken, responded
+
+Values = dict[str, Any]
+MOST, LONGEST = 12, 40
+"""Variants; signs of the name of one."""
+NOTHING, STEP, OPENED = "nothing", "step", "opened"
+"""What figures are told against, besides a variant: that before the last change, or as opened."""
+VARIANT = "variant:"
+"""What stands before the name of one."""
+
+
+@dataclass(frozen=True)
+class Variants:
+    """Designs that are kept, by name, and what the one that is shown is told against."""
+
+    kept: Mapping[str, Solved] = field(default_factory=dict)
+    against: str = STEP
+
+    def pinned(self, found: Solved) -> Variants:
+        """One more, which is what the design is told against from now on.
+
+        Raises
+        ------
+        UsageError : there are too many.
+        """
+        if len(self.kept) >= MOST:
+            raise UsageError(
+                Note("{most} variants are kept already; delete one of them", most=MOST)
+            )
+        letters = (a + b for b in ("", *"23456789") for a in ascii_uppercase)
+        name = next(one for one in letters if one not in self.kept)
+        return Variants(MappingProxyType({**self.kept, name: found}), VARIANT + name)
+
+    def of(self, name: str) -> Solved:
+        """One of them, by its name; a `UsageError` where there is none of it."""
+        if name not in self.kept:
+            raise UsageError(unknown(name, self.kept, "variant"))
+        return self.kept[name]
+
+    def renamed(self, name: str, to: str) -> Variants:
+        """The same with one of another name; a `UsageError` where that is none or is taken."""
+        self.of(name)
+        to = "".join(sign for sign in to.strip() if sign.isprintable())
+        if not to or len(to) > LONGEST:
+            raise UsageError(
+                Note(
+                    "got a name of {to} signs; give one of 1 to {longest}",
+                    to=len(to),
+                    longest=LONGEST,
+                )
+            )
+        if to != name and to in self.kept:
+            raise UsageError(
+                Note("there is a variant of the name {to!r} already; give another", to=to)
+            )
+        kept = {to if one == name else one: found for one, found in self.kept.items()}
+        against = VARIANT + to if self.against == VARIANT + name else self.against
+        return Variants(MappingProxyType(kept), against)
+
+    def without(self, name: str) -> Variants:
+        """The same without one of them."""
+        self.of(name)
+        kept = {one: found for one, found in self.kept.items() if one != name}
+        against = STEP if self.against == VARIANT + name else self.against
+        return Variants(MappingProxyType(kept), against)
+
+    def told_against(self, what: str) -> Variants:
+        """The same, but told against something else: one of the three words, or a variant."""
+        if what not in (NOTHING, STEP, OPENED):
+            self.of(what.removeprefix(VARIANT))
+        return replace(self, against=what)
+
+    def named(self) -> str:
+        """What figures are told against, in words."""
+        if self.against == STEP:
+            return say("before the last change")
+        if self.against == OPENED:
+            return say("as it was opened")
+        return self.against.removeprefix(VARIANT)
+
+    def table(self, now: Solved) -> Values:
+        """Figures of every variant and of the design that is, and which is best of each.
+
+        Of every figure the smallest is best; none is where all are the same.
+        """
+        every = [one.analysis for one in (*self.kept.values(), now)]
+        figures = [_named(figures_of(signals_of(one), None, one.machine)) for one in every]
+        names = [name for name in figures[-1] if all(name in one for one in figures)]
+        rows = [_row([one[name] for one in figures]) for name in names]
+        rows += _gauges((*self.kept.values(), now))
+        masses = [one.machine.mass for one in every]
+        if all(masses):
+            unit = display("mass", masses)
+            words = {"label": say("mass of the links"), "unit": unit.name}
+            values = [unit.factor * mass for mass in masses]
+            rows.append(_row([{**words, "value": one, "text": text_of(one)} for one in values]))
+        return {"kept": [*self.kept], "against": self.against, "rows": rows}
+
+
+def _named(figures: list[Values]) -> dict[str, Values]:
+    return {one["name"]: one for one in figures}
+
+
+def _gauges(every: Sequence[Solved]) -> Iterator[Values]:
+    """What gauges read peak to peak, where every design has the same and a steady state."""
+    try:
+        found = [responded(one).gauges for one in every if can_be_shaken(one.design.machine)]
+    except EquipoiseError:
+        return
+    if len(found) < len(every):
+        return
+    for name in (one for one in found[-1] if all(one in gauges for gauges in found)):
+        read = [gauges[name].displacement.peak_to_peak for gauges in found]
+        output = DECLARED["gauges.{}"].say(name)
+        dimension: Dimension = "angle" if found[-1][name].rotation else "length"
+        unit = display(dimension, read, "mrad" if dimension == "angle" else None)
+        words = {"label": say("{output}, peak to peak", output=output), "unit": unit.name}
+        values = [float(unit.factor * one) for one in read]
+        yield _row([{**words, "value": one, "text": text_of(one)} for one in values])
+
+
+def _row(cells: list[Values]) -> Values:
+    values = [one["value"] for one in cells]
+    known = [abs(value) for value in values if value is not None]
+    least, most = min(known, default=0.0), max(known, default=0.0)
+    best = [
+        number
+        for number, value in enumerate(values)
+        if value is not None and most - least > SAME * most and abs(value) - least <= SAME * most
+    ]
+    texts = [one["text"] for one in cells]
+    return {"label": cells[-1]["label"], "unit": cells[-1]["unit"], "texts": texts, "best": best}

@@ -1,0 +1,102 @@
+"""What is done is kept: in its file, in the browser, in an address."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+import equipoise as eq
+from browser.live import Live
+from support.chromium import serving
+from surface.running import example_text
+
+
+@pytest.fixture
+def page(browser: Browser, address: str) -> Page:
+    """A page that may go to several servers."""
+    context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
+    context.set_default_timeout(15_000)
+    yield context.new_page()
+    context.close()
+
+
+def free_port() -> str:
+    with socket.create_server(("127.0.0.1", 0)) as held:
+        return str(held.getsockname()[1])
+
+
+def test_a_file_is_saved_and_its_steps_outlive_the_server(page: Page, tmp_path: Path) -> None:
+    path, port = tmp_path / "mine.toml", free_port()
+    path.write_text(example_text("yamashita-1"), encoding="utf-8")
+    own = eq.load("yamashita-1")
+    with serving(path, "--port", port) as address:
+        live = Live.open(page, address)
+        assert live.button("Save").is_disabled()
+        live.type(live.field("crank mass"), "300 g")
+        expect(live.button("Save")).to_be_enabled()
+        live.type(live.field("drive speed"), "150 rpm")
+        live.page.keyboard.press("Control+s")
+        asked = page.get_by_role("dialog", name="Question")
+        expect(asked).to_contain_text("comments")
+        asked.get_by_role("button", name="Save").click()
+        expect(live.told("is saved")).to_be_visible()
+        assert eq.load(path).links["crank"].mass == 0.3
+        live.button("Undo").click()
+        expect(live.button("Save")).to_be_enabled()
+        path.write_text(path.read_text(encoding="utf-8") + "\n", encoding="utf-8")
+        live.button("Save").click()
+        expect(live.told("was changed on disk")).to_be_visible()
+        path.write_text(path.read_text(encoding="utf-8")[:-1], encoding="utf-8")
+        page.get_by_role("combobox", name="Example").select_option("drag-link")
+        expect(asked).to_contain_text("mine.toml is not saved")
+        asked.get_by_role("button", name="Cancel").click()
+        expect(page.get_by_role("combobox", name="Example")).to_have_value("mine.toml")
+    with serving(path, "--port", port) as address:
+        live = Live.open(page, address)
+        live.button("Redo").click()
+        expect(live.button("Save")).to_be_disabled()  # as it is on disk
+        live.button("Undo").click()
+        live.button("Undo").click()
+        expect(live.button("Undo")).to_be_disabled()
+        assert live.machine() == own
+        other = page.context.new_page()
+        expect(Live.open(other, address).button("Undo")).to_be_disabled()
+        page.close()
+        other.reload()  # nobody else goes on with what was done there
+        expect(other.get_by_text("was changed here before")).to_be_hidden()
+
+
+def test_what_was_done_in_a_closed_tab_is_offered(live: Live, address: str) -> None:
+    live.type(live.field("crank mass"), "333 g")
+    expect(live.button("Undo")).to_be_enabled()
+    other = live.page.context.new_page()
+    again = Live.open(other, address)
+    expect(other.get_by_text("was changed here before")).to_be_hidden()  # it is open
+    live.page.close()
+    other.reload()
+    other.get_by_role("button", name="Go on").click()
+    expect(again.field("crank mass")).to_have_value("333 g")
+    again.button("Undo").click()
+    expect(again.field("crank mass")).to_have_value("199 g")
+
+
+def test_a_link_holds_the_model(live: Live, new_page: Callable[..., Page]) -> None:
+    live.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    live.type(live.field("crank mass"), "300 g")
+    expect(live.button("Undo")).to_be_enabled()
+    live.page.get_by_text("Download", exact=True).click()
+    live.button("Copy link").click()
+    expect(live.told("The link is copied")).to_be_visible()
+    link = live.page.evaluate("navigator.clipboard.readText()")
+    there = Live.open(new_page(), link)
+    expect(there.field("crank mass")).to_have_value("300 g")
+    assert there.machine() == eq.load("yamashita-1").with_link("crank", mass=0.3)
+    figures = ".readings .value"
+    expect(there.page.locator(figures)).to_have_text(live.page.locator(figures).all_inner_texts())
+    assert "#" not in there.page.url  # a reload goes on with what is done from here
+    there.page.goto(link[:-30])
+    expect(there.told("holds no whole model")).to_be_visible()

@@ -1,0 +1,74 @@
+"""The file that a server was started with: written in place, and only as long as it is ours."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import equipoise as eq
+from equipoise.web.disk import on_disk
+from equipoise.web.openings import opened_file
+from equipoise.web.session import Session
+from surface.running import example_text
+from unit.web.pages import ask, edit, refusal, state
+
+CHANGE = {"set": "links.crank.mass", "text": "300 g"}
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    path = tmp_path / "mine.toml"
+    path.write_text(example_text("yamashita-1"), encoding="utf-8")
+    return path
+
+
+def session_of(path: Path | str) -> Session:
+    """What a page of `equipoise serve FILE` begins with."""
+    session = Session()
+    session.open(opened_file(path))
+    session.disk = on_disk(str(path), session.shown)
+    return session
+
+
+def test_a_file_is_saved_in_place(path: Path) -> None:
+    session = session_of(path)
+    base = session.hello().content["base"]
+    assert base and state(ask(session, "ready")[1]).content["file"]["saved"]
+    changed = edit(session, CHANGE).content
+    assert changed["file"] == {"name": "mine.toml", "saved": False, "comments": True}
+    after, told = ask(session, "save", seq=1)
+    assert told.content["base"] == session.hello().content["base"] != base
+    assert state(after).content["file"] == {"name": "mine.toml", "saved": True, "comments": False}
+    own = eq.load("yamashita-1")
+    assert eq.load(path) == own.with_link("crank", mass=0.3)
+    assert eq.loads(told.content["text"]) == own  # with what the steps began
+    undone = state(ask(session, "undo")[0]).content
+    assert (undone["steps"], undone["file"]["saved"]) == ([0, 1], False)
+
+
+def test_what_somebody_else_wrote_is_not_lost(path: Path) -> None:
+    session = session_of(path)
+    edit(session, CHANGE)
+    other = example_text("yamashita-2")
+    path.write_text(other, encoding="utf-8")
+    assert "was changed on disk" in refusal(ask(session, "save"))
+    assert path.read_text(encoding="utf-8") == other
+    path.unlink()
+    assert "was changed on disk" in refusal(ask(session, "save"))
+    assert not path.exists()
+
+
+def test_nothing_but_the_opened_file_is_written(path: Path) -> None:
+    session = session_of(path)
+    shown = state(ask(session, "open", example="drag-link")[0]).content
+    assert shown["file"] is None
+    assert "not opened from a file" in refusal(ask(session, "save"))
+    example = session_of("yamashita-1")
+    assert "not opened from a file" in refusal(ask(example, "save"))
+    again = session_of(path)
+    text = example_text("watt-six-bar")  # what a page has kept of the same file
+    kept = state(ask(again, "open", name="mine.toml", text=text, file=True)[0]).content
+    assert kept["file"]["saved"] is False
+    ask(again, "save")
+    assert eq.load(path) == eq.load("watt-six-bar")

@@ -1,0 +1,297 @@
+"""A machine that is made: what each operation does, what is missing, and what it is in the end."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.web.session import Session
+from unit.web.pages import ask, opened, refusal, state
+
+Content = dict[str, Any]
+SAME = 1e-12
+"""Over the largest value: what is made is what the file has, so that only rounding differs."""
+
+
+class Maker:
+    """A page that makes a machine."""
+
+    def __init__(self, session: Session | None = None) -> None:
+        self.session = session or Session()
+        self.seen: Any = None
+
+    def do(self, do: str, **values: Any) -> str:
+        """Do something, and return what is told of the machine."""
+        self.seen = state(ask(self.session, "make", do=do, **values)[0])
+        return str(self.seen.content["status"]["text"])
+
+    def refused(self, do: str, **values: Any) -> str:
+        return refusal(ask(self.session, "make", do=do, **values))
+
+    @property
+    def machine(self) -> eq.Machine:
+        return self.session.shown.design.machine
+
+
+def at(place: complex, on: str | None = None) -> Content:
+    return {"place": [place.real, place.imag], **({"on": on} if on else {})}
+
+
+def spot(point: str) -> Content:
+    return {"point": point}
+
+
+def drawn(name: str) -> dict[str, complex]:
+    """Places of a bundled machine at crank angle 0, m."""
+    points = eq.analyze(eq.load(name)).motion.points
+    return {name: complex(point.place[0]) for name, point in points.items()}
+
+
+def massed(machine: eq.Machine, like: eq.Machine, names: dict[str, str]) -> eq.Machine:
+    """A machine with masses, loads and speed of another one, whose links have other names."""
+    for name, other in names.items():
+        link = like.links[other]
+        values = (link.mass, link.center_of_mass, link.inertia)
+        keys = ("mass", "center_of_mass", "inertia")
+        machine = machine.with_link(name, **dict(zip(keys, values, strict=True)))
+    loads = tuple(
+        replace(load, link=name)
+        for load in like.loads
+        for name, other in names.items()
+        if load.link == other
+    )
+    return replace(machine.with_drive(speed=like.drive.speed), loads=loads)
+
+
+def check_same(machine: eq.Machine, like: eq.Machine) -> None:
+    """The figures of a machine are those of another one."""
+    one, other = eq.analyze(machine), eq.analyze(like)
+    for name in ("shaking_force.x", "shaking_force.y", "shaking_moment", "drive_torque"):
+        wanted = other.outputs[name].values
+        size = np.max(np.abs(other.outputs["shaking_force.x"].values))
+        assert one.outputs[name].values == pytest.approx(wanted, abs=SAME * max(size, 1.0))
+
+
+def four_bar() -> Maker:
+    """Yamashita's four-bar, from nothing."""
+    place, page = drawn("yamashita-1"), Maker()
+    assert page.do("new") == "nothing moves yet: draw a link from a point of the frame"
+    page.do("point", spot=at(place["A"]))
+    page.do("link", **{"from": spot("A"), "to": at(place["B"])})
+    page.do("link", **{"from": spot("B"), "to": at(place["C"])})
+    page.do("point", spot=at(place["D"]))
+    page.do("link", **{"from": spot("D"), "to": spot("C")})
+    return page
+
+
+def test_four_bar_from_nothing_has_the_figures_of_its_file() -> None:
+    page = four_bar()
+    status = page.seen.content["status"]
+    assert status["mobility"] == 1 and not status["finished"]
+    assert status["text"] == "no drive: choose the crank, crank or rocker"
+    assert page.seen.content["angles"] == 1 and page.seen.content["charts"] == []
+    assert page.do("drive", link="crank") == "1 free motion; crank turns fully"
+    page.do("point", spot=at(drawn("yamashita-1")["P"]), on="coupler")
+    page.do("rename", what="point", name="E", to="P")
+    like = eq.load("yamashita-1")
+    made = page.machine
+    assert made.assembly == like.assembly
+    for name, link in like.links.items():
+        for point, place in link.points.items():
+            assert made.links[name].points[point] == pytest.approx(place, abs=1e-15)
+    check_same(massed(made, like, {name: name for name in like.links}), like)
+
+
+def test_slider_crank_from_nothing_has_the_figures_of_its_file() -> None:
+    like, page = eq.load("slider-crank-engine"), Maker()
+    place = drawn("slider-crank-engine")
+    page.do("new")
+    page.do("link", **{"from": at(place["A"], "frame"), "to": at(place["B"])})
+    told = page.do("link", **{"from": spot("B"), "to": at(place["C"])})
+    assert told == "free motions too many: 1; coupler hangs free: pin C to something"
+    page.do("drive", link="crank")
+    told = page.do("slider", **{"from": spot("C"), "to": spot("A")})
+    assert told == "1 free motion; crank turns fully"
+    made = page.machine
+    assert made.sliders[0].direction == pytest.approx(np.pi / 2, abs=1e-15)
+    assert made.assembly == like.assembly
+    names = {"crank": "crank", "coupler": "rod", "slider": "piston"}
+    check_same(massed(made, like, names), like)
+
+
+GEARED = """
+schema = 1
+title = "Geared five-bar"
+[drive]
+link = "crank"
+speed = "60 rpm"
+[frame]
+points.A = ["0 mm", "0 mm"]
+points.E = ["100 mm", "0 mm"]
+[links.crank]
+points.A = ["0 mm", "0 mm"]
+points.B = ["30 mm", "0 mm"]
+mass = "200 g"
+center_of_mass = ["12 mm", "0 mm"]
+inertia = "30 kg mm^2"
+[links.rocker]
+points.E = ["0 mm", "0 mm"]
+points.D = ["25 mm", "0 mm"]
+mass = "300 g"
+center_of_mass = ["10 mm", "5 mm"]
+inertia = "40 kg mm^2"
+[links.coupler]
+points.B = ["0 mm", "0 mm"]
+points.C = ["100 mm", "0 mm"]
+mass = "400 g"
+center_of_mass = ["40 mm", "0 mm"]
+inertia = "300 kg mm^2"
+[links.link1]
+points.D = ["0 mm", "0 mm"]
+points.C = ["90 mm", "0 mm"]
+mass = "350 g"
+center_of_mass = ["40 mm", "3 mm"]
+inertia = "250 kg mm^2"
+[[gears]]
+between = ["crank", "rocker"]
+teeth = [20, 40]
+start = "120 deg"
+[assembly]
+C = "left"
+"""
+
+
+def test_geared_five_bar_from_nothing_has_the_figures_of_its_file() -> None:
+    like, page = eq.loads(GEARED), Maker()
+    motion = eq.analyze(like).motion
+    k = 77  # somewhere else than at crank angle 0, so that the gear's start has to be found
+    place = {name: complex(point.place[k]) for name, point in motion.points.items()}
+    page.do("new")
+    page.do("link", **{"from": at(place["A"], "frame"), "to": at(place["B"])})
+    page.do("link", **{"from": spot("B"), "to": at(place["C"])})
+    page.do("point", spot=at(place["E"]))  # is called D
+    page.do("link", **{"from": spot("D"), "to": at(place["D"])})
+    told = page.do("link", **{"from": spot("E"), "to": spot("C")})
+    assert told.startswith("free motions too many: 1; crank, coupler, rocker and link1 can move")
+    page.do("drive", link="crank")
+    told = page.do("gears", driver="crank", driven="rocker", teeth=20, driven_teeth=40)
+    assert told == "1 free motion; crank turns fully"
+    names = {"crank": "crank", "coupler": "coupler", "rocker": "rocker", "link1": "link1"}
+    made = page.machine
+    assert np.degrees(made.gears[0].start) == pytest.approx(120, abs=1e-9)
+    assert page.seen.content["status"]["stand"] == pytest.approx(77)
+    check_same(massed(made, like, names), like)
+
+
+def test_an_example_goes_on_being_made_and_finishes_again() -> None:
+    """Taken apart at some crank angle, and put together: the same machine."""
+    for name in ("yamashita-1", "quick-return", "class-three", "stephenson-six-bar"):
+        session, _ = opened(name)
+        page, like = Maker(session), session.shown.design.machine
+        crank = like.drive.link
+        told = page.do("rename", what="link", name=crank, to="wheel", at=123)
+        assert told == "1 free motion; wheel turns fully"
+        assert page.machine.assembly == like.assembly
+        page.do("rename", what="link", name="wheel", to=crank, at=50)
+        check_same(page.machine, like)
+
+
+def test_what_hangs_free_is_told_until_it_is_pinned_again() -> None:
+    session, _ = opened("yamashita-1")
+    page = Maker(session)
+    told = page.do("separate", point="C", at=30)
+    assert told == "free motions too many: 2; coupler hangs free: pin C or P to something"
+    assert page.seen.content["scene"]["movable"] == ["A", "D", "B", "C", "P", "E"]
+    moved = state(
+        ask(session, "edit", edits=[{"move": "E", "to": [0.1, 0.05], "at": 0}], label="move E")[0]
+    )
+    assert moved.content["status"]["mobility"] == 3
+    assert moved.place("E")[0] == pytest.approx(0.1 + 0.05j, abs=1e-7)
+    assert page.do("pin", point="E", to="C") == "1 free motion; crank turns fully"
+    asked = ("undo",) * 3
+    for kind in asked:
+        last = state(ask(session, kind)[0])
+    assert last.content["status"]["finished"] and last.content["undo"] is None
+    assert page.machine == eq.load("yamashita-1")
+
+
+def test_too_many_joints_are_told() -> None:
+    page = four_bar()
+    told = page.do("link", **{"from": spot("C"), "to": at(0.02 - 0.12j, "frame")})
+    assert told.startswith("no free motion: too many joints hold ")
+    page.do("delete", what="link", name=[*page.seen.content["scene"]["bodies"]][-1]["name"])
+    assert page.do("drive", link="crank") == "1 free motion; crank turns fully"
+
+
+def test_a_crank_that_cannot_turn_is_drawn_and_goes_on_being_made() -> None:
+    page = four_bar()
+    ask(page.session, "edit", edits=[{"move": "B", "to": [0.09, 0.0], "at": 0}], label="move B")
+    told = page.do("drive", link="crank")
+    assert "cannot turn" in told
+    assert len(page.seen.place("B")) == 1
+    back = [{"move": "B", "to": [0.0335, 0.0], "at": 0}]
+    found = state(ask(page.session, "edit", edits=back, label="move B")[0])
+    assert found.content["status"]["finished"]
+
+
+def test_what_cannot_be_made_is_refused_in_a_sentence() -> None:
+    page = four_bar()
+    assert page.refused("drive", link="coupler") == (
+        "coupler is pinned to the frame nowhere; "
+        "the crank turns about exactly one point of the frame"
+    )
+    assert page.refused("pin", point="B", to="C") == (
+        "B and C are points of coupler; pin points of two bodies together"
+    )
+    assert page.refused("ground", point="A").startswith("A is a point of the frame already")
+    assert page.refused("free", point="B").startswith("B is not pinned to the frame")
+    assert page.refused("separate", point="P1").startswith("no point is called 'P1'")
+    assert "both ends of the link lie at one place" in page.refused(
+        "link", **{"from": spot("A"), "to": spot("A")}
+    )
+    assert page.refused("rename", what="point", name="A", to="B").startswith("another point")
+    assert page.refused("explode").startswith("no operation is called 'explode'")
+    assert page.refused("link", **{"from": "A", "to": 3}).startswith("make: from: got")
+    sentence = refusal(ask(page.session, "download", kind="csv"))
+    assert sentence == "the machine is not finished: no drive: choose the crank, crank or rocker"
+
+
+def test_numbers_of_what_is_unfinished_are_typed() -> None:
+    page = four_bar()
+    setting = {"set": "links.crank.lengths.A-B", "text": "40 mm"}
+    told = state(ask(page.session, "edit", edits=[setting], label="length")[0])
+    assert told.place("B")[0] == pytest.approx(0.04, abs=1e-9)
+    setting = {"set": "frame.points.D.x", "text": "12 mm"}
+    told = state(ask(page.session, "edit", edits=[setting], label="D")[0])
+    assert told.place("D")[0].real == pytest.approx(0.012, abs=1e-9)
+    setting = {"set": "links.crank.lengths.A-B", "text": "-5 mm"}
+    sentence = refusal(ask(page.session, "edit", edits=[setting], label="length"))
+    assert sentence == "got a length of -5 mm; give more than 0"
+
+
+def test_locked_lengths_stay_while_a_point_is_dragged() -> None:
+    for page in (four_bar(), Maker(opened("yamashita-1")[0])):
+        before = state(ask(page.session, "ready")[1])
+        size = abs(before.place("C")[0] - before.place("B")[0])
+        drag = {"move": "C", "to": [0.09, -0.03], "at": 0, "keep": ["B"]}
+        after = state(ask(page.session, "edit", edits=[drag], label="move C")[0])
+        assert abs(after.place("C")[0] - after.place("B")[0]) == pytest.approx(size, rel=1e-6)
+        assert abs(after.place("C")[0] - before.place("C")[0]) > 1e-3
+
+
+def test_tables_of_a_file_are_added_while_a_machine_is_unfinished() -> None:
+    page = four_bar()
+    values: Content = {"between": ["crank", "rocker"], "teeth": [20, 40]}
+    told = ask(page.session, "entry", place=["gears", 0], values=values, label="gears")[0]
+    assert state(told).content["status"]["text"].startswith("no free motion: too many joints")
+    ask(page.session, "undo")
+    values = {"points": {"A": ["0 mm", "0 mm"], "B": ["33.5 mm", "0 mm"]}, "mass": "200 g"}
+    values |= {"center_of_mass": ["10 mm", "0 mm"], "inertia": "30 kg mm^2"}
+    told = ask(page.session, "entry", place=["links", "crank"], values=values, label="mass")[0]
+    assert state(told).content["scene"]["mass_centers"] == ["crank"]
+    assert page.do("drive", link="crank") == "1 free motion; crank turns fully"
+    assert page.machine.links["crank"].mass == 0.2
