@@ -20,6 +20,12 @@ def titles() -> dict[str, str]:
     return examples("linkage")
 
 
+@cache
+def tool_titles() -> dict[str, str]:
+    """Titles of the bundled tools by name."""
+    return examples("tool")
+
+
 def opened_example(name: str) -> Design:
     """A bundled machine."""
     if name not in titles():
