@@ -11,15 +11,18 @@ import { Heading } from "./heading";
 import { helpDialog } from "./help";
 import { Inspector } from "./inspector";
 import { Keeping } from "./keeping";
+import { Locks } from "./locks";
 import { Player } from "./player";
 import type { Asked, FileKind, Hello, Planted, State, Wire } from "./protocol";
 import { BalancePanel, FigureTable, Readings } from "./readings";
+import { turnable } from "./rim";
 import { Board } from "./board";
 import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
 import type { Shelf } from "./story";
 import { Theme } from "./theme";
 import { Toolbar } from "./toolbar";
+import { Tools } from "./tools";
 import { TransportBar } from "./transport";
 import { language, say } from "./words";
 
@@ -44,6 +47,7 @@ export class App {
   private readonly strokes = new FigureTable(say("Figures of sliders and rockers"));
   private readonly balance: BalancePanel;
   private readonly toolbar: Toolbar;
+  private readonly tools: Tools;
   private readonly transport: TransportBar;
   private readonly help = helpDialog(() => this.hello?.version ?? "");
   private readonly heading = new Heading();
@@ -90,6 +94,7 @@ export class App {
     this.talk = new Conversation(wire, events, shelf);
     el.append(this.root);
     this.theme = new Theme(this.root, () => this.charts.repaint());
+    const locks = new Locks();
     const page = {
       talk: this.talk,
       state: () => this.state,
@@ -97,6 +102,7 @@ export class App {
       chosen: (grip: Grip) => this.choose(grip),
       holding: (on: boolean) => this.hold(on),
       hint: (text: string) => this.board.hint(text),
+      kept: (point: string) => locks.keep(point),
     };
     this.keeping = new Keeping({
       root: this.root,
@@ -109,12 +115,26 @@ export class App {
     this.hands = new Hands(page, (dress) => new Stage(dress));
     this.stage = this.hands.made;
     this.board = new Board(this.stage, (link) => this.chooseLink(link));
+    this.tools = new Tools({
+      ...page,
+      stage: this.stage,
+      board: this.board.root,
+      still: () => this.crank(),
+      snaps: () => [],
+    });
+    turnable({
+      stage: this.stage,
+      state: page.state,
+      angle: () => this.player.angle,
+      turn: (degrees) => this.turn(degrees),
+      chosen: (link) => this.chooseLink(link),
+    });
     this.charts = new Charts(
       this.theme,
       (angle) => this.turn(angle),
       (names) => this.command({ type: "outputs", names }),
     );
-    this.inspector = new Inspector(this.talk, (on) => this.hold(on));
+    this.inspector = new Inspector(this.talk, (on) => this.hold(on), locks);
     this.balance = new BalancePanel(
       () => this.keep(),
       () => this.takeBack(),
@@ -154,7 +174,7 @@ export class App {
 
   private lay(): void {
     const stage = h("section", { class: "stage", "aria-label": say("Linkage and motion") });
-    stage.append(this.heading.about, this.board.root);
+    stage.append(this.heading.about, this.tools.palette.root, this.board.root);
     stage.append(this.transport.root, this.heading.notes, this.readings.root);
     stage.append(this.strokes.root, this.planted.root);
     this.side.append(this.charts.root);
@@ -228,7 +248,7 @@ export class App {
       this.player.suit();
       this.player.playing =
         state.speed !== 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches;
-    } else this.player.angle = angle;
+    } else this.player.angle = state.status.stand ?? angle;
     if (other) this.heading.forget();
     if (other || !state.planting) this.planted.hide();
     if (other) this.strokes.hide();
@@ -278,6 +298,8 @@ export class App {
       this.theme.update();
       this.charts.settle();
     }
+    this.tools.show(state);
+    this.root.classList.toggle("unfinished", !state.status.finished);
     this.hands.describe();
     this.hands.accepted();
     this.heading.show(state);
@@ -386,6 +408,7 @@ export class App {
     const link = grip.kind === "mass" ? grip.name : frame ? "frame" : holder;
     this.stage.select(new Set([grip.name]), grip.kind === "mass" ? grip.name : null, grip);
     this.inspector.choose(link, grip.kind === "point" ? grip.name : null);
+    this.tools.selected(grip);
     if (grip.kind === "point") this.charts.choose(grip.name);
   }
 
@@ -393,6 +416,7 @@ export class App {
     const body = this.state?.scene.bodies.find((one) => one.name === link);
     this.stage.select(new Set(body?.points), link, null);
     this.inspector.choose(link, null);
+    this.tools.choose({ what: "link", name: link });
   }
 
   /** While something is held, the crank stands still. */

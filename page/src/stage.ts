@@ -1,5 +1,6 @@
 /** The linkage, drawn in SVG: still parts once, moving parts once a frame. */
 
+import { Dimensions } from "./dims";
 import { s, set } from "./dom";
 import type { Pair, Scene, State } from "./protocol";
 import { at, curve, outside, quarters } from "./shapes";
@@ -37,6 +38,7 @@ export class Stage {
   /** Fine lines and scales, apart, so that they are not painted with every frame. */
   readonly lines = s("svg", { class: "sheet-lines", "aria-hidden": "true" });
   readonly view = new View();
+  private readonly dims = new Dimensions();
   readonly grips = new Map<string, SVGGElement>();
   private readonly layer: Record<string, SVGGElement> = {};
   private state: State | null = null;
@@ -57,6 +59,7 @@ export class Stage {
         s("g", { class: name, "aria-hidden": hidden && "true" }),
       );
     }
+    this.svg.append(this.dims.layer);
   }
 
   /** Take a state; `other` where it is of another machine. Another build is drawn from scratch. */
@@ -126,6 +129,8 @@ export class Stage {
 
   select(points: ReadonlySet<string>, link: string | null, grip: Grip | null): void {
     this.link = link;
+    this.dims.choose(link ? [...points] : []);
+    this.dims.pose((name) => this.place({ kind: "point", name }), this.view);
     this.mark();
     for (const { name, element } of this.paths)
       element.classList.toggle("chosen", points.has(name));
@@ -150,6 +155,7 @@ export class Stage {
     for (const piece of this.pieces) piece.pose(this.state.numbers, this.view, k);
     const spots = this.spots(k);
     const spot = (name: string): Pair => spots.get(name) ?? [0, 0];
+    this.dims.pose((name) => this.place({ kind: "point", name }), this.view);
     this.poseGrips(k, spot);
     this.poseLabels(spot);
   }

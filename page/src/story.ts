@@ -80,7 +80,7 @@ export class Story {
   /** Whether an answer tells of a step more. */
   private deeper(question: Asked, { steps: [past, future] }: State): boolean {
     if (past !== this.depth || past < DEEPEST) return past > this.depth;
-    return future === 0 && (question.type === "edit" || question.type === "balance");
+    return future === 0 && ["edit", "make", "balance"].includes(question.type);
   }
 
   /** A state was told. */

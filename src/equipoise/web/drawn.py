@@ -163,7 +163,7 @@ def _fields(sketch: Sketch) -> Iterator[Field]:
         for one in measures_of(points):
             path = f"{'frame' if body == FRAME else f'links.{body}'}.{one.key}"
             put = partial(_measured, body, one)
-            yield Field(path, body, one.label, one.dimension, one.value, put)
+            yield Field(path, body, one.label, one.dimension, one.value, put, one.between)
     for point, place in sketch.frame.items():
         for axis, value in zip("xy", place, strict=True):
             put = partial(_placed, point, axis)
