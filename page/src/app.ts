@@ -1,5 +1,6 @@
 /** The page as a whole: what it shows, and who tells whom. */
 
+import { Bench } from "./bench";
 import { Charts } from "./charts";
 import { Conversation, type Events } from "./conversation";
 import { h, write } from "./dom";
@@ -15,8 +16,8 @@ import { Locks } from "./locks";
 import { Player } from "./player";
 import type { Asked, FileKind, Hello, Planted, State, Wire } from "./protocol";
 import { BalancePanel, FigureTable, Readings } from "./readings";
-import { turnable } from "./rim";
 import { Board } from "./board";
+import { Seeing } from "./seeing";
 import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
 import type { Shelf } from "./story";
@@ -40,7 +41,9 @@ export class App {
   private readonly hands: Hands;
   private readonly stage: Stage;
   private readonly board: Board;
+  private readonly bench: Bench;
   private readonly charts: Charts;
+  private readonly seeing: Seeing;
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
   private readonly planted = new FigureTable(say("Figures of the planting finger"));
@@ -81,12 +84,16 @@ export class App {
       state: (state) => this.take(state),
       response: (message, numbers) => {
         this.charts.answered(message, numbers);
+        this.seeing.answered(message, numbers);
         this.add("response", message.notes);
       },
       planting: (message) => this.plant(message),
+      ghost: (message, numbers) => this.seeing.pale(message.scene, numbers),
+      variants: (message) => this.seeing.variants.show(message),
       refused: (message, edit) => this.refuse(message, edit),
       balanced: (message) => this.balance.show(message),
       busy: (what) => this.busy(what),
+      tables: (message) => this.bench.show(message),
       file: save,
       saved: (name) => this.keeping.saved(name),
       line: (up) => this.line(up),
@@ -115,16 +122,18 @@ export class App {
     this.hands = new Hands(page, (dress) => new Stage(dress));
     this.stage = this.hands.made;
     this.board = new Board(this.stage, (link) => this.chooseLink(link));
+    this.seeing = new Seeing(
+      this.stage,
+      (asked) => this.command(asked),
+      () => this.stir(),
+    );
+    const root = this.full ? document : this.root;
+    this.bench = new Bench({ ...page, root, stage: this.stage, board: this.board });
     this.tools = new Tools({
       ...page,
       stage: this.stage,
       board: this.board.root,
-      still: () => this.crank(),
-      snaps: () => [],
-    });
-    turnable({
-      stage: this.stage,
-      state: page.state,
+      snaps: () => this.bench.snaps(),
       angle: () => this.player.angle,
       turn: (degrees) => this.turn(degrees),
       chosen: (link) => this.chooseLink(link),
@@ -164,6 +173,7 @@ export class App {
   close(): void {
     this.frames.close();
     this.charts.close();
+    this.bench.close();
     this.talk.close();
     this.keeping.close();
     this.theme.close();
@@ -175,10 +185,11 @@ export class App {
   private lay(): void {
     const stage = h("section", { class: "stage", "aria-label": say("Linkage and motion") });
     stage.append(this.heading.about, this.tools.palette.root, this.board.root);
-    stage.append(this.transport.root, this.heading.notes, this.readings.root);
+    stage.append(this.transport.root, this.seeing.root, this.heading.notes, this.readings.root);
+    stage.append(this.seeing.variants.root);
     stage.append(this.strokes.root, this.planted.root);
     this.side.append(this.charts.root);
-    this.aside.append(this.balance.root, this.inspector.root);
+    this.aside.append(this.balance.root, ...this.bench.roots, this.inspector.root);
     this.root.append(
       this.toolbar.root,
       this.lost,
@@ -250,6 +261,7 @@ export class App {
         state.speed !== 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches;
     } else this.player.angle = state.status.stand ?? angle;
     if (other) this.heading.forget();
+    if (other) this.bench.forget();
     if (other || !state.planting) this.planted.hide();
     if (other) this.strokes.hide();
     if (!state.before) this.balance.hide();
@@ -280,6 +292,7 @@ export class App {
       this.toolbar.show(state);
       this.heading.show(state);
     }
+    this.seeing.show(state, other);
     this.stage.show(state, other);
     this.transport.take(state.angles);
     this.charts.show(state, other);
@@ -294,6 +307,7 @@ export class App {
     this.toolbar.show(state);
     this.readings.show(state);
     this.inspector.show(state);
+    if (!this.held) this.bench.follow();
     if (!this.held) {
       this.theme.update();
       this.charts.settle();
@@ -308,11 +322,12 @@ export class App {
   private point(): void {
     if (!this.state) return;
     this.turned = false;
-    const k = this.player.sample;
+    const k = this.seeing.crank(this.player.sample);
     this.stage.pose(k);
     this.transport.point();
     this.transport.state();
-    this.charts.point(k, this.player.angle);
+    const { angles, turns } = this.state;
+    this.charts.point(k, (k / angles) * 360 * turns);
   }
 
   /** The crank is at another angle, or is to turn. */
@@ -366,6 +381,7 @@ export class App {
   }
 
   private async read(file: File): Promise<void> {
+    if (this.bench.take(file)) return;
     const problem = tooLarge(file, this.hello?.largest ?? Infinity);
     if (problem) return this.board.say(problem, true);
     void this.open({ type: "open", name: file.name, text: await file.text() }, file.name);
@@ -410,6 +426,7 @@ export class App {
     this.inspector.choose(link, grip.kind === "point" ? grip.name : null);
     this.tools.selected(grip);
     if (grip.kind === "point") this.charts.choose(grip.name);
+    if (grip.kind === "point") this.seeing.choose(grip.name);
   }
 
   private chooseLink(link: string): void {
@@ -422,6 +439,7 @@ export class App {
   /** While something is held, the crank stands still. */
   private hold(on: boolean): void {
     this.held = on;
+    this.seeing.hold(on);
     if (on) {
       this.resumes = this.player.playing;
       this.player.playing = false;

@@ -5,8 +5,9 @@ import { s, set } from "./dom";
 import { degrees, length, lengths, signed } from "./format";
 import { Palette, TOOLS, type Tool } from "./palette";
 import type { Made, Pair, State } from "./protocol";
-import { type Hit, meant, step } from "./snap";
-import type { Grip, Stage } from "./stage";
+import { turnable, type Turning } from "./rim";
+import { type Hit, meant, type Snapping, step } from "./snap";
+import type { Grip } from "./stage";
 import { say } from "./words";
 
 /** Pixels from which on a press is a drag from one place to another. */
@@ -21,16 +22,11 @@ const ARROWS: Record<string, Pair> = {
 /** Tools that need two clicks. */
 const TWO = new Set<Tool>(["link", "pin", "slider", "gears"]);
 
-export interface Making {
+export interface Making extends Turning, Snapping {
   talk: Conversation;
-  stage: Stage;
   board: HTMLElement;
-  state(): State | null;
   sample(): number;
   hint(text: string): void;
-  /** The crank is to stand still. */
-  still(): void;
-  snaps(): Pair[];
 }
 
 type Chosen = { what: "point" | "link"; name: string };
@@ -65,6 +61,7 @@ export class Tools {
     const still = (event: Event) => this.tool !== "select" && this.onSheet(event) && event.preventDefault();
     page.board.addEventListener("touchstart", still, { passive: false, capture: true });
     this.palette.show(this.tool, false);
+    turnable(page);
   }
 
   /** A state was told. */
@@ -94,7 +91,7 @@ export class Tools {
     [this.tool, this.pending] = [tool, null];
     this.page.talk.release();
     const making = tool !== "select";
-    if (making) this.page.still();
+    if (making) this.page.turn(this.page.angle()); // stands still from now on
     this.page.board.classList.toggle("tooled", making);
     set(this.layer, { display: making ? null : "none" });
     set(this.crosshair, { tabindex: making ? 0 : -1 });
@@ -135,7 +132,7 @@ export class Tools {
     const inside = "elementsFromPoint" in root ? root.elementsFromPoint(box.left + px[0], box.top + px[1]) : below;
     const link = inside.map((one) => one.closest<SVGElement>(".body")?.dataset.link).find(Boolean);
     const from = level ? (this.pending?.place ?? null) : null;
-    return meant({ ...this.page, stage: this.page.stage }, px, link, from);
+    return meant(this.page, px, link, from);
   }
 
   private readonly press = (event: PointerEvent): void => {

@@ -195,6 +195,20 @@ def test_help_of_a_command_tells_each_option(name: str) -> None:
     assert [line for line in text.splitlines() if len(line) > 80] == []
 
 
+def test_help_says_what_an_option_wants() -> None:
+    """In words or by an example, not by a type of Python; what is not asked for is not done."""
+    told = "".join(helps().values())
+    assert re.findall(r"\b(?:STR|INT|FLOAT|ANY|BOOL)\b|default: (?:False|None)", told) == []
+    assert '--speed "250 rpm"' in told and "--csv FILE" in told and "--orders NUMBER" in told
+
+
+def test_help_has_lines_of_its_own_and_no_markup() -> None:
+    """Whatever lines the text has in the source."""
+    told = helps()["balance --help"]
+    assert "Its table  │\n│          [balance] says what may change and what is to" in told
+    assert "`" not in "".join(helps().values())
+
+
 @pytest.mark.parametrize("name", COMMANDS)
 def test_the_tour_shows_every_command(name: str) -> None:
     tour = (ROOT / "docs" / "tour.md").read_text(encoding="utf-8")

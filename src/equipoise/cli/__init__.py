@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 from cyclopts import App, CycloptsError, Parameter
 
 from equipoise import __version__
+from equipoise.cli.help import Laid
 from equipoise.errors import EquipoiseError, to_paste
 from equipoise.partial import together
 
@@ -29,6 +30,8 @@ app = App(
     name="equipoise",
     help="How a planar linkage moves, what that does to its frame, drive and joints.",
     version=__version__,
+    help_format="plaintext",
+    help_formatter=Laid(),
     default_parameter=Parameter(negative=""),
     suppress_keyboard_interrupt=False,
 )

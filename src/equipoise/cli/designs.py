@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
-from equipoise.cli.options import Many, Out, StorePath, StudyFile, count, naming
+from equipoise.cli.options import Names, Out, StorePath, StudyFile, count, naming
 from equipoise.cli.outputs import (
     Chosen,
     Columns,
@@ -34,8 +34,8 @@ def best(
     store: StorePath,
     /,
     *,
-    by: Many = None,
-    largest: Many = None,
+    by: Names = None,
+    largest: Names = None,
     most: Annotated[int, count(1, MOST_TOLD, "--count")] = 10,
     chosen: Chosen = Chosen(),
     outputs: Outputs = Outputs(),

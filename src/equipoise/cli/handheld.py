@@ -65,7 +65,7 @@ def _range(option: str, text: str) -> tuple[float, float]:
     return ends[0], ends[1]
 
 
-Speeds = Annotated[Any, read_by(_range)]
+Speeds = Annotated[Any, read_by(_range, '"2000 : 9000 rpm"')]
 Number = Annotated[int | None, count(1, MOST_MODES)]
 
 
@@ -78,9 +78,9 @@ def tool(
     number: Number = None,
     respond: Speeds = None,
     speeds: Annotated[int | None, count(2, MOST_SPEEDS)] = None,
-    at: Annotated[Any, sizes("length")] = None,
+    at: Annotated[Any, sizes("length", "300 mm, 1200 mm")] = None,
     exposure: bool = False,
-    duration: Annotated[Any, read_by(time_a_day)] = None,
+    duration: Annotated[Any, read_by(time_a_day, '"2 h"')] = None,
     outputs: Outputs = Outputs(),
 ) -> None:
     """A hand-held tool: how its shaft vibrates, and what the hands get.
@@ -94,15 +94,15 @@ def tool(
     number
         With --modes: how many natural frequencies, 6 if not given.
     respond
-        Transmission, forces and motion over a range of speeds of the engine: "2000 rpm : 9000 rpm".
+        Transmission, forces and motion over a range of speeds of the engine.
     speeds
         Number of speeds in the range, 400 if not given; more are added about resonances.
     at
-        With --respond: further places of the shaft to be told of, "300 mm, 1200 mm".
+        With --respond: further places of the shaft to be told of.
     exposure
         Weighted acceleration of the hands, and what a day of work amounts to.
     duration
-        Time a day at the working speed, "2 h", in the place of the file's [[work]].
+        Time a day at the working speed, in the place of the file's [[work]].
     """
     from equipoise.handheld.sweep import default_answers
 
@@ -289,8 +289,7 @@ def sensitivities(
     Parameters
     ----------
     speeds
-        Speeds of the engine, "5000 rpm : 6000 rpm"; the band of [design] or of [operation] if not
-        given.
+        Speeds of the engine; the band of [design] or of [operation] if not given.
     """
     import numpy as np
 

@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import App, Parameter
 
 from equipoise.cli.options import (
+    SIGNED,
     Angle,
     CrankZero,
     File,
-    Many,
     Model,
+    Names,
+    NewFile,
     Out,
     PlantingFile,
     Speed,
     SupportFile,
-    Text,
     blaming,
     check_belonging,
     count,
@@ -30,6 +31,7 @@ from equipoise.cli.options import (
     read_by,
     size,
     tolerance,
+    wants,
 )
 from equipoise.cli.outputs import (
     Drawn,
@@ -62,13 +64,13 @@ def analyze(
     angles: Annotated[Any, read_by(crank_angles), Parameter(show_default=True)] = 360,
     speed: Speed = None,
     acceleration: Annotated[float | None, size("angular acceleration")] = None,
-    about: Text = None,
+    about: Annotated[str | None, SIGNED, wants("POINT")] = None,
     split: bool = False,
-    csv: str | None = None,
+    csv: NewFile = None,
     orders: Annotated[int | None, count(1, MOST_ORDERS)] = None,
     crank_zero: Angle = None,
-    output: Many = None,
-    dwell: Annotated[Any, read_by(tolerance)] = None,
+    output: Names = None,
+    dwell: Annotated[Any, read_by(tolerance, '"0.5 mm"')] = None,
     outputs: Printed = Printed(),
 ) -> None:
     """Motion, shaking force and moment, drive torque and every joint force over a turn.
@@ -78,7 +80,7 @@ def analyze(
     angles
         Number of crank angles a turn, or the angles: "0 deg, 45 deg, 90 deg".
     acceleration
-        Acceleration of the crank instead of the file's, such as "10 rad/s^2".
+        Acceleration of the crank instead of the file's.
     about
         Point about which moments are taken: a point of the frame, or "10 mm, 20 mm".
     split
@@ -88,7 +90,7 @@ def analyze(
     orders
         Print the harmonics of forces, moment and torque up to this order instead.
     crank_zero
-        With --orders: direction from which crank angles count, such as "-83 deg"; else the x axis.
+        With --orders: direction from which crank angles count; else the x axis.
     output
         Tell this output over crank angle instead, by its name in --json, such as "points.P.vx" or
         "joints.A".  May be repeated.
@@ -163,7 +165,7 @@ def respond(
     /,
     *,
     model: Model | None = None,
-    speed: Annotated[Any, read_by(_speeds)] = None,
+    speed: Annotated[Any, read_by(_speeds, '"193 rpm"')] = None,
     speeds: Annotated[int | None, count(2, 20_000)] = None,
     drive: bool = False,
     outputs: Outputs = Outputs(),
@@ -176,7 +178,7 @@ def respond(
         linear (shaking force at the drive's pivot), torque (with the drive torque), moment (whole
         force and moment), coupled (with the torque that the motion takes), exact (all bodies).
     speed
-        Speed of the crank instead of the file's: "193 rpm", or a range: "20 rpm : 400 rpm".
+        Speed of the crank instead of the file's, or a range: "20 rpm : 400 rpm".
     speeds
         With a range: number of speeds, 200 if not given; more are added about resonances, where
         curves bend, and at that of the file.  Without --speed the range is that of speeds in

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from equipoise.cli.options import (
+    EXAMPLES,
     SIGNED,
     Many,
     blaming,
@@ -18,6 +19,7 @@ from equipoise.cli.options import (
     read_by,
     size,
     time_a_day,
+    wants,
 )
 from equipoise.cli.outputs import Drawn
 from equipoise.errors import UsageError
@@ -50,7 +52,7 @@ def decay(
     csv: Annotated[str, Parameter(name="CSV")],
     /,
     *,
-    stiffness: Annotated[Any, read_by(_stiffness)] = None,
+    stiffness: Annotated[Any, read_by(_stiffness, '"12 N/mm"')] = None,
     arm: Arm = None,
     spring_arm: Arm = None,
     confidence: Annotated[float, SIGNED] = 0.95,
@@ -63,7 +65,7 @@ def decay(
     csv
         Path of a record: columns "time [s]" and "displacement [mm]" or "angle [deg]".
     stiffness
-        Of the spring, such as "12 N/mm", or of a pivot, "500 N m/rad"; adds inertia and forces.
+        Of the spring, or of a pivot, "500 N m/rad"; adds inertia and forces.
     arm
         Distance from the pivot at which the displacement was read; makes an angle of it.
     spring_arm
@@ -142,6 +144,9 @@ class Told:
     weighted: Weighted | None = None
 
 
+ACCELERATION = f'"{EXAMPLES["acceleration"]}"'
+
+
 def _acceleration(option: str, text: str) -> float:
     value = quantity(option, text, "acceleration")
     if value < 0:
@@ -149,12 +154,12 @@ def _acceleration(option: str, text: str) -> float:
     return value
 
 
-Acceleration = Annotated[float | None, read_by(_acceleration)]
+Acceleration = Annotated[float | None, read_by(_acceleration, ACCELERATION)]
 
 
 def exposure(
     *inputs: Annotated[str, Parameter(name="INPUT")],
-    duration: Annotated[Many, SIGNED] = None,
+    duration: Annotated[Many, SIGNED, wants('"2.5 h"')] = None,
     idle: Acceleration = None,
     racing: Acceleration = None,
     bands: bool = False,
@@ -172,10 +177,10 @@ def exposure(
         signals (columns "time [s]" and "x [m/s^2]", y, z), spectra ("frequency [Hz]" and the
         same), tasks ("task", "acceleration [m/s^2]", "duration [h]").
     duration
-        Time of exposure a day of a signal, a spectrum, or --idle and --racing, such as "2.5 h".
-        One for all of them, or repeated for each.
+        Time of exposure a day of a signal, a spectrum, or --idle and --racing.  One for all of
+        them, or repeated for each.
     idle
-        Total value when idling, such as "3.1 m/s^2"; put together with --racing as in ISO 22867.
+        Total value when idling; put together with --racing as in ISO 22867.
     racing
         Total value when racing.
     bands

@@ -33,14 +33,35 @@ Model = Literal["linear", "torque", "moment", "coupled", "exact"]
 # -- texts as values -------------------------------------------------------------------------------
 
 
-def read_by(read: Callable[[str, str], Any], name: str | None = None) -> Parameter:
+EXAMPLES = {
+    "acceleration": "3.1 m/s^2",
+    "angle": "-83 deg",
+    "angular acceleration": "10 rad/s^2",
+    "angular speed": "250 rpm",
+    "length": "60 mm",
+    "mass": "500 g",
+    "time": "2 h",
+}
+"""Of each dimension that options have, as help shows it."""
+
+
+def wants(metavar: str) -> Parameter:
+    """What follows an option, as help shows it: a word for it, or an example in quotation marks."""
+    return Parameter(metavar=metavar)
+
+
+def read_by(
+    read: Callable[[str, str], Any], metavar: str = "NUMBER", name: str | None = None
+) -> Parameter:
     """An option whose text is read by a function of option and text; or an argument of a name."""
 
     def convert(_: Any, tokens: Sequence[Any]) -> Any:
         token = tokens[0]
         return read(token.keyword or name or "", token.value)
 
-    return Parameter(name=name, allow_leading_hyphen=True, n_tokens=1, converter=convert)
+    return Parameter(
+        name=name, allow_leading_hyphen=True, n_tokens=1, converter=convert, metavar=metavar
+    )
 
 
 def size(dimension: str, wanted: str = "", name: str | None = None) -> Parameter:
@@ -52,7 +73,7 @@ def size(dimension: str, wanted: str = "", name: str | None = None) -> Parameter
             raise UsageError(f"{option}: got {text!r}; {wanted}")
         return value
 
-    return read_by(read, name)
+    return read_by(read, f'"{EXAMPLES[dimension]}"', name)
 
 
 def count(least: int, most: int, name: str | None = None) -> Parameter:
@@ -63,12 +84,12 @@ def count(least: int, most: int, name: str | None = None) -> Parameter:
             raise UsageError(f"{option}: got {text!r}; give a whole number from {least} to {most}")
         return int(text)
 
-    return read_by(read, name)
+    return read_by(read, name=name)
 
 
-def sizes(dimension: str) -> Parameter:
+def sizes(dimension: str, example: str) -> Parameter:
     """Quantities with commas between, in SI units."""
-    return read_by(lambda option, text: quantities(option, text, dimension))
+    return read_by(lambda option, text: quantities(option, text, dimension), f'"{example}"')
 
 
 def quantity(option: str, text: str, dimension: str) -> float:
@@ -161,27 +182,27 @@ SupportFile = Annotated[str, file_named("Path of a model file with a table [supp
 ToolFile = Annotated[str, file_named("Path of a tool's file, with a table [shaft]")]
 StudyFile = Annotated[str, file_named("Path of a study file", "STUDY")]
 StorePath = Annotated[
-    str, Parameter(name="STORE", help="Path of a store, as `equipoise sweep` makes it.")
+    str, Parameter(name="STORE", help='Path of a store, as "equipoise sweep" makes it.')
 ]
-Out = Annotated[str | None, Parameter(name=["--out", "-o"])]
+Out = Annotated[str | None, Parameter(name=["--out", "-o"], metavar="PATH")]
+NewFile = Annotated[str | None, wants("FILE")]
+NewFolder = Annotated[str | None, wants("FOLDER")]
 Many = Annotated[list[str] | None, Parameter(consume_multiple=False)]
-Text = Annotated[str | None, SIGNED]
+Names = Annotated[Many, wants("NAME")]
+Goals = Annotated[Many, wants("OUTPUT")]
+Limits = Annotated[Many, wants("LIMIT")]
 Rate = Annotated[float | None, size("angular speed")]
-Speed = Annotated[
-    Rate, Parameter(help='Speed of the crank instead of the file\'s, such as "250 rpm".')
-]
-OF_ANY = Parameter(
-    help="Speed of the crank, or of the tool's engine, instead of the file's, such as \"250 rpm\"."
-)
+Speed = Annotated[Rate, Parameter(help="Speed of the crank instead of the file's.")]
+OF_ANY = Parameter(help="Speed of the crank, or of the tool's engine, instead of the file's.")
 AnySpeed = Annotated[Rate, OF_ANY]
+SpeedText = Annotated[str | None, SIGNED, wants(f'"{EXAMPLES["angular speed"]}"'), OF_ANY]
 Angle = Annotated[float | None, size("angle")]
 CrankZero = Annotated[
-    Angle,
-    Parameter(help='Direction from which crank angles count, such as "-83 deg"; else the x axis.'),
+    Angle, Parameter(help="Direction from which crank angles count; else the x axis.")
 ]
 ShownIn = Annotated[
     Any,
-    read_by(_units),
+    read_by(_units, '"length=in"'),
     Parameter(
         help="Units of tables and pictures where they are not to be the usual ones or the file's: "
         '"length=in, force=lbf" or "um, rad/s".'

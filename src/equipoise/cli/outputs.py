@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TextIO
 
 from cyclopts import Parameter
 
-from equipoise.cli.options import Out, ShownIn, check_belonging, count
+from equipoise.cli.options import NewFile, NewFolder, Out, ShownIn, check_belonging, count
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, in_each, said
 from equipoise.partial import afterwards
@@ -84,7 +84,7 @@ class Printed(Shown):
 class Drawn(Printed):
     """What a command prints and draws."""
 
-    plot: str | None = None
+    plot: NewFolder = None
     """Draw what is told into this folder."""
     format: Kind | None = None
     """With --plot: kind of the pictures, svg if not given."""
@@ -134,7 +134,7 @@ class Folder(Shown):
 class Outputs(Drawn):
     """What a command prints, draws and writes as columns."""
 
-    csv: str | None = None
+    csv: NewFile = None
     """Write what is told, column by column, to this file."""
 
     def check(self, sources: Sequence[str], others: Iterable[str | None] = ()) -> None:

@@ -14,6 +14,7 @@ from equipoise.cli.options import (
     AnySpeed,
     File,
     Many,
+    Names,
     Speed,
     blaming,
     count,
@@ -22,6 +23,7 @@ from equipoise.cli.options import (
     quantities,
     quantity,
     read_by,
+    wants,
 )
 from equipoise.cli.outputs import Folder, tell, tell_pictures, write_pictures
 from equipoise.cli.plan import read_objective
@@ -59,9 +61,9 @@ def plot(
     file: File,
     /,
     *,
-    only: Many = None,
-    output: Many = None,
-    at: Annotated[Any, read_by(_crank_angles)] = None,
+    only: Names = None,
+    output: Names = None,
+    at: Annotated[Any, read_by(_crank_angles, '"0 deg, 45 deg"')] = None,
     speed: AnySpeed = None,
     pictures: Folder = Folder(),
 ) -> None:
@@ -74,7 +76,7 @@ def plot(
     output
         Draw this output over crank angle, such as "points.P.vx", instead.  May be repeated.
     at
-        Crank angles at which the linkage is drawn, such as "0 deg, 45 deg".
+        Crank angles at which the linkage is drawn.
     """
     from equipoise.figures import render
     from equipoise.present.findings import ToolFindings, find
@@ -133,7 +135,7 @@ def landscape(
     output: Annotated[str, Parameter(name="OUTPUT")],
     /,
     *,
-    set: Many = None,
+    set: Annotated[Many, wants("NUMBER=VALUE")] = None,
     points: Annotated[int, count(5, MOST_POINTS)] = POINTS,
     speed: Speed = None,
     pictures: Folder = Folder(),

@@ -17,6 +17,7 @@ from equipoise.cli.options import (
     quantity,
     read_by,
     size,
+    wants,
 )
 from equipoise.errors import UsageError
 
@@ -67,6 +68,7 @@ PLACES: dict[tuple[str, ...], str] = {
     **{("balance", table, key): KEYS[key] for table in ("masses", "geared") for key in KEYS},
 }
 """Place in a plan -> the option that asked for it."""
+Links = Annotated[Many, wants("LINK")]
 Shape = Literal["any", "point", "disc", "ring", "sector"]
 
 
@@ -86,14 +88,14 @@ def _ratio(option: str, text: str) -> tuple[float, float]:
 class Freed:
     """What may be changed, in the place of what the table [balance] says."""
 
-    move_cm: Many = None
+    move_cm: Links = None
     """Free the centre of mass of this link.  May be repeated."""
     crank_counterweight: bool = False
     """Free a counterweight on the crank's axis."""
-    counterweight: Many = None
+    counterweight: Links = None
     """Free a counterweight on this link, about its pin in the frame, or its first point where it
     has none.  May be repeated."""
-    geared_counterweight: str | None = None
+    geared_counterweight: Annotated[str | None, wants("LINK")] = None
     """Free a counterweight on a shaft geared to this link."""
     ratio: Annotated[Any, read_by(_ratio)] = None
     """With --geared-counterweight: speed of the shaft over the link's, or a range "0.3, 2"."""
@@ -108,9 +110,9 @@ class Freed:
     """Of a counterweight, where it is given."""
     at_most: Annotated[float | None, size("mass")] = None
     """Most mass of a counterweight."""
-    thickness: Annotated[float | None, size("length")] = None
+    thickness: Annotated[float | None, size("length"), wants('"8 mm"')] = None
     """Of the plate that discs, rings and sectors are cut from."""
-    material: str | None = None
+    material: Annotated[str | None, wants("MATERIAL")] = None
     """Of that plate, such as steel."""
     phases: bool = False
     """Free the phases of [[rows]]."""

@@ -9,18 +9,18 @@ from math import ceil
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from equipoise.cli.options import (
-    OF_ANY,
     SIGNED,
     File,
     Many,
     Out,
     Rate,
-    Text,
+    SpeedText,
     blaming,
     check_belonging,
     linkage_of,
     naming,
     quantity,
+    wants,
 )
 from equipoise.cli.outputs import Shown, check_result_file, default_name, sources_of, tell, wrote
 from equipoise.cli.progress import counted
@@ -49,7 +49,7 @@ def animate(
     seconds: Annotated[float, SIGNED] = 2.0,
     turns: Annotated[int | None, SIGNED] = None,
     width: Annotated[int, SIGNED] = 640,
-    trace: Many = None,
+    trace: Annotated[Many, wants("POINT")] = None,
     force: bool = False,
     speed: Rate = None,
     exaggerate: Annotated[float | None, SIGNED] = None,
@@ -73,7 +73,7 @@ def animate(
     force
         Draw the shaking force on the frame as an arrow.
     speed
-        With --force or a support: speed of the crank instead of the file's, such as "300 rpm".
+        With --force or a support: speed of the crank instead of the file's.
     exaggerate
         By how much larger than true the support moves; 1 is to scale.  If not given, so that it
         can be seen.
@@ -206,7 +206,7 @@ def report(
     out: Out = None,
     language: Language = "en",
     pdf: bool = False,
-    speed: Annotated[Text, OF_ANY] = None,
+    speed: SpeedText = None,
     shown: Shown = Shown(),
 ) -> None:
     """One page that tells all of a linkage or a tool: summary, pictures, tables, before and after.

@@ -20,6 +20,7 @@ from equipoise.cli.options import (
     count,
     file_named,
     naming,
+    wants,
 )
 from equipoise.cli.outputs import Drawn, Printed
 from equipoise.cli.progress import Watched, swept
@@ -43,7 +44,7 @@ class Computers:
 
     workers: Annotated[int | None, count(1, MOST_WORKERS)] = None
     """Threads or processes of this machine, one a processor if not given."""
-    cluster: str | None = None
+    cluster: Annotated[str | None, wants("ADDRESS")] = None
     """Address of a Dask scheduler whose workers compute instead, such as tcp://192.168.0.7:8786."""
 
     def __post_init__(self) -> None:

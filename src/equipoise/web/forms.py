@@ -107,6 +107,6 @@ CONTROLS: Mapping[type[keys.Kind], Callable[[Any], Values]] = {
     keys.Text: _text,
     keys.Told: lambda kind: {"kind": "text", "options": []},
     keys.Whole: _whole,
-    keys.Wording: lambda kind: {"kind": "text", "options": []},
+    keys.Wording: lambda kind: {"kind": "wording"},
 }  # fmt: skip
 """Of kinds that files of linkages have."""

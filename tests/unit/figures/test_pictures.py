@@ -16,9 +16,10 @@ from equipoise.figures.sheet import Labels, Sheet, Text, spread
 from equipoise.figures.vector import svg_of
 from equipoise.i18n import speaking
 from equipoise.planting.summary import plant
-from equipoise.present.findings import Findings, ToolFindings, find
+from equipoise.present.findings import Findings, ToolFindings
 from equipoise.present.pictures import each
 from equipoise.results.charts import Chart
+from support.found import found
 from support.gallery import Kept, keep
 from unit.figures import balance_samples, samples, tool_samples, vibration_samples
 from unit.figures.checks import Laid, check
@@ -35,11 +36,12 @@ ODD = {
 
 def found_of(name: str) -> Findings | ToolFindings:
     """What can be told of a bundled model; ratios of gears are set, and not looked for."""
-    found = find(name)
-    if isinstance(found, ToolFindings) or (plan := found.machine.balance) is None:
-        return found
+    told = found(name)
+    plan = None if isinstance(told, ToolFindings) else told.machine.balance
+    if plan is None or not plan.geared:
+        return told
     geared = tuple(replace(one, ratio=(one.ratio[0],) * 2) for one in plan.geared)
-    return replace(found, machine=replace(found.machine, balance=replace(plan, geared=geared)))
+    return replace(told, machine=replace(told.machine, balance=replace(plan, geared=geared)))
 
 
 def of_odd(name: str) -> dict[str, Chart]:
@@ -57,10 +59,10 @@ def of_odd(name: str) -> dict[str, Chart]:
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_pictures_of_bundled_models(name: str, tmp_path: Path) -> None:
     """All of them are kept in the gallery, and in some languages drawn anew."""
-    found = found_of(name)
-    drawn = [(picture, Laid.of(picture.draw())) for picture in each(found)]
+    told = found_of(name)
+    drawn = [(picture, Laid.of(picture.draw())) for picture in each(told)]
     kept = [Kept(picture.name, picture.caption, svg_of(laid.sheet)) for picture, laid in drawn]
-    if isinstance(found, Findings):
+    if isinstance(told, Findings):
         moving = tmp_path / "animation.svg"
         assert run(["animate", name, "--out", str(moving)]) == 0
         kept.append(Kept(moving.stem, "The linkage moves.", moving.read_text(encoding="utf-8")))
@@ -68,7 +70,7 @@ def test_pictures_of_bundled_models(name: str, tmp_path: Path) -> None:
     assert not [(picture.name, *fault) for picture, laid in drawn for fault in laid.faults]
     for language in ("ja", "ko") if name in TRANSLATED else ():
         with speaking(language):
-            for picture in each(found):
+            for picture in each(told):
                 check(picture.draw())
 
 

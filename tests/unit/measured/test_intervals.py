@@ -14,9 +14,9 @@ from equipoise.measured.fits import line_of_swings
 from equipoise.measured.turning import find_turns
 from unit.measured.samples import OMEGA, simulated
 
-RUNS = 120
-LEAST, MOST = 0.90, 0.995
-"""Coverage of 95 % intervals in so many records: 2.5 standard errors of a share below and above."""
+RUNS = 80
+LEAST, MOST = 0.89, 0.995
+"""Coverage of 95 % intervals in so many records: 2.5 standard errors of a share below; not all."""
 
 
 def test_without_noise_the_whole_record_gives_the_truth() -> None:

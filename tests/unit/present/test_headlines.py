@@ -15,11 +15,12 @@ from equipoise.present.composition import SHORT, build
 from equipoise.present.findings import Findings, find
 from equipoise.present.pages import Document, page, paired, pdf
 from equipoise.results.blocks import Drawn, Table
+from support.found import found as found_of
 
 
 @cache
 def document(name: str, language: str = "en", speed: float | None = None) -> Document:
-    return build(find(name, speed=speed), language)
+    return build(found_of(name) if speed is None else find(name, speed=speed), language)
 
 
 def drawn_of(told: Document) -> dict[str, Drawn]:
@@ -81,8 +82,7 @@ def test_pictures_stand_in_pairs() -> None:
 
 @pytest.mark.parametrize("name", ["yamashita-1", "brush-cutter"])
 def test_long_tables_stand_in_the_appendix_and_none_is_lost(name: str) -> None:
-    found = find(name)
-    told = build(found)
+    found, told = found_of(name), document(name)
     in_sections = [b for s in told.sections for b in s.blocks if isinstance(b, Table)]
     behind = [b for b in told.together if isinstance(b, Table)]
     assert all(len(table.rows) <= SHORT for table in in_sections)
@@ -98,7 +98,7 @@ def test_long_tables_stand_in_the_appendix_and_none_is_lost(name: str) -> None:
 
 
 def test_what_helps_is_told_before_and_after_at_once() -> None:
-    found = find("yamashita-1")
+    found = found_of("yamashita-1")
     assert isinstance(found, Findings) and found.after is not None
     tiles = {tile.label: tile for tile in document("yamashita-1").tiles}
     peak = tiles["shaking force, peak"]

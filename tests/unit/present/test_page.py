@@ -15,6 +15,7 @@ from equipoise.present.composition import build
 from equipoise.present.findings import ToolFindings, find
 from equipoise.present.pages import page, pdf
 from equipoise.present.pictures import pictures
+from support.found import found as found_of
 
 
 class Page(HTMLParser):
@@ -48,7 +49,7 @@ class Page(HTMLParser):
 
 @pytest.fixture(scope="module")
 def found():
-    return find("yamashita-rig")
+    return found_of("yamashita-rig")
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +89,7 @@ def test_it_is_the_same_on_every_run_in_another_language():
 
 
 def test_a_tool_has_its_report():
-    found = find("brush-cutter")
+    found = found_of("brush-cutter")
     assert isinstance(found, ToolFindings)
     shorter = ToolFindings(replace(found.tool, design=None), found.text, found.file)
     document = build(shorter)

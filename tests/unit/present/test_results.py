@@ -28,7 +28,6 @@ from equipoise.mechanism.balance import Objective
 from equipoise.planting.summary import plant
 from equipoise.present import html_of, terminal
 from equipoise.present.cells import grid, printed
-from equipoise.present.findings import find
 from equipoise.present.layout import plain
 from equipoise.present.pages import Document, page, pdf, printed_grid
 from equipoise.present.tool_summary import tool_tiles
@@ -36,6 +35,7 @@ from equipoise.quantities import showing
 from equipoise.results.analysis import Analysis
 from equipoise.results.blocks import Change, Column, Section, Span, Table, Text, Value
 from equipoise.schema.models import load_tool
+from support.found import found
 from support.printing import printed as shown
 from support.printing import words
 
@@ -262,7 +262,7 @@ def test_a_daily_exposure_beyond_the_limit_value_stands_out() -> None:
     assert "7.071 broken" in words(day.blocks())
     allowed = daily_exposure([Task("mowing", 5.0, 8 * 3600.0)])
     assert "broken" not in words(allowed.blocks())
-    tile = next(one for one in tool_tiles(find("brush-cutter")) if "A(8)" in one.label)
+    tile = next(one for one in tool_tiles(found("brush-cutter")) if "A(8)" in one.label)
     assert tile.emphasis == "broken"
     document = Document("en", "", "", "", (tile, replace(tile, emphasis=None)), (), "", ())
     html = page(document)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from equipoise.present.composition import build
-from equipoise.present.findings import find
 from equipoise.present.pages import page
 from equipoise.results.blocks import Column, Table, Text, Value, beside
+from support.found import found
 
 
 def table(label: str, *rows: tuple[str, float]) -> Table:
@@ -17,10 +17,10 @@ def table(label: str, *rows: tuple[str, float]) -> Table:
 
 def test_each_row_is_followed_by_that_after_a_change() -> None:
     before = [Text("words"), table("RMS", ("x", 1.0), ("y", 2.0))]
-    words, found = beside(before, [table("RMS", ("x", 1.0), ("y", 3.0), ("z", 4.0))])
+    words, both = beside(before, [table("RMS", ("x", 1.0), ("y", 3.0), ("z", 4.0))])
     assert words is before[0]
-    assert isinstance(found, Table)
-    assert [row[0] for row in found.rows] == ["x", "y", "y, after", "z, after"]
+    assert isinstance(both, Table)
+    assert [row[0] for row in both.rows] == ["x", "y", "y, after", "z, after"]
 
 
 def test_a_table_of_other_columns_follows_whole() -> None:
@@ -34,4 +34,4 @@ def test_a_table_of_other_columns_follows_whole() -> None:
 @pytest.mark.parametrize("name", ["exudyn-slider-crank", "riding-transplanter", "sieve"])
 def test_reports_of_machines_on_mounts_can_be_laid_out(name: str) -> None:
     """After what helps, more orders may be told than before."""
-    assert ", after" in page(build(find(name)))
+    assert ", after" in page(build(found(name)))

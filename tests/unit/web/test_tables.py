@@ -78,6 +78,15 @@ def test_each_table_that_a_file_can_have_is_offered() -> None:
     ]  # fmt: skip
 
 
+def test_a_title_in_several_languages_is_told_in_the_one_that_is_spoken() -> None:
+    session, _ = opened("yamashita-1")
+    english = group(tables(session), "")["entries"][0]["words"]
+    ask(session, "speak", languages=["ja"])
+    japanese = group(tables(session), "")["entries"][0]["words"]
+    assert english.startswith("title Planting mechanism type I")
+    assert japanese.split()[1] not in english
+
+
 def test_names_are_chosen_from_those_that_there_are() -> None:
     told = tables_of(opened_example("yamashita-1").own)
     controls = {one["key"]: one for one in told["forms"]["Spring"]["controls"]}
