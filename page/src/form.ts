@@ -2,6 +2,7 @@
 
 import { fresh, h, set, write } from "./dom";
 import { type Around, type Input, input, type Picked } from "./inputs";
+import { demandsOf } from "./rules";
 import type { Control, Plain, Refused, Steps, Tables, Values } from "./protocol";
 import { say } from "./words";
 
@@ -16,6 +17,8 @@ export interface Subject {
   /** Of one that has a name: that name, empty where it is new. */
   name: string | null;
   values: Values;
+  /** Keys of the tables below it. */
+  below: string[];
   /** Whether it is there already and may be deleted. */
   deletable: boolean;
 }
@@ -34,13 +37,14 @@ export class Form {
   readonly root: HTMLFormElement;
   private readonly inputs = new Map<string, Input>();
   private readonly errors = new Map<string, HTMLElement>();
+  private readonly rows = new Map<string, HTMLElement>();
   private readonly name: HTMLInputElement | null;
   private readonly problem = h("p", { class: "error", role: "alert", hidden: true });
   private readonly files: Record<string, string> = {};
 
   constructor(
     private readonly subject: Subject,
-    tables: Tables,
+    private readonly tables: Tables,
     private readonly events: FormEvents,
   ) {
     const { heading, text, deletable } = subject;
@@ -63,6 +67,7 @@ export class Form {
       ),
     );
     this.listen();
+    this.follow();
   }
 
   focus(): void {
@@ -80,6 +85,31 @@ export class Form {
     const first = row.querySelector<HTMLElement>(GIVEN);
     set(first ?? row, { "aria-invalid": "true", "aria-errormessage": line.id });
     first?.focus();
+  }
+
+  /** Show the keys that go with what is given, and mark those that have to be. */
+  private follow(): void {
+    const { form, below } = this.subject;
+    const beside = Object.fromEntries(below.map((key) => [key, true]));
+    const { rule = {}, controls = [] } = this.tables.forms[form] ?? {};
+    const { needed, out } = demandsOf(rule, { ...this.given(), ...beside });
+    for (const { key, required } of controls) {
+      const row = this.rows.get(key);
+      if (!row) continue;
+      row.hidden = out.has(key);
+      row.querySelector(".needed")?.toggleAttribute("hidden", !required && !needed.has(key));
+    }
+    this.inputs.forEach((one) => one.refresh?.());
+  }
+
+  /** What is given of the keys that are shown. */
+  private given(): Values {
+    const values: Values = {};
+    for (const [key, one] of this.inputs) {
+      const value = this.rows.get(key)?.hidden ? undefined : one.value();
+      if (value !== undefined) values[key] = value;
+    }
+    return values;
   }
 
   private say(line: HTMLElement, text: string): void {
@@ -102,15 +132,11 @@ export class Form {
     this.root.addEventListener("submit", (event) => {
       event.preventDefault();
       this.hush();
-      const values: Values = {};
-      for (const [key, one] of this.inputs) {
-        const value = one.value();
-        if (value !== undefined) values[key] = value;
-      }
+      const values = this.given();
       const name = this.name ? this.name.value.trim() : null;
       this.events.saved(this.subject.place, values, name, this.files);
     });
-    this.root.addEventListener("change", () => this.inputs.forEach((one) => one.refresh?.()));
+    this.root.addEventListener("change", () => this.follow());
     this.root.addEventListener("keydown", (event) => {
       if (event.key !== "Escape") return;
       event.stopPropagation();
@@ -151,8 +177,9 @@ export class Form {
     this.errors.set(key, error);
     const first = one.element.matches(GIVEN) ? one.element : one.element.querySelector(GIVEN);
     if (first) set(first, { "aria-describedby": told });
-    const marked = required ? h("span", { class: "needed", title: say("required") }, " *") : null;
-    return h(
+    const needed = { class: "needed", title: say("required"), hidden: !required };
+    const marked = h("span", needed, " *");
+    const row = h(
       "div",
       { class: "key", "data-key": key },
       h("span", { class: "word" }, word, marked, unit ? h("span", { class: "unit" }, ` ${unit}`) : null),
@@ -160,6 +187,8 @@ export class Form {
       h("p", { class: "quiet", id: told }, text),
       error,
     );
+    this.rows.set(key, row);
+    return row;
   }
 }
 

@@ -131,6 +131,7 @@ export class Parts {
       where: path,
       name: many === "named" ? "" : null,
       values: {},
+      below: [],
       deletable: false,
     });
   }
@@ -145,6 +146,7 @@ export class Parts {
       where: entry.where,
       name: group.many === "named" ? String(last) : null,
       values: entry.values,
+      below: entry.below,
       deletable: !group.required,
     });
   }

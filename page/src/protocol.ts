@@ -9,7 +9,7 @@ export type Edit =
   | { move: string; to: Pair; at: number; keep?: string[] }
   | { move_mass: string; to: Pair; at: number };
 
-export type FileKind = "model" | "csv" | "report";
+export type FileKind = "model" | "csv" | "report" | "drawing" | "film" | "played";
 
 /** An operation on a machine that is made, with what it needs. */
 export interface Made {
@@ -43,12 +43,13 @@ export type Asked =
   | { type: "tables" }
   | EntryAsked
   | { type: "outputs"; names: string[] }
+  | { type: "download"; kind: FileKind; language?: string; at?: number; format?: "svg" | "png" }
+  | { type: "download"; kind: "chart"; chart: string; choice: string; format: "svg" | "png" }
   | { type: "arrows"; point: string }
   | { type: "variant"; do: "pin" }
   | { type: "variant"; do: "rename"; name: string; to: string }
   | { type: "variant"; do: "go" | "drop"; name: string }
-  | { type: "variant"; do: "against"; to: string }
-  | { type: "download"; kind: FileKind; language?: string };
+  | { type: "variant"; do: "against"; to: string };
 
 export interface Example {
   name: string;
@@ -76,6 +77,8 @@ export interface Spoken {
   languages: Record<string, string>;
   /** English text of the page -> text in the language. */
   words: Record<string, string>;
+  /** Chart -> what it shows, and what to look for. */
+  explained: Record<string, string>;
 }
 
 /** In which something is read, and how many of it one SI unit is. */
@@ -377,6 +380,21 @@ export interface Asking {
   listed?: boolean;
 }
 
+/** The part of a JSON Schema that tells which keys go together. */
+export interface Rule {
+  required?: string[];
+  properties?: Record<string, false | { const?: Plain; enum?: Plain[] }>;
+  allOf?: Rule[];
+  anyOf?: Rule[];
+  oneOf?: Rule[];
+  not?: Rule;
+  if?: Rule;
+  then?: Rule;
+  else?: Rule;
+  dependentRequired?: Record<string, string[]>;
+  dependentSchemas?: Record<string, Rule>;
+}
+
 /** A key of a table. */
 export interface Control extends Asking {
   key: string;
@@ -393,6 +411,8 @@ export interface EntryTold {
   where: string;
   words: string;
   values: Values;
+  /** Keys of the tables below it. */
+  below: string[];
 }
 
 /** Tables of one sort that a machine has, or can have. */
@@ -416,7 +436,7 @@ export interface Tables {
   type: "tables";
   seq: number;
   groups: Group[];
-  forms: Record<string, { text: string; controls: Control[] }>;
+  forms: Record<string, { controls: Control[]; rule: Rule }>;
   /** Points of the frame and of links, in their own axes, m. */
   bodies: Record<string, Record<string, Pair>>;
 }

@@ -70,8 +70,17 @@ def test_a_spring_and_a_body_are_added_changed_and_deleted(live: Live) -> None:
     (spring,) = live.machine().springs
     assert (spring.link, spring.point, spring.to, spring.stiffness) == ("coupler", "P", "D", 40.0)
 
+    form = add(live, "gears:")
+    form.get_by_label("ratio", exact=True).fill("-2")
+    expect(form.locator("[data-key=teeth]")).to_be_visible()
+    form.get_by_label("ratio", exact=True).press("Tab")
+    expect(form.locator("[data-key=teeth]")).to_be_hidden()  # one of both
+    press(form, "Cancel")
+
     form = add(live, "bodies of rocker")
     form.get_by_label("shape", exact=True).select_option("disc")
+    expect(form.locator("[data-key=corners]")).to_be_hidden()  # has no place in a disc
+    expect(form.locator("[data-key=radius] .needed")).to_be_visible()
     press(form, "Show centre on the drawing")
     page.keyboard.press("Escape")
     form.get_by_label("centre, point").select_option("C")

@@ -129,6 +129,7 @@ def _entry(of: type[Frozen], entry: Mapping[str, Any], place: Place) -> Values:
         "where": written_place(place),
         "words": ", ".join(said[:MOST_WORDS]),
         "values": values,
+        "below": [name for name in entry if name in tables_below(of)],
     }
 
 

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.keys import Named, Tables
+from equipoise.keys import Frozen, Named, Quantity, Tables
 from equipoise.mechanism.model import Machine
+from equipoise.quantities import parse, showing
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
 from equipoise.web.forms import forms_of
 from equipoise.web.openings import opened_example, titles
@@ -94,6 +95,23 @@ def test_names_are_chosen_from_those_that_there_are() -> None:
     assert controls["to"]["on"] == "frame"
     assert told["bodies"]["frame"]["A"] == (0.0, 0.0)
     assert own_keys(Machine).keys() == {"title", "description", "gravity", "assembly"}
+
+
+@pytest.mark.parametrize("units", [{}, {"length": "in", "force": "lbf"}])
+def test_the_unit_beside_a_control_can_be_typed(units: Any) -> None:
+    def look(of: type[Frozen]) -> None:
+        controls = {one["key"]: one for one in forms[of.__name__]["controls"]}
+        for name, one in own_keys(of).items():
+            if isinstance(one.kind, Quantity):
+                assert parse(f"1 {controls[name]['unit']}", one.kind.dimension) > 0
+        for one in tables_below(of).values():
+            inner = entry_of(one.kind)
+            assert inner is not None
+            look(inner.type)
+
+    with showing(units):
+        forms = forms_of(Machine)
+        look(Machine)
 
 
 # -- adding, changing, deleting --------------------------------------------------------------------
