@@ -128,6 +128,7 @@ export class App {
       this.theme,
       (angle) => this.turn(angle),
       (names) => this.command({ type: "outputs", names }),
+      (asked) => this.command(asked),
     );
     this.inspector = new Inspector(this.talk, (on) => this.hold(on));
     this.balance = new BalancePanel(
@@ -147,7 +148,7 @@ export class App {
       save: () => void this.keeping.save(),
       link: () => this.keeping.link(),
       balance: () => this.command({ type: "balance" }),
-      download: (kind, language) => this.download(kind, language),
+      download: (kind, language, format) => this.download(kind, language, format),
       help: () => this.help.showModal(),
       speak,
     });
@@ -175,7 +176,11 @@ export class App {
     stage.append(this.seeing.variants.root);
     stage.append(this.strokes.root, this.planted.root);
     this.side.append(this.charts.root);
-    this.aside.append(this.balance.root, ...this.bench.roots, this.inspector.root);
+    // A file that plays shows numbers, and takes none.
+    const disabled = this.el.classList.contains("equipoise-played");
+    const parts = [...this.bench.roots, this.inspector.root];
+    this.aside.append(this.balance.root, h("fieldset", { class: "bare", disabled }, ...parts));
+    if (disabled) this.aside.tabIndex = 0; // to be scrolled by keys
     this.root.append(
       this.toolbar.root,
       this.lost,
@@ -332,6 +337,7 @@ export class App {
   private busy(what: string | null): void {
     this.toolbar.busy(what);
     if (what) this.board.say(`${what.slice(0, 1).toUpperCase()}${what.slice(1)} …`, false);
+    else this.board.clear(false);
   }
 
   private refuse(message: string, edit: boolean): void {
@@ -396,8 +402,9 @@ export class App {
     this.command({ type: "compare", on: false });
   }
 
-  private download(kind: FileKind, language: string | undefined): void {
-    this.command({ type: "download", kind, ...(kind === "report" && language && { language }) });
+  private download(kind: FileKind, language = "en", format?: "svg" | "png"): void {
+    const at = this.player.sample;
+    this.command({ type: "download", kind, language, at, ...(format && { format }) });
   }
 
   private choose(grip: Grip): void {

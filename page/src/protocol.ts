@@ -8,7 +8,7 @@ export type Edit =
   | { move: string; to: Pair; at: number }
   | { move_mass: string; to: Pair; at: number };
 
-export type FileKind = "model" | "csv" | "report";
+export type FileKind = "model" | "csv" | "report" | "drawing" | "film" | "played";
 
 export type Asked =
   | { type: "ready" }
@@ -23,12 +23,13 @@ export type Asked =
   | { type: "tables" }
   | EntryAsked
   | { type: "outputs"; names: string[] }
+  | { type: "download"; kind: FileKind; language?: string; at?: number; format?: "svg" | "png" }
+  | { type: "download"; kind: "chart"; chart: string; choice: string; format: "svg" | "png" }
   | { type: "arrows"; point: string }
   | { type: "variant"; do: "pin" }
   | { type: "variant"; do: "rename"; name: string; to: string }
   | { type: "variant"; do: "go" | "drop"; name: string }
-  | { type: "variant"; do: "against"; to: string }
-  | { type: "download"; kind: FileKind; language?: string };
+  | { type: "variant"; do: "against"; to: string };
 
 export interface Example {
   name: string;
@@ -56,6 +57,8 @@ export interface Spoken {
   languages: Record<string, string>;
   /** English text of the page -> text in the language. */
   words: Record<string, string>;
+  /** Chart -> what it shows, and what to look for. */
+  explained: Record<string, string>;
 }
 
 /** In which something is read, and how many of it one SI unit is. */

@@ -34,6 +34,7 @@ from equipoise.web.drawn import (
     with_entry,
 )
 from equipoise.web.edits import Solved, settled, solved
+from equipoise.web.explained import explained
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.history import History, Step
 from equipoise.web.making import made
@@ -93,7 +94,13 @@ class Session:
 
     def _speak(self, message: Message) -> Iterator[Reply]:
         self.language = language_of(message.names("languages", MOST_LANGUAGES))
-        told = {"language": self.language, "languages": LANGUAGES, "words": words_of(self.language)}
+        told: Values = {
+            "language": self.language,
+            "languages": LANGUAGES,
+            "words": words_of(self.language),
+        }
+        with speaking(self.language):
+            told["explained"] = explained()
         yield Reply({"type": "spoken", "seq": message.seq, **told})
 
     def _open(self, message: Message) -> Iterator[Reply]:
@@ -209,9 +216,12 @@ class Session:
         yield Reply({"type": "saved", "seq": message.seq, **told})
 
     def _download(self, message: Message) -> Iterator[Reply]:
-        language = message.text("language", "en")
+        found = self.current()
         with self._telling():
-            content, data = downloaded(self.current(), message.text("kind"), language)
+            what = say("making the file")
+        yield Reply({"type": "busy", "seq": message.seq, "what": what})
+        with self._telling():
+            content, data = downloaded(found, message)
         yield Reply({"type": "file", "seq": message.seq, **content}, data)
 
     # -- its state ---------------------------------------------------------------------------------
