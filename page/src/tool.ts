@@ -6,6 +6,7 @@ import { h, write } from "./dom";
 import { measure, unbroken } from "./format";
 import { Heading } from "./heading";
 import { Inspector } from "./inspector";
+import { Locks } from "./locks";
 import type { Numbers, State, ToolMessage } from "./protocol";
 import { comparison } from "./readings";
 import { ToolSide } from "./tool_side";
@@ -23,6 +24,7 @@ export class ToolView {
   private readonly views: HTMLSelectElement;
   private readonly play: HTMLButtonElement;
   private readonly told = h("p", { class: "quiet", role: "status" });
+  private readonly wrong = h("p", { class: "said bad", role: "status", hidden: true });
   private readonly figures = h("div", { class: "readings figures" });
   private readonly charts = h("div", { class: "charts" });
   private readonly drawn = new Map<string, Chart>();
@@ -37,19 +39,31 @@ export class ToolView {
     talk: Conversation,
     private readonly theme: Theme,
   ) {
-    this.inspector = new Inspector(talk, () => undefined);
+    this.inspector = new Inspector(talk, () => undefined, new Locks());
     this.views = h("select", { "aria-label": say("What is shown"), onchange: () => this.pose() });
     this.play = h("button", { type: "button", onclick: () => this.toggle() }, "");
     const stage = h("section", { class: "stage", "aria-label": say("The tool from the side") });
     const bar = h("div", { class: "seeing" }, this.play, this.views, this.told);
-    stage.append(this.heading.about, this.side.root, bar, this.heading.notes);
-    const side = h("section", { class: "side", "aria-label": say("Figures and charts") });
-    side.append(this.figures, this.charts);
+    this.side.root.append(this.wrong);
+    stage.append(this.heading.about, this.side.root, bar, this.heading.notes, this.figures);
+    const side = h("section", { class: "side", "aria-label": say("Charts") });
+    side.append(this.charts);
     const aside = h("section", { class: "inspector", "aria-label": say("Numbers") });
     aside.append(this.inspector.root);
     this.root.append(stage, side, aside);
     this.watcher.observe(this.side.root);
     this.watcher.observe(this.charts);
+  }
+
+  /** The tool that is shown, if one is. */
+  get shown(): ToolMessage | null {
+    return this.tool;
+  }
+
+  /** A sentence about what cannot be; it goes with the next change. */
+  say(message: string): void {
+    write(this.wrong, message);
+    this.wrong.hidden = !message;
   }
 
   close(): void {
@@ -67,6 +81,7 @@ export class ToolView {
     const other = tool.name !== this.tool?.name;
     [this.tool, this.numbers] = [tool, numbers];
     measure(tool.length);
+    this.say("");
     this.root.hidden = false;
     this.offer(tool, other);
     this.side.resize();

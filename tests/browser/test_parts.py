@@ -112,7 +112,8 @@ def test_a_picture_is_scaled_and_traced_over(live: Live, tmp_path: Path) -> None
     svg = f'<svg xmlns="http://www.w3.org/2000/svg" width="400" height="200">{circles}</svg>'
     picture = tmp_path / "photo.svg"
     picture.write_text(svg, encoding="utf-8")
-    page.get_by_text("Underlay and ruler").click()
+    live.drop("huge.jpg", "0123456789", 2_100_000)
+    expect(live.told("huge.jpg has 21.0 MB; at most 20 MB are drawn")).to_be_visible()
     page.get_by_label("Picture or DXF drawing").set_input_files(picture)
     image = page.locator(".underlay image")
 

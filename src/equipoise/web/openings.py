@@ -11,7 +11,7 @@ from equipoise.schema.models import load_linkage, loads_linkage
 from equipoise.schema.opening import examples, kind_of_text, opened
 from equipoise.web.design import Design
 
-TOOLS = "this is the file of a hand-held tool; `equipoise report` and `equipoise plot` show those"
+TOOLS = "this is the file of a hand-held tool; give that of a linkage, or `equipoise serve` it"
 
 
 @cache

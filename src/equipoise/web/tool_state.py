@@ -12,6 +12,7 @@ import numpy as np
 from equipoise.errors import EquipoiseError
 from equipoise.figures.tool_side import MOST_MODES, SWING
 from equipoise.handheld.exposed import ToolExposure, expose_tool
+from equipoise.handheld.hand_blocks import NAMED
 from equipoise.handheld.model import Tool
 from equipoise.handheld.modes import ToolModes, vibrate_tool
 from equipoise.handheld.response import respond_tool
@@ -67,7 +68,9 @@ class ToolFigures:
             return
         for what, hands in self.exposure.named.items():
             for name, grip in hands.items():
-                told = say("a_hv at {hand}, {state}", hand=name, state=said(what))
+                told = say(
+                    "weighted acceleration at {hand}, {state}", hand=name, state=say(NAMED[what])
+                )
                 yield f"{what}.{name}", told, float(grip.a_hv[0]), "acceleration", "m/s^2"
         for name, day in self.exposure.days.items():
             told = say("A(8) at {hand}", hand=name)
@@ -205,9 +208,10 @@ def _charts(now: ToolFigures, first: ToolFigures | None, block: Block) -> Iterat
         old = None if first is None or first.exposure is None else first.exposure
         if old is not None and name in old.grips:
             block.add(f"before.{array}", np.interp(grid, old.speed, old.grips[name].a_hv))
+        label = say("Weighted acceleration at {hand} against the speed of the engine", hand=name)
         choices.append({
             "name": name,
-            "label": say("a_hv at {hand} against the speed of the engine", hand=name),
+            "label": label,
             "of": None,
             "unit": unit.name,
             "factor": unit.factor,

@@ -195,10 +195,11 @@ class ToolDesk:
             low, high = sorted((0.0, 2 * usual or 1.0))
             if path.endswith(".position"):
                 low, high = 0.0, length
+            group = _group(self.first.tool, path)
             told = {
                 "path": path,
-                "group": _group(self.first.tool, path),
-                "label": said(self.template.words(path)),
+                "group": group,
+                "label": said(self.template.words(path)).replace(f" of the {group}", ""),
                 "value": value,
                 "min": min(low, value),
                 "max": max(high, value),
