@@ -3,7 +3,12 @@ import { readFile } from "node:fs/promises";
 import { build } from "esbuild";
 
 const [folder, hash] = process.argv.slice(2);
-const license = await readFile("node_modules/uplot/LICENSE", "utf8");
+const packages = { uPlot: "uplot/LICENSE", "dxf-parser": "dxf-parser/LICENSE", loglevel: "loglevel/LICENSE-MIT" };
+const licenses = await Promise.all(
+  Object.entries(packages).map(async ([name, path]) => {
+    return `Contains ${name}:\n\n${(await readFile(`node_modules/${path}`, "utf8")).trim()}`;
+  }),
+);
 
 await build({
   entryPoints: [
@@ -18,7 +23,7 @@ await build({
   charset: "utf8",
   legalComments: "none",
   banner: {
-    js: `/* sources ${hash} */\n/* Contains uPlot:\n\n${license.trim()}\n*/`,
+    js: `/* sources ${hash} */\n/* ${licenses.join("\n\n")}\n*/`,
     css: `/* Contains the style of uPlot; its license is in equipoise.js */`,
   },
   logLevel: "warning", // tells errors as well

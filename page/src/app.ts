@@ -1,5 +1,6 @@
 /** The page as a whole: what it shows, and who tells whom. */
 
+import { Bench } from "./bench";
 import { Charts } from "./charts";
 import { Conversation, type Events } from "./conversation";
 import { h, write } from "./dom";
@@ -15,6 +16,7 @@ import { Player } from "./player";
 import type { Asked, FileKind, Hello, Planted, State, Wire } from "./protocol";
 import { BalancePanel, FigureTable, Readings } from "./readings";
 import { Board } from "./board";
+import { Seeing } from "./seeing";
 import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
 import type { Shelf } from "./story";
@@ -37,7 +39,9 @@ export class App {
   private readonly hands: Hands;
   private readonly stage: Stage;
   private readonly board: Board;
+  private readonly bench: Bench;
   private readonly charts: Charts;
+  private readonly seeing: Seeing;
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
   private readonly planted = new FigureTable(say("Figures of the planting finger"));
@@ -77,12 +81,16 @@ export class App {
       state: (state) => this.take(state),
       response: (message, numbers) => {
         this.charts.answered(message, numbers);
+        this.seeing.answered(message, numbers);
         this.add("response", message.notes);
       },
       planting: (message) => this.plant(message),
+      ghost: (message, numbers) => this.seeing.pale(message.scene, numbers),
+      variants: (message) => this.seeing.variants.show(message),
       refused: (message, edit) => this.refuse(message, edit),
       balanced: (message) => this.balance.show(message),
       busy: (what) => this.busy(what),
+      tables: (message) => this.bench.show(message),
       file: save,
       saved: (name) => this.keeping.saved(name),
       line: (up) => this.line(up),
@@ -109,10 +117,18 @@ export class App {
     this.hands = new Hands(page, (dress) => new Stage(dress));
     this.stage = this.hands.made;
     this.board = new Board(this.stage, (link) => this.chooseLink(link));
+    this.seeing = new Seeing(
+      this.stage,
+      (asked) => this.command(asked),
+      () => this.stir(),
+    );
+    const root = this.full ? document : this.root;
+    this.bench = new Bench({ ...page, root, stage: this.stage, board: this.board });
     this.charts = new Charts(
       this.theme,
       (angle) => this.turn(angle),
       (names) => this.command({ type: "outputs", names }),
+      (asked) => this.command(asked),
     );
     this.inspector = new Inspector(this.talk, (on) => this.hold(on));
     this.balance = new BalancePanel(
@@ -132,7 +148,7 @@ export class App {
       save: () => void this.keeping.save(),
       link: () => this.keeping.link(),
       balance: () => this.command({ type: "balance" }),
-      download: (kind, language) => this.download(kind, language),
+      download: (kind, language, format) => this.download(kind, language, format),
       help: () => this.help.showModal(),
       speak,
     });
@@ -144,6 +160,7 @@ export class App {
   close(): void {
     this.frames.close();
     this.charts.close();
+    this.bench.close();
     this.talk.close();
     this.keeping.close();
     this.theme.close();
@@ -155,10 +172,15 @@ export class App {
   private lay(): void {
     const stage = h("section", { class: "stage", "aria-label": say("Linkage and motion") });
     stage.append(this.heading.about, this.board.root);
-    stage.append(this.transport.root, this.heading.notes, this.readings.root);
+    stage.append(this.transport.root, this.seeing.root, this.heading.notes, this.readings.root);
+    stage.append(this.seeing.variants.root);
     stage.append(this.strokes.root, this.planted.root);
     this.side.append(this.charts.root);
-    this.aside.append(this.balance.root, this.inspector.root);
+    // A file that plays shows numbers, and takes none.
+    const disabled = this.el.classList.contains("equipoise-played");
+    const parts = [...this.bench.roots, this.inspector.root];
+    this.aside.append(this.balance.root, h("fieldset", { class: "bare", disabled }, ...parts));
+    if (disabled) this.aside.tabIndex = 0; // to be scrolled by keys
     this.root.append(
       this.toolbar.root,
       this.lost,
@@ -230,6 +252,7 @@ export class App {
         state.speed !== 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches;
     } else this.player.angle = angle;
     if (other) this.heading.forget();
+    if (other) this.bench.forget();
     if (other || !state.planting) this.planted.hide();
     if (other) this.strokes.hide();
     if (!state.before) this.balance.hide();
@@ -260,6 +283,7 @@ export class App {
       this.toolbar.show(state);
       this.heading.show(state);
     }
+    this.seeing.show(state, other);
     this.stage.show(state, other);
     this.transport.take(state.angles);
     this.charts.show(state, other);
@@ -274,6 +298,7 @@ export class App {
     this.toolbar.show(state);
     this.readings.show(state);
     this.inspector.show(state);
+    if (!this.held) this.bench.follow();
     if (!this.held) {
       this.theme.update();
       this.charts.settle();
@@ -286,11 +311,12 @@ export class App {
   private point(): void {
     if (!this.state) return;
     this.turned = false;
-    const k = this.player.sample;
+    const k = this.seeing.crank(this.player.sample);
     this.stage.pose(k);
     this.transport.point();
     this.transport.state();
-    this.charts.point(k, this.player.angle);
+    const { angles, turns } = this.state;
+    this.charts.point(k, (k / angles) * 360 * turns);
   }
 
   /** The crank is at another angle, or is to turn. */
@@ -311,6 +337,7 @@ export class App {
   private busy(what: string | null): void {
     this.toolbar.busy(what);
     if (what) this.board.say(`${what.slice(0, 1).toUpperCase()}${what.slice(1)} …`, false);
+    else this.board.clear(false);
   }
 
   private refuse(message: string, edit: boolean): void {
@@ -344,6 +371,7 @@ export class App {
   }
 
   private async read(file: File): Promise<void> {
+    if (this.bench.take(file)) return;
     const problem = tooLarge(file, this.hello?.largest ?? Infinity);
     if (problem) return this.board.say(problem, true);
     void this.open({ type: "open", name: file.name, text: await file.text() }, file.name);
@@ -374,8 +402,9 @@ export class App {
     this.command({ type: "compare", on: false });
   }
 
-  private download(kind: FileKind, language: string | undefined): void {
-    this.command({ type: "download", kind, ...(kind === "report" && language && { language }) });
+  private download(kind: FileKind, language = "en", format?: "svg" | "png"): void {
+    const at = this.player.sample;
+    this.command({ type: "download", kind, language, at, ...(format && { format }) });
   }
 
   private choose(grip: Grip): void {
@@ -387,6 +416,7 @@ export class App {
     this.stage.select(new Set([grip.name]), grip.kind === "mass" ? grip.name : null, grip);
     this.inspector.choose(link, grip.kind === "point" ? grip.name : null);
     if (grip.kind === "point") this.charts.choose(grip.name);
+    if (grip.kind === "point") this.seeing.choose(grip.name);
   }
 
   private chooseLink(link: string): void {
@@ -398,6 +428,7 @@ export class App {
   /** While something is held, the crank stands still. */
   private hold(on: boolean): void {
     this.held = on;
+    this.seeing.hold(on);
     if (on) {
       this.resumes = this.player.playing;
       this.player.playing = false;

@@ -3,6 +3,7 @@
 import { Chart, type Source } from "./chart";
 import { chooser } from "./chooser";
 import { h } from "./dom";
+import { type Ask, explain } from "./explain";
 import { lengths } from "./format";
 import { Plane, type Trace } from "./plane";
 import type { ChartData, Numbers, ResponseMessage, State } from "./protocol";
@@ -48,8 +49,14 @@ export class Charts {
     private readonly theme: Theme,
     private readonly picked: (degrees: number) => void,
     wanted: (names: string[]) => void,
+    private readonly ask: Ask,
   ) {
-    this.outputs = new Outputs(theme, picked, wanted, (strip) => this.watcher.observe(strip.root));
+    this.outputs = new Outputs(theme, picked, wanted, (strip, name) => {
+      this.watcher.observe(strip.root);
+      explain(strip.root, "output", ask, () => name);
+    });
+    explain(this.polar.root, "polar", ask, () => "");
+    explain(this.path.root, "path", ask, () => "");
     this.squares.append(this.polar.root, this.path.root);
     this.root = h("div", { class: "charts" });
   }
@@ -197,6 +204,7 @@ export class Charts {
     const chart = new Chart(data, this.theme, xAxis, { picked, chosen: () => this.chosen() });
     this.declared.set(data.name, chart);
     this.watcher.observe(chart.strip.root);
+    explain(chart.strip.root, data.name, this.ask, () => chart.chosen || (data.choices[0]?.name ?? ""));
     chart.strip.resize(this.width);
     return chart;
   }

@@ -1,7 +1,8 @@
 /** One question at a time: of edits that wait, the newest is enough. */
 
-import type { Asked, Edit, Told, Wire } from "./protocol";
+import type { Asked, Edit, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
+import type { GhostMessage, VariantsMessage } from "./protocol";
 import { Numbers, type Planted, type ResponseMessage, type State } from "./protocol";
 import { type Shelf, Story, type Told as Kept } from "./story";
 import { language } from "./words";
@@ -11,18 +12,24 @@ export interface Events {
   state(state: State): void;
   response(message: ResponseMessage, numbers: Numbers): void;
   planting(message: Planted): void;
+  ghost(message: GhostMessage, numbers: Numbers): void;
+  variants(message: VariantsMessage): void;
   refused(message: string, edit: boolean): void;
   balanced(message: Extract<Told, { type: "balanced" }>): void;
   busy(what: string | null): void;
+  tables(message: Tables): void;
   saved(name: string): void;
   file(name: string, mime: string, bytes: DataView | undefined): void;
   line(up: boolean): void;
 }
 
+/** Hears that something was done, or why not. */
+type Answered = (refusal: string | null, told: Refused | null) => void;
+
 interface Question {
   seq: number;
   asked: Asked;
-  answered?: ((refusal: string | null) => void) | undefined;
+  answered?: Answered | undefined;
   /** Takes the file that is asked for, instead of the browser's downloads. */
   got?: ((name: string, bytes: DataView | undefined) => void) | undefined;
 }
@@ -31,7 +38,10 @@ interface Question {
 const SLOW = new Set(["balance", "download"]);
 
 /** What leaves the machine on the server as it was; all else is said again after a broken line. */
-const IDLE = new Set(["ready", "speak", "save", "download"]);
+const IDLE = new Set(["ready", "speak", "save", "download", "tables"]);
+
+/** Who asks these says himself why not. */
+const ASIDE = new Set(["entry", "tables"]);
 
 export class Conversation {
   /** Drags and held keys under way; each ends before something else is asked. */
@@ -69,7 +79,7 @@ export class Conversation {
   }
 
   /** Ask; every question gets its answer, in this order. */
-  ask(asked: Asked, answered?: Question["answered"], got?: Question["got"]): void {
+  ask(asked: Asked, answered?: Answered, got?: Question["got"]): void {
     this.dropWaiting();
     this.queue.push({ seq: ++this.seq, asked, answered, got });
     this.next();
@@ -114,12 +124,19 @@ export class Conversation {
         return this.events.saved(told.name);
       case "response":
         return this.events.response(told, new Numbers(told.arrays, buffers[0]));
+      case "ghost":
+        return this.events.ghost(told, new Numbers(told.arrays, buffers[0]));
+      case "variants":
+        return this.events.variants(told);
       case "planting":
       case "strokes":
         return this.events.planting(told);
       case "refused":
         if (!this.repeating) this.refuse(told.seq, told.message);
-        return this.end(told.seq, told.message);
+        return this.end(told.seq, told.message, told);
+      case "tables":
+        this.events.tables(told);
+        return this.end(told.seq, null);
       case "balanced":
         return this.events.balanced(told);
       case "busy":
@@ -141,12 +158,13 @@ export class Conversation {
 
   private refuse(seq: number, message: string): void {
     const asked = this.flight?.seq === seq ? this.flight.asked : null;
+    if (asked && ASIDE.has(asked.type) && this.flight?.answered) return;
     if (asked?.type !== "edit") return this.events.refused(message, false);
     // Who asks for a number and waits for the answer says it beside that number.
     if (!asked.commit || !this.flight?.answered) this.events.refused(message, true);
   }
 
-  private end(seq: number, refusal: string | null): void {
+  private end(seq: number, refusal: string | null, told: Refused | null = null): void {
     const question = this.flight?.seq === seq ? this.flight : this.aside.get(seq);
     if (!question) return;
     if (question === this.flight) this.flight = null;
@@ -157,7 +175,7 @@ export class Conversation {
       this.story.forget();
     }
     if (this.repeating && !this.queue.length) this.repeating = false;
-    question.answered?.(refusal);
+    question.answered?.(refusal, told);
     this.next();
   }
 

@@ -8,7 +8,7 @@ export function dropZone(root: HTMLElement, dropped: (file: File) => void): HTML
   const veil = h(
     "div",
     { class: "veil", hidden: true },
-    h("span", {}, say("Drop a model file (.toml)")),
+    h("span", {}, say("Drop a model file (.toml), or a picture or DXF drawing to trace over")),
   );
   for (const name of ["dragenter", "dragover", "dragleave", "drop"] as const) {
     root.addEventListener(name, (event) => {

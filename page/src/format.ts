@@ -10,6 +10,7 @@ let rules: NumberRules = {
   least: 0,
   most: Infinity,
   units: [],
+  lengths: {},
 };
 let drawing: Unit = { unit: "m", factor: 1 };
 let quantity = /$^/g;
@@ -59,6 +60,11 @@ export function signed(text: string): string {
 /** A round number as it is: for marks of scales. */
 export function plain(value: number): string {
   return signed(String(Number(value.toPrecision(6))));
+}
+
+/** m in a unit of length; NaN where it is none. */
+export function metres(unit: string): number {
+  return rules.lengths[unit] ?? NaN;
 }
 
 /** Unit of the drawing's lengths. */

@@ -1,6 +1,7 @@
 /** The live page: anywidget's `render` for notebooks, `connect` for the served page. */
 
 import { App } from "./app";
+import { Played } from "./played";
 import type { Wire } from "./protocol";
 import { Socket } from "./socket";
 import { shelf } from "./story";
@@ -40,7 +41,17 @@ async function begin(el: HTMLElement, address: string): Promise<void> {
   });
 }
 
-const main = document.querySelector<HTMLElement>("#equipoise-live[data-live]");
+/** A file that plays without a server. */
+async function play(el: HTMLElement, text: string): Promise<void> {
+  const wire = new Played(text);
+  el.classList.add("equipoise-page", "equipoise-played");
+  await agree(wire, []);
+  new App(wire, el, null, () => undefined);
+}
+
+const main = document.querySelector<HTMLElement>("#equipoise-live");
 if (main?.dataset.live && !main.childElementCount) void begin(main, main.dataset.live);
+const recorded = main?.dataset.played && document.getElementById(main.dataset.played);
+if (main && recorded) void play(main, recorded.textContent ?? "");
 
 export default { render };

@@ -31,7 +31,7 @@ export class Outputs {
     private readonly theme: Theme,
     private readonly picked: (degrees: number) => void,
     private readonly wanted: (names: string[]) => void,
-    private readonly made: (strip: Strip) => void,
+    private readonly made: (strip: Strip, name: string) => void,
   ) {
     this.finder = new Finder(
       say("Any output over crank angle"),
@@ -93,7 +93,7 @@ export class Outputs {
     this.drawn.set(name, one);
     this.root.append(strip.root);
     strip.resize(this.width);
-    this.made(strip);
+    this.made(strip, name);
     return one;
   }
 

@@ -29,6 +29,8 @@ const EDGE = { polar: 26, path: 18 };
 const TOGETHER = 5;
 /** Between two circles of the polar diagram, pixels: the widest with enough numbers is taken. */
 const APART = [34, 28, 22];
+/** Of a number below, pixels. */
+const WIDE = 36;
 /** Steps of the crank from mark to mark in the polar diagram, degrees. */
 const TWELFTH = 30;
 
@@ -298,11 +300,15 @@ export class Plane {
     const most = round((34 / this.scale) * factor);
     let d = "";
     const across = spacing(metres(40), metres(width - 34), most);
+    const named: Spot[] = [];
     for (const x of multiples(across, metres(0), metres(width))) {
       const [px] = this.place(x / factor, 0);
       d += `M${px.toFixed(1)} 0V${height}`;
-      if (px >= 40 && px <= width - 34) this.text(px, height - 4, x);
+      if (px >= 40 && px <= width - 34) named.push([px, x]);
     }
+    // Where they are close, every other one is enough.
+    const every = named.length > 4 && (across / factor) * this.scale < WIDE ? 2 : 1;
+    for (const [i, [px, x]] of named.entries()) if (i % every === 0) this.text(px, height - 4, x);
     const up = spacing(rising(height - 14), rising(8), most);
     for (const y of multiples(up, rising(height), rising(0))) {
       const [, py] = this.place(0, y / factor);

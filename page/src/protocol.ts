@@ -8,7 +8,7 @@ export type Edit =
   | { move: string; to: Pair; at: number }
   | { move_mass: string; to: Pair; at: number };
 
-export type FileKind = "model" | "csv" | "report";
+export type FileKind = "model" | "csv" | "report" | "drawing" | "film" | "played";
 
 export type Asked =
   | { type: "ready" }
@@ -20,8 +20,16 @@ export type Asked =
   | { type: "edit"; commit: boolean; label: string; edits: Edit[] }
   | { type: "undo" | "redo" | "balance" | "save" }
   | { type: "compare"; on: false }
+  | { type: "tables" }
+  | EntryAsked
   | { type: "outputs"; names: string[] }
-  | { type: "download"; kind: FileKind; language?: string };
+  | { type: "download"; kind: FileKind; language?: string; at?: number; format?: "svg" | "png" }
+  | { type: "download"; kind: "chart"; chart: string; choice: string; format: "svg" | "png" }
+  | { type: "arrows"; point: string }
+  | { type: "variant"; do: "pin" }
+  | { type: "variant"; do: "rename"; name: string; to: string }
+  | { type: "variant"; do: "go" | "drop"; name: string }
+  | { type: "variant"; do: "against"; to: string };
 
 export interface Example {
   name: string;
@@ -49,6 +57,8 @@ export interface Spoken {
   languages: Record<string, string>;
   /** English text of the page -> text in the language. */
   words: Record<string, string>;
+  /** Chart -> what it shows, and what to look for. */
+  explained: Record<string, string>;
 }
 
 /** In which something is read, and how many of it one SI unit is. */
@@ -64,6 +74,8 @@ export interface NumberRules {
   most: number;
   /** What may follow a number in a sentence; longer ones first. */
   units: string[];
+  /** m in each unit in which a length may be typed. */
+  lengths: Record<string, number>;
 }
 
 export interface Field extends Unit {
@@ -102,7 +114,19 @@ export interface Sign {
   /** The link that it is, if any. */
   link: string;
   /** Its origin, and what its x axis is: that of a link, the way of a guide, or towards a point. */
-  hold: { point: string; link?: string; guide?: string; to?: string; length?: number } | null;
+  hold: {
+    point?: string;
+    link?: string;
+    guide?: string;
+    to?: string;
+    length?: number;
+    /** Of a mount: its place on the support at rest, m, and from there to its ground, pixels. */
+    mount?: string;
+    at?: Pair;
+    ground?: Pair;
+  } | null;
+  /** Whether it stands on the ground, and not on the support. */
+  still: boolean;
   shapes: Shape[];
 }
 
@@ -116,6 +140,8 @@ export interface Scene {
   movable: string[];
   /** From the back to the front. */
   signs: Sign[];
+  /** What a support turns about, m. */
+  reference: Pair | null;
   /** Role of a shape -> its style. */
   looks: Record<string, string>;
 }
@@ -177,8 +203,21 @@ export interface StateMessage {
   least: number;
   orders: number[];
   notes: string[];
+  /** Whether curves of another design are drawn behind; whether figures of one are told. */
   before: boolean;
+  compared: boolean;
+  /** Points that arrows can be at, the one at which they are, and what there is to draw there. */
+  points: string[];
+  arrows_at: string | null;
+  arrows: ArrowOf[];
   planting?: { tip: string; surface: number } | null;
+}
+
+/** A vector at a point over the crank angle. */
+export interface ArrowOf extends Unit {
+  kind: "velocity" | "acceleration" | "force";
+  array: string;
+  label: string;
 }
 
 /** A curve of a chart: every `stride`th number of an array, from the `part`th on. */
@@ -215,6 +254,26 @@ export interface ResponseMessage {
   charts: ChartData[];
   arrays: Arrays;
   notes: string[];
+  /** What is to be said of how the support moves at work; its arrays are `support.place` and `.angle`. */
+  swing: string[] | null;
+  /** Real and imaginary parts along x, along y (m) and of the rotation, as large as they are drawn. */
+  modes: { told: string[]; seen: boolean; shape: number[] }[];
+}
+
+/** A design that is drawn pale, or none. */
+export interface GhostMessage {
+  type: "ghost";
+  scene: Scene | null;
+  arrays: Arrays;
+}
+
+/** Figures of designs that are kept, by column, and of the one that is. */
+export interface VariantsMessage {
+  type: "variants";
+  kept: string[];
+  /** What figures are told against: a word, or a variant. */
+  against: string;
+  rows: { label: string; unit: string; texts: string[]; best: number[] }[];
 }
 
 /** Figures of a planting finger, or of sliders and rockers; null where they are not finite. */
@@ -253,6 +312,110 @@ export interface Refused {
   type: "refused";
   seq: number;
   message: string;
+  /** Key of the model file that is wrong, and what is wrong with it. */
+  path?: string;
+  what?: string;
+}
+
+/** Keys, names and numbers from 0 on the way to a table of a model file. */
+export type Steps = (string | number)[];
+
+/** A value as it stands in a model file. */
+export type Plain = string | number | boolean | Plain[] | { [key: string]: Plain };
+export type Values = Record<string, Plain>;
+
+/** A table is put, or deleted where it has no values. */
+export interface EntryAsked {
+  type: "entry";
+  label: string;
+  place: Steps;
+  values: Values | null;
+  name?: string;
+  /** Texts of CSV files that it names. */
+  files?: Record<string, string>;
+}
+
+/** What is asked for: how, and in which unit. */
+export interface Asking {
+  kind: "quantity" | "number" | "text" | "choice" | "flag" | "name" | "place" | "direction"
+    | "list" | "names" | "file" | "wording";
+  unit?: string;
+  options?: (string | number)[];
+  /** Of what it is the name, and the key beside it that names the body of a point. */
+  of?: "link" | "body" | "point";
+  on?: string;
+  /** Of places: or a point's name; with z; the key that names the link whose axes they are in. */
+  named?: boolean;
+  space?: boolean;
+  axes?: string;
+  item?: Asking;
+  /** How many there can be; none for one and more. */
+  sizes?: number[];
+  /** One stands without brackets. */
+  bare?: boolean;
+  /** Names alone may do. */
+  listed?: boolean;
+}
+
+/** The part of a JSON Schema that tells which keys go together. */
+export interface Rule {
+  required?: string[];
+  properties?: Record<string, false | { const?: Plain; enum?: Plain[] }>;
+  allOf?: Rule[];
+  anyOf?: Rule[];
+  oneOf?: Rule[];
+  not?: Rule;
+  if?: Rule;
+  then?: Rule;
+  else?: Rule;
+  dependentRequired?: Record<string, string[]>;
+  dependentSchemas?: Record<string, Rule>;
+}
+
+/** A key of a table. */
+export interface Control extends Asking {
+  key: string;
+  word: string;
+  text: string;
+  required: boolean;
+  default: Plain | null;
+  example: Plain | null;
+}
+
+export interface EntryTold {
+  place: Steps;
+  /** Its path, as refusals tell it. */
+  where: string;
+  words: string;
+  values: Values;
+  /** Keys of the tables below it. */
+  below: string[];
+}
+
+/** Tables of one sort that a machine has, or can have. */
+export interface Group {
+  place: Steps;
+  where: string;
+  form: string;
+  many: "one" | "list" | "named";
+  word: string;
+  text: string;
+  /** The entry that it belongs to, and what has to be there first. */
+  of: string;
+  needs: string;
+  required: boolean;
+  entries: EntryTold[];
+  /** What its entries are together. */
+  result?: string;
+}
+
+export interface Tables {
+  type: "tables";
+  seq: number;
+  groups: Group[];
+  forms: Record<string, { controls: Control[]; rule: Rule }>;
+  /** Points of the frame and of links, in their own axes, m. */
+  bodies: Record<string, Record<string, Pair>>;
 }
 
 export type Told =
@@ -260,9 +423,12 @@ export type Told =
   | Spoken
   | StateMessage
   | ResponseMessage
+  | GhostMessage
+  | VariantsMessage
   | Planted
   | Balanced
   | Refused
+  | Tables
   /** Sign of the file as it is now, and the model that its steps began with. */
   | { type: "saved"; seq: number; name: string; base: string; text: string }
   | { type: "busy"; seq?: number; what: string }

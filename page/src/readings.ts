@@ -20,7 +20,7 @@ export class Readings {
 
   show(state: State): void {
     const lines = [...byLine(state.figures).values()];
-    const shape = JSON.stringify([lines.map((l) => [l.label, !!l.rms, !!l.peak]), state.before]);
+    const shape = JSON.stringify([lines.map((l) => [l.label, !!l.rms, !!l.peak]), state.compared]);
     if (shape !== this.shape) this.build(lines, state, shape);
     for (const figure of state.figures) {
       const cell = this.cells.get(figure.name);
@@ -33,14 +33,14 @@ export class Readings {
   private build(lines: Line[], state: State, shape: string): void {
     this.shape = shape;
     this.cells.clear();
-    this.root.classList.toggle("compared", state.before);
+    this.root.classList.toggle("compared", state.compared);
     if (!lines.length) {
       return this.root.replaceChildren(h("p", { class: "quiet" }, say("Motion only, no forces.")));
     }
     const cell = (figure: Figure | undefined) => {
       if (!figure) return h("td");
       const value = h("span", { class: "value" });
-      const before = state.before ? h("span", { class: "was" }) : null;
+      const before = state.compared ? h("span", { class: "was" }) : null;
       this.cells.set(figure.name, { value, before });
       return h("td", {}, value, before);
     };
@@ -63,7 +63,7 @@ export class Readings {
     const caption = h(
       "caption",
       { class: "unseen" },
-      state.before ? say("Figures, and what they were before") : say("Figures"),
+      state.compared ? say("Figures, and what they were before") : say("Figures"),
     );
     this.root.replaceChildren(
       h("table", {}, caption, h("thead", {}, head), h("tbody", {}, ...rows)),

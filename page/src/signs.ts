@@ -1,6 +1,7 @@
 /** Signs of a machine: drawn once for a scale, then moved as rigid bodies. */
 
 import { s, set } from "./dom";
+import type { Swung } from "./overlay";
 import type { Numbers, Pair, Scene, Shape, Sign } from "./protocol";
 import type { View } from "./view";
 
@@ -12,6 +13,8 @@ const FAR = ["field", "support"];
 export class Piece {
   readonly element: SVGGElement;
   private readonly parts: SVGElement[];
+  /** What the support does to it. */
+  private before = "";
 
   constructor(
     private sign: Sign,
@@ -50,11 +53,18 @@ export class Piece {
     });
   }
 
-  /** Move it to where it is at sample k. */
-  pose(numbers: Numbers, view: View, k: number): void {
-    const { hold } = this.sign;
+  /** Draw the same with so many pixels a metre. */
+  redraw(scale: number): void {
+    this.draw(this.sign, scale);
+  }
+
+  /** Move it to where it is at sample k, as the support swings. */
+  pose(numbers: Numbers, view: View, k: number, swung: Swung | null): void {
+    const { hold, still } = this.sign;
+    this.before = still ? "" : (swung?.transform ?? "");
     if (!hold) return this.place(view.px(0, 0), "");
-    const from = pairAt(numbers, `place.${hold.point}`, k);
+    if (hold.mount) return this.strut(hold.at ?? [0, 0], hold.ground ?? [1, 0], view, swung);
+    const from = pairAt(numbers, `place.${hold.point ?? ""}`, k);
     if (hold.link) {
       const angle = numbers.get(`angle.${hold.link}`)?.[k] ?? 0;
       return this.place(view.px(...from), turned(angle));
@@ -69,8 +79,19 @@ export class Piece {
     this.place(view.px(...from), `${turned(Math.atan2(dy, dx))} scale(${longer.toFixed(4)} 1)`);
   }
 
+  /** Stretch a mount from its place on the support to the ground, which stands still. */
+  private strut(at: Pair, [gx, gy]: Pair, view: View, swung: Swung | null): void {
+    const [x, y] = view.px(...at);
+    const [px, py] = view.px(...(swung?.place(at) ?? at));
+    const [dx, dy] = [x + gx - px, y - gy - py];
+    const longer = Math.hypot(dx, dy) / (Math.hypot(gx, gy) || 1);
+    this.before = "";
+    this.place([px, py], `${turned(Math.atan2(-dy, dx))} scale(${longer.toFixed(4)} 1)`);
+  }
+
   private place([x, y]: Pair, more: string): void {
-    this.element.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})${more}`);
+    const here = `translate(${x.toFixed(2)} ${y.toFixed(2)})${more}`;
+    this.element.setAttribute("transform", this.before + here);
   }
 }
 
@@ -78,7 +99,7 @@ export class Piece {
 export function build(scene: Scene): string {
   const drawn = scene.signs.map(({ link, hold, shapes }) => [
     link,
-    hold && [hold.point, hold.link, hold.guide, hold.to],
+    hold && [hold.point, hold.link, hold.guide, hold.to, hold.mount],
     runs(shapes).map(([first]) => first?.[0]),
   ]);
   return JSON.stringify(drawn);

@@ -1,6 +1,7 @@
 /** The linkage, drawn in SVG: still parts once, moving parts once a frame. */
 
 import { s, set } from "./dom";
+import { type Overlay, type Swing, swung } from "./overlay";
 import type { Pair, Scene, State } from "./protocol";
 import { at, curve, outside, quarters } from "./shapes";
 import { ruled } from "./sheet";
@@ -10,6 +11,8 @@ import { say } from "./words";
 
 /** From below to above. */
 const LAYERS = ["far", "paths", "signs", "ghost", "grips", "labels"] as const;
+/** Those that the support carries as a whole. */
+const SWUNG = ["paths", "ghost", "grips", "labels"] as const;
 /** Pixels from a point to the middle of its name. */
 const AWAY = 20;
 
@@ -38,6 +41,8 @@ export class Stage {
   readonly lines = s("svg", { class: "sheet-lines", "aria-hidden": "true" });
   readonly view = new View();
   readonly grips = new Map<string, SVGGElement>();
+  /** Called when another part of the plane is shown. */
+  readonly watchers: (() => void)[] = [];
   private readonly layer: Record<string, SVGGElement> = {};
   private state: State | null = null;
   /** All is shown, and nobody has moved the sheet since. */
@@ -49,6 +54,9 @@ export class Stage {
   private pieces: Piece[] = [];
   private paths: Named[] = [];
   private labels: Label[] = [];
+  private readonly overlays: Overlay[] = [];
+  /** How what the support carries moves; null where it is at rest. */
+  swing: Swing | null = null;
 
   constructor(private readonly dress: (grip: Grip, element: SVGGElement) => void) {
     for (const name of LAYERS) {
@@ -68,6 +76,7 @@ export class Stage {
     const built = names !== this.names;
     this.state = state;
     this.k = Math.min(this.k, state.angles - 1);
+    for (const overlay of this.overlays) overlay.show(state);
     if (built) this.name(state.scene);
     if (built || signs !== this.signs) this.build(state.scene);
     [this.names, this.signs] = [names, signs];
@@ -77,6 +86,12 @@ export class Stage {
       this.draw();
       this.pose(this.k);
     }
+  }
+
+  /** Draw something more, below one of the layers. */
+  overlay(overlay: Overlay, below: (typeof LAYERS)[number]): void {
+    this.overlays.push(overlay);
+    this.svg.insertBefore(overlay.element, this.layer[below] ?? null);
   }
 
   resize(width: number, height: number): void {
@@ -113,6 +128,7 @@ export class Stage {
   private redraw(): void {
     if (!this.state) return;
     this.lines.replaceChildren(...ruled(this.view));
+    for (const watch of this.watchers) watch();
     this.draw();
     this.pose(this.k);
   }
@@ -122,6 +138,18 @@ export class Stage {
     const name = grip.kind === "point" ? `place.${grip.name}` : `mass_center.${grip.name}`;
     const row = this.state?.numbers.get(name);
     return row ? [row[2 * k] as number, row[2 * k + 1] as number] : null;
+  }
+
+  /** Every point by its name, m. */
+  joints(): [name: string, place: Pair][] {
+    const names = this.state?.numbers.names("place.") ?? [];
+    const found = names.map((name) => name.slice("place.".length));
+    return found.map((name) => [name, this.place({ kind: "point", name }) ?? [NaN, NaN]]);
+  }
+
+  /** The first link that has a point. */
+  linkOf(point: string): string | null {
+    return this.state?.scene.bodies.find((body) => body.points.includes(point))?.name ?? null;
   }
 
   select(points: ReadonlySet<string>, link: string | null, grip: Grip | null): void {
@@ -147,7 +175,12 @@ export class Stage {
   pose(k: number): void {
     this.k = k;
     if (!this.state || !this.view.width) return;
-    for (const piece of this.pieces) piece.pose(this.state.numbers, this.view, k);
+    const moved = this.swing && swung(this.swing, this.view, k);
+    for (const piece of this.pieces) piece.pose(this.state.numbers, this.view, k, moved);
+    for (const overlay of this.overlays) overlay.pose(this.view, k);
+    const carried = SWUNG.map((name) => this.layer[name] as SVGGElement);
+    for (const layer of [...carried, ...this.overlays.map(({ element }) => element)])
+      set(layer, { transform: moved?.transform ?? null });
     const spots = this.spots(k);
     const spot = (name: string): Pair => spots.get(name) ?? [0, 0];
     this.poseGrips(k, spot);

@@ -36,8 +36,10 @@ export interface Shelf {
 
 /** Steps that a server keeps; beyond, it forgets the oldest. */
 const DEEPEST = 500;
+/** What a step is made by. */
+const STEPS = new Set(["edit", "balance", "entry"]);
 /** Of these the last one is enough. */
-const SETTINGS = new Set(["compare", "outputs"]);
+const SETTINGS = new Set(["compare", "outputs", "arrows"]);
 
 export class Story {
   private told: Told = empty("");
@@ -80,7 +82,7 @@ export class Story {
   /** Whether an answer tells of a step more. */
   private deeper(question: Asked, { steps: [past, future] }: State): boolean {
     if (past !== this.depth || past < DEEPEST) return past > this.depth;
-    return future === 0 && (question.type === "edit" || question.type === "balance");
+    return future === 0 && STEPS.has(question.type);
   }
 
   /** A state was told. */

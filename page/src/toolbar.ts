@@ -22,7 +22,7 @@ export interface Commands {
   link(): void;
   redo(): void;
   balance(): void;
-  download(kind: FileKind, language?: string): void;
+  download(kind: FileKind, language?: string, format?: "svg" | "png"): void;
   help(): void;
   /** Speak a language from now on. */
   speak(language: string): void;
@@ -133,12 +133,12 @@ function downloads(commands: Commands): HTMLDetailsElement {
     menu.open = false;
     then();
   };
-  const item = (text: string, kind: FileKind) =>
+  const item = (text: string, kind: FileKind, format?: "svg" | "png") =>
     h(
       "button",
       {
         type: "button",
-        onclick: () => close(() => commands.download(kind, language.value)),
+        onclick: () => close(() => commands.download(kind, language.value, format)),
       },
       text,
     );
@@ -155,6 +155,10 @@ function downloads(commands: Commands): HTMLDetailsElement {
       item(say("Download model"), "model"),
       item(say("Download CSV"), "csv"),
       h("div", { class: "line" }, item(say("Download report"), "report"), language),
+      item(say("Drawing as SVG"), "drawing", "svg"),
+      item(say("Drawing as PNG"), "drawing", "png"),
+      item(say("Motion as GIF"), "film"),
+      item(say("Page that plays without a server"), "played"),
       h("button", { type: "button", onclick: () => close(commands.link) }, say("Copy link")),
     ),
   );

@@ -5,10 +5,11 @@ import type { Spoken, Told, Wire } from "./protocol";
 /** Where a reader's choice of a language is kept. */
 const KEPT = "equipoise language";
 
-let told: Pick<Spoken, "language" | "languages" | "words"> = {
+let told: Omit<Spoken, "type"> = {
   language: "en",
   languages: { en: "English" },
   words: {},
+  explained: {},
 };
 
 /** A text in the language that is spoken, its `{placeholders}` filled in. */
@@ -30,6 +31,11 @@ export function language(): string {
 /** Code of each language there is, and its own name. */
 export function languages(): Record<string, string> {
   return told.languages;
+}
+
+/** What a chart shows, and what to look for in it. */
+export function explained(chart: string): string {
+  return told.explained[chart] ?? "";
 }
 
 /** Speak a language from now on, also when the page is loaded again. */

@@ -46,7 +46,7 @@ FEWEST, BAR_WIDE, MOST_NUMBERED = 6, 0.72, {False: 12, True: 7}
 numbered, of one kind or of two."""
 
 
-Signals = tuple[str, Dimension, Mapping[str, Array]]
+Signals = tuple[str, Dimension | None, Mapping[str, Array]]
 """Label and dimension of some signals, and these by role, (N,), SI units."""
 
 

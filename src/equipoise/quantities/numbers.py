@@ -330,6 +330,8 @@ def display_rules() -> Mapping[str, Any]:
 
     least, most : sizes between which there is no power of ten.
     units : what may follow a number in a sentence, and stays in its line; longer ones first.
+    lengths : m in each unit in which a length may be typed.
     """
     units = sorted({*FACTORS, *_MORE, "%"}, key=lambda unit: (-len(unit), unit))
-    return {"least": LEAST, "most": MOST, "units": units}
+    lengths = {unit: float(FACTORS[unit]) for unit in KINDS["length"].units}
+    return {"least": LEAST, "most": MOST, "units": units, "lengths": lengths}

@@ -1,9 +1,9 @@
-"""Files that a page can keep: the model, its signals, its report."""
+"""Files that a page can keep: the model, its signals, its report, pictures, a page that plays."""
 
 from __future__ import annotations
 
 import re
-from threading import Lock
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from equipoise.errors import UsageError
@@ -12,47 +12,106 @@ from equipoise.mechanism.checks import unknown
 from equipoise.schema.documents import dumps
 from equipoise.schema.files import to_csv
 from equipoise.web.edits import Solved
+from equipoise.web.messages import Message
+from equipoise.web.pictures import chart_of, drawing, film_of, linkage_at
+from equipoise.web.played import played
+from equipoise.web.replies import Reply
 
-FILES = {
-    "model": (".toml", "application/toml"),
-    "csv": (".csv", "text/csv"),
-    "report": (".html", "text/html"),
+MIMES = {
+    "toml": "application/toml",
+    "csv": "text/csv",
+    "html": "text/html",
+    "gif": "image/gif",
+    "svg": "image/svg+xml",
+    "png": "image/png",
 }
-"""What there is, with the end of its name and its type."""
+"""Type of a file by the end of its name."""
 FORBIDDEN = re.compile(r'[\\/:*?"<>|]+')
 """What some system would not have in the name of a file."""
-_drawing = Lock()
-"""Matplotlib draws one picture after the other."""
 
 
-def downloaded(found: Solved, what: str, language: str) -> tuple[dict[str, Any], bytes]:
-    """Name and type of a file, and its bytes.
+Replies = Callable[[str], Iterable[Reply]]
+"""All that a page could be told of the design, in a language."""
+
+
+def downloaded(found: Solved, message: Message, told: Replies) -> tuple[dict[str, Any], bytes]:
+    """Name and type of a file that a message asks for, and its bytes.
 
     Raises
     ------
     UsageError : there is no such file or language.
     EquipoiseError : it cannot be made of this machine.
     """
-    if what not in FILES:
-        raise UsageError(unknown(what, FILES, "download"))
-    ending, mime = FILES[what]
+    kind = message.text("kind")
+    if kind not in (*FILES, PLAYED):
+        raise UsageError(unknown(kind, (*FILES, PLAYED), "download"))
     stem = FORBIDDEN.sub("-", found.design.name.removesuffix(".toml")) or "machine"
-    name = f"{stem}-report{ending}" if what == "report" else f"{stem}{ending}"
-    if what == "model":
-        text = dumps(found.design.machine)
-    elif what == "csv":
-        text = to_csv(found.analysis)
+    if kind == PLAYED:
+        language = message.text("language", "en")
+        end, data = "-played.html", played(found, told(language), language).encode()
     else:
-        text = _report(found, f"{stem}.toml", language)
-    return {"name": name, "mime": mime}, text.encode()
+        end, data = FILES[kind](found, message, stem)
+    name = f"{stem}{end}"
+    return {"name": name, "mime": MIMES[name.rpartition(".")[2]]}, data
 
 
-def _report(found: Solved, file: str, language: str) -> str:
+Made = tuple[str, bytes]
+"""What follows the name of the machine in that of the file, and its bytes."""
+
+
+def _model(found: Solved, message: Message, stem: str) -> Made:
+    return ".toml", dumps(found.design.machine).encode()
+
+
+def _csv(found: Solved, message: Message, stem: str) -> Made:
+    return ".csv", to_csv(found.analysis).encode()
+
+
+def _report(found: Solved, message: Message, stem: str) -> Made:
     from equipoise.present.composition import report_page
     from equipoise.present.findings import Findings
 
+    language = message.text("language", "en")
     if language not in LANGUAGES:
         raise UsageError(unknown(language, LANGUAGES, "language of reports"))
     machine = found.design.machine
-    with _drawing:
-        return report_page(Findings(machine, dumps(machine), file), language)
+    with drawing:
+        text = report_page(Findings(machine, dumps(machine), f"{stem}.toml"), language)
+    return "-report.html", text.encode()
+
+
+def _film(found: Solved, message: Message, stem: str) -> Made:
+    return ".gif", film_of(found)
+
+
+def _drawing(found: Solved, message: Message, stem: str) -> Made:
+    return _rendered(linkage_at(found, message.whole("at", 0)), "drawing", message)
+
+
+def _chart(found: Solved, message: Message, stem: str) -> Made:
+    name, choice = message.text("chart"), message.text("choice", "")
+    return _rendered(chart_of(found, name, choice), choice if name == "output" else name, message)
+
+
+def _rendered(picture: Any, name: str, message: Message) -> Made:
+    from equipoise.figures import render
+
+    kind = message.text("format", "svg")
+    if kind not in ("svg", "png"):
+        raise UsageError(unknown(kind, ("svg", "png"), "format of pictures"))
+    with drawing:
+        data = render(picture, "png" if kind == "png" else "svg")
+    return f"-{FORBIDDEN.sub('-', name.replace('.', '-'))}.{kind}", data
+
+
+FILES: dict[str, Callable[[Solved, Message, str], Made]] = {
+    "model": _model,
+    "csv": _csv,
+    "report": _report,
+    "drawing": _drawing,
+    "chart": _chart,
+    "film": _film,
+}
+"""What there is."""
+PLAYED = "played"
+"""And a page in one file."""

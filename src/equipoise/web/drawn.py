@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from equipoise.errors import EquipoiseError, UsageError, to_paste
+from equipoise.errors import EquipoiseError, MobilityError, UsageError, to_paste
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.quantities import display
@@ -98,9 +98,13 @@ def changed(base: Solved | Drawn, changes: list[Change], commit: bool) -> Solved
 
 
 def with_entry(base: Solved | Drawn, entry: Entry) -> Solved | Drawn:
-    """What is shown with another table of its file."""
+    """What is shown with another table of its file, unfinished if it moves otherwise."""
     if isinstance(base, Solved):
-        return settled(solved(entered(base.design, entry)))
+        design = entered(base.design, entry)
+        try:
+            return settled(solved(design))
+        except MobilityError:
+            return drawn(sketch_of(base, 0).taking(design.machine))
     own = entered(Design(base.design.name, plain_of(base)), entry).own
     return drawn(base.design.taking(own))
 

@@ -21,7 +21,8 @@ Values = dict[str, Any]
 def forms_of(of: type[keys.Frozen]) -> dict[str, Values]:
     """The form of a table and of all below it, by the name of its class.
 
-    Each has the words of the class and its controls, those of required keys first.
+    Each has its controls, those of required keys first, and what the JSON Schema says of keys that
+    go together.
     """
     found: dict[str, Values] = {}
     waiting = [of]
@@ -31,7 +32,7 @@ def forms_of(of: type[keys.Frozen]) -> dict[str, Values]:
             continue
         controls = [control_of(key) for key in own_keys(one).values()]
         found[one.__name__] = {
-            "text": " ".join((one.__doc__ or "").split("\n\n")[0].split()).replace("`", ""),
+            "rule": one.conditions,
             "controls": sorted(controls, key=lambda control: not control["required"]),
         }
         inner = (entry_of(key.kind) for key in tables_below(one).values())
@@ -75,7 +76,7 @@ def _whole(kind: keys.Whole) -> Values:
 
 
 def _unit(dimension: Any) -> str:
-    return display(dimension).name
+    return display(dimension).unit
 
 
 def _listing(kind: keys.Listing) -> Values:
@@ -107,6 +108,6 @@ CONTROLS: Mapping[type[keys.Kind], Callable[[Any], Values]] = {
     keys.Text: _text,
     keys.Told: lambda kind: {"kind": "text", "options": []},
     keys.Whole: _whole,
-    keys.Wording: lambda kind: {"kind": "text", "options": []},
+    keys.Wording: lambda kind: {"kind": "wording"},
 }  # fmt: skip
 """Of kinds that files of linkages have."""

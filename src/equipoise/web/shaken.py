@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 from math import isfinite
 from typing import Any
 
@@ -39,6 +40,12 @@ def can_be_shaken(machine: Machine) -> bool:
     return machine.support is not None and not massless(machine)
 
 
+@lru_cache(16)
+def responded(shown: Solved) -> Response:
+    """The response of a design at its own speed, with the errors of `respond`."""
+    return respond(shown.design.machine)
+
+
 def response_of(shown: Solved) -> tuple[Values, bytes] | None:
     """What the gauges read over a turn at the machine's speed; None where nothing can be shaken.
 
@@ -48,7 +55,7 @@ def response_of(shown: Solved) -> tuple[Values, bytes] | None:
     if not can_be_shaken(machine):
         return None
     try:
-        found = respond(machine)
+        found = responded(shown)
     except EquipoiseError as error:
         return {"charts": [], "arrays": {}, "notes": [str(error)], "swing": None, "modes": []}, b""
     return _told(shown, found, block), block.data
@@ -61,7 +68,7 @@ def swept(shown: Solved, progress: Callable[[int, int], None]) -> tuple[Values, 
     """
     machine = shown.design.machine
     try:
-        found = respond(machine)
+        found = responded(shown)
         ends = around(machine.drive, found.speed)
         curves = sweep_speed(machine, *ends, speeds=COARSE, progress=progress)
     except EquipoiseError:  # of which `response_of` has told

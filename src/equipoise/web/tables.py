@@ -7,7 +7,8 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from equipoise.keys import Frozen, Named, Tables
+from equipoise.i18n import Worded, say, to_say
+from equipoise.keys import Frozen, Key, Named, Tables, Wording
 from equipoise.mechanism.model import Machine
 from equipoise.quantities import told
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
@@ -21,8 +22,8 @@ from equipoise.web.messages import Entry
 MOST_WORDS = 4
 """Keys of an entry that are told where it is listed."""
 LONGEST_VALUE = 40
-WHOLE = "machine"
-"""What the table around all others is called."""
+WHOLE = to_say("machine"), to_say("title, gravity and what else is of the whole")
+"""What the table around all others is called, and what it holds."""
 
 
 def entered(design: Design, entry: Entry) -> Design:
@@ -60,7 +61,7 @@ def tables_of(machine: Machine) -> Values:
     """
     document = Document.of_machine(machine)
     of = type(machine)
-    first = {"word": WHOLE, "text": "title, gravity and what else is of the whole", "of": ""}
+    first = {"word": say(WHOLE[0]), "text": say(WHOLE[1]), "of": ""}
     whole = _group((), of, "one", first) | {"required": True}
     whole["entries"] = [_entry(of, document.content, ())]
     bodies = {name: dict(points) for name, points in machine.bodies.items()}
@@ -121,13 +122,21 @@ def _called(one: Any, place: Place) -> str:
 def _entry(of: type[Frozen], entry: Mapping[str, Any], place: Place) -> Values:
     own = own_keys(of)
     values = {name: value for name, value in entry.items() if name in own}
-    said = [f"{word_of(one)} {_brief(values[name])}" for name, one in own.items() if name in values]
+    shown = ((one, values[name]) for name, one in own.items() if name in values)
+    said = [f"{word_of(one)} {_brief(_said(one, value))}" for one, value in shown]
     return {
         "place": [*place],
         "where": written_place(place),
         "words": ", ".join(said[:MOST_WORDS]),
         "values": values,
+        "below": [name for name in entry if name in tables_below(of)],
     }
+
+
+def _said(one: Key, value: Any) -> Any:
+    """A text of several languages in the one that is spoken, all else as it is."""
+    several = isinstance(one.kind, Wording) and isinstance(value, Mapping)
+    return Worded(value).said() if several else value
 
 
 def _brief(value: Any) -> str:
@@ -148,4 +157,10 @@ def _mass_of(machine: Machine, name: str) -> str:
         return ""
     x, y = (told(value, "length") for value in link.center_of_mass)
     mass, inertia = told(link.mass, "mass"), told(link.inertia, "inertia")
-    return f"together {mass}; centre of mass at {x}, {y}; moment of inertia {inertia}"
+    return say(
+        "together {mass}; centre of mass at {x}, {y}; moment of inertia {inertia}",
+        mass=mass,
+        x=x,
+        y=y,
+        inertia=inertia,
+    )

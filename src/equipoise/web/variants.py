@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from string import ascii_uppercase
 from types import MappingProxyType
 from typing import Any
 
-from equipoise.errors import UsageError
+from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import say
 from equipoise.mechanism.checks import unknown
-from equipoise.quantities import display
+from equipoise.mechanism.outputs import DECLARED
+from equipoise.quantities import Dimension, display
 from equipoise.quantities.numbers import SAME
 from equipoise.web.edits import Solved
 from equipoise.web.figures import figures_of, signals_of, text_of
+from equipoise.web.shaken import can_be_shaken, responded
 
 Values = dict[str, Any]
 MOST, LONGEST = 12, 40
@@ -93,6 +95,7 @@ class Variants:
         figures = [_named(figures_of(signals_of(one), None, one.machine)) for one in every]
         names = [name for name in figures[-1] if all(name in one for one in figures)]
         rows = [_row([one[name] for one in figures]) for name in names]
+        rows += _gauges((*self.kept.values(), now))
         masses = [one.machine.mass for one in every]
         if all(masses):
             unit = display("mass", masses)
@@ -104,6 +107,24 @@ class Variants:
 
 def _named(figures: list[Values]) -> dict[str, Values]:
     return {one["name"]: one for one in figures}
+
+
+def _gauges(every: Sequence[Solved]) -> Iterator[Values]:
+    """What gauges read peak to peak, where every design has the same and a steady state."""
+    try:
+        found = [responded(one).gauges for one in every if can_be_shaken(one.design.machine)]
+    except EquipoiseError:
+        return
+    if len(found) < len(every):
+        return
+    for name in (one for one in found[-1] if all(one in gauges for gauges in found)):
+        read = [gauges[name].displacement.peak_to_peak for gauges in found]
+        output = DECLARED["gauges.{}"].say(name)
+        dimension: Dimension = "angle" if found[-1][name].rotation else "length"
+        unit = display(dimension, read, "mrad" if dimension == "angle" else None)
+        words = {"label": say("{output}, peak to peak", output=output), "unit": unit.name}
+        values = [float(unit.factor * one) for one in read]
+        yield _row([{**words, "value": one, "text": text_of(one)} for one in values])
 
 
 def _row(cells: list[Values]) -> Values:

@@ -1,0 +1,186 @@
+/** Lines of a DXF drawing, read by dxf-parser: what can be traced, and where a trace may snap. */
+
+import DxfParser from "dxf-parser/dist/dxf-parser.js";
+import type { Pair } from "./protocol";
+import { say } from "./words";
+
+/** Lengths in m, y upward; the origin is that of the file. */
+export interface Drawing {
+  lines: Pair[][];
+  /** Ends and corners of lines, and centres of circles and arcs. */
+  snaps: Pair[];
+  /** Whether the file tells its unit; where not, it is taken for mm. */
+  told: boolean;
+}
+
+/** m in a unit of $INSUNITS. */
+const UNITS: Record<number, number> = {
+  1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1, 8: 2.54e-8, 9: 2.54e-5, 10: 0.9144, 13: 1e-6, 14: 0.1,
+};
+const MILLIMETRES = 4;
+/** Pieces of a whole circle, and of a span of a spline. */
+const ROUND = 72;
+const SPAN = 8;
+/** Blocks in blocks, and points in all. */
+const DEEPEST = 6;
+const MOST = 200_000;
+
+/** What the parser gives of an entity; which keys there are depends on its type. */
+interface Entity {
+  type: string;
+  visible?: boolean;
+  inPaperSpace?: boolean;
+  vertices?: (Point & { bulge?: number })[];
+  shape?: boolean;
+  center?: Point;
+  radius?: number;
+  startAngle?: number;
+  endAngle?: number;
+  majorAxisEndPoint?: Point;
+  axisRatio?: number;
+  controlPoints?: Point[];
+  fitPoints?: Point[];
+  knotValues?: number[];
+  degreeOfSplineCurve?: number;
+  name?: string;
+  position?: Point;
+  xScale?: number;
+  yScale?: number;
+  rotation?: number;
+}
+interface Point {
+  x: number;
+  y: number;
+}
+type Place = (point: Pair) => Pair;
+type Traced = Pick<Drawing, "lines" | "snaps">;
+
+/** Throws an `Error` whose message is one sentence. */
+export function drawingOf(text: string, name: string): Drawing {
+  const wrong = say("{name} is no DXF drawing that can be read; save it as ASCII DXF.", { name });
+  let file;
+  try {
+    file = new DxfParser().parseSync(text);
+  } catch {
+    throw new Error(wrong);
+  }
+  if (!file?.entities) throw new Error(wrong);
+  const unit = Number(file.header?.["$INSUNITS"] ?? 0);
+  const size = UNITS[unit] ?? (UNITS[MILLIMETRES] as number);
+  const found: Traced = { lines: [], snaps: [] };
+  const blocks = (file.blocks ?? {}) as unknown as Record<string, { entities?: Entity[]; position?: Point }>;
+  const add = (entities: Entity[], at: Place, deep: number): void => {
+    for (const entity of entities) {
+      if (entity.visible === false || entity.inPaperSpace || found.snaps.length > MOST) continue;
+      const block = entity.type === "INSERT" ? blocks[entity.name ?? ""] : undefined;
+      if (block && deep < DEEPEST) add(block.entities ?? [], inserted(entity, block.position, at), deep + 1);
+      else trace(entity, at, found);
+    }
+  };
+  add(file.entities as unknown as Entity[], ([x, y]) => [x * size, y * size], 0);
+  if (!found.lines.length)
+    throw new Error(say("{name} has no line, polyline, circle, arc or spline to trace.", { name }));
+  return { ...found, told: unit in UNITS };
+}
+
+/** From the axes of a block to those around it. */
+function inserted(entity: Entity, base: Point | undefined, at: Place): Place {
+  const { position, xScale = 1, yScale = 1, rotation = 0 } = entity;
+  const turn = (rotation * Math.PI) / 180;
+  const [c, s] = [Math.cos(turn), Math.sin(turn)];
+  return ([x, y]) => {
+    const [u, v] = [(x - (base?.x ?? 0)) * xScale, (y - (base?.y ?? 0)) * yScale];
+    return at([(position?.x ?? 0) + u * c - v * s, (position?.y ?? 0) + u * s + v * c]);
+  };
+}
+
+function trace(entity: Entity, at: Place, found: Traced): void {
+  const put = (line: Pair[], snaps: Pair[]): void => {
+    const whole = [...line, ...snaps].every(([x, y]) => Number.isFinite(x) && Number.isFinite(y));
+    if (line.length < 2 || !whole) return;
+    found.lines.push(line.map(at));
+    found.snaps.push(...snaps.map(at));
+  };
+  const { type, vertices = [], center, radius = 0 } = entity;
+  const corners = vertices.map(({ x, y }): Pair => [x, y]);
+  if (type === "LINE") put(corners, corners);
+  else if (type === "LWPOLYLINE" || type === "POLYLINE") {
+    put(bulged(vertices, !!entity.shape), corners);
+  } else if ((type === "CIRCLE" || type === "ARC") && center) {
+    const whole = type === "CIRCLE";
+    const [from, to] = whole ? [0, 2 * Math.PI] : [entity.startAngle ?? 0, entity.endAngle ?? 0];
+    const line = arc([center.x, center.y], [radius, 0], 1, from, to > from ? to : to + 2 * Math.PI);
+    put(line, [[center.x, center.y], ...(whole ? [] : ends(line))]);
+  } else if (type === "ELLIPSE" && center && entity.majorAxisEndPoint) {
+    const { x, y } = entity.majorAxisEndPoint;
+    const [from, to] = [entity.startAngle ?? 0, entity.endAngle ?? 2 * Math.PI];
+    const line = arc([center.x, center.y], [x, y], entity.axisRatio ?? 1, from, to > from ? to : to + 2 * Math.PI);
+    put(line, [[center.x, center.y]]);
+  } else if (type === "SPLINE") {
+    const line = spline(entity);
+    put(line, ends(line));
+  }
+}
+
+function ends(line: Pair[]): Pair[] {
+  return line.length ? [line[0] as Pair, line[line.length - 1] as Pair] : [];
+}
+
+/** About a centre; the half axis at angle 0, and the share of it that the other has. */
+function arc([x, y]: Pair, [ax, ay]: Pair, ratio: number, from: number, to: number): Pair[] {
+  const count = Math.max(2, Math.ceil((Math.abs(to - from) / (2 * Math.PI)) * ROUND));
+  return Array.from({ length: count + 1 }, (_, i): Pair => {
+    const angle = from + ((to - from) * i) / count;
+    const [c, s] = [Math.cos(angle), Math.sin(angle) * ratio];
+    return [x + ax * c - ay * s, y + ay * c + ax * s];
+  });
+}
+
+/** A polyline, of which a side with a bulge is an arc: that is the tangent of a quarter of it. */
+function bulged(vertices: (Point & { bulge?: number })[], closed: boolean): Pair[] {
+  const line: Pair[] = [];
+  const count = vertices.length;
+  vertices.forEach((one, i) => {
+    line.push([one.x, one.y]);
+    const next = vertices[(i + 1) % count];
+    if (!next || !one.bulge || (i === count - 1 && !closed)) return;
+    const turn = 4 * Math.atan(one.bulge);
+    const [dx, dy] = [next.x - one.x, next.y - one.y];
+    const off = (1 - one.bulge ** 2) / (4 * one.bulge);
+    const [cx, cy] = [(one.x + next.x) / 2 - dy * off, (one.y + next.y) / 2 + dx * off];
+    const from = Math.atan2(one.y - cy, one.x - cx);
+    const radius = Math.hypot(one.x - cx, one.y - cy);
+    line.push(...arc([cx, cy], [radius, 0], 1, from, from + turn).slice(1, -1));
+  });
+  if (closed && count) line.push(line[0] as Pair);
+  return line;
+}
+
+/** A B-spline by de Boor's recursion; through its fit points where it has no more. */
+function spline({ controlPoints = [], fitPoints = [], knotValues: knots = [], degreeOfSplineCurve: degree = 3 }: Entity): Pair[] {
+  const points = controlPoints.map(({ x, y }): Pair => [x, y]);
+  if (points.length <= degree || knots.length < points.length + degree + 1)
+    return (fitPoints.length ? fitPoints : controlPoints).map(({ x, y }): Pair => [x, y]);
+  const line: Pair[] = [];
+  for (let span = degree; span < points.length; span++) {
+    const [low, high] = [knots[span] as number, knots[span + 1] as number];
+    if (high <= low) continue;
+    for (let i = line.length ? 1 : 0; i <= SPAN; i++) {
+      line.push(deBoor(points, knots, degree, span, low + ((high - low) * i) / SPAN));
+    }
+  }
+  return line;
+}
+
+function deBoor(points: Pair[], knots: number[], degree: number, span: number, t: number): Pair {
+  const held = Array.from({ length: degree + 1 }, (_, j) => points[j + span - degree] as Pair);
+  for (let r = 1; r <= degree; r++) {
+    for (let j = degree; j >= r; j--) {
+      const from = knots[j + span - degree] as number;
+      const part = (t - from) / ((knots[j + 1 + span - r] as number) - from);
+      const [a, b] = [held[j - 1] as Pair, held[j] as Pair];
+      held[j] = [a[0] + (b[0] - a[0]) * part, a[1] + (b[1] - a[1]) * part];
+    }
+  }
+  return held[degree] as Pair;
+}

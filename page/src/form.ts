@@ -1,0 +1,210 @@
+/** The form of one table of a model file: a control for each key, as the server tells them. */
+
+import { fresh, h, set, write } from "./dom";
+import { type Around, type Input, input, type Picked } from "./inputs";
+import { demandsOf } from "./rules";
+import type { Control, Plain, Refused, Steps, Tables, Values } from "./protocol";
+import { say } from "./words";
+
+/** What is edited: a table that there is, or a new one. */
+export interface Subject {
+  heading: string;
+  text: string;
+  form: string;
+  place: Steps;
+  /** Its path, as refusals tell it. */
+  where: string;
+  /** Of one that has a name: that name, empty where it is new. */
+  name: string | null;
+  values: Values;
+  /** Keys of the tables below it. */
+  below: string[];
+  /** Whether it is there already and may be deleted. */
+  deletable: boolean;
+}
+
+export interface FormEvents {
+  saved(place: Steps, values: Values, name: string | null, files: Record<string, string>): void;
+  deleted(place: Steps): void;
+  closed(): void;
+  pick(body: string, named: boolean, taken: (picked: Picked) => void): void;
+}
+
+/** What a value is given in. */
+const GIVEN = "input, select";
+
+export class Form {
+  readonly root: HTMLFormElement;
+  private readonly inputs = new Map<string, Input>();
+  private readonly errors = new Map<string, HTMLElement>();
+  private readonly rows = new Map<string, HTMLElement>();
+  private readonly name: HTMLInputElement | null;
+  private readonly problem = h("p", { class: "error", role: "alert", hidden: true });
+  private readonly files: Record<string, string> = {};
+
+  constructor(
+    private readonly subject: Subject,
+    private readonly tables: Tables,
+    private readonly events: FormEvents,
+  ) {
+    const { heading, text, deletable } = subject;
+    this.root = h("form", { class: "part-form", "aria-label": heading, novalidate: true });
+    this.name = subject.name === null ? null : h("input", { type: "text", class: "value" });
+    this.root.append(h("h2", {}, heading), h("p", { class: "quiet" }, text));
+    if (this.name) this.root.append(this.named(this.name, subject.name ?? ""));
+    const around = this.around(tables);
+    for (const control of tables.forms[subject.form]?.controls ?? [])
+      this.root.append(this.row(control, around));
+    this.root.append(
+      this.problem,
+      h(
+        "div",
+        { class: "buttons" },
+        h("button", { type: "submit", class: "strong" }, say("Save")),
+        h("button", { type: "button", onclick: () => events.closed() }, say("Cancel")),
+        deletable &&
+          h("button", { type: "button", onclick: () => this.delete() }, say("Delete")),
+      ),
+    );
+    this.listen();
+    this.follow();
+  }
+
+  focus(): void {
+    this.root.querySelector<HTMLElement>("input, select")?.focus();
+  }
+
+  /** Say at its key why it is not taken. */
+  refused(message: string, told: Refused | null): void {
+    const { path, what } = told ?? {};
+    const key = path === undefined ? null : keyOf(path, this.subject.where);
+    const line = key === null ? undefined : this.errors.get(key);
+    if (!line) return this.say(this.problem, message);
+    this.say(line, what ?? message);
+    const row = line.parentElement as HTMLElement;
+    const first = row.querySelector<HTMLElement>(GIVEN);
+    set(first ?? row, { "aria-invalid": "true", "aria-errormessage": line.id });
+    first?.focus();
+  }
+
+  /** Show the keys that go with what is given, and mark those that have to be. */
+  private follow(): void {
+    const { form, below } = this.subject;
+    const beside = Object.fromEntries(below.map((key) => [key, true]));
+    const { rule = {}, controls = [] } = this.tables.forms[form] ?? {};
+    const { needed, out } = demandsOf(rule, { ...this.given(), ...beside });
+    for (const { key, required } of controls) {
+      const row = this.rows.get(key);
+      if (!row) continue;
+      row.hidden = out.has(key);
+      row.querySelector(".needed")?.toggleAttribute("hidden", !required && !needed.has(key));
+    }
+    this.inputs.forEach((one) => one.refresh?.());
+  }
+
+  /** What is given of the keys that are shown. */
+  private given(): Values {
+    const values: Values = {};
+    for (const [key, one] of this.inputs) {
+      const value = this.rows.get(key)?.hidden ? undefined : one.value();
+      if (value !== undefined) values[key] = value;
+    }
+    return values;
+  }
+
+  private say(line: HTMLElement, text: string): void {
+    write(line, text);
+    line.hidden = !text;
+  }
+
+  private delete(): void {
+    this.hush();
+    this.events.deleted(this.subject.place);
+  }
+
+  private hush(): void {
+    for (const line of [this.problem, ...this.errors.values()]) this.say(line, "");
+    for (const one of this.root.querySelectorAll("[aria-invalid]"))
+      set(one, { "aria-invalid": null, "aria-errormessage": null });
+  }
+
+  private listen(): void {
+    this.root.addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.hush();
+      const values = this.given();
+      const name = this.name ? this.name.value.trim() : null;
+      this.events.saved(this.subject.place, values, name, this.files);
+    });
+    this.root.addEventListener("change", () => this.follow());
+    this.root.addEventListener("keydown", (event) => {
+      if (event.key !== "Escape") return;
+      event.stopPropagation();
+      this.events.closed();
+    });
+    // What is typed here has its own undo.
+    this.root.addEventListener("input", ({ target }) => {
+      if (target instanceof HTMLInputElement) target.dataset.typed = "";
+    });
+  }
+
+  private around(tables: Tables): Around {
+    const { place } = this.subject;
+    const body = place[0] === "links" && typeof place[1] === "string" ? place[1] : "frame";
+    return {
+      bodies: tables.bodies,
+      body,
+      beside: (key) => this.inputs.get(key)?.value(),
+      put: (key, value) => this.inputs.get(key)?.set(value),
+      pick: (of, named, taken) => this.events.pick(of, named, taken),
+      file: (name, text) => (this.files[name] = text),
+    };
+  }
+
+  private named(field: HTMLInputElement, name: string): HTMLElement {
+    field.value = name;
+    set(field, { "aria-label": say("name"), autocomplete: "off", spellcheck: "false" });
+    return h("div", { class: "key" }, h("span", { class: "word" }, say("name")), field);
+  }
+
+  private row(control: Control, around: Around): HTMLElement {
+    const { key, word, text, required, unit } = control;
+    const told = fresh("told");
+    const error = h("p", { class: "error", id: fresh("error"), role: "alert", hidden: true });
+    const one = input(control, word, around, hintOf(control));
+    one.set(this.subject.values[key]);
+    this.inputs.set(key, one);
+    this.errors.set(key, error);
+    const first = one.element.matches(GIVEN) ? one.element : one.element.querySelector(GIVEN);
+    if (first) set(first, { "aria-describedby": told });
+    const needed = { class: "needed", title: say("required"), hidden: !required };
+    const marked = h("span", needed, " *");
+    const row = h(
+      "div",
+      { class: "key", "data-key": key },
+      h("span", { class: "word" }, word, marked, unit ? h("span", { class: "unit" }, ` ${unit}`) : null),
+      one.element,
+      h("p", { class: "quiet", id: told }, text),
+      error,
+    );
+    this.rows.set(key, row);
+    return row;
+  }
+}
+
+/** What a key that is left out stands for, or how it could look. */
+function hintOf({ default: usual, example, required, kind }: Control): string {
+  const shown = usual ?? (required || kind === "choice" || kind === "name" ? null : example);
+  if (shown === null || kind === "list" || kind === "names" || kind === "place") return "";
+  return usual === null ? say("such as {example}", { example: brief(shown) }) : brief(shown);
+}
+
+function brief(value: Plain): string {
+  return Array.isArray(value) ? value.map(brief).join(", ") : String(value);
+}
+
+/** The key of a table in the path of a refusal. */
+function keyOf(path: string, where: string): string | null {
+  if (!path.startsWith(where)) return null;
+  return /^\.?([^.[\]]+)/.exec(path.slice(where.length))?.[1] ?? null;
+}

@@ -1,0 +1,365 @@
+/** How the values of a model file are asked for, each kind in its way. */
+
+import { fresh, h, icon, set } from "./dom";
+import type { Asking, Pair, Plain, Values } from "./protocol";
+import { say } from "./words";
+
+/** What is asked for; without a value nothing was given. */
+export interface Input {
+  element: HTMLElement;
+  value(): Plain | undefined;
+  set(value: Plain | undefined): void;
+  /** Tell what there is to choose from now. */
+  refresh?(): void;
+}
+
+/** What inputs know of the form around them. */
+export interface Around {
+  /** Points of the frame and of links, in their own axes. */
+  bodies: Record<string, Record<string, Pair>>;
+  /** The link in whose table the form is, or the frame. */
+  body: string;
+  beside(key: string): Plain | undefined;
+  put(key: string, value: Plain): void;
+  /** Let a place be shown on the drawing: a point's name, or x and y in the axes of a body, m. */
+  pick(body: string, named: boolean, taken: (picked: Picked) => void): void;
+  /** Keep the text of a file that was chosen. */
+  file(name: string, text: string): void;
+}
+
+export interface Picked {
+  point: string | null;
+  link: string | null;
+  /** As they are written in a file. */
+  place: [string, string];
+}
+
+const FRAME = "frame";
+const TARGET = "M8 1.5v4M8 10.5v4M1.5 8h4M10.5 8h4M8 8h.01";
+const ANGLE = /(deg|rad|turn)$/;
+
+/** `name` is read to those who do not see it. */
+export function input(asking: Asking, name: string, around: Around, hint = ""): Input {
+  return MAKERS[asking.kind](asking, name, around, hint);
+}
+
+type Maker = (asking: Asking, name: string, around: Around, hint: string) => Input;
+
+/** A minus as it is written, and no space around. */
+function typed(element: HTMLInputElement): string {
+  return element.value.trim().replace(/−/g, "-");
+}
+
+function box(name: string, hint: string): HTMLInputElement {
+  const attributes = { autocomplete: "off", autocapitalize: "off", spellcheck: "false" };
+  return h("input", {
+    type: "text",
+    class: "value",
+    "aria-label": name,
+    placeholder: hint,
+    ...attributes,
+  });
+}
+
+/** A bare number is one of the unit that stands beside it. */
+function withUnit(text: string, unit: string | undefined): string {
+  return text !== "" && unit && Number.isFinite(Number(text)) ? `${text} ${unit}` : text;
+}
+
+const quantity: Maker = ({ unit }, name, _, hint) => {
+  const element = box(name, hint || (unit ?? ""));
+  return {
+    element,
+    value: () => withUnit(typed(element), unit) || undefined,
+    set: (value) => (element.value = value === undefined ? "" : String(value)),
+  };
+};
+
+const number: Maker = (_, name, __, hint) => {
+  const element = box(name, hint);
+  const value = () => {
+    const text = typed(element);
+    return text === "" ? undefined : Number.isFinite(Number(text)) ? Number(text) : text;
+  };
+  return { element, value, set: (given) => (element.value = String(given ?? "")) };
+};
+
+const text: Maker = ({ options }, name, _, hint) => {
+  const field = box(name, hint);
+  const value = () => field.value.trim() || undefined;
+  const put = (given: Plain | undefined) => (field.value = String(given ?? ""));
+  if (!options?.length) return { element: field, value, set: put };
+  const id = fresh("options");
+  set(field, { list: id });
+  const list = h("datalist", { id }, ...options.map((one) => h("option", { value: String(one) })));
+  return { element: h("span", { class: "several" }, field, list), value, set: put };
+};
+
+/** A text, or one for each of some languages. */
+const wording: Maker = (asking, name, around, hint) => {
+  const held = h("span", { class: "several" });
+  let one = text(asking, name, around, hint);
+  const put = (value: Plain | undefined) => {
+    const spoken = typeof value === "object";
+    const item: Asking = { kind: "text" };
+    one = spoken ? names({ kind: "names", item }, name, around, "") : text(asking, name, around, hint);
+    one.set(value);
+    held.replaceChildren(one.element);
+  };
+  put(undefined);
+  return { element: held, value: () => one.value(), set: put };
+};
+
+/** The first option stands for nothing given. */
+function offer(select: HTMLSelectElement, options: (string | number)[], none: string): void {
+  const chosen = select.value;
+  const all = chosen && !options.map(String).includes(chosen) ? [...options, chosen] : options;
+  select.replaceChildren(
+    h("option", { value: "" }, none),
+    ...all.map((one) => h("option", { value: String(one) }, String(one))),
+  );
+  select.value = chosen;
+}
+
+const choice: Maker = ({ options = [] }, name, _, hint) => {
+  const element = h("select", { "aria-label": name });
+  offer(element, options, hint ? `(${hint})` : "");
+  return {
+    element,
+    value: () => options.find((one) => String(one) === element.value),
+    set: (value) => (element.value = String(value ?? "")),
+  };
+};
+
+const flag: Maker = (_, name) => {
+  const element = h("input", { type: "checkbox", "aria-label": name });
+  return {
+    element,
+    value: () => element.checked || undefined,
+    set: (value) => (element.checked = value === true),
+  };
+};
+
+/** The name of a link, a body or a point. */
+const called: Maker = ({ of, on }, name, around, hint) => {
+  const element = h("select", { "aria-label": name });
+  const refresh = () => offer(element, namesOf(of, on, around), hint ? `(${hint})` : "");
+  refresh();
+  const put = (value: Plain | undefined) => {
+    if (value !== undefined && ![...element.options].some((one) => one.value === value))
+      element.append(h("option", { value: String(value) }, String(value)));
+    element.value = String(value ?? "");
+  };
+  const picked = ({ point, link }: Picked) => {
+    const found = of === "point" ? point : link;
+    if (!found) return;
+    if (of === "point" && on && on !== FRAME) {
+      const has = Object.hasOwn(around.bodies[String(around.beside(on) ?? "")] ?? {}, found);
+      if (!has && link) around.put(on, link);
+      refresh();
+    }
+    put(found);
+    element.dispatchEvent(new Event("change", { bubbles: true }));
+  };
+  const button = pickButton(name, () => around.pick(FRAME, true, picked));
+  const several = h("span", { class: "several" }, element, button);
+  return { element: several, value: () => element.value || undefined, set: put, refresh };
+};
+
+function namesOf(of: Asking["of"], on: string | undefined, around: Around): string[] {
+  const { bodies } = around;
+  const links = Object.keys(bodies).filter((body) => body !== FRAME);
+  if (of === "link") return links;
+  if (of === "body") return [FRAME, ...links];
+  const body = on === FRAME ? FRAME : on ? String(around.beside(on) ?? "") : "";
+  const whole = body ? [body] : links;
+  return [...new Set(whole.flatMap((one) => Object.keys(bodies[one] ?? {})))];
+}
+
+function pickButton(name: string, onclick: () => void): HTMLButtonElement {
+  const title = say("Show {name} on the drawing", { name });
+  return h(
+    "button",
+    { type: "button", class: "pick", "aria-label": title, title, onclick },
+    icon(TARGET),
+  );
+}
+
+/** A place by x and y, or distance and direction, or the name of a point. */
+const place: Maker = (asking, name, around) => {
+  const { unit, named, space, axes } = asking;
+  const parts = ["x", "y", ...(space ? ["z"] : [])];
+  const boxes = parts.map((axis) => box(`${name} ${axis}`, axis));
+  const body = () => (axes ? String(around.beside(axes) ?? FRAME) : around.body);
+  const names = named ? h("select", { "aria-label": say("{name}, point", { name }) }) : null;
+  const refresh = () => names && offer(names, Object.keys(around.bodies[body()] ?? {}), "x, y:");
+  refresh();
+  const put = (value: Plain | undefined) => {
+    const one = typeof value === "string";
+    if (names) names.value = one ? value : "";
+    const texts = one || value === undefined ? [] : componentsOf(value);
+    boxes.forEach((element, i) => (element.value = texts[i] ?? ""));
+  };
+  const picked = (found: Picked) => put(named && found.point ? found.point : [...found.place]);
+  const button = pickButton(name, () => around.pick(body(), !!named, picked));
+  return {
+    element: h("span", { class: "several" }, names, ...boxes, button),
+    set: put,
+    refresh,
+    value: () => {
+      if (names?.value) return names.value;
+      const texts = boxes.map(typed);
+      const last = space && texts[2] === "" ? 2 : texts.length;
+      if (texts.every((one) => one === "")) return undefined;
+      const [distance, direction] = texts;
+      if (!space && direction && ANGLE.test(direction))
+        return { distance: withUnit(distance ?? "", unit), direction };
+      return texts.slice(0, last).map((one) => withUnit(one, unit));
+    },
+  };
+};
+
+function componentsOf(value: Plain): string[] {
+  if (Array.isArray(value)) return value.map(String);
+  const { distance, direction } = value as Values;
+  return [String(distance ?? ""), String(direction ?? "")];
+}
+
+/** An angle, or three plain numbers. */
+const direction: Maker = ({ unit }, name, _, hint) => {
+  const element = box(name, hint || "90 deg / 0, 1, 0");
+  return {
+    element,
+    value: () => {
+      const given = typed(element);
+      if (given.includes(",")) return given.split(",").map(Number);
+      return withUnit(given, unit) || undefined;
+    },
+    set: (value) => (element.value = Array.isArray(value) ? value.join(", ") : String(value ?? "")),
+  };
+};
+
+/** Some of a kind: as many as there have to be, or with buttons for one more and one less. */
+const list: Maker = (asking, name, around, hint) => {
+  const { item, sizes = [], bare } = asking;
+  const [least, most] = sizes.length ? [Math.min(...sizes), Math.max(...sizes)] : [1, 100];
+  const held = h("span", { class: "items" });
+  const items: Input[] = [];
+  const grow = (value?: Plain) => {
+    const one = input(item as Asking, `${name} ${items.length + 1}`, around, hint);
+    one.set(value);
+    items.push(one);
+    held.append(one.element);
+    limit();
+  };
+  const more = step("+", say("One more"), () => grow());
+  const less = step("−", say("One less"), () => {
+    items.pop()?.element.remove();
+    limit();
+  });
+  const limit = () => {
+    more.hidden = least === most || items.length >= most;
+    less.hidden = least === most || items.length <= least;
+  };
+  const put = (value: Plain | undefined) => {
+    items.splice(0);
+    held.replaceChildren();
+    const values = value === undefined ? [] : Array.isArray(value) ? value : [value];
+    for (let i = 0; i < Math.max(least, values.length); i++) grow(values[i]);
+  };
+  put(undefined);
+  return {
+    element: h("span", { class: "several list" }, held, more, less),
+    set: put,
+    refresh: () => items.forEach((one) => one.refresh?.()),
+    value: () => {
+      const values = items.map((one) => one.value());
+      if (values.every((one) => one === undefined)) return undefined;
+      const given = values.map((one) => one ?? "");
+      return bare && given.length === 1 ? given[0] : given;
+    },
+  };
+};
+
+function step(sign: string, name: string, onclick: () => void): HTMLButtonElement {
+  return h("button", { type: "button", class: "step", "aria-label": name, title: name, onclick }, sign);
+}
+
+/** Some of a kind by names of the user's. */
+const names: Maker = (asking, name, around, hint) => {
+  const { item, listed } = asking;
+  const held = h("span", { class: "items named" });
+  const rows: { line: HTMLElement; called: HTMLInputElement; item: Input }[] = [];
+  const grow = (key = "", value?: Plain) => {
+    const number = rows.length + 1;
+    const own = box(say("{name} {number}, name", { name, number }), say("name"));
+    own.value = key;
+    own.classList.add("name-of");
+    const one = input(item as Asking, `${name} ${key || number}`, around, hint);
+    one.set(value);
+    const gone = () => {
+      rows.splice(rows.indexOf(row), 1);
+      row.line.remove();
+    };
+    const line = h("span", { class: "several" }, own, one.element, step("−", say("One less"), gone));
+    const row = { line, called: own, item: one };
+    rows.push(row);
+    held.append(line);
+  };
+  const put = (value: Plain | undefined) => {
+    rows.splice(0);
+    held.replaceChildren();
+    if (Array.isArray(value)) value.forEach((one) => grow(String(one)));
+    else Object.entries((value ?? {}) as Values).forEach(([key, one]) => grow(key, one));
+  };
+  return {
+    element: h("span", { class: "several list" }, held, step("+", say("One more"), () => grow())),
+    set: put,
+    refresh: () => rows.forEach((row) => row.item.refresh?.()),
+    value: () => {
+      const given = rows.filter((row) => row.called.value.trim() || row.item.value() !== undefined);
+      if (!given.length) return undefined;
+      const keys = given.map((row) => row.called.value.trim());
+      const values = given.map((row) => row.item.value());
+      if (listed && values.every((one) => one === undefined)) return keys;
+      return Object.fromEntries(keys.map((key, i) => [key, values[i] ?? ""]));
+    },
+  };
+};
+
+/** A CSV file, which is read here. */
+const file: Maker = (_, name, around) => {
+  const shown = box(name, "");
+  const chosen = h("input", { type: "file", accept: ".csv", hidden: true, tabindex: -1 });
+  chosen.addEventListener("change", async () => {
+    const [one] = chosen.files ?? [];
+    if (!one) return;
+    around.file(one.name, await one.text());
+    shown.value = one.name;
+  });
+  const button = h(
+    "button",
+    { type: "button", class: "pick", onclick: () => chosen.click() },
+    say("Choose file"),
+  );
+  return {
+    element: h("span", { class: "several" }, shown, chosen, button),
+    value: () => shown.value.trim() || undefined,
+    set: (value) => (shown.value = String(value ?? "")),
+  };
+};
+
+const MAKERS: Record<Asking["kind"], Maker> = {
+  quantity,
+  number,
+  text,
+  choice,
+  flag,
+  name: called,
+  place,
+  direction,
+  list,
+  names,
+  file,
+  wording,
+};

@@ -1,0 +1,249 @@
+/** Everything that a model file can hold: listed, added, changed and deleted. */
+
+import type { Aim } from "./aim";
+import type { Conversation } from "./conversation";
+import { h } from "./dom";
+import { lengths, round } from "./format";
+import { Form, type Subject } from "./form";
+import type { Picked } from "./inputs";
+import type { EntryTold, Group, Pair, State, Steps, Tables, Values } from "./protocol";
+import { say } from "./words";
+
+/** What of the page it needs. */
+export interface Page {
+  talk: Conversation;
+  aim: Aim;
+  state(): State | null;
+  sample(): number;
+  /** Pixels a metre. */
+  scale(): number;
+}
+
+export class Parts {
+  readonly root: HTMLDetailsElement;
+  private readonly select = h("select", { "aria-label": say("Add to the model") });
+  private readonly list = h("div", { class: "groups" });
+  private readonly slot = h("div", {});
+  private tables: Tables | null = null;
+  private form: Form | null = null;
+  private seen = -1;
+
+  constructor(private readonly page: Page) {
+    this.select.addEventListener("change", () => this.choose());
+    this.root = h(
+      "details",
+      { class: "group parts" },
+      h("summary", {}, say("Parts of the model")),
+      this.slot,
+      this.select,
+      this.list,
+    );
+    this.root.addEventListener("toggle", () => this.follow());
+  }
+
+  /** The machine is another, or may be. */
+  follow(): void {
+    const state = this.page.state();
+    if (!state || !this.root.open || state.seq === this.seen) return;
+    this.seen = state.seq;
+    this.page.talk.ask({ type: "tables" }, (refusal) => {
+      if (refusal === null) return;
+      this.select.replaceChildren();
+      this.list.replaceChildren(h("p", { class: "quiet" }, refusal));
+    });
+  }
+
+  /** Another file is open: what was being typed belongs to the old one. */
+  forget(): void {
+    this.close();
+  }
+
+  show(tables: Tables): void {
+    this.tables = tables;
+    this.select.replaceChildren(
+      h("option", { value: "" }, say("Add …")),
+      ...tables.groups.map((group, i) => this.offer(group, i)).filter((one) => one !== null),
+    );
+    this.list.replaceChildren(
+      ...tables.groups.filter(({ entries }) => entries.length).map((group) => this.listed(group)),
+    );
+  }
+
+  /** What can be added: a single one only while it is not there. */
+  private offer(group: Group, i: number): HTMLOptionElement | null {
+    if (group.many === "one" && group.entries.length) return null;
+    const { word, of, text, needs } = group;
+    const what = needs
+      ? say("{what} (first add: {needs})", { what: word, needs })
+      : `${titleOf(group)}: ${text}`;
+    return h("option", { value: i, disabled: !!needs, title: of ? `${of}: ${text}` : text }, what);
+  }
+
+  private listed(group: Group): HTMLElement {
+    const lines = group.entries.map((entry) => {
+      const name = nameOf(group, entry);
+      const edit = () => this.edit(group, entry);
+      return h(
+        "li",
+        {},
+        h(
+          "button",
+          { type: "button", class: "plain", title: say("Change {name}", { name }), onclick: edit },
+          h("b", {}, name),
+          ` ${entry.words}`,
+        ),
+        !group.required &&
+          h(
+            "button",
+            {
+              type: "button",
+              class: "step",
+              "aria-label": say("Delete {name}", { name }),
+              title: say("Delete {name}", { name }),
+              onclick: () => this.put(entry.place, null, say("delete {name}", { name })),
+            },
+            "×",
+          ),
+      );
+    });
+    const result = group.result ? h("p", { class: "quiet" }, group.result) : null;
+    return h(
+      "section",
+      { "aria-label": titleOf(group) },
+      h("h3", { title: group.text }, titleOf(group)),
+      h("ul", {}, ...lines),
+      result,
+    );
+  }
+
+  private choose(): void {
+    const group = this.tables?.groups[Number(this.select.value)];
+    if (!this.select.value || !group) return;
+    this.select.value = "";
+    const { many, entries, place, where } = group;
+    const next = many === "list" ? [...place, entries.length] : many === "named" ? [...place, ""] : place;
+    const path = many === "list" ? `${where}[${entries.length + 1}]` : where;
+    this.open({
+      heading: say("New: {what}", { what: titleOf(group) }),
+      text: group.text,
+      form: group.form,
+      place: next,
+      where: path,
+      name: many === "named" ? "" : null,
+      values: {},
+      below: [],
+      deletable: false,
+    });
+  }
+
+  private edit(group: Group, entry: EntryTold): void {
+    const last = entry.place[entry.place.length - 1];
+    this.open({
+      heading: nameOf(group, entry),
+      text: group.text,
+      form: group.form,
+      place: entry.place,
+      where: entry.where,
+      name: group.many === "named" ? String(last) : null,
+      values: entry.values,
+      below: entry.below,
+      deletable: !group.required,
+    });
+  }
+
+  private open(subject: Subject): void {
+    if (!this.tables) return;
+    this.close();
+    const form = new Form(subject, this.tables, {
+      saved: (place, values, name, files) => this.save(subject, place, values, name, files),
+      deleted: (place) => this.put(place, null, say("delete {name}", { name: subject.heading })),
+      closed: () => this.close(),
+      pick: (body, named, taken) => void this.pick(body, named, taken),
+    });
+    this.form = form;
+    this.slot.replaceChildren(form.root);
+    form.root.scrollIntoView({ block: "nearest" });
+    form.focus();
+  }
+
+  private close(): void {
+    this.page.aim.end();
+    this.form = null;
+    this.slot.replaceChildren();
+  }
+
+  private save(
+    subject: Subject,
+    place: Steps,
+    values: Values,
+    name: string | null,
+    files: Record<string, string>,
+  ): void {
+    const fresh = subject.name === "";
+    if (fresh && name === "") {
+      const message = say("Give it a name.");
+      return this.form?.refused(message, null);
+    }
+    const at = fresh ? [...place.slice(0, -1), name ?? ""] : place;
+    const more = { ...(name && { name }), ...(Object.keys(files).length && { files }) };
+    this.put(at, values, subject.heading, more);
+  }
+
+  private put(place: Steps, values: Values | null, label: string, more: object = {}): void {
+    const { talk } = this.page;
+    const form = this.form;
+    talk.release();
+    talk.ask({ type: "entry", label, place, values, ...more }, (refusal, told) => {
+      if (refusal !== null && form && form === this.form) form.refused(refusal, told);
+      else if (form === this.form) this.close();
+    });
+  }
+
+  /** Let a place be shown on the drawing; told in the axes of a body. */
+  private async pick(
+    body: string,
+    named: boolean,
+    taken: (picked: Picked) => void,
+  ): Promise<void> {
+    const prompt = named
+      ? say("Click a point or a link on the drawing, or go there with the arrow keys and press Enter.")
+      : say("Click the place on the drawing, or go there with the arrow keys and press Enter.");
+    const spot = await this.page.aim.ask(prompt);
+    if (!spot) return;
+    const [x, y] = this.inAxesOf(body, spot.at).map((value) => this.written(value)) as [string, string];
+    taken({ point: spot.point, link: spot.link, place: [x, y] });
+  }
+
+  /** A place of the frame in the axes of a link, m. */
+  private inAxesOf(body: string, [x, y]: Pair): Pair {
+    const numbers = this.page.state()?.numbers;
+    const angle = numbers?.get(`angle.${body}`);
+    const [point, own] = Object.entries(this.tables?.bodies[body] ?? {})[0] ?? [];
+    const there = point === undefined ? undefined : numbers?.get(`place.${point}`);
+    if (!angle || !there || !own) return [x, y];
+    const k = this.page.sample();
+    const turn = -(angle[k] as number);
+    const [dx, dy] = [x - (there[2 * k] as number), y - (there[2 * k + 1] as number)];
+    const [c, s] = [Math.cos(turn), Math.sin(turn)];
+    return [own[0] + dx * c - dy * s, own[1] + dx * s + dy * c];
+  }
+
+  /** As finely as a pixel tells. */
+  private written(metres: number): string {
+    const { unit, factor } = lengths();
+    const digits = Math.max(0, -Math.floor(Math.log10(round(factor / this.page.scale()) / 4)));
+    const text = (metres * factor).toFixed(Math.min(digits, 9));
+    return `${Number(text)} ${unit}`;
+  }
+}
+
+/** What the tables of a group are called: "bodies of crank". */
+function titleOf({ word, of }: Group): string {
+  return of ? say("{what} of {name}", { what: word, name: of }) : word;
+}
+
+function nameOf(group: Group, entry: EntryTold): string {
+  const last = entry.place[entry.place.length - 1];
+  if (group.many === "named") return String(last);
+  return group.many === "list" ? `${group.word} ${Number(last) + 1}` : group.word;
+}

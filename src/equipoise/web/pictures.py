@@ -1,0 +1,120 @@
+"""Pictures that a page can keep: its drawing, its charts, its motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from threading import Lock
+from typing import Any
+
+from equipoise.errors import EquipoiseError, UsageError
+from equipoise.mechanism.checks import unknown
+from equipoise.results.charts import Chart
+from equipoise.web.edits import Solved
+
+SAME = {
+    "polar": "polar",
+    "path": "curves",
+    "shaking_force": "force",
+    "shaking_moment": "moment",
+    "drive_torque": "torque",
+    "spectrum": "spectrum",
+    "joint": "joints",
+}
+"""Chart of the page -> picture of an analysis that shows the same."""
+drawing = Lock()
+"""Matplotlib draws one picture after the other."""
+SECONDS = 2.0
+"""That a turn of the crank takes in a film."""
+MOST_PATHS = 3
+
+
+def chart_of(found: Solved, name: str, choice: str) -> Chart:
+    """The picture of a chart of the page.
+
+    choice : what is chosen in it.
+
+    Raises
+    ------
+    UsageError : there is no such chart.
+    EquipoiseError : it cannot be drawn of this machine.
+    """
+    machine, analysis = found.design.machine, found.analysis
+    if name == "response":
+        from equipoise.figures.vibration import response_charts
+        from equipoise.vibration.forced import respond
+
+        return _named(response_charts(respond(machine)), f"gauge-{choice}")
+    if name == "sweep":
+        from equipoise.figures.sweep import sweep_charts
+        from equipoise.vibration.resonance import around
+        from equipoise.vibration.sweep import sweep_speed
+
+        speeds = around(machine.drive, machine.drive.speed)
+        return _named(sweep_charts(sweep_speed(machine, *speeds)), "response")
+    if name in SAME:
+        from equipoise.figures.pictures import analysis_pictures
+
+        return _named(analysis_pictures(analysis), SAME[name])
+    return _over_crank(found, choice)
+
+
+def _named(pictures: Mapping[str, Chart], name: str) -> Chart:
+    if name not in pictures:
+        raise UsageError(unknown(name, pictures, "picture"))
+    return pictures[name]
+
+
+def _over_crank(found: Solved, output: str) -> Chart:
+    """An output over the crank angle; of all rows together where it is only there."""
+    from equipoise.figures.analysis import ALL
+    from equipoise.figures.forces import over_crank
+    from equipoise.web.figures import ROWS, capital
+
+    outputs = found.analysis.outputs
+    one = outputs[f"{ROWS}{output}" if f"{ROWS}{output}" in outputs else output]
+    label = one.label()
+    what = [(label, one.dimension, {ALL: one.drawn})]
+    return replace(over_crank(found.analysis, "output", capital(label), what), keys=())
+
+
+def linkage_at(found: Solved, sample: int) -> Chart:
+    """The drawing at a sample of the crank angle.
+
+    Raises
+    ------
+    UsageError : there is no such sample.
+    """
+    from equipoise.figures.linkage import linkage
+
+    angles = found.motion.crank_angle
+    if not 0 <= sample < len(angles):
+        raise UsageError(f"got {sample} as sample of the crank angle; give 0 to {len(angles) - 1}")
+    return linkage(found.analysis, [float(angles[sample])])
+
+
+def film_of(found: Solved) -> bytes:
+    """The whole cycle as a GIF, the support too where it moves."""
+    from equipoise.figures.film import gif
+    from equipoise.figures.stage import in_a_turn
+    from equipoise.results.analysis import analyze
+
+    frames = in_a_turn("gif", SECONDS)
+    scene = _swinging(analyze(found.design.machine, frames * -(-720 // frames)))
+    with drawing:
+        return gif(scene, traced=scene.ends[:MOST_PATHS], seconds=SECONDS)
+
+
+def _swinging(analysis: Any) -> Any:
+    """What moves at speed; the support stands still where it has no steady state."""
+    from equipoise.figures.swing import swinging
+    from equipoise.symbols.scene import Scene
+    from equipoise.vibration.forced import respond
+
+    scene = Scene.of(analysis.motion)
+    if analysis.machine.support is None:
+        return scene
+    try:
+        return swinging(scene, respond(analysis.machine), None)
+    except EquipoiseError:
+        return scene

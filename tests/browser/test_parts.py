@@ -1,0 +1,192 @@
+"""Parts of the model by their forms; a picture and a DXF drawing traced over; the ruler."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Locator, expect
+
+from browser.live import NUMBER, Live
+
+MARKS = {"first": (100, 150), "second": (300, 150), "third": (200, 50)}
+"""Centres of circles on a picture of 400 by 200, pixels."""
+DRAWING = [
+    ("SECTION", {2: "HEADER"}), (None, {9: "$INSUNITS", 70: 1}), ("ENDSEC", {}),
+    ("SECTION", {2: "ENTITIES"}),
+    ("LINE", {8: 0, 10: -3, 20: 1, 11: 2, 21: -2}),
+    ("CIRCLE", {8: 0, 10: 1, 20: 2, 40: 0.5}),
+    ("LWPOLYLINE", {8: 0, 90: 2, 70: 0, 10: -4, 20: -2, 42: 1}),
+    ("ENDSEC", {}), ("EOF", {}),
+]  # fmt: skip
+"""A drawing in inches."""
+
+
+def part(live: Live, heading: str) -> Locator:
+    return live.page.get_by_role("form", name=heading)
+
+
+def add(live: Live, what: str) -> Locator:
+    """Choose something to add, and return its form."""
+    select = live.page.get_by_label("Add to the model")
+    option = select.locator("option", has_text=re.compile(f"^{what}"))
+    select.select_option(option.get_attribute("value"))
+    return part(live, "New")
+
+
+def press(form: Locator, name: str) -> None:
+    form.get_by_role("button", name=name, exact=True).click()
+
+
+def dxf() -> str:
+    pairs = []
+    for name, codes in DRAWING:
+        pairs += [] if name is None else [f"0\n{name}"]
+        pairs += [f"{code}\n{value}" for code, value in codes.items()]
+    return "\n".join(pairs) + "\n"
+
+
+def test_a_spring_and_a_body_are_added_changed_and_deleted(live: Live) -> None:
+    page = live.page
+    page.get_by_text("Parts of the model").click()
+    form = add(live, "springs:")
+    press(form, "Show point on the drawing")
+    x, y = live.spot(live.joint("P"))
+    page.mouse.click(x + 3, y - 2)
+    expect(form.get_by_label("link", exact=True)).to_have_value("coupler")
+    expect(form.get_by_label("point", exact=True)).to_have_value("P")
+    form.get_by_label("to", exact=True).select_option("D")
+    stiffness = form.get_by_label("stiffness", exact=True)
+    stiffness.fill("3 kg")
+    press(form, "Save")
+    expect(form.get_by_text("got '3 kg'; kg is the unit of a mass")).to_be_visible()
+    expect(stiffness).to_be_focused()
+    assert live.findings() == []
+    stiffness.fill("40")  # in the unit that stands beside it
+    stiffness.press("Enter")
+    expect(form).to_be_hidden()
+    expect(live.button("Undo")).to_have_attribute("title", "Undo: New: springs")
+    (spring,) = live.machine().springs
+    assert (spring.link, spring.point, spring.to, spring.stiffness) == ("coupler", "P", "D", 40.0)
+
+    form = add(live, "gears:")
+    form.get_by_label("ratio", exact=True).fill("-2")
+    expect(form.locator("[data-key=teeth]")).to_be_visible()
+    form.get_by_label("ratio", exact=True).press("Tab")
+    expect(form.locator("[data-key=teeth]")).to_be_hidden()  # one of both
+    press(form, "Cancel")
+
+    form = add(live, "bodies of rocker")
+    form.get_by_label("shape", exact=True).select_option("disc")
+    expect(form.locator("[data-key=corners]")).to_be_hidden()  # has no place in a disc
+    expect(form.locator("[data-key=radius] .needed")).to_be_visible()
+    press(form, "Show centre on the drawing")
+    page.keyboard.press("Escape")
+    form.get_by_label("centre, point").select_option("C")
+    for key, value in (("radius", "40 mm"), ("thickness", "10"), ("material", "steel")):
+        form.get_by_label(key, exact=True).fill(value)
+    press(form, "Save")
+    expect(page.get_by_text("together 394.6 g")).to_be_visible()
+    page.get_by_role("button", name="Delete springs 1").click()
+    expect(page.get_by_role("button", name="Delete springs 1")).to_be_hidden()
+    machine = live.machine()
+    assert machine.springs == ()
+    assert machine.links["rocker"].mass == pytest.approx(7850 * 3.14159265 * 0.04**2 * 0.01)
+    live.button("Undo").click()
+    expect(page.get_by_role("button", name="Delete springs 1")).to_be_visible()
+    page.get_by_role("button", name=re.compile("^springs 1 ")).click()
+    form = part(live, "springs 1")
+    form.get_by_label("free length", exact=True).fill("5 cm")
+    press(form, "Save")
+    expect(form).to_be_hidden()
+    assert live.machine().springs[0].free_length == 0.05
+    page.reload()  # what was done is done again
+    expect(live.button("Undo")).to_have_attribute("title", "Undo: springs 1")
+    assert live.machine().springs[0].free_length == 0.05
+
+
+def test_a_picture_is_scaled_and_traced_over(live: Live, tmp_path: Path) -> None:
+    page = live.page
+    circles = "".join(f'<circle cx="{x}" cy="{y}" r="4"/>' for x, y in MARKS.values())
+    svg = f'<svg xmlns="http://www.w3.org/2000/svg" width="400" height="200">{circles}</svg>'
+    picture = tmp_path / "photo.svg"
+    picture.write_text(svg, encoding="utf-8")
+    live.drop("huge.jpg", "0123456789", 2_100_000)
+    expect(live.told("huge.jpg has 21.0 MB; at most 20 MB are drawn")).to_be_visible()
+    page.get_by_label("Picture or DXF drawing").set_input_files(picture)
+    image = page.locator(".underlay image")
+
+    def click(mark: str) -> None:
+        box = image.bounding_box()
+        assert box is not None
+        across, down = MARKS[mark]
+        place = box["x"] + across / 400 * box["width"], box["y"] + down / 200 * box["height"]
+        expect(page.locator(".aim")).to_be_visible()
+        page.mouse.click(*place)
+
+    live.button("Scale by two places").click()
+    click("first")
+    expect(page.locator(".aim")).to_have_attribute("aria-label", "Click the second place.")
+    click("second")
+    distance = page.get_by_label("True distance of the two places")
+    expect(distance).to_be_focused()
+    live.type(distance, "8 cm")
+    expect(distance).to_be_hidden()
+
+    live.button("Measure").click()
+    click("first")
+    expect(page.locator(".aim")).to_have_attribute("aria-label", "Click where to measure to.")
+    click("third")
+    told = page.locator(".measured")
+    expect(told).to_have_text(re.compile("along y$"))
+    measured = [float(one) for one in NUMBER.findall(told.inner_text())]
+    assert measured == pytest.approx([56.57, 45, 40, 40], abs=1)  # 0.4 mm a pixel
+
+    page.get_by_text("Parts of the model").click()
+    page.get_by_role("button", name=re.compile("^frame points")).click()
+    form = part(live, "frame")
+    for number, (name, mark) in enumerate((("E", "first"), ("F", "third")), 3):
+        press(form, "One more")
+        form.get_by_label(f"points {number}, name").fill(name)
+        press(form, f"Show points {number} on the drawing")
+        click(mark)
+    press(form, "Save")
+    expect(form).to_be_hidden()
+    frame = live.machine().frame
+    traced = complex(*frame["F"]) - complex(*frame["E"])
+    assert abs(traced - (0.04 + 0.04j)) < 1e-3
+    page.reload()
+    expect(image).to_be_visible()
+
+
+def test_a_dxf_drawing_is_snapped_to_by_keyboard_too(live: Live, tmp_path: Path) -> None:
+    page = live.page
+    file = tmp_path / "plan.dxf"
+    file.write_text(dxf(), encoding="utf-8")
+    page.get_by_text("Underlay and ruler").click()
+    page.get_by_label("Picture or DXF drawing").set_input_files(file)
+    expect(page.locator(".underlay path")).to_be_attached()
+    live.button("Measure").click()
+    aim = page.locator(".aim")
+    expect(aim).to_be_focused()
+    expect(live.told("Click where to measure from.")).to_be_visible()
+    box = page.locator(".underlay path").bounding_box()
+    assert box is not None
+    assert box["width"] > 0
+    page.mouse.click(*live.spot(live.joint("A")))
+    expect(aim).to_have_attribute("aria-label", "Click where to measure to.")
+    for _ in range(200):  # to the centre of the circle, 25.4 mm to the right and 50.8 mm up
+        hint = page.locator(".hint").inner_text()
+        x, y = (float(one.replace("−", "-")) for one in NUMBER.findall(hint)[-2:])
+        if "25.40, 50.80" in hint:
+            break
+        aim.press("ArrowRight" if x < 25 else "ArrowUp" if y < 50 else "ArrowLeft")
+    aim.press("Enter")
+    expect(page.locator(".measured")).to_contain_text("25.40 mm along x, 50.80 mm along y")
+    assert live.findings() == []
+    file.write_text("no drawing", encoding="utf-8")
+    page.get_by_label("Picture or DXF drawing").set_input_files(file)
+    expect(live.told("plan.dxf is no DXF drawing that can be read")).to_be_visible()
+    live.button("Remove").click()
+    expect(page.locator(".underlay path")).to_be_hidden()

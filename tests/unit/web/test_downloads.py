@@ -1,0 +1,77 @@
+"""What a page can keep beside its model: pictures of every chart, and a page that plays."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+
+from equipoise.web import played as played_module
+from equipoise.web.explained import CHARTS
+from equipoise.web.openings import titles
+from equipoise.web.replies import Reply
+from equipoise.web.session import Session
+from unit.web.pages import ask, opened, refusal
+
+
+def kept(session: Session, **values: Any) -> Reply:
+    """The file that is answered, after it was told that this takes a moment."""
+    busy, file = ask(session, "download", seq=1, **values)
+    assert (busy.content["type"], file.content["type"]) == ("busy", "file"), file.content
+    return file
+
+
+def charts_of(session: Session) -> dict[str, list[str]]:
+    """Choices of every chart that a page is told of, by its name."""
+    told = [*session.told(None), *session.tell_more()]
+    charts = [chart for reply in told for chart in reply.content.get("charts", [])]
+    return {chart["name"]: [one["name"] for one in chart["choices"]] for chart in charts}
+
+
+@pytest.mark.parametrize("name", ["yamashita-rig", "four-row-transplanter", "stephenson-six-bar"])
+def test_every_chart_is_explained_and_can_be_kept(name: str) -> None:
+    session, _ = opened(name)
+    charts = charts_of(session) | {"polar": [""], "path": [""], "output": ["links.crank.angle"]}
+    assert charts.keys() <= CHARTS.keys()
+    if name == "stephenson-six-bar":
+        del charts["output"]
+    for chart, choices in charts.items():
+        file = kept(session, kind="chart", chart=chart, choice=choices[0])
+        assert ElementTree.fromstring(file.buffer).tag.endswith("svg"), chart
+        assert re.search(r"-\w[\w-]*\.svg$", file.content["name"])
+
+
+def test_every_explanation_is_of_a_chart() -> None:
+    found = {"polar", "path", "output"}
+    for name in titles():
+        if found != CHARTS.keys():
+            found |= charts_of(opened(name)[0]).keys()
+    assert found == CHARTS.keys()
+
+
+def test_what_cannot_be_drawn_is_refused() -> None:
+    session, _ = opened("yamashita-1")
+    for told, values in {
+        "no.such": {"kind": "chart", "chart": "polr", "choice": "no.such"},
+        "format of pictures": {"kind": "drawing", "format": "bmp"},
+        "sample of the crank angle": {"kind": "drawing", "at": 720},
+        "no download": {"kind": "film2"},
+    }.items():
+        assert told in refusal(ask(session, "download", seq=1, **values)[-1:])
+
+
+def test_a_page_that_plays_holds_all_that_was_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    built = {"equipoise.js": b'"</script>"', "equipoise.css": b"a{}"}
+    monkeypatch.setattr(played_module, "assets", lambda: built)
+    session, _ = opened("yamashita-rig")
+    page = kept(session, kind="played", language="ko").buffer.decode()
+    assert page.count("</script>") == 2
+    told = json.loads(re.search(r'id="equipoise-played">(.*?)</script>', page, re.S)[1])  # type: ignore[index]
+    kinds = [content["type"] for content, _ in told["replies"]]
+    assert kinds[:3] == ["spoken", "hello", "state"] and kinds.count("response") == 2
+    state = told["replies"][2][0]
+    assert {f"output.{one['name']}" for one in state["outputs"]} <= state["arrays"].keys()
+    assert told["replies"][0][0]["language"] == "ko"
