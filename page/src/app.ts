@@ -12,6 +12,7 @@ import { Heading } from "./heading";
 import { helpDialog } from "./help";
 import { Inspector } from "./inspector";
 import { Keeping } from "./keeping";
+import { Locks } from "./locks";
 import { Player } from "./player";
 import type { Asked, FileKind, Hello, Planted, State, Wire } from "./protocol";
 import { BalancePanel, FigureTable, Readings } from "./readings";
@@ -22,6 +23,7 @@ import { type Grip, Stage } from "./stage";
 import type { Shelf } from "./story";
 import { Theme } from "./theme";
 import { Toolbar } from "./toolbar";
+import { Tools } from "./tools";
 import { TransportBar } from "./transport";
 import { language, say } from "./words";
 
@@ -48,6 +50,7 @@ export class App {
   private readonly strokes = new FigureTable(say("Figures of sliders and rockers"));
   private readonly balance: BalancePanel;
   private readonly toolbar: Toolbar;
+  private readonly tools: Tools;
   private readonly transport: TransportBar;
   private readonly help = helpDialog(() => this.hello?.version ?? "");
   private readonly heading = new Heading();
@@ -98,6 +101,7 @@ export class App {
     this.talk = new Conversation(wire, events, shelf);
     el.append(this.root);
     this.theme = new Theme(this.root, () => this.charts.repaint());
+    const locks = new Locks();
     const page = {
       talk: this.talk,
       state: () => this.state,
@@ -105,6 +109,7 @@ export class App {
       chosen: (grip: Grip) => this.choose(grip),
       holding: (on: boolean) => this.hold(on),
       hint: (text: string) => this.board.hint(text),
+      kept: (point: string) => locks.keep(point),
     };
     this.keeping = new Keeping({
       root: this.root,
@@ -124,13 +129,22 @@ export class App {
     );
     const root = this.full ? document : this.root;
     this.bench = new Bench({ ...page, root, stage: this.stage, board: this.board });
+    this.tools = new Tools({
+      ...page,
+      stage: this.stage,
+      board: this.board.root,
+      snaps: () => this.bench.snaps(),
+      angle: () => this.player.angle,
+      turn: (degrees) => this.turn(degrees),
+      chosen: (link) => this.chooseLink(link),
+    });
     this.charts = new Charts(
       this.theme,
       (angle) => this.turn(angle),
       (names) => this.command({ type: "outputs", names }),
       (asked) => this.command(asked),
     );
-    this.inspector = new Inspector(this.talk, (on) => this.hold(on));
+    this.inspector = new Inspector(this.talk, (on) => this.hold(on), locks);
     this.balance = new BalancePanel(
       () => this.keep(),
       () => this.takeBack(),
@@ -171,7 +185,7 @@ export class App {
 
   private lay(): void {
     const stage = h("section", { class: "stage", "aria-label": say("Linkage and motion") });
-    stage.append(this.heading.about, this.board.root);
+    stage.append(this.heading.about, this.tools.palette.root, this.board.root);
     stage.append(this.transport.root, this.seeing.root, this.heading.notes, this.readings.root);
     stage.append(this.seeing.variants.root);
     stage.append(this.strokes.root, this.planted.root);
@@ -250,7 +264,7 @@ export class App {
       this.player.suit();
       this.player.playing =
         state.speed !== 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches;
-    } else this.player.angle = angle;
+    } else this.player.angle = state.status.stand ?? angle;
     if (other) this.heading.forget();
     if (other) this.bench.forget();
     if (other || !state.planting) this.planted.hide();
@@ -303,6 +317,8 @@ export class App {
       this.theme.update();
       this.charts.settle();
     }
+    this.tools.show(state);
+    this.root.classList.toggle("unfinished", !state.status.finished);
     this.hands.describe();
     this.hands.accepted();
     this.heading.show(state);
@@ -415,6 +431,7 @@ export class App {
     const link = grip.kind === "mass" ? grip.name : frame ? "frame" : holder;
     this.stage.select(new Set([grip.name]), grip.kind === "mass" ? grip.name : null, grip);
     this.inspector.choose(link, grip.kind === "point" ? grip.name : null);
+    this.tools.selected(grip);
     if (grip.kind === "point") this.charts.choose(grip.name);
     if (grip.kind === "point") this.seeing.choose(grip.name);
   }
@@ -423,6 +440,7 @@ export class App {
     const body = this.state?.scene.bodies.find((one) => one.name === link);
     this.stage.select(new Set(body?.points), link, null);
     this.inspector.choose(link, null);
+    this.tools.choose({ what: "link", name: link });
   }
 
   /** While something is held, the crank stands still. */

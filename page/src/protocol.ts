@@ -5,10 +5,29 @@ export type Pair = [number, number];
 export type Edit =
   | { set: string; text: string }
   | { set: string; value: number }
-  | { move: string; to: Pair; at: number }
+  /** `keep`: points whose distance from it is locked. */
+  | { move: string; to: Pair; at: number; keep?: string[] }
   | { move_mass: string; to: Pair; at: number };
 
 export type FileKind = "model" | "csv" | "report" | "drawing" | "film" | "played";
+
+/** An operation on a machine that is made, with what it needs. */
+export interface Made {
+  do: string;
+  [key: string]: unknown;
+}
+
+/** What is told of the making of a machine. */
+export interface Status {
+  /** Number of free motions; the drive commands one. */
+  mobility: number;
+  /** What moves, or what is missing. */
+  text: string;
+  finished: boolean;
+  drive: string | null;
+  /** Crank angle at which it was drawn, degrees. */
+  stand?: number | null;
+}
 
 export type Asked =
   | { type: "ready" }
@@ -18,6 +37,7 @@ export type Asked =
   /** `file`: it is what the file held that the server was started with. */
   | { type: "open"; name: string; text: string; file?: true }
   | { type: "edit"; commit: boolean; label: string; edits: Edit[] }
+  | ({ type: "make"; at: number } & Made)
   | { type: "undo" | "redo" | "balance" | "save" }
   | { type: "compare"; on: false }
   | { type: "tables" }
@@ -90,6 +110,8 @@ export interface Field extends Unit {
   min?: number | null;
   max?: number | null;
   step?: number | null;
+  /** Ends of a length between points. */
+  between?: [string, string];
 }
 
 export interface Body {
@@ -205,6 +227,7 @@ export interface StateMessage {
   notes: string[];
   /** Whether curves of another design are drawn behind; whether figures of one are told. */
   before: boolean;
+  status: Status;
   compared: boolean;
   /** Points that arrows can be at, the one at which they are, and what there is to draw there. */
   points: string[];

@@ -1,5 +1,6 @@
 /** The linkage, drawn in SVG: still parts once, moving parts once a frame. */
 
+import { Dimensions } from "./dims";
 import { s, set } from "./dom";
 import { type Overlay, type Swing, swung } from "./overlay";
 import type { Pair, Scene, State } from "./protocol";
@@ -40,6 +41,7 @@ export class Stage {
   /** Fine lines and scales, apart, so that they are not painted with every frame. */
   readonly lines = s("svg", { class: "sheet-lines", "aria-hidden": "true" });
   readonly view = new View();
+  private readonly dims = new Dimensions();
   readonly grips = new Map<string, SVGGElement>();
   /** Called when another part of the plane is shown. */
   readonly watchers: (() => void)[] = [];
@@ -65,6 +67,7 @@ export class Stage {
         s("g", { class: name, "aria-hidden": hidden && "true" }),
       );
     }
+    this.svg.append(this.dims.layer);
   }
 
   /** Take a state; `other` where it is of another machine. Another build is drawn from scratch. */
@@ -154,6 +157,8 @@ export class Stage {
 
   select(points: ReadonlySet<string>, link: string | null, grip: Grip | null): void {
     this.link = link;
+    this.dims.choose(link ? [...points] : []);
+    this.dims.pose((name) => this.place({ kind: "point", name }), this.view);
     this.mark();
     for (const { name, element } of this.paths)
       element.classList.toggle("chosen", points.has(name));
@@ -183,6 +188,7 @@ export class Stage {
       set(layer, { transform: moved?.transform ?? null });
     const spots = this.spots(k);
     const spot = (name: string): Pair => spots.get(name) ?? [0, 0];
+    this.dims.pose((name) => this.place({ kind: "point", name }), this.view);
     this.poseGrips(k, spot);
     this.poseLabels(spot);
   }

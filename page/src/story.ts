@@ -37,7 +37,7 @@ export interface Shelf {
 /** Steps that a server keeps; beyond, it forgets the oldest. */
 const DEEPEST = 500;
 /** What a step is made by. */
-const STEPS = new Set(["edit", "balance", "entry"]);
+const STEPS = new Set(["edit", "make", "balance", "entry"]);
 /** Of these the last one is enough. */
 const SETTINGS = new Set(["compare", "outputs", "arrows"]);
 

@@ -167,7 +167,7 @@ def _fields(sketch: Sketch) -> Iterator[Field]:
         for one in measures_of(points):
             path = f"{'frame' if body == FRAME else f'links.{body}'}.{one.key}"
             put = partial(_measured, body, one)
-            yield Field(path, body, one.label, one.dimension, one.value, put)
+            yield Field(path, body, one.label, one.dimension, one.value, put, one.between)
     for point, place in sketch.frame.items():
         for axis, value in zip("xy", place, strict=True):
             put = partial(_placed, point, axis)
@@ -263,6 +263,10 @@ def state_of_sketch(found: Drawn, scale: Scale) -> tuple[Values, bytes]:
         "first": "squares",
         "least": 0,
         "before": False,
+        "compared": False,
+        "points": [],
+        "arrows_at": None,
+        "arrows": [],
         "status": status_of_sketch(found),
         "fields": [scale.told(one) for one in fields_of_sketch(sketch).values()],
         **{key: [] for key in ("traced", "figures", "outputs", "charts", "orders", "notes")},

@@ -13,12 +13,12 @@ import socket
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from importlib.resources import files
 from secrets import compare_digest, token_urlsafe
 from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
 from equipoise.schema.files import reason
+from equipoise.web.assets import TYPES, assets
 from equipoise.web.lanes import Lanes
 from equipoise.web.messages import LARGEST_MESSAGE
 from equipoise.web.page import Page, turn_away
@@ -103,28 +103,6 @@ async def refuse(problem: str, scope: Scope, send: Send) -> None:
         ]
     await send({"type": f"{begin}.start", "status": 403, "headers": headers})
     await send({"type": f"{begin}.body", "body": body})
-
-
-TYPES = {"equipoise.js": "text/javascript", "equipoise.css": "text/css"}
-"""Everything that there is, with its type."""
-MAKE = (
-    "the page has not been built; run `make page`, or `pip install -e .` where Node or a network "
-    "is at hand"
-)
-
-
-def assets() -> dict[str, bytes]:
-    """Script and style of the page, by name.
-
-    Raises
-    ------
-    UsageError : they have not been built.
-    """
-    folder = files("equipoise.web") / "static"
-    try:
-        return {name: (folder / name).read_bytes() for name in TYPES}
-    except OSError:
-        raise UsageError(MAKE) from None
 
 
 ADDRESS = "127.0.0.1"
