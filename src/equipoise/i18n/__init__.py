@@ -104,6 +104,11 @@ class Worded(str):
         return self.texts.get(_spoken.get()) or str(self)
 
 
+def worded(text: str | Mapping[str, str]) -> str:
+    """A text of a file as it was read: plain, or by code of the language."""
+    return Worded(text) if isinstance(text, Mapping) else text
+
+
 def said(text: Note | str) -> str:
     """A sentence, a part of one, or a text of a file, in the language that is spoken."""
     return text.said() if isinstance(text, Note | Worded) else text
