@@ -16,6 +16,8 @@ const ARROWS: Record<string, Pair> = {
   ArrowDown: [0, -1],
 };
 
+const ZOOMS: Record<string, number> = { "+": 1.25, "=": 1.25, "-": 0.8 };
+
 export interface Spot {
   /** m. */
   at: Pair;
@@ -29,6 +31,8 @@ export class Aim {
   private readonly cross = s("path", { class: "cross" });
   private readonly ring = s("circle", { class: "ring", r: 9 });
   private at: Pair = [0, 0];
+  /** What was shown before: with Shift, level with it or straight above or below. */
+  private from: Pair | null = null;
   private answer: ((spot: Spot | null) => void) | null = null;
   private before: Element | null = null;
 
@@ -40,6 +44,11 @@ export class Aim {
   ) {
     this.svg.append(this.cross, this.ring);
     this.svg.addEventListener("pointermove", (event) => this.move(this.under(event)));
+    this.svg.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      stage.svg.dispatchEvent(new WheelEvent("wheel", event));
+    });
+    stage.watchers.push(() => this.answer && this.show());
     this.svg.addEventListener("pointerdown", (event) => event.preventDefault());
     this.svg.addEventListener("click", (event) => this.take(this.under(event)));
     this.svg.addEventListener("keydown", (event) => this.key(event));
@@ -49,7 +58,8 @@ export class Aim {
   ask(prompt: string, from: Pair | null = null): Promise<Spot | null> {
     this.end();
     const { view } = this.stage;
-    set(this.svg, { "aria-label": prompt, viewBox: `0 0 ${view.width} ${view.height}` });
+    this.from = from;
+    set(this.svg, { "aria-label": prompt });
     this.before = (this.board.root.getRootNode() as Document | ShadowRoot).activeElement;
     this.board.root.append(this.svg);
     this.board.say(prompt, false);
@@ -77,7 +87,10 @@ export class Aim {
 
   private under(event: MouseEvent): Pair {
     const box = this.svg.getBoundingClientRect();
-    return this.stage.view.metres(event.clientX - box.left, event.clientY - box.top);
+    const [x, y] = this.stage.view.metres(event.clientX - box.left, event.clientY - box.top);
+    if (!event.shiftKey || !this.from) return [x, y];
+    const [fx, fy] = this.from;
+    return Math.abs(x - fx) > Math.abs(y - fy) ? [x, fy] : [fx, y];
   }
 
   /** What is meant by a place: a joint, an end of the underlay, or the place itself. */
@@ -108,11 +121,16 @@ export class Aim {
 
   private move(at: Pair): void {
     this.at = at;
-    const spot = this.meant(at);
+    this.show();
+  }
+
+  private show(): void {
+    const spot = this.meant(this.at);
     const [x, y] = this.stage.view.px(...spot.at);
     const { width, height } = this.stage.view;
+    set(this.svg, { viewBox: `0 0 ${width} ${height}` });
     set(this.cross, { d: `M${x.toFixed(1)} 0V${height}M0 ${y.toFixed(1)}H${width}` });
-    const on = spot.at !== at;
+    const on = spot.at !== this.at;
     set(this.ring, { cx: x.toFixed(1), cy: y.toFixed(1), class: on ? "ring on" : "ring" });
     const where = `${length(spot.at[0])}, ${length(spot.at[1])} ${lengths().unit}`;
     this.board.hint(spot.point ? say("{name}: {place}", { name: spot.point, place: where }) : where);
@@ -129,6 +147,8 @@ export class Aim {
       event.preventDefault();
       return this.take(this.at);
     }
+    const zoom = ZOOMS[event.key];
+    if (zoom) return this.stage.zoom(zoom);
     const way = ARROWS[event.key];
     if (!way) return;
     event.preventDefault();

@@ -12,6 +12,7 @@ import { Heading } from "./heading";
 import { helpDialog } from "./help";
 import { Inspector } from "./inspector";
 import { Keeping } from "./keeping";
+import { Locks } from "./locks";
 import { Player } from "./player";
 import type { Asked, FileKind, Hello, Planted, State, Wire } from "./protocol";
 import { BalancePanel, FigureTable, Readings } from "./readings";
@@ -21,7 +22,9 @@ import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
 import type { Shelf } from "./story";
 import { Theme } from "./theme";
+import { ToolView } from "./tool";
 import { Toolbar } from "./toolbar";
+import { Tools } from "./tools";
 import { TransportBar } from "./transport";
 import { language, say } from "./words";
 
@@ -48,6 +51,7 @@ export class App {
   private readonly strokes = new FigureTable(say("Figures of sliders and rockers"));
   private readonly balance: BalancePanel;
   private readonly toolbar: Toolbar;
+  private readonly tools: Tools;
   private readonly transport: TransportBar;
   private readonly help = helpDialog(() => this.hello?.version ?? "");
   private readonly heading = new Heading();
@@ -62,6 +66,8 @@ export class App {
     settled: () => this.spell(),
   });
   private readonly undone: (() => void)[] = [];
+  private readonly body = h("div", { class: "body" });
+  private readonly tool: ToolView;
 
   private hello: Hello | null = null;
   private state: State | null = null;
@@ -92,12 +98,20 @@ export class App {
       busy: (what) => this.busy(what),
       tables: (message) => this.bench.show(message),
       file: save,
+      tool: (message, numbers) => {
+        this.opened = "";
+        this.body.hidden = true;
+        this.tool.show(message, numbers);
+        this.toolbar.show({ ...message, has_forces: false, file: null });
+      },
       saved: (name) => this.keeping.saved(name),
       line: (up) => this.line(up),
     };
     this.talk = new Conversation(wire, events, shelf);
     el.append(this.root);
     this.theme = new Theme(this.root, () => this.charts.repaint());
+    this.tool = new ToolView(this.talk, this.theme);
+    const locks = new Locks();
     const page = {
       talk: this.talk,
       state: () => this.state,
@@ -105,6 +119,7 @@ export class App {
       chosen: (grip: Grip) => this.choose(grip),
       holding: (on: boolean) => this.hold(on),
       hint: (text: string) => this.board.hint(text),
+      kept: (point: string) => locks.keep(point),
     };
     this.keeping = new Keeping({
       root: this.root,
@@ -124,13 +139,22 @@ export class App {
     );
     const root = this.full ? document : this.root;
     this.bench = new Bench({ ...page, root, stage: this.stage, board: this.board });
+    this.tools = new Tools({
+      ...page,
+      stage: this.stage,
+      board: this.board.root,
+      snaps: () => this.bench.snaps(),
+      angle: () => this.player.angle,
+      turn: (degrees) => this.turn(degrees),
+      chosen: (link) => this.chooseLink(link),
+    });
     this.charts = new Charts(
       this.theme,
       (angle) => this.turn(angle),
       (names) => this.command({ type: "outputs", names }),
       (asked) => this.command(asked),
     );
-    this.inspector = new Inspector(this.talk, (on) => this.hold(on));
+    this.inspector = new Inspector(this.talk, (on) => this.hold(on), locks);
     this.balance = new BalancePanel(
       () => this.keep(),
       () => this.takeBack(),
@@ -159,6 +183,7 @@ export class App {
 
   close(): void {
     this.frames.close();
+    this.tool.close();
     this.charts.close();
     this.bench.close();
     this.talk.close();
@@ -171,7 +196,7 @@ export class App {
 
   private lay(): void {
     const stage = h("section", { class: "stage", "aria-label": say("Linkage and motion") });
-    stage.append(this.heading.about, this.board.root);
+    stage.append(this.heading.about, this.tools.palette.root, this.board.root);
     stage.append(this.transport.root, this.seeing.root, this.heading.notes, this.readings.root);
     stage.append(this.seeing.variants.root);
     stage.append(this.strokes.root, this.planted.root);
@@ -181,11 +206,13 @@ export class App {
     const parts = [...this.bench.roots, this.inspector.root];
     this.aside.append(this.balance.root, h("fieldset", { class: "bare", disabled }, ...parts));
     if (disabled) this.aside.tabIndex = 0; // to be scrolled by keys
+    this.body.append(stage, this.side, this.aside);
     this.root.append(
       this.toolbar.root,
       this.lost,
       this.keeping.offer,
-      h("div", { class: "body" }, stage, this.side, this.aside),
+      this.body,
+      this.tool.root,
     );
     this.root.append(
       dropZone(this.root, (file) => void this.read(file)),
@@ -224,7 +251,7 @@ export class App {
     const first = !this.hello;
     this.hello = hello;
     follow(hello.numbers);
-    this.toolbar.offer(hello.examples);
+    this.toolbar.offer(hello.examples, hello.tools);
     if (this.state) this.toolbar.show(this.state);
     else if (first) void this.begin(hello);
   }
@@ -242,6 +269,8 @@ export class App {
     this.opened = "";
     const angle = this.state ? this.player.angle : 0;
     this.state = state;
+    this.tool.hide();
+    this.body.hidden = false;
     measure(state.length);
     this.player.take(state);
     if (other) {
@@ -250,7 +279,7 @@ export class App {
       this.player.suit();
       this.player.playing =
         state.speed !== 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches;
-    } else this.player.angle = angle;
+    } else this.player.angle = state.status.stand ?? angle;
     if (other) this.heading.forget();
     if (other) this.bench.forget();
     if (other || !state.planting) this.planted.hide();
@@ -303,6 +332,8 @@ export class App {
       this.theme.update();
       this.charts.settle();
     }
+    this.tools.show(state);
+    this.root.classList.toggle("unfinished", !state.status.finished);
     this.hands.describe();
     this.hands.accepted();
     this.heading.show(state);
@@ -341,6 +372,7 @@ export class App {
   }
 
   private refuse(message: string, edit: boolean): void {
+    this.tool.say(message);
     this.board.say(message, true);
     if (edit) this.hands.refused();
     this.opened = "";
@@ -385,7 +417,7 @@ export class App {
   private step(type: "undo" | "redo"): void {
     this.talk.release();
     // What was held until now is a step of its own, which the state does not tell yet.
-    if (!this.talk.busy && !this.state?.[type]) return;
+    if (!this.talk.busy && !(this.tool.shown ?? this.state)?.[type]) return;
     this.board.say("", false);
     this.inspector.forget();
     this.talk.ask({ type });
@@ -415,6 +447,7 @@ export class App {
     const link = grip.kind === "mass" ? grip.name : frame ? "frame" : holder;
     this.stage.select(new Set([grip.name]), grip.kind === "mass" ? grip.name : null, grip);
     this.inspector.choose(link, grip.kind === "point" ? grip.name : null);
+    this.tools.selected(grip);
     if (grip.kind === "point") this.charts.choose(grip.name);
     if (grip.kind === "point") this.seeing.choose(grip.name);
   }
@@ -423,6 +456,7 @@ export class App {
     const body = this.state?.scene.bodies.find((one) => one.name === link);
     this.stage.select(new Set(body?.points), link, null);
     this.inspector.choose(link, null);
+    this.tools.choose({ what: "link", name: link });
   }
 
   /** While something is held, the crank stands still. */

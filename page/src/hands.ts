@@ -27,6 +27,8 @@ export interface Held {
   /** Something is held now, or nothing any more. */
   holding(on: boolean): void;
   hint(text: string): void;
+  /** Points from which a point is to keep its distance. */
+  kept(point: string): string[];
 }
 
 export class Hands {
@@ -149,7 +151,7 @@ export class Hands {
     this.target = to;
     const at = this.page.sample();
     const edit: Edit =
-      grip.kind === "point" ? { move: grip.name, to, at } : { move_mass: grip.name, to, at };
+      grip.kind === "point" ? { move: grip.name, to, at, keep: this.page.kept(grip.name) } : { move_mass: grip.name, to, at };
     gesture.move([edit], stamp);
   }
 

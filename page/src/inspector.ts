@@ -4,6 +4,7 @@ import type { Conversation } from "./conversation";
 import { h } from "./dom";
 import type { Field, State } from "./protocol";
 import { breakable } from "./format";
+import type { Locks } from "./locks";
 import { Row } from "./row";
 
 /** x or y of a place. */
@@ -21,6 +22,7 @@ export class Inspector {
   constructor(
     private readonly talk: Conversation,
     private readonly holding: (on: boolean) => void,
+    private readonly locks: Locks,
   ) {}
 
   show(state: State): void {
@@ -74,6 +76,11 @@ export class Inspector {
 
   private row(field: Field, slider: boolean): Row {
     const row = new Row(field, slider, this.talk, this.holding);
+    if (field.between) {
+      const name = `${field.group} ${field.label}`;
+      row.root.insertBefore(this.locks.button(field.between, name), row.root.lastChild);
+      row.root.classList.add("locked");
+    }
     this.rows.set(field.path, row);
     return row;
   }

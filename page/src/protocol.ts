@@ -5,10 +5,29 @@ export type Pair = [number, number];
 export type Edit =
   | { set: string; text: string }
   | { set: string; value: number }
-  | { move: string; to: Pair; at: number }
+  /** `keep`: points whose distance from it is locked. */
+  | { move: string; to: Pair; at: number; keep?: string[] }
   | { move_mass: string; to: Pair; at: number };
 
 export type FileKind = "model" | "csv" | "report" | "drawing" | "film" | "played";
+
+/** An operation on a machine that is made, with what it needs. */
+export interface Made {
+  do: string;
+  [key: string]: unknown;
+}
+
+/** What is told of the making of a machine. */
+export interface Status {
+  /** Number of free motions; the drive commands one. */
+  mobility: number;
+  /** What moves, or what is missing. */
+  text: string;
+  finished: boolean;
+  drive: string | null;
+  /** Crank angle at which it was drawn, degrees. */
+  stand?: number | null;
+}
 
 export type Asked =
   | { type: "ready" }
@@ -18,6 +37,7 @@ export type Asked =
   /** `file`: it is what the file held that the server was started with. */
   | { type: "open"; name: string; text: string; file?: true }
   | { type: "edit"; commit: boolean; label: string; edits: Edit[] }
+  | ({ type: "make"; at: number } & Made)
   | { type: "undo" | "redo" | "balance" | "save" }
   | { type: "compare"; on: false }
   | { type: "tables" }
@@ -40,6 +60,7 @@ export interface Hello {
   type: "hello";
   version: string;
   examples: Example[];
+  tools: Example[];
   /** Most bytes of a model file. */
   largest: number;
   /** Whether the server holds a machine already. */
@@ -90,6 +111,8 @@ export interface Field extends Unit {
   min?: number | null;
   max?: number | null;
   step?: number | null;
+  /** Ends of a length between points. */
+  between?: [string, string];
 }
 
 export interface Body {
@@ -205,6 +228,7 @@ export interface StateMessage {
   notes: string[];
   /** Whether curves of another design are drawn behind; whether figures of one are told. */
   before: boolean;
+  status: Status;
   compared: boolean;
   /** Points that arrows can be at, the one at which they are, and what there is to draw there. */
   points: string[];
@@ -258,6 +282,40 @@ export interface ResponseMessage {
   swing: string[] | null;
   /** Real and imaginary parts along x, along y (m) and of the rotation, as large as they are drawn. */
   modes: { told: string[]; seen: boolean; shape: number[] }[];
+}
+
+/** A tool from the side at rest: lengths in m. */
+export interface ToolScene {
+  tubes: [start: number, stop: number, diameter: number][];
+  stations: { name: string; place: number; told: string }[];
+  /** Signs about a place of the shaft; `turns` where they turn with it. */
+  pieces: { layer: "below" | "above"; place: number; turns: boolean; shapes: Shape[] }[];
+  looks: Record<string, string>;
+  box: [number, number, number, number];
+}
+
+/** A hand-held tool. */
+export interface ToolMessage {
+  type: "tool";
+  seq: number;
+  name: string;
+  title: string;
+  description: string;
+  undo: string | null;
+  redo: string | null;
+  steps: [past: number, future: number];
+  length: Unit;
+  fields: Field[];
+  scene: ToolScene;
+  /** As it was opened, where it is another now. */
+  before: ToolScene | null;
+  /** Places along the shaft, and how it is seen to move: deflections there as complex numbers. */
+  along: number[];
+  views: { name: string; told: string[]; shape: number[] }[];
+  figures: Change[];
+  charts: ChartData[];
+  arrays: Arrays;
+  notes: string[];
 }
 
 /** A design that is drawn pale, or none. */
@@ -424,6 +482,7 @@ export type Told =
   | StateMessage
   | ResponseMessage
   | GhostMessage
+  | ToolMessage
   | VariantsMessage
   | Planted
   | Balanced

@@ -1,5 +1,6 @@
 /** The linkage, drawn in SVG: still parts once, moving parts once a frame. */
 
+import { Dimensions } from "./dims";
 import { s, set } from "./dom";
 import { type Overlay, type Swing, swung } from "./overlay";
 import type { Pair, Scene, State } from "./protocol";
@@ -40,6 +41,8 @@ export class Stage {
   /** Fine lines and scales, apart, so that they are not painted with every frame. */
   readonly lines = s("svg", { class: "sheet-lines", "aria-hidden": "true" });
   readonly view = new View();
+  private readonly dims = new Dimensions();
+  private readonly rim = s("circle", { class: "rim" });
   readonly grips = new Map<string, SVGGElement>();
   /** Called when another part of the plane is shown. */
   readonly watchers: (() => void)[] = [];
@@ -65,6 +68,7 @@ export class Stage {
         s("g", { class: name, "aria-hidden": hidden && "true" }),
       );
     }
+    this.svg.append(this.dims.layer);
   }
 
   /** Take a state; `other` where it is of another machine. Another build is drawn from scratch. */
@@ -154,6 +158,8 @@ export class Stage {
 
   select(points: ReadonlySet<string>, link: string | null, grip: Grip | null): void {
     this.link = link;
+    this.dims.choose(link ? [...points] : []);
+    this.dims.pose((name) => this.place({ kind: "point", name }), this.view);
     this.mark();
     for (const { name, element } of this.paths)
       element.classList.toggle("chosen", points.has(name));
@@ -183,6 +189,7 @@ export class Stage {
       set(layer, { transform: moved?.transform ?? null });
     const spots = this.spots(k);
     const spot = (name: string): Pair => spots.get(name) ?? [0, 0];
+    this.dims.pose((name) => this.place({ kind: "point", name }), this.view);
     this.poseGrips(k, spot);
     this.poseLabels(spot);
   }
@@ -228,6 +235,18 @@ export class Stage {
       const row = state.numbers.get(`place.${name}`);
       if (row) set(element, { d: curve(row, (x, y) => view.px(x, y), true) });
     }
+    this.drawRim(state);
+  }
+
+  /** The way of the crank's end, by which it is turned. */
+  private drawRim({ status, scene }: State): void {
+    const points = scene.bodies.find(({ name }) => name === status.drive)?.points ?? [];
+    const places = points.map((name) => this.place({ kind: "point", name }) as Pair);
+    const pivot = places[points.findIndex((name) => scene.frame.includes(name))];
+    if (!pivot || !status.finished) return set(this.rim, { r: 0 });
+    const [cx, cy] = this.view.px(...pivot);
+    const far = places.map(([x, y]) => Math.hypot(x - pivot[0], y - pivot[1]));
+    set(this.rim, { cx, cy, r: Math.max(...far) * this.view.scale });
   }
 
   private build(scene: Scene): void {
@@ -247,14 +266,17 @@ export class Stage {
 
   /** What has the name of a point or link: paths, names, and what can be taken hold of. */
   private name(scene: Scene): void {
+    const root = this.svg.getRootNode() as Document | ShadowRoot;
+    const held = [...this.grips].find(([, element]) => element === root.activeElement)?.[0];
     for (const layer of Object.values(this.layer)) layer.replaceChildren();
     const points = [...new Set(scene.bodies.flatMap((body) => body.points))];
     const moving = points.filter((name) => !scene.frame.includes(name));
     this.paths = moving.map((name) => ({ name, element: s("path", { class: "path" }) }));
-    this.layer.paths?.append(...this.paths.map(({ element }) => element));
+    this.layer.paths?.append(...this.paths.map(({ element }) => element), this.rim);
     this.labels = [...new Set([...scene.frame, ...points])].map((name) => labelOf(name, scene));
     this.layer.labels?.append(...this.labels.map(({ element }) => element));
     this.buildGrips(scene.movable, scene.mass_centers);
+    if (held) this.grips.get(held)?.focus({ preventScroll: true }); // keys go on where they were
   }
 
   private buildGrips(movable: string[], masses: string[]): void {

@@ -11,6 +11,7 @@ const LARGEST = 20e6;
 const KEPT = 2e6;
 const KEY = "equipoise underlay";
 const PICTURES = /^image\/(png|jpeg|webp|svg\+xml|gif)$/;
+const NAMES = /\.(png|jpe?g|webp|svg|gif)$/i;
 const DXF = /\.dxf$/i;
 /** Share of the sheet's width that a picture takes at first. */
 const WIDE = 0.8;
@@ -34,7 +35,7 @@ export interface Shown extends Pose {
 
 /** Whether a file can lie below the linkage. */
 export function traceable(file: File): boolean {
-  return PICTURES.test(file.type) || DXF.test(file.name);
+  return PICTURES.test(file.type) || NAMES.test(file.name) || DXF.test(file.name);
 }
 
 export class Underlay {

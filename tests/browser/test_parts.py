@@ -112,7 +112,8 @@ def test_a_picture_is_scaled_and_traced_over(live: Live, tmp_path: Path) -> None
     svg = f'<svg xmlns="http://www.w3.org/2000/svg" width="400" height="200">{circles}</svg>'
     picture = tmp_path / "photo.svg"
     picture.write_text(svg, encoding="utf-8")
-    page.get_by_text("Underlay and ruler").click()
+    live.drop("huge.jpg", "0123456789", 2_100_000)
+    expect(live.told("huge.jpg has 21.0 MB; at most 20 MB are drawn")).to_be_visible()
     page.get_by_label("Picture or DXF drawing").set_input_files(picture)
     image = page.locator(".underlay image")
 
@@ -189,3 +190,23 @@ def test_a_dxf_drawing_is_snapped_to_by_keyboard_too(live: Live, tmp_path: Path)
     expect(live.told("plan.dxf is no DXF drawing that can be read")).to_be_visible()
     live.button("Remove").click()
     expect(page.locator(".underlay path")).to_be_hidden()
+
+
+@pytest.mark.parametrize(
+    ("name", "part"),
+    [("transplanter", "soil of planting"), ("balance-geared-a", "geared of balance")],
+)
+def test_forms_give_back_what_they_were_given(live: Live, name: str, part: str) -> None:
+    """Whatever differed would be a step that could be taken back."""
+    page = live.page
+    page.get_by_label("Example").select_option(name)
+    page.get_by_text("Parts of the model").click()
+    expect(page.locator(".groups")).to_contain_text(part)
+    entries = page.locator(".groups .plain")
+    for number in range(entries.count()):
+        entries.nth(number).click()
+        form = page.locator(".part-form")
+        press(form, "Save")
+        expect(form).to_have_count(0)
+    assert entries.count() >= 8
+    expect(live.button("Undo")).to_be_disabled()

@@ -358,10 +358,11 @@ def test_front_has_21_points() -> None:
 
 def test_conditions() -> None:
     text = run("conditions", "yamashita-1")
-    assert "coupler.moment_x / 71.5 mm + rocker.moment_x / 80 mm = 0" in text
+    assert "mass*x of coupler / 71.5 mm + mass*x of rocker / 80 mm = 0" in text
     assert "The shaking force can be made zero, with every mass as it is." in text
     content = told("conditions", "yamashita-1")
     assert [len(content[kind]["conditions"]) for kind in ("zero", "sine")] == [4, 2]
+    assert content["zero"]["conditions"][3]["condition"].startswith("coupler.moment_y / 71.5 mm")
     assert content["verdict"]["shaking_force"]["possible"] is True
     assert content["verdict"]["shaking_moment"]["proof"]["unit"] == "kg"
 

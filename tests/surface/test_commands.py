@@ -167,14 +167,14 @@ OPTIONS = {
     ],
     "report": ["FILE", "--out", "--language", "--pdf", "--speed", "--units"],
     "respond": ["FILE", "--model", "--speed", "--speeds", "--drive", *OUTPUTS],
-    "resume": ["STORE", "--workers", "--cluster", *PRINTED],
+    "resume": ["STORE", "--workers", "--cluster", *DRAWN],
     "schema": ["--tool", "--study"],
     "search": [
         *["STUDY", "--population", "--generations", "--seed", "--out", "--design", *OUTPUTS],
     ],
     "serve": ["FILE", "--port", "--no-browser"],
     "simulate": ["FILE", "DURATION", "--speed", "--drive", *OUTPUTS],
-    "sweep": ["STUDY", "--out", "--workers", "--cluster", *PRINTED],
+    "sweep": ["STUDY", "--out", "--workers", "--cluster", *DRAWN],
     "tolerance": ["STUDY", "--designs", *DRAWN],
     "tool": [
         *["FILE", "--modes", "--number", "--respond", "--speeds", "--at", "--exposure"],

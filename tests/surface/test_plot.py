@@ -60,7 +60,8 @@ def test_a_map_tells_the_best_place(folder: Path) -> None:
     options = ("--points", "9", "--set", f"{WEIGHT}.mass = 1145 g", "-o", "map")
     result = equipoise("plot", "map", "yamashita-1", *MAP, *options)
     told = succeeded(result)
-    assert f"{WEIGHT}.radius = 35.7 mm and {WEIGHT}.direction = 194 deg" in told
+    weight = "of the counterweight on the crank"
+    assert f"at radius {weight} = 35.7 mm and direction {weight} = 194 deg" in told
     assert [path.name for path in (folder / "map").iterdir()] == ["landscape.svg"]
     keep_files("plot map yamashita-1", folder / "map")
 

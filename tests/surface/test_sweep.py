@@ -138,9 +138,14 @@ def test_one_process_at_a_time() -> None:
 
 def test_a_study_without_an_aim() -> None:
     study = written(LENGTHS, ('at_most = "13000 mN"\nmake = "smallest"\n', ""))
-    shown = succeeded(equipoise("sweep", study, "-o", "new.zarr"))
+    shown = succeeded(equipoise("sweep", study, "-o", "new.zarr", "--plot", "drawn"))
     assert "The best" not in shown
     assert "keep every limit" not in shown
+    drawn = {path.stem: path.read_text(encoding="utf-8") for path in Path("drawn").iterdir()}
+    assert drawn.keys() == {"designs", "parallel"}
+    for text in drawn.values():  # none is better than another
+        assert "200 designs, " in text and "all designs" in text and "the model itself" in text
+        assert "is good" not in text and "chosen designs" not in text
     assert "equipoise best new.zarr --by vertical" in shown
     said = refused(equipoise("best", "new.zarr"))
     assert "no output of the study is to become small or large; name one to go by" in said
@@ -151,9 +156,26 @@ def test_no_design_keeps_the_limits() -> None:
     shown = succeeded(equipoise("sweep", study, "-o", "new.zarr"))
     assert re.search(r"^keep every limit +0 +0.00$", shown, re.MULTILINE)
     assert re.search(r"^note: none of \d+ designs keeps every limit; kept is vert", shown, re.M)
-    assert "equipoise best" not in shown
+    assert "equipoise best new.zarr --plot pictures" in shown
     said = refused(equipoise("best", "new.zarr"))
     assert said.startswith("new.zarr: none of ")
+
+
+def test_designs_nearest_to_the_limits_are_drawn() -> None:
+    """Where none keeps all of them; the one that lacks least is told and named first."""
+    study = written(LENGTHS, ("13000 mN", "1 N"))
+    succeeded(equipoise("sweep", study, "-o", "new.zarr", "--plot", "swept"))
+    shown = succeeded(equipoise("best", "new.zarr", "--count", "3", "--plot", "drawn"))
+    assert re.search(r"^! none of \d+ designs keeps every limit", shown, re.M)
+    assert "Designs nearest to the limits" in shown
+    first = re.findall(r"^(\d+) +\d+", shown, re.M)
+    everything = best("--count", "3")["designs"]  # of the same designs, with a limit they keep
+    assert first == [str(one["design"]) for one in everything]
+    for folder in ("swept", "drawn"):
+        text = (Path(folder) / "designs.svg").read_text(encoding="utf-8")
+        assert "all designs, none of which keeps every limit" in text
+        assert "designs nearest to the limits" in text and f"design {first[0]}" in text
+        assert "designs that keep every limit" not in text
 
 
 def test_a_bundled_study_and_the_examples() -> None:

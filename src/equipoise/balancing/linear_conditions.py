@@ -10,15 +10,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from equipoise.balancing.readings import UNITS, Reading, machine_size, reading
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine, size_of, unknown
+from equipoise.mechanism.model import Machine, unknown
 from equipoise.mechanism.motion import move
 from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.mechanism.parameters import (
@@ -226,86 +226,6 @@ def _without_noise(kept: Array, grouping: Array, columns: Array) -> Array:
     return found
 
 
-UNITS = dict(zip(QUANTITIES, ("kg", "kg m", "kg m", "kg m2"), strict=True))
-
-
-@dataclass(frozen=True)
-class Reading:
-    """A combination of inertial parameters in words.
-
-    text : such as ``coupler.moment_x / 71.5 mm + rocker.moment_x / 80 mm``.
-    factor : by which the combination was multiplied for it.  unit : of the text.
-    """
-
-    text: str
-    factor: float
-    unit: str
-
-
-def machine_size(machine: Machine) -> float:
-    """Diagonal of the largest link, or of the frame where all links are points, m."""
-    sizes = [size_of(link.points) for link in machine.links.values()]
-    return max(sizes) or size_of(machine.frame) or 1.0
-
-
-def joint_length(machine: Machine, link: str) -> float:
-    """Distance of a link's two joints that are farthest apart; its size where there are none, m."""
-    own = machine.links[link].points
-    others = [other.points for name, other in machine.links.items() if name != link]
-    slides = {name for slider in machine.sliders for name in (slider.point, slider.through)}
-    places = [
-        complex(*place)
-        for name, place in own.items()
-        if name in slides or any(name in body for body in (machine.frame, *others))
-    ]
-    apart = max((abs(a - b) for a, b in combinations(places, 2)), default=0.0)
-    return apart or size_of(own) or machine_size(machine)
-
-
-def reading(machine: Machine, row: Array, signed: bool = False) -> Reading:
-    """A combination (P,) of a machine's inertial parameters in words.
-
-    It is divided so that a mass stands alone, else so that the first moment that comes first stands
-    over the length of its link: as (80) and (83) of Yamashita, Ichikawa and Mori, divided by their
-    lengths.  Unless `signed`, it is turned so that the first term is positive.
-    """
-    names = parameter_names(machine)
-    terms = [(*names[k], float(row[k])) for k in np.flatnonzero(row)]
-    sign = -1.0 if terms[0][2] < 0 and not signed else 1.0
-    if len(terms) == 1:
-        link, quantity, value = terms[0]
-        text = f"{link}.{quantity}"
-        return Reading(f"-{text}" if sign * value < 0 else text, sign / abs(value), UNITS[quantity])
-    factor = sign / _divisor(machine, terms)
-    parts = [_term(link, quantity, factor * value) for link, quantity, value in terms]
-    return Reading(_joined(parts), factor, "kg")
-
-
-def _divisor(machine: Machine, terms: list[tuple[str, str, float]]) -> float:
-    """Positive, in SI units of a combination over kg."""
-    for wanted, power in (("mass", 0), ("moment", 1), ("inertia", 2)):
-        for link, quantity, value in terms:
-            if quantity.startswith(wanted):
-                return abs(value) * joint_length(machine, link) ** power
-    return 1.0
-
-
-def _term(link: str, quantity: str, value: float) -> tuple[str, str]:
-    """Sign and size of a term in kg."""
-    sign, size, name = "-" if value < 0 else "+", abs(value), f"{link}.{quantity}"
-    if quantity == "mass":
-        return sign, name if f"{size:.5g}" == "1" else f"{size:.5g} {name}"
-    length = 1 / (size**0.5 if quantity == "inertia" else size)
-    unit = display("length", [length])
-    told = f"{unit.factor * length:.5g} {unit.unit}"
-    return sign, f"{name} / ({told})^2" if quantity == "inertia" else f"{name} / {told}"
-
-
-def _joined(terms: list[tuple[str, str]]) -> str:
-    first = "-" if terms[0][0] == "-" else ""
-    return " ".join([first + terms[0][1], *(f"{sign} {text}" for sign, text in terms[1:])])
-
-
 # -- what is shown ---------------------------------------------------------------------------------
 
 WANTED = {"zero": to_say("zero"), "sine": to_say("a pure sine of the crank angle")}
@@ -320,7 +240,10 @@ SHOWN: dict[str, tuple[Dimension, str]] = {
 def conditions_blocks(*found: Conditions, verdict: Sequence[str] = ()) -> Iterator[Block]:
     """Conditions, one table for each kind, and whether they can be met."""
     yield Text(
-        say("moment_x, moment_y: mass times centre of mass; inertia: about the origin of the link")
+        say(
+            "mass*x, mass*y: mass times x and y of the centre of mass; inertia: about the origin "
+            "of the link"
+        )
     )
     for one in found:
         yield _conditions(one)
@@ -336,7 +259,7 @@ def _conditions(found: Conditions) -> Block:
         return Text(say("Conditions for {what} to be {wanted}: none, it always is.", **told))
     now = [one.factor * float(k) for one, k in zip(found.readings, found.residuals, strict=True)]
     rows = tuple(
-        (f"{one.text} = 0", Value(unit.factor * value), unit.unit)
+        (f"{one.words} = 0", Value(unit.factor * value), unit.unit)
         for one, value in zip(found.readings, now, strict=True)
         for dimension, usual in [SHOWN[one.unit]]
         for unit in [display(dimension, now, usual)]

@@ -19,11 +19,10 @@ from equipoise.balancing.linear_conditions import (
     SHOWN,
     Conditions,
     conditions,
-    machine_size,
     parameter_scales,
-    reading,
 )
 from equipoise.balancing.program import Affine, NoSolutionError, Program
+from equipoise.balancing.readings import machine_size, reading
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.parameters import QUANTITIES
 from equipoise.quantities import SI, display
@@ -315,12 +314,15 @@ def _answer(machine: Machine, what: str) -> Answer:
     added = masses.least_added()
     if added is not None:
         return Answer(what, True, added, True, _possible(what, added), None)
-    proof, points, found = None, masses.by_points(), masses.contradiction()
+    proof, points, found, told = None, masses.by_points(), masses.contradiction(), ""
     if found is not None:
         row, least = found
-        words = reading(machine, row, signed=True)
-        proof = Proof(row * words.factor, words.text, least * words.factor, words.unit)
-    return Answer(what, False, None, points, _impossible(what, proof, points), proof)
+        read = reading(machine, row, signed=True)
+        proof, told = (
+            Proof(row * read.factor, read.text, least * read.factor, read.unit),
+            read.words,
+        )
+    return Answer(what, False, None, points, _impossible(what, proof, told, points), proof)
 
 
 def _possible(what: str, added: Mapping[str, float]) -> str:
@@ -335,13 +337,13 @@ def _possible(what: str, added: Mapping[str, float]) -> str:
     return f"The {what} can be made zero, but not with every mass as it is: it takes {where}."
 
 
-def _impossible(what: str, proof: Proof | None, points: bool) -> str:
+def _impossible(what: str, proof: Proof | None, told: str, points: bool) -> str:
     if proof is None:
         return f"The {what} can at best be approached, by ever larger masses."
     dimension, _ = SHOWN[proof.unit]
     unit = display(dimension, [proof.least], SI[dimension])
     because = (
-        f"The {what} cannot be made zero: {proof.text} would have to be 0, but is at least "
+        f"The {what} cannot be made zero: {told} would have to be 0, but is at least "
         f"{unit.factor * proof.least:.4g} {unit.unit} with masses and moments of inertia no "
         "smaller than now"
     )

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.linear_conditions import machine_size
+from equipoise.balancing.readings import machine_size
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.model import Link, Machine, unknown

@@ -64,7 +64,7 @@ def best(
     if chosen.out is not None:
         check_new(study_of(opened).model.base(), chosen.out)
     ways: Any = dict.fromkeys(by or ()) | dict.fromkeys(largest or (), "largest")
-    found = of_stores.best(opened, most, ways)
+    found = of_stores.best(opened, most, ways, nearest=outputs.plot is not None)
     first = int(found.designs[0]) if chosen.design is None else chosen.design
     model = None if chosen.out is None else machine_of(opened, first)
     title, owner = opened.title, owner_of(opened)
@@ -73,7 +73,7 @@ def best(
     outputs.write(lambda: _columns(found.designs, columns, opened.units))
     with outputs.showing(owner):
         units = units_in(opened)
-        own = None if owner is None or outputs.plot is None else _own(owner)
+        own = None if owner is None or outputs.plot is None else own_of(owner)
         outputs.draw(owner, lambda: best_charts(found, title, units, opened, own))
         outputs.print(
             title,
@@ -157,7 +157,7 @@ def search(
                 compute=watched,
             )
         chosen.check(0, len(found.values) - 1)
-        own = _own(found.study) if outputs.plot is not None or not outputs.json else None
+        own = own_of(found.study) if outputs.plot is not None or not outputs.json else None
 
         designs, made_of = range(len(found.values)), found.study
         columns = columns_of(made_of.paths, found.values, made_of.names, found.figures)
@@ -170,7 +170,7 @@ def search(
         _save(found.machine(number), chosen.out, number, of)
 
 
-def _own(study: Study) -> tuple[Array, Array] | None:
+def own_of(study: Study) -> tuple[Array, Array] | None:
     """Values and figures of the model itself, for comparison; None where it cannot be computed."""
     from equipoise.codegen.figures import COMPUTED
     from equipoise.studies.evaluate import evaluator

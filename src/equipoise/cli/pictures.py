@@ -178,8 +178,7 @@ def landscape(
         write_pictures({"landscape": drawn_map(found)}, folder, pictures.format)
         best = told_best(found)
     tell(os.path.join(folder, f"landscape.{pictures.format}"))
-    edge = [f"; {path} is at an end of its range" for path in found.at_edge]
-    tell(best + "".join(edge))
+    tell(best)
 
 
 def _range(model: Model, option: str, text: str, count: int) -> tuple[str, np.ndarray[Any, Any]]:

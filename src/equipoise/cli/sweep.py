@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
+from equipoise.cli.designs import own_of
 from equipoise.cli.options import (
     Out,
     StorePath,
@@ -22,12 +23,13 @@ from equipoise.cli.options import (
     naming,
     wants,
 )
-from equipoise.cli.outputs import Drawn, Printed
+from equipoise.cli.outputs import Drawn
 from equipoise.cli.progress import Watched, swept
 from equipoise.errors import UsageError
 from equipoise.quantities.numbers import rate_told, time_told
 
 if TYPE_CHECKING:
+    from equipoise.figures import Picture
     from equipoise.studies.blocks import Summary, Unit
     from equipoise.studies.outcomes import Progress
     from equipoise.studies.store import Store
@@ -61,7 +63,7 @@ def sweep(
     *,
     out: Out = None,
     computers: Computers = Computers(),
-    outputs: Printed = Printed(),
+    outputs: Drawn = Drawn(),
 ) -> None:
     """Compute every design of a study into a store, from which any interruption can be resumed.
 
@@ -87,7 +89,7 @@ def resume(
     /,
     *,
     computers: Computers = Computers(),
-    outputs: Printed = Printed(),
+    outputs: Drawn = Drawn(),
 ) -> None:
     """Compute what is missing in a store, as if nothing had ever stopped."""
     from equipoise.schema import study_units
@@ -99,9 +101,7 @@ def resume(
         _compute(partial(study_units.resume, store, **vars(computers)), store, units, outputs)
 
 
-def _compute(
-    work: Callable[..., Store], path: str, units: dict[str, Unit], outputs: Printed
-) -> None:
+def _compute(work: Callable[..., Store], path: str, units: dict[str, Unit], outputs: Drawn) -> None:
     """Compute with progress on standard error, and give what came of it.
 
     work : computes a store, which is at the `path`, and tells of its `progress`.
@@ -120,12 +120,26 @@ def _compute(
         (end,) = last
         summary = _summary(store, end)
         rate = rate_told(end.computed / max(end.seconds, 1e-9))
+        outputs.draw(None, lambda: _charts(store, units))
         run = f", {time_told(end.seconds)}, {rate}" if end.computed else ", nothing was missing"
         outputs.print(
             summary.title,
             lambda: _values(summary, end),
             lambda: summary_blocks(summary, units, run),
         )
+
+
+def _charts(store: Store, units: dict[str, Unit]) -> Mapping[str, Picture]:
+    """All designs, the best of them where the study has a word for that, and the model itself."""
+    from equipoise.figures.designs import best_charts
+    from equipoise.schema.study_units import owner_of
+    from equipoise.studies.selection import best
+
+    aimed = any(output.make for output in store.wishes)
+    found = best(store, TOLD, None if aimed else {store.outputs[0]: None}, nearest=True)
+    owner = owner_of(store)
+    own = None if owner is None else own_of(owner)
+    return best_charts(found, store.title, units, store, own, aimed)
 
 
 @contextmanager

@@ -41,6 +41,7 @@ class Designs:
     blocks, size : give all designs, of which there are so many at most.
     own : the model itself, where it is known.
     line : (F, M) what the whole front has of `by`.
+    aimed : whether one way of `by` is good.
     """
 
     title: str
@@ -54,6 +55,7 @@ class Designs:
     size: int
     own: Own | None = None
     line: Array | None = None
+    aimed: bool = True
 
     @property
     def aim(self) -> str:
@@ -97,7 +99,7 @@ class Designs:
         """Of a number or figure; way : whether it is told which way is good."""
         told = unit_in(self.units, name)
         label = told.called
-        if way and name in self.by:
+        if way and self.aimed and name in self.by:
             good = say("large is good") if self.by[name] == "largest" else say("small is good")
             label = f"{label} ({good})"
         scale = "log" if self.cloud.spreads[name].log else "linear"
@@ -127,8 +129,11 @@ def keys_for(designs: Designs, pairs: Iterable[Pair] = ()) -> tuple[tuple[str, s
     """What a legend tells of points over these pairs; of lines from axis to axis where none."""
     cloud, pairs = designs.cloud, [*pairs]
     sign = "" if pairs else " line"
-    keys = [(f"design{sign}", say("chosen designs"))]
-    if cloud.beyond:
+    chosen = say("chosen designs") if cloud.kept else say("designs nearest to the limits")
+    keys = [(f"design{sign}", chosen)] if len(designs.table) else []
+    if not cloud.kept:
+        keys.append((f"beyond{sign}", say("all designs, none of which keeps every limit")))
+    elif cloud.beyond:
         kept, others = say("designs that keep every limit"), say("others")
         keys += [(f"kept{sign}", kept), (f"beyond{sign}", others)]
     else:

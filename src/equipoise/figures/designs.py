@@ -5,7 +5,7 @@ Numbers and figures are drawn in the units that are given by name, as `schema.st
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations
 from typing import TYPE_CHECKING
@@ -19,6 +19,7 @@ from equipoise.figures.studies import PERCENT, Units, unit_of
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.results.charts import (
+    Array,
     Axis,
     Cells,
     Chart,
@@ -35,24 +36,32 @@ if TYPE_CHECKING:
     from equipoise.studies.selection import Best
     from equipoise.studies.store import Store
 
+NAMED = 3
+"""Designs nearest to limits that are named."""
 BELOW = -0.06
 """How far below all designs those stand that fail, over what they reach."""
 
 
 def best_charts(
-    found: Best, title: str, units: Units, store: Store, own: Own | None = None
+    found: Best,
+    title: str,
+    units: Units,
+    store: Store,
+    own: Own | None = None,
+    aimed: bool = True,
 ) -> dict[str, Chart]:
     """``front`` where there are several aims; ``designs``: the first aim over every number;
     ``parallel``: designs as lines from axis to axis.
 
     More than ten numbers go on in ``designs-2`` and so on, more than eight axes in ``parallel-2``.
 
-    store : with all designs.  own : the model itself.
+    store : with all designs.  own : the model itself.  aimed : whether the study or the reader
+    says which way is good; else no design is better than another, and none is chosen.
     """
     labels = [str(number) for number in found.designs.tolist()]
-    table = np.hstack([found.values, found.figures])
+    table = np.hstack([found.values, found.figures])[: None if aimed else 0]
     given = (title, found.by, found.numbers, store.wishes, units, table, labels)
-    designs = Designs(*given, store.in_blocks, store.size, own, found.trade_off)
+    designs = Designs(*given, store.in_blocks, store.size, own, found.trade_off, aimed)
     return charts_of(designs)
 
 
@@ -121,11 +130,10 @@ def _against(designs: Designs, pair: Pair, alone: bool = False) -> Panel:
     if designs.model:
         at = (designs.model[first], designs.model[second])
         marks.append(Mark(*at, say("model"), "own", optional=not alone))
-    if alone:
-        for k in sorted({int(np.argmin(columns[first])), int(np.argmax(columns[first]))}):
-            text = say("design {name}", name=designs.labels[k])
-            at = (float(columns[first][k]), float(columns[second][k]))
-            marks.append(Mark(*at, text, "stress", 60.0, sign=False))
+    for k in _told(designs, columns[first], alone):
+        text = say("design {name}", name=designs.labels[k])
+        at = (float(columns[first][k]), float(columns[second][k]))
+        marks.append(Mark(*at, text, "stress", 60.0, sign=False, optional=not alone))
     cells, points = _all(cloud, pair)
     lines = [Line(limit, "bound", "", "y") for limit in designs.limits(second)]
     lines += [Line(limit, "bound") for limit in designs.limits(first)]
@@ -137,6 +145,15 @@ def _against(designs: Designs, pair: Pair, alone: bool = False) -> Panel:
     return Panel(
         x, y, drawn, tuple(marks), (), tuple(lines), cells=cells, height=height, zero=False
     )
+
+
+def _told(designs: Designs, column: Array, alone: bool) -> Sequence[int]:
+    """Which of the chosen designs are named: the ends of a front, the nearest to broken limits."""
+    if not len(column):
+        return ()
+    if not designs.cloud.kept:
+        return range(min(NAMED, len(column)))
+    return sorted({int(np.argmin(column)), int(np.argmax(column))}) if alone else ()
 
 
 def _all(cloud: Cloud, pair: Pair) -> tuple[tuple[Cells, ...], list[Curve]]:

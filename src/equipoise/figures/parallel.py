@@ -24,7 +24,7 @@ BEST = 10
 def parallel(designs: Designs) -> Iterator[Chart]:
     """Numbers and figures as axes side by side, a line for each design."""
     others = [name for name in designs.names if name != designs.aim]
-    some, chosen = len(designs.cloud.good), len(designs.labels)
+    some, chosen = len(designs.cloud.good), len(designs.table)
     drawn = [counted(designs)]
     if some > SOME or not designs.cloud.each:
         drawn.append(say("lines of {count} designs", count=min(some, SOME)))
@@ -62,8 +62,9 @@ def _rules(designs: Designs, names: Sequence[str]) -> Panel:
         for role, mask in kinds
         if np.any(mask)
     ]
-    best = picked(len(designs.labels), BEST)
-    curves.append(lines({name: columns[name][best] for name in names}, "design line"))
+    best = picked(len(designs.table), BEST)
+    if len(best):
+        curves.append(lines({name: columns[name][best] for name in names}, "design line"))
     if model:
         curves.append(lines({name: np.array([model[name]]) for name in names}, "own line"))
     x, y = Axis(low=-0.5, high=len(names) - 0.5), Axis(low=0.0, high=1.0)

@@ -174,11 +174,13 @@ def number_unit(dimension: str | None) -> Display:
 def told_best(found: Landscape) -> str:
     """The best place in a sentence."""
     places = (
-        f"{path} = {Axis(path, number_unit(found.dimensions[path])).quantity(value)}"
+        f"{named(found, path)} = {Axis(path, number_unit(found.dimensions[path])).quantity(value)}"
         for path, value in zip(found.paths, found.best, strict=True)
     )
     value = f"{shown(found.least)} {typeset(found.unit)}"
-    return f"least {found.objective.name}: {value}, at {' and '.join(places)}"
+    edge = (f"; {named(found, path)} is at an end of its range" for path in found.at_edge)
+    aim = objective_named(found.objective)
+    return f"least {aim}: {value}, at {' and '.join(places)}{''.join(edge)}"
 
 
 def named(found: Landscape, path: str) -> str:

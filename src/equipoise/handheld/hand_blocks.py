@@ -81,8 +81,16 @@ def exposure_of_tool(found: ToolExposure) -> Iterator[Block | Section]:
         )
         for k in (highest_at(-found.a_hv, smooth=False), highest_at(found.a_hv, smooth=False))
     )
-    yield Text(say("Worst hand over this range: total value a_hv from {low} to {high}", low=least, high=most))
-    yield Text(say("Along the shaft nothing moves in bending, so the total value a_hv has two axes."))
+    yield Text(
+        say(
+            "Worst hand over this range: total value a_hv from {low} to {high}",
+            low=least,
+            high=most,
+        )
+    )
+    yield Text(
+        say("Along the shaft nothing moves in bending, so the total value a_hv has two axes.")
+    )
     yield from unbounded(found.response.tool)
     if found.worst is None:
         yield Text(say("There is no daily exposure without work; the file tells none."))

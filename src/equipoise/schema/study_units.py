@@ -116,7 +116,7 @@ def units_of(study: Study) -> dict[str, Unit]:
         output.name: unit_named(_of_output(output, given.get(output.name, {})))
         for output in study.outputs
     }
-    words = {path: study.model.words(path) for path in numbers}
+    words = {path: study.model.words(path, numbers) for path in numbers}
     words |= {one.name: figure_named(one.value) for one in study.outputs if one.name == one.value}
     return {
         name: replace(unit, label=words.get(name, name))

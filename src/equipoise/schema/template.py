@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import os
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -122,8 +122,10 @@ class Template:
             return self._linkage(found.place).unit(found.rest)
         return unit_in(self._content, found)
 
-    def words(self, path: str) -> Note | str:
+    def words(self, path: str, others: Collection[str] = ()) -> Note | str:
         """A number of the file in words, such as ``mass of the crank``; its path where it has none.
+
+        others : paths of the numbers beside which it is told.
 
         Raises
         ------
@@ -132,7 +134,7 @@ class Template:
         found = self._find(path)
         if found.rest:
             return self._linkage(found.place).words(found.rest)
-        return words_of(self._content, self.kind, found) or path
+        return words_of(self._content, self.kind, found, others) or path
 
     def numbers(self) -> dict[str, Number]:
         """Every number that the file has, by its path."""

@@ -6,7 +6,7 @@ is (`Frozen.called`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from string import Formatter
 from typing import Any
@@ -60,17 +60,21 @@ def plain_word(key: Key) -> str:
     return (key.field or key.name).replace("_", " ")
 
 
-def words_of(content: Content, kind: Kind, found: Found) -> Note | None:
+def words_of(
+    content: Content, kind: Kind, found: Found, others: Collection[str] = ()
+) -> Note | None:
     """The number that stands at a place in words; None where its keys have none.
 
     Of a point on the x axis of a body, or told by its distance, it is the length from the point in
-    the origin of that body, where there is one.
+    the origin of that body, where there is one, and the other coordinate is not among the `others`
+    beside which it is told.
     """
     layers = _layers(content, kind, found.place)
     if not layers:
         return None
     *around, last = layers
-    length = _length(content, found)
+    beside = ".".join([*map(str, found.place), "y"])
+    length = None if beside in others else _length(content, found)
     what = length or Note(last.word, **last.names)
     for above, layer in enumerate(reversed(around)):
         alone = isinstance(layer.key.kind, Table)

@@ -174,7 +174,9 @@ def best_blocks(
         told = say("{stored} designs: {computed} have figures", **counted)
     yield Text(told)
     yield from _limits(outputs, units)
-    if len(found.by) > 1:
+    if found.note:
+        yield Text(found.note, "broken")
+    elif len(found.by) > 1:
         yield Text(say("{count} designs that no other beats in everything", count=found.front))
     yield best_table(found, units)
     labels = {name: unit_in(units, name).called for name in (*found.numbers, *found.outputs)}
@@ -188,7 +190,9 @@ def best_table(found: Best, units: Units | None = None) -> Table:
     columns = columns_of(found.numbers, found.values, found.outputs, found.figures)
     labels = [str(design) for design in found.designs]
     aims = wanted(found.by, units)
-    if len(found.by) > 1:
+    if found.note:
+        title = say("Designs nearest to the limits")
+    elif len(found.by) > 1:
         title = say("Designs that no other beats; {aims}", aims=aims)
     else:
         title = say("The best designs; {aims}", aims=aims)
@@ -300,11 +304,11 @@ def _size(store: Store) -> str:
 def _next(summary: Summary, path: str) -> Iterator[str]:
     """Commands that take it, each below what it does."""
     by = "" if any(one.make for one in summary.outputs) else f" --by {summary.outputs[0].name}"
-    told = {}
+    told, best = {}, f"equipoise best {quote(path)}{by}"
     if not summary.note:
-        told[f"equipoise best {quote(path)}{by}"] = say(
-            "the best designs; --out writes one as a model file"
-        )
+        told[best] = say("the best designs; --out writes one as a model file")
+    elif sum(summary.failures.values()) < summary.store.size:
+        told[f"{best} --plot pictures"] = say("the designs nearest to the limits, also as pictures")
     table = quote(f"{path.rpartition('/')[2].removesuffix('.zarr')}.parquet")
     told[f"equipoise export {quote(path)} -o {table}"] = say("all designs as one table, or as .csv")
     told[f"xarray.open_zarr({path!r})"] = say("the same in Python, without reading it all")

@@ -5,7 +5,7 @@ One number varies in a range, over a list, or by a tolerance; SI units.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from math import isfinite
 from numbers import Real
@@ -219,8 +219,8 @@ class Model(Protocol):
         An `int` where only whole numbers will do.
         """
 
-    def words(self, path: str) -> Note | str:
-        """Number in the file in words, or its path where it has none."""
+    def words(self, path: str, others: Collection[str] = ()) -> Note | str:
+        """Number in the file in words, beside others, or its path where it has none."""
 
     def base(self) -> Machine | Tool:
         """The model as its file has it."""

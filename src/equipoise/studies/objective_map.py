@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from cmath import rect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from math import nan
@@ -48,7 +48,7 @@ KEYS = {"mass": "mass", "radius": "length", "direction": "angle"}
 """Numbers of a counterweight, which no file has, and what they are."""
 
 
-def told_as(model: Model, path: str) -> tuple[str | None, Note | str]:
+def told_as(model: Model, path: str, others: Collection[str] = ()) -> tuple[str | None, Note | str]:
     """Dimension of a number of the model or of a counterweight, None of a plain one; its words.
 
     Raises
@@ -57,7 +57,7 @@ def told_as(model: Model, path: str) -> tuple[str | None, Note | str]:
     """
     weight = COUNTERWEIGHT.fullmatch(path)
     if weight is None:
-        return model.number(path)[1], model.words(path)
+        return model.number(path)[1], model.words(path, others)
     machine = linkage_of(model.base())
     if weight["link"] not in machine.links:
         raise ModelError(path, unknown(weight["link"], machine.links, "link"))
@@ -259,7 +259,7 @@ def landscape(
     linkage_of(model.base())
     given = dict(given or {})
     paths, drawn = _checked(over, given)
-    told = {path: told_as(model, path) for path in (*paths, *given)}
+    told = {path: told_as(model, path, paths) for path in (*paths, *given)}
     dimensions = {path: kind for path, (kind, _) in told.items()}
     words = {path: one for path, (_, one) in told.items()}
     maker = Variants(model, given)

@@ -52,6 +52,7 @@ class Best(Result):
     kept, computed, stored : number of designs that keep every limit, that have figures, that are
         stored at all.
     trade_off : (F, M) what the whole front has of `by`; none where there is one figure to go by.
+    note : where no design keeps every limit, why not; the designs are then those nearest to them.
     """
 
     records: ClassVar[str] = "designs"
@@ -67,6 +68,7 @@ class Best(Result):
     computed: int
     stored: int
     trade_off: Array | None = None
+    note: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units."""
@@ -82,7 +84,13 @@ class Best(Result):
         }
 
 
-def best(store: Store, count: int = COUNT, by: Mapping[str, Make | None] | None = None) -> Best:
+def best(
+    store: Store,
+    count: int = COUNT,
+    by: Mapping[str, Make | None] | None = None,
+    *,
+    nearest: bool = False,
+) -> Best:
     """The best designs that are stored so far, of those that keep every limit.
 
     Parameters
@@ -90,10 +98,13 @@ def best(store: Store, count: int = COUNT, by: Mapping[str, Make | None] | None 
     count : the most that are told; of a larger front some that lie far from each other.
     by : outputs, or varied numbers, to go by instead of the objectives of the study, each
         ``smallest`` or ``largest``; where None, as the study has it, or ``smallest``.
+    nearest : where no design keeps every limit, whether to give those that come nearest, by the sum
+        of what they lack of each limit over that limit.
 
     Raises
     ------
-    UsageError : there is nothing to go by, nothing is stored, or no design keeps the limits.
+    UsageError : there is nothing to go by, nothing is stored, or no design keeps the limits, or,
+        with `nearest`, none has figures.
     """
     if count < 1:
         raise UsageError(f"got {count} designs; give 1 or more")
@@ -101,7 +112,7 @@ def best(store: Store, count: int = COUNT, by: Mapping[str, Make | None] | None 
     choice = _Choice(store, outputs, _ways(store, outputs, by), count)
     for start, block in store.in_blocks():
         choice.add(start, block)
-    return choice.result()
+    return choice.result(nearest)
 
 
 def _ways(
@@ -137,6 +148,7 @@ class _Choice:
         self.kept = 0
         self.designs = np.empty(0, np.int64)
         self.rows = np.empty((0, len(columns)))
+        self.near = np.empty((0, 2 + len(columns)))  # what they lack, their numbers, their rows
 
     def add(self, start: int, block: Block) -> None:
         """Take in designs that follow each other from a number on."""
@@ -147,6 +159,11 @@ class _Choice:
         self.limits += np.sum(inside, axis=0)
         good = np.all(inside, axis=1)
         self.kept += int(np.sum(good))
+        if not self.kept:
+            lacking = _lack(self.outputs, figures)
+            rows = np.column_stack([lacking, start + computed, block.values[computed], figures])
+            near = np.concatenate([self.near, rows])
+            self.near = near[np.argsort(near[:, 0], kind="stable")[: self.count]]
         rows = np.hstack([block.values[computed[good]], figures[good]])
         self.designs = np.concatenate([self.designs, start + computed[good]])
         self.rows = np.concatenate([self.rows, rows])
@@ -163,18 +180,22 @@ class _Choice:
     def keep_only(self, places: Array) -> None:
         self.designs, self.rows = self.designs[places], self.rows[places]
 
-    def result(self) -> Best:
-        """The best of all; `UsageError` says why there is none."""
+    def result(self, nearest: bool = False) -> Best:
+        """The best of all, else the nearest; `UsageError` says why there is none."""
         where, stored = self.store.path, int(np.sum(self.reasons[list(REASONS)]))
         if not stored:
             raise UsageError(
                 f"{where}: nothing is computed yet; go on with: equipoise resume {where}"
             )
+        note = ""
         if not self.kept:
             units = [self.store.units.get(output.name, "") for output in self.outputs]
-            raise UsageError(f"{where}: {why_none(self.outputs, self.reasons, self.limits, units)}")
+            note = why_none(self.outputs, self.reasons, self.limits, units)
+            if not (nearest and len(self.near)):
+                raise UsageError(f"{where}: {note}")
+            self.designs, self.rows = self.near[:, 1].astype(np.int64), self.near[:, 2:]
         front, trade_off = 1, None
-        if len(self.ways) > 1:
+        if self.kept and len(self.ways) > 1:
             front, trade_off = len(self.designs), self.costs * self.signs
             self.keep_only(far_apart(self.costs, self.count))
             self.keep_only(np.argsort(self.costs[:, 0], kind="stable"))
@@ -191,7 +212,18 @@ class _Choice:
             computed=int(self.reasons[COMPUTED]),
             stored=stored,
             trade_off=trade_off,
+            note=note,
         )
+
+
+def _lack(outputs: Sequence[Output], figures: Array) -> Array:
+    """What designs (P, m) lack of all limits, (P,), each over that limit, or by itself where 0."""
+    lacking = np.zeros(len(figures))
+    for output, column in zip(outputs, figures.T, strict=True):
+        for limit, over in ((output.at_most, 1.0), (output.at_least, -1.0)):
+            if limit is not None:
+                lacking += np.maximum(over * (column - limit), 0.0) / (abs(limit) or 1.0)
+    return lacking
 
 
 # -- as one table ----------------------------------------------------------------------------------

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from equipoise.errors import UsageError
@@ -14,6 +14,8 @@ from equipoise.schema.files import to_csv
 from equipoise.web.edits import Solved
 from equipoise.web.messages import Message
 from equipoise.web.pictures import chart_of, drawing, film_of, linkage_at
+from equipoise.web.played import played
+from equipoise.web.replies import Reply
 
 MIMES = {
     "toml": "application/toml",
@@ -28,7 +30,11 @@ FORBIDDEN = re.compile(r'[\\/:*?"<>|]+')
 """What some system would not have in the name of a file."""
 
 
-def downloaded(found: Solved, message: Message) -> tuple[dict[str, Any], bytes]:
+Replies = Callable[[str], Iterable[Reply]]
+"""All that a page could be told of the design, in a language."""
+
+
+def downloaded(found: Solved, message: Message, told: Replies) -> tuple[dict[str, Any], bytes]:
     """Name and type of a file that a message asks for, and its bytes.
 
     Raises
@@ -37,10 +43,14 @@ def downloaded(found: Solved, message: Message) -> tuple[dict[str, Any], bytes]:
     EquipoiseError : it cannot be made of this machine.
     """
     kind = message.text("kind")
-    if kind not in FILES:
-        raise UsageError(unknown(kind, FILES, "download"))
+    if kind not in (*FILES, PLAYED):
+        raise UsageError(unknown(kind, (*FILES, PLAYED), "download"))
     stem = FORBIDDEN.sub("-", found.design.name.removesuffix(".toml")) or "machine"
-    end, data = FILES[kind](found, message, stem)
+    if kind == PLAYED:
+        language = message.text("language", "en")
+        end, data = "-played.html", played(found, told(language), language).encode()
+    else:
+        end, data = FILES[kind](found, message, stem)
     name = f"{stem}{end}"
     return {"name": name, "mime": MIMES[name.rpartition(".")[2]]}, data
 
@@ -68,12 +78,6 @@ def _report(found: Solved, message: Message, stem: str) -> Made:
     with drawing:
         text = report_page(Findings(machine, dumps(machine), f"{stem}.toml"), language)
     return "-report.html", text.encode()
-
-
-def _played(found: Solved, message: Message, stem: str) -> Made:
-    from equipoise.web.played import played
-
-    return "-played.html", played(found, message.text("language", "en")).encode()
 
 
 def _film(found: Solved, message: Message, stem: str) -> Made:
@@ -107,6 +111,7 @@ FILES: dict[str, Callable[[Solved, Message, str], Made]] = {
     "drawing": _drawing,
     "chart": _chart,
     "film": _film,
-    "played": _played,
 }
 """What there is."""
+PLAYED = "played"
+"""And a page in one file."""

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from equipoise.errors import EquipoiseError, UsageError, to_paste
+from equipoise.errors import EquipoiseError, MobilityError, UsageError, to_paste
 from equipoise.i18n import Note
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import FRAME, Machine
@@ -101,9 +101,13 @@ def changed(base: Solved | Drawn, changes: list[Change], commit: bool) -> Solved
 
 
 def with_entry(base: Solved | Drawn, entry: Entry) -> Solved | Drawn:
-    """What is shown with another table of its file."""
+    """What is shown with another table of its file, unfinished if it moves otherwise."""
     if isinstance(base, Solved):
-        return settled(solved(entered(base.design, entry)))
+        design = entered(base.design, entry)
+        try:
+            return settled(solved(design))
+        except MobilityError:
+            return drawn(sketch_of(base, 0).taking(design.machine))
     own = entered(Design(base.design.name, plain_of(base)), entry).own
     return drawn(base.design.taking(own))
 
@@ -166,7 +170,7 @@ def _fields(sketch: Sketch) -> Iterator[Field]:
         for one in measures_of(points):
             path = f"{'frame' if body == FRAME else f'links.{body}'}.{one.key}"
             put = partial(_measured, body, one)
-            yield Field(path, body, one.label, one.dimension, one.value, put)
+            yield Field(path, body, one.label, one.dimension, one.value, put, one.between)
     for point, place in sketch.frame.items():
         for axis, value in zip("xy", place, strict=True):
             put = partial(_placed, point, axis)
@@ -262,6 +266,10 @@ def state_of_sketch(found: Drawn, scale: Scale) -> tuple[Values, bytes]:
         "first": "squares",
         "least": 0,
         "before": False,
+        "compared": False,
+        "points": [],
+        "arrows_at": None,
+        "arrows": [],
         "status": status_of_sketch(found),
         "fields": [scale.told(one) for one in fields_of_sketch(sketch).values()],
         **{key: [] for key in ("traced", "figures", "outputs", "charts", "orders", "notes")},

@@ -41,6 +41,8 @@ CENTER: Vector = (0.0, 0.0)
 class Field:
     """A number: its path, such as ``links.crank.mass``, the heading that it belongs under, its
     label, its value in SI units and radians, and the design with another value.
+
+    between : both ends of a length between points.
     """
 
     path: str
@@ -49,6 +51,7 @@ class Field:
     dimension: Dimension
     value: float
     put: Put
+    between: tuple[str, str] | None = None
 
     def typed(self, of: Any, to: str | float) -> Any:
         """What it is a number of, with the number set to a value or to what was typed.
@@ -122,6 +125,7 @@ class Scale:
             "max": high,
             "step": (high - low) / FINE,
             "kind": "number",
+            **({} if field.between is None else {"between": field.between}),
         }
 
 
@@ -213,7 +217,9 @@ def _measures(where: str, body: str, points: Mapping[str, Vector]) -> Iterator[F
     """Lengths and directions between the points of a body."""
     for one in measures_of(points):
         put = partial(_measured, body, one)
-        yield Field(f"{where}.{one.key}", body, one.label, one.dimension, one.value, put)
+        yield Field(
+            f"{where}.{one.key}", body, one.label, one.dimension, one.value, put, one.between
+        )
 
 
 def _measured(body: str, measure: Measure, design: Design, value: float) -> Design:

@@ -38,6 +38,11 @@ class Measure:
         return f"{what}.{self.start}-{self.moves}"
 
     @property
+    def between(self) -> tuple[str, str] | None:
+        """Both ends of a length."""
+        return (self.start, self.moves) if self.dimension == "length" else None
+
+    @property
     def label(self) -> str:
         """What a page calls it."""
         line = f"{self.start} to {self.moves}"

@@ -9,9 +9,9 @@ import traitlets
 
 from equipoise.errors import EquipoiseError
 from equipoise.mechanism.model import Machine
+from equipoise.web.assets import assets
 from equipoise.web.messages import message_of
 from equipoise.web.replies import Reply, refused
-from equipoise.web.server import assets
 from equipoise.web.session import Session
 
 

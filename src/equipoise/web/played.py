@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import json
 from base64 import b64encode
-from collections.abc import Iterator
+from collections.abc import Iterable
 from html import escape
 from typing import Any
 
 from equipoise.i18n import said, speaking
+from equipoise.web.assets import assets
 from equipoise.web.edits import Solved
-from equipoise.web.messages import message_of
 from equipoise.web.replies import Reply
-from equipoise.web.server import assets
-from equipoise.web.session import Session
 from equipoise.web.state import first_of
 
 POLICY = (
@@ -41,8 +39,10 @@ HTML = """<!doctype html>
 """
 
 
-def played(found: Solved, language: str) -> str:
+def played(found: Solved, replies: Iterable[Reply], language: str) -> str:
     """The HTML file.
+
+    replies : all that a page could be told of the machine.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def played(found: Solved, language: str) -> str:
     """
     built = assets()
     told = {
-        "replies": [_written(reply) for reply in _conversation(found, language)],
+        "replies": [_written(reply) for reply in replies],
         "wanted": first_of(found.design.machine)[1],
     }
     with speaking(language):
@@ -63,16 +63,6 @@ def played(found: Solved, language: str) -> str:
         told=json.dumps(told, ensure_ascii=False, allow_nan=False).replace("<", "\\u003c"),
         script=built["equipoise.js"].decode().replace("</script", "<\\/script"),
     )
-
-
-def _conversation(found: Solved, language: str) -> Iterator[Reply]:
-    """What a page would be told that asks for everything about a machine."""
-    session = Session()
-    session.open(found.design, found)
-    session.wanted = tuple(one.name for one in found.analysis.outputs)
-    yield from session.receive(message_of({"type": "speak", "languages": [language]}))
-    yield from session.receive(message_of({"type": "ready"}))
-    yield from session.tell_more()
 
 
 def _written(reply: Reply) -> list[Any]:

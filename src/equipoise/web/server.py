@@ -13,16 +13,16 @@ import socket
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from importlib.resources import files
 from secrets import compare_digest, token_urlsafe
 from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
 from equipoise.schema.files import reason
+from equipoise.web.assets import TYPES, assets
+from equipoise.web.desk import Desk
 from equipoise.web.lanes import Lanes
 from equipoise.web.messages import LARGEST_MESSAGE
 from equipoise.web.page import Page, turn_away
-from equipoise.web.session import Session
 
 if TYPE_CHECKING:
     import uvicorn
@@ -105,28 +105,6 @@ async def refuse(problem: str, scope: Scope, send: Send) -> None:
     await send({"type": f"{begin}.body", "body": body})
 
 
-TYPES = {"equipoise.js": "text/javascript", "equipoise.css": "text/css"}
-"""Everything that there is, with its type."""
-MAKE = (
-    "the page has not been built; run `make page`, or `pip install -e .` where Node or a network "
-    "is at hand"
-)
-
-
-def assets() -> dict[str, bytes]:
-    """Script and style of the page, by name.
-
-    Raises
-    ------
-    UsageError : they have not been built.
-    """
-    folder = files("equipoise.web") / "static"
-    try:
-        return {name: (folder / name).read_bytes() for name in TYPES}
-    except OSError:
-        raise UsageError(MAKE) from None
-
-
 ADDRESS = "127.0.0.1"
 USUAL = 8471
 """Port that is tried first, so that a browser finds again what it keeps for an address."""
@@ -156,7 +134,7 @@ HTML = """<!doctype html>
 """
 
 
-def application(port: int, token: str, begin: Callable[[], Session], lanes: Lanes) -> ASGIApp:
+def application(port: int, token: str, begin: Callable[[], Desk], lanes: Lanes) -> ASGIApp:
     """The server as an ASGI application.
 
     port : on which it is served.  token : that every request has to carry.
@@ -202,7 +180,7 @@ def application(port: int, token: str, begin: Callable[[], Session], lanes: Lane
 
 @contextmanager
 def served(
-    begin: Callable[[], Session], port: int | None = 0
+    begin: Callable[[], Desk], port: int | None = 0
 ) -> Iterator[tuple[uvicorn.Server, socket.socket, str]]:
     """A server that is ready to run on a socket that listens, and the address of its page.
 
@@ -236,7 +214,7 @@ def served(
         yield uvicorn.Server(config), listener, f"http://{ADDRESS}:{port}/?token={token}"
 
 
-def serve(begin: Callable[[], Session], port: int | None, tell: Callable[[str], None]) -> None:
+def serve(begin: Callable[[], Desk], port: int | None, tell: Callable[[str], None]) -> None:
     """Serve pages on this machine until interrupted; errors as `served`.
 
     tell : is given the address of the page, which is served from then on.

@@ -12,41 +12,36 @@ from threading import Lock
 
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
-from equipoise.i18n import LANGUAGES, Note, said, say, speaking
+from equipoise.i18n import Note, said, say, speaking
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
-from equipoise.schema.documents import dumps
 from equipoise.schema.files import LARGEST
+from equipoise.web import entering, kept
 from equipoise.web.balanced import balanced, balanced_design, balanced_told, nothing_gained
 from equipoise.web.block import Values
 from equipoise.web.design import Design
 from equipoise.web.disk import Disk
-from equipoise.web.downloads import downloaded
 from equipoise.web.drawn import (
     Drawn,
     changed,
     computed,
     drawn,
     finished,
-    plain_of,
     sketch_of,
     state_of_sketch,
-    with_entry,
 )
 from equipoise.web.edits import Solved, settled, solved
-from equipoise.web.explained import explained
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.history import History, Step
 from equipoise.web.making import made
 from equipoise.web.messages import MOST_LANGUAGES, Message
-from equipoise.web.openings import opened_example, opened_text, titles
+from equipoise.web.openings import opened_example, opened_text, titles, tool_titles
 from equipoise.web.replies import Reply, refused
 from equipoise.web.seen import ASKED, Seen
 from equipoise.web.shaken import more, response_of
 from equipoise.web.sketch import USUAL_SIZE, Sketch
 from equipoise.web.state import first_of, state_of
-from equipoise.web.tables import tables_of
-from equipoise.web.words import language_of, words_of
+from equipoise.web.words import language_of, spoken_in
 
 
 @dataclass
@@ -78,7 +73,11 @@ class Session:
     def receive(self, message: Message) -> Iterator[Reply]:
         """Answer a message; what takes long comes last, and may be left unasked."""
         try:
-            if message.kind in ASKED:
+            if message.kind in kept.ASKED:
+                yield from kept.ASKED[message.kind](self, message)
+            elif message.kind in entering.ASKED:
+                yield from entering.ASKED[message.kind](self, message)
+            elif message.kind in ASKED:
                 yield from ASKED[message.kind](self, message)
             else:
                 yield from getattr(self, f"_{message.kind}")(message)
@@ -94,14 +93,7 @@ class Session:
 
     def _speak(self, message: Message) -> Iterator[Reply]:
         self.language = language_of(message.names("languages", MOST_LANGUAGES))
-        told: Values = {
-            "language": self.language,
-            "languages": LANGUAGES,
-            "words": words_of(self.language),
-        }
-        with speaking(self.language):
-            told["explained"] = explained()
-        yield Reply({"type": "spoken", "seq": message.seq, **told})
+        yield Reply({"type": "spoken", "seq": message.seq, **spoken_in(self.language)})
 
     def _open(self, message: Message) -> Iterator[Reply]:
         if "example" in message.values:
@@ -118,7 +110,7 @@ class Session:
 
     def _edit(self, message: Message) -> Iterator[Reply]:
         commit, problem = message.flag("commit", True), None
-        with self.lock, self._telling():
+        with self.lock, self.telling():
             base, found = self.base(), None
             try:
                 found = changed(base, message.changes(), commit)
@@ -137,7 +129,7 @@ class Session:
             yield from self.told(message.seq)
 
     def _make(self, message: Message) -> Iterator[Reply]:
-        with self.lock, self._telling():
+        with self.lock, self.telling():
             new = message.text("do") == "new"
             if new:
                 sketch, label = Sketch(), say("new machine")
@@ -147,17 +139,6 @@ class Session:
             step = Step(found.design, label)
             self._go(past.then(found.design, label) if past else History(step), found)
             self._measure(found, new)
-        yield from self.told(message.seq)
-
-    def _tables(self, message: Message) -> Iterator[Reply]:
-        with self._telling():
-            told = tables_of(plain_of(self.base()))
-        yield Reply({"type": "tables", "seq": message.seq, **told})
-
-    def _entry(self, message: Message) -> Iterator[Reply]:
-        with self.lock, self._telling():
-            found = with_entry(self.base(), message.entry())
-            self._go(self._past.then(found.design, message.label), found)
         yield from self.told(message.seq)
 
     def _undo(self, message: Message) -> Iterator[Reply]:
@@ -185,17 +166,17 @@ class Session:
 
     def _balance(self, message: Message) -> Iterator[Reply]:
         base = self.current()
-        with self._telling():
+        with self.telling():
             what = say("balancing")
         yield Reply({"type": "busy", "seq": message.seq, "what": what})
         found = balanced(base.design)
-        with self._telling():
+        with self.telling():
             nothing = nothing_gained(found)
         if nothing is not None:
             yield from self.told(message.seq, nothing)
             return
         after = solved(balanced_design(base.design, found))
-        with self._telling():
+        with self.telling():
             told = balanced_told(base, after, found)
         with self.lock:
             if self.found is not base:
@@ -207,27 +188,6 @@ class Session:
         yield Reply({"type": "balanced", "seq": message.seq, **told})
         yield from self.told(message.seq)
 
-    def _save(self, message: Message) -> Iterator[Reply]:
-        if self.disk is None:
-            raise UsageError(
-                Note("this machine was not opened from a file; download the model instead")
-            )
-        first = self._past.first
-        text = dumps(first.machine) if isinstance(first, Design) else self.disk.text
-        self.disk.save(self.current())
-        told = {"name": self.disk.name, "base": self.disk.base, "text": text}
-        yield from self.told(message.seq)
-        yield Reply({"type": "saved", "seq": message.seq, **told})
-
-    def _download(self, message: Message) -> Iterator[Reply]:
-        found = self.current()
-        with self._telling():
-            what = say("making the file")
-        yield Reply({"type": "busy", "seq": message.seq, "what": what})
-        with self._telling():
-            content, data = downloaded(found, message)
-        yield Reply({"type": "file", "seq": message.seq, **content}, data)
-
     # -- its state ---------------------------------------------------------------------------------
 
     def hello(self) -> Reply:
@@ -238,6 +198,9 @@ class Session:
                 "version": __version__,
                 "examples": [
                     {"name": name, "title": said(title)} for name, title in titles().items()
+                ],
+                "tools": [
+                    {"name": name, "title": said(title)} for name, title in tool_titles().items()
                 ],
                 "largest": LARGEST,
                 "numbers": display_rules(),
@@ -269,7 +232,7 @@ class Session:
         if machine is not None and (new or not self.wanted):
             self.wanted = first_of(machine.design.machine)[1]
 
-    def go_to(self, found: Solved, label: str) -> None:
+    def go_to(self, found: Solved | Drawn, label: str) -> None:
         """Make a design that has been computed the one that is, as one step of undo."""
         self._go(self._past.then(found.design, label), found)
 
@@ -283,7 +246,7 @@ class Session:
         found = self.more_told = self.shown
         told = more(found, lambda: self.view is not found)
         while True:
-            with self._telling():  # left where this waits: whoever goes on may be another thread
+            with self.telling():  # left where this waits: whoever goes on may be another thread
                 one = next(told, None)
             if one is None:
                 return
@@ -291,7 +254,7 @@ class Session:
             yield Reply({"seq": None, **content}, data)
 
     @contextmanager
-    def _telling(self) -> Iterator[None]:
+    def telling(self) -> Iterator[None]:
         """Inside, the reader's language is spoken, in the units of the file that is open."""
         with speaking(self.language), ExitStack() as units:
             if self.found is not None:
@@ -335,16 +298,16 @@ class Session:
 
     def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:
         """The design that is shown, and how its support is shaken; notes come before its own."""
-        with self._telling():
+        with self.telling():
             state = self._state(seq)
         state.content["notes"] = [*notes, *state.content["notes"]]
         yield state
         if isinstance(self.view, Drawn):
             return
-        with self._telling():
+        with self.telling():
             compared = [*self.seen.compared(None if self.preview else self.current())]
         yield from compared
-        with self._telling():
+        with self.telling():
             shaken = response_of(self.shown)
         if shaken is not None:
             content, data = shaken
@@ -359,11 +322,8 @@ class Session:
             content, data = self._state_of(found)
             fields = fields_of(found.design).values()
             content["fields"] = [self.scale.told(one) for one in fields]
-        file = (
-            None
-            if self.disk is None
-            else self.disk.kept(self.found if found is self.found else None)
-        )
+        now = self.found if self.preview is None else None
+        file = self.disk and self.disk.kept(now)
         steps = [len(history.past), len(history.future)]
         told = {"undo": history.undo, "redo": history.redo, "steps": steps, "file": file}
         return Reply({"type": "state", "seq": seq, **told, **content}, data)

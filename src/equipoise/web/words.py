@@ -6,8 +6,10 @@ import json
 from collections.abc import Sequence
 from functools import cache
 from importlib.resources import files
+from typing import Any
 
-from equipoise.i18n import LANGUAGES, catalogue
+from equipoise.i18n import LANGUAGES, catalogue, speaking
+from equipoise.web.explained import explained
 
 WORDS = "words.json"
 """Beside the bundle: the texts that its page says."""
@@ -26,3 +28,11 @@ def words_of(language: str) -> dict[str, str]:
     said = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else []
     known = catalogue(language)
     return {text: known[text] for text in said if text in known}
+
+
+def spoken_in(language: str) -> dict[str, Any]:
+    """What a page has to know to speak a language."""
+    with speaking(language):
+        charts = explained()
+    words = words_of(language)
+    return {"language": language, "languages": LANGUAGES, "words": words, "explained": charts}

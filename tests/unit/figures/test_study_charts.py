@@ -17,6 +17,7 @@ from equipoise.figures.sheet import Stroke
 from equipoise.figures.style import INK
 from equipoise.mechanism.objectives import Objective
 from equipoise.results.charts import Chart
+from equipoise.results.outputs import objective_named
 from equipoise.schema.studies import load_study
 from equipoise.schema.study_units import units_of
 from equipoise.schema.template import Template
@@ -264,7 +265,9 @@ def test_the_least_and_the_model_are_marked_where_they_are() -> None:
     marks = {mark.role: (mark.x, mark.y) for mark in chart.panels[0].marks}
     assert marks == {"least": found.best, "own": found.start}
     assert f"{found.least:.4g} N" in words(chart) and f"{found.before:.4g} N" in words(chart)
-    assert f"least {found.objective.name}: {found.least:.4g} N" in studies.told_best(found)
+    assert f"least {objective_named(found.objective)}: {found.least:.4g} N" in studies.told_best(
+        found
+    )
     spline = RectBivariateSpline(found.y, found.x, found.values)
     assert float(spline(found.best[1], found.best[0])[0, 0]) == pytest.approx(found.least, rel=0.05)
     levels = levels_of(found.values)

@@ -18,7 +18,6 @@ from equipoise.errors import (
     unknown,
 )
 from equipoise.i18n import Note, all_of, speaking
-from equipoise.mechanism.linkage import assemble
 from equipoise.quantities import KINDS, parse
 from equipoise.schema.documents import loads
 from equipoise.web.replies import refused
@@ -40,9 +39,7 @@ FAILS = {
 
 def error_of(text: str) -> EquipoiseError:
     with pytest.raises(EquipoiseError) as caught:
-        machine = loads(text)
-        assemble(machine)
-        eq.move(machine)
+        eq.move(loads(text))
     return caught.value
 
 

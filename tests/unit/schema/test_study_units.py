@@ -42,6 +42,15 @@ def test_numbers(model: str, path: str, unit: str) -> None:
     assert Template.load(model).unit(path) == unit
 
 
+def test_coordinates_that_vary_together_are_those_of_a_point() -> None:
+    """A length is what x alone is, of a point on the axis."""
+    x, y = "links.coupler.points.C.x", "links.coupler.points.C.y"
+    model = Template.load("yamashita-1")
+    assert str(model.words(x)) == "length B–C of the coupler"
+    assert str(model.words(x, (x, y))) == "point C of the coupler, x"
+    assert str(model.words(y, (x, y))) == "point C of the coupler, y"
+
+
 def test_no_number() -> None:
     with pytest.raises(ModelError, match=r"no number of the model is called 'links\.crank\.mas'"):
         Template.load("yamashita-1").unit("links.crank.mas")

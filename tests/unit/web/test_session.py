@@ -209,7 +209,7 @@ def test_downloads() -> None:
     assert len(rows) == 721
     assert "there are 'model', 'csv', 'report'" in refusal(ask(session, "download", kind="pdf"))
     replies = ask(session, "download", kind="report", language="xx")
-    assert "no language of reports is called 'xx'" in refusal(replies)
+    assert "no language of reports is called 'xx'" in refusal(replies[1:])
 
 
 @pytest.mark.parametrize(

@@ -14,6 +14,7 @@ from equipoise.quantities import parse, showing
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
 from equipoise.web.forms import forms_of
 from equipoise.web.openings import opened_example, titles
+from equipoise.web.session import Session
 from equipoise.web.tables import tables_of
 from unit.web.pages import Content, ask, opened, refusal, state
 
@@ -252,12 +253,48 @@ def test_nonsense_is_refused_in_a_sentence(asked: Content) -> None:
     assert refusal(ask(session, "entry", seq=1, **asked)).startswith("entry: ")
 
 
-def test_what_could_not_move_is_told_and_nothing_changes() -> None:
+def test_what_cannot_turn_is_told_and_nothing_changes() -> None:
     session, _ = opened("yamashita-1")
     before = session.shown
-    told = refusal(enter(session, ["links", "loose"], {"points": {"C": ["0 mm", "0 mm"]}}))
-    assert "free motion" in told
+    points = {"points": {"A": ["0 mm", "0 mm"], "B": ["200 mm", "0 mm"]}}
+    assert "cannot turn fully" in refusal(enter(session, ["links", "crank"], points))
     assert session.shown is before
+
+
+# -- what is unfinished ----------------------------------------------------------------------------
+
+
+def test_gears_make_one_motion_of_two() -> None:
+    """Without them the machine is unfinished, and with them as it was."""
+    session, first = opened("planetary-planting-arm")
+    entries = group(tables(session), "gears")["entries"]
+    for entry in reversed(entries):
+        shown = state(enter(session, entry["place"], None)[0])
+    assert not shown.content["status"]["finished"]
+    assert "free motions" in shown.content["status"]["text"]
+    wrong = {**entries[0]["values"], "carrier": "nothing"}
+    assert "no link is called 'nothing'" in refusal(enter(session, ["gears", 0], wrong))
+    for entry in entries:
+        shown = state(enter(session, entry["place"], entry["values"])[0])
+    assert shown.content["status"]["finished"]
+    for name in first.content["arrays"]:
+        if name.startswith("place."):
+            assert shown.array(name) == pytest.approx(first.array(name), abs=1e-6)
+    assert [one.teeth for one in session.shown.design.own.gears] == [(40, 40), (40, 20)]
+
+
+def test_a_link_that_is_drawn_gets_its_mass_by_bodies() -> None:
+    session = Session()
+    ask(session, "make", do="new")
+    assert "has no links yet" in refusal(ask(session, "tables"))
+    ask(session, "make", do="point", spot={"place": [0.0, 0.0]})
+    ask(session, "make", do="link", **{"from": {"point": "A"}, "to": {"place": [0.06, 0.0]}})
+    (link,) = group(tables(session), "links")["entries"]
+    name = link["place"][-1]
+    bar = {**BAR, "between": [*link["values"]["points"]]}
+    enter(session, ["links", name, "bodies", 0], bar)
+    told = group(tables(session), f"links.{name}.bodies")
+    assert told["result"].startswith("together 47.10 g")
 
 
 def test_rows_that_are_added_are_computed() -> None:

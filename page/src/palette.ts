@@ -1,0 +1,179 @@
+/** The bar of tools above the drawing: what a click there does, and what is missing. */
+
+import { h, icon, set, write } from "./dom";
+import type { Status } from "./protocol";
+import { say, toSay } from "./words";
+
+export type Tool =
+  | "select"
+  | "point"
+  | "link"
+  | "pin"
+  | "separate"
+  | "slider"
+  | "gears"
+  | "drive"
+  | "delete";
+
+interface Told {
+  tool: Tool;
+  key: string;
+  name: string;
+  /** What to do first, and then. */
+  first: string;
+  then: string;
+  picture: string;
+}
+
+export const TOOLS: Told[] = [
+  {
+    tool: "select",
+    key: "v",
+    name: toSay("Select"),
+    first: toSay("click a link or a joint to choose it, drag it to move it"),
+    then: "",
+    picture: "M4 2.5v10l2.7-2.600 1.800 3.600 1.600-.8-1.800-3.500h3.600z",
+  },
+  {
+    tool: "point",
+    key: "p",
+    name: toSay("Point"),
+    first: toSay("click the sheet for a point of the frame, or a link for a point of that"),
+    then: "",
+    picture: "M8 2.5v4M8 9.500v4M2.500 8h4M9.500 8h4",
+  },
+  {
+    tool: "link",
+    key: "l",
+    name: toSay("Link"),
+    first: toSay("click where the link begins: a joint, a link, or a free place"),
+    then: toSay("click where the link ends; Shift keeps it level, upright or in steps of 15°"),
+    picture: "M4.500 11.500l7-7M2.500 13.500a1.600 1.600 0 1 0 2-2 1.600 1.600 0 0 0-2 2M11.500 4.500a1.600 1.600 0 1 0 2-2 1.600 1.600 0 0 0-2 2",
+  },
+  {
+    tool: "pin",
+    key: "j",
+    name: toSay("Pin"),
+    first: toSay("click the point that is to be pinned"),
+    then: toSay("click the point that it is pinned to, or itself again for the frame, on or off"),
+    picture: "M8 2.500a2.500 2.500 0 1 0 .01 0M8 7.500l-3.500 5h7zM3 13.500h10",
+  },
+  {
+    tool: "separate",
+    key: "x",
+    name: toSay("Separate"),
+    first: toSay("click a pin: the last link at it gets a point of its own"),
+    then: "",
+    picture: "M2.500 8h3M10.500 8h3M5.500 8a1 1 0 1 0 .01 0M10.500 8a1 1 0 1 0 .01 0M8 3v10",
+  },
+  {
+    tool: "slider",
+    key: "s",
+    name: toSay("Slider"),
+    first: toSay("click where the block is: a joint, or a free place"),
+    then: toSay("click another place of its line: on the sheet, or on the link that guides it"),
+    picture: "M2.500 12.500h11M4.500 6h7v4h-7zM2.500 3.500h11",
+  },
+  {
+    tool: "gears",
+    key: "g",
+    name: toSay("Gears"),
+    first: toSay("click the link of the driving gear"),
+    then: toSay("click the link of the driven gear"),
+    picture: "M5.500 5.500a3 3 0 1 0 .01 0M11.500 3a2.200 2.200 0 1 0 .01 0",
+  },
+  {
+    tool: "drive",
+    key: "d",
+    name: toSay("Drive"),
+    first: toSay("click the link that is the crank"),
+    then: "",
+    picture: "M12.500 5.500a5.200 5.200 0 1 0 .7 3.500M13.200 2.500v3.500H9.700",
+  },
+  {
+    tool: "delete",
+    key: "Delete",
+    name: toSay("Delete"),
+    first: toSay("click the joint or the link that is to go"),
+    then: "",
+    picture: "M3 4.500h10M6.500 4.500v-2h3v2M4.500 4.500l.7 9h5.600l.7-9",
+  },
+];
+
+export interface Palettes {
+  chosen(tool: Tool): void;
+  made(): void;
+  renamed(name: string): void;
+}
+
+export class Palette {
+  readonly root: HTMLElement;
+  private readonly buttons = new Map<Tool, HTMLButtonElement>();
+  private readonly status = h("p", { class: "status", role: "status", "aria-live": "polite" });
+  private readonly next = h("p", { class: "next", "aria-hidden": "true" });
+  private readonly name = h("input", {
+    type: "text",
+    class: "rename",
+    hidden: true,
+    autocomplete: "off",
+    spellcheck: "false",
+  });
+  private readonly teeth: HTMLInputElement[];
+  private readonly meshing: HTMLElement;
+
+  constructor(private readonly page: Palettes) {
+    const tools = TOOLS.map((told) => {
+      const title = `${say(told.name)} (${told.key.toUpperCase()}): ${say(told.first)}`;
+      const attributes = { type: "button", title, "aria-label": say(told.name), "aria-pressed": "false" };
+      const button = h("button", { ...attributes, "aria-keyshortcuts": told.key }, icon(told.picture));
+      button.addEventListener("click", () => page.chosen(told.tool));
+      this.buttons.set(told.tool, button);
+      return button;
+    });
+    const make = h("button", { type: "button", onclick: () => page.made() }, say("New"));
+    this.teeth = [say("Teeth of the driving gear"), say("Teeth of the driven gear")].map((name) =>
+      h("input", { type: "text", inputmode: "numeric", class: "teeth", "aria-label": name, value: "20" }),
+    );
+    this.meshing = h("span", { class: "meshing", hidden: true }, say("teeth"), ...this.teeth);
+    this.name.addEventListener("change", () => this.rename());
+    this.root = h(
+      "div",
+      { class: "making" },
+      h("div", { class: "tools", role: "toolbar", "aria-label": say("Tools") }, make, ...tools),
+      this.meshing,
+      this.name,
+      this.status,
+      this.next,
+    );
+  }
+
+  /** Numbers of teeth of the next pair of gears. */
+  get meshes(): [number, number] {
+    const [one, other] = this.teeth.map((input) => Math.round(Number(input.value)));
+    return [one ?? NaN, other ?? NaN];
+  }
+
+  /** Which tool is used, and what to do next with it. */
+  show(tool: Tool, pending: boolean): void {
+    for (const [name, button] of this.buttons) set(button, { "aria-pressed": String(name === tool) });
+    const told = TOOLS.find((one) => one.tool === tool);
+    write(this.next, tool === "select" || !told ? "" : say(pending ? told.then : told.first));
+    this.meshing.hidden = tool !== "gears";
+  }
+
+  tell(status: Status): void {
+    write(this.status, status.text);
+    this.status.classList.toggle("lacking", !status.finished);
+  }
+
+  /** Offer to rename what is chosen. */
+  choose(name: string | null): void {
+    this.name.hidden = name === null;
+    this.name.value = name ?? "";
+    set(this.name, { "aria-label": name === null ? null : say("Name of {name}", { name }) });
+  }
+
+  private rename(): void {
+    if (this.name.value.trim()) this.page.renamed(this.name.value.trim());
+  }
+}

@@ -1,0 +1,297 @@
+/** Making a machine: what a click, a drag or a key on the drawing does with the tool in hand. */
+
+import type { Conversation } from "./conversation";
+import { s, set } from "./dom";
+import { degrees, length, lengths, signed } from "./format";
+import { Palette, TOOLS, type Tool } from "./palette";
+import type { Made, Pair, State } from "./protocol";
+import { turnable, type Turning } from "./rim";
+import { type Hit, meant, type Snapping, step } from "./snap";
+import type { Grip } from "./stage";
+import { say } from "./words";
+
+/** Pixels from which on a press is a drag from one place to another. */
+const FAR = 10;
+const ARROWS: Record<string, Pair> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, 1],
+  ArrowDown: [0, -1],
+};
+
+/** Tools that need two clicks. */
+const TWO = new Set<Tool>(["link", "pin", "slider", "gears"]);
+
+export interface Making extends Turning, Snapping {
+  talk: Conversation;
+  board: HTMLElement;
+  sample(): number;
+  hint(text: string): void;
+}
+
+type Chosen = { what: "point" | "link"; name: string };
+
+export class Tools {
+  readonly palette: Palette;
+  private tool: Tool = "select";
+  private pending: Hit | null = null;
+  private chosen: Chosen | null = null;
+  private cross: Pair = [0, 0];
+  private readonly rubber = s("path", { class: "rubber" });
+  private readonly target = s("circle", { class: "aim", r: 7 });
+  private readonly crosshair = s(
+    "g",
+    { class: "crosshair", role: "slider", tabindex: -1, "aria-label": say("Crosshair") },
+    s("path", { d: "M-12 0H12M0-12V12" }),
+  );
+  private readonly layer = s("g", { class: "tooling", display: "none" });
+
+  constructor(private readonly page: Making) {
+    this.palette = new Palette({
+      chosen: (tool) => this.take(tool, true),
+      made: () => this.ask({ do: "new" }),
+      renamed: (name) => this.rename(name),
+    });
+    this.layer.append(this.rubber, this.target, this.crosshair);
+    page.stage.svg.append(this.layer);
+    page.board.addEventListener("pointerdown", this.press, true);
+    page.board.addEventListener("pointermove", this.hover);
+    page.board.addEventListener("keydown", this.key, true);
+    // A finger draws with a tool, and must not scroll meanwhile.
+    const still = (event: Event) => this.tool !== "select" && this.onSheet(event) && event.preventDefault();
+    page.board.addEventListener("touchstart", still, { passive: false, capture: true });
+    this.palette.show(this.tool, false);
+    turnable(page);
+  }
+
+  /** A state was told. */
+  show(state: State): void {
+    this.palette.tell(state.status);
+    if (this.pending?.point && !state.numbers.has(`place.${this.pending.point}`)) this.leave();
+    const { chosen } = this;
+    const bodies = state.scene.bodies;
+    const there =
+      chosen?.what === "point"
+        ? state.numbers.has(`place.${chosen.name}`)
+        : bodies.some(({ name }) => name === chosen?.name);
+    if (chosen && !there) this.choose(null);
+  }
+
+  /** What is chosen: for its name, and for Delete. */
+  choose(chosen: Chosen | null): void {
+    this.chosen = chosen;
+    this.palette.choose(chosen?.name ?? null);
+  }
+
+  selected(grip: Grip): void {
+    this.choose(grip.kind === "point" ? { what: "point", name: grip.name } : null);
+  }
+
+  private take(tool: Tool, focus = false): void {
+    [this.tool, this.pending] = [tool, null];
+    this.page.talk.release();
+    const making = tool !== "select";
+    if (making) this.page.turn(this.page.angle()); // stands still from now on
+    this.page.board.classList.toggle("tooled", making);
+    set(this.layer, { display: making ? null : "none" });
+    set(this.crosshair, { tabindex: making ? 0 : -1 });
+    this.palette.show(tool, false);
+    this.draw(null);
+    this.page.hint("");
+    if (making) {
+      const { view } = this.page.stage;
+      this.cross = this.at([view.width / 2, view.height / 2]).place;
+      this.aim();
+      if (focus) this.crosshair.focus({ preventScroll: true });
+    }
+  }
+
+  private leave(): void {
+    if (!this.pending) return this.take("select");
+    this.pending = null;
+    this.palette.show(this.tool, false);
+    this.draw(null);
+  }
+
+  // -- by mouse and touch --------------------------------------------------------------------------
+
+  private onSheet(event: Event): boolean {
+    return this.page.stage.svg.contains(event.target as Node);
+  }
+
+  private spot(event: PointerEvent): Pair {
+    const box = this.page.stage.svg.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  }
+
+  /** What is meant at a pixel of the drawing. */
+  private at(px: Pair, level = false): Hit {
+    const box = this.page.stage.svg.getBoundingClientRect();
+    const below = document.elementsFromPoint(box.left + px[0], box.top + px[1]);
+    const root = this.page.stage.svg.getRootNode() as Document | ShadowRoot;
+    const inside = "elementsFromPoint" in root ? root.elementsFromPoint(box.left + px[0], box.top + px[1]) : below;
+    const link = inside.map((one) => one.closest<SVGElement>(".body")?.dataset.link).find(Boolean);
+    const from = level ? (this.pending?.place ?? null) : null;
+    return meant(this.page, px, link, from);
+  }
+
+  private readonly press = (event: PointerEvent): void => {
+    if (this.tool === "select" || event.button || !this.onSheet(event)) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const start = this.spot(event);
+    const { svg } = this.page.stage;
+    svg.setPointerCapture(event.pointerId);
+    const begun = this.pending === null;
+    this.put(this.at(start, event.shiftKey));
+    const stop = (now: PointerEvent) => {
+      if (now.pointerId !== event.pointerId) return;
+      for (const name of ["pointerup", "pointercancel"] as const) svg.removeEventListener(name, stop);
+      const end = this.spot(now);
+      const far = Math.hypot(end[0] - start[0], end[1] - start[1]) > FAR;
+      if (now.type === "pointerup" && begun && far && this.pending) this.put(this.at(end, now.shiftKey));
+    };
+    for (const name of ["pointerup", "pointercancel"] as const) svg.addEventListener(name, stop);
+  };
+
+  private readonly hover = (event: PointerEvent): void => {
+    if (this.tool === "select" || !this.onSheet(event)) return;
+    this.draw(this.at(this.spot(event), event.shiftKey));
+  };
+
+  /** Show what a click would do, with the length and the direction of a line. */
+  private draw(hit: Hit | null): void {
+    const { view } = this.page.stage;
+    const [x, y] = hit ? view.px(...hit.place) : [-99, -99];
+    set(this.target, { cx: x, cy: y, class: hit?.point ? "aim joint" : "aim" });
+    if (!hit || !this.pending) return set(this.rubber, { d: "" });
+    const from = this.pending.place;
+    const [a, b] = view.px(...from);
+    set(this.rubber, { d: `M${a} ${b}L${x} ${y}` });
+    const [dx, dy] = [hit.place[0] - from[0], hit.place[1] - from[1]];
+    const angle = signed(degrees(Math.atan2(dy, dx)).toFixed(1));
+    this.page.hint(`${length(Math.hypot(dx, dy))} ${lengths().unit} ∠ ${angle}°`);
+  }
+
+  // -- by keys -------------------------------------------------------------------------------------
+
+  private readonly key = (event: KeyboardEvent): void => {
+    if (event.ctrlKey || event.metaKey || !this.onSheet(event)) return;
+    const told = TOOLS.find(({ key }) => key.toLowerCase() === event.key.toLowerCase());
+    if (event.key === "Delete" && this.tool === "select" && this.chosen) {
+      this.ask({ do: "delete", ...this.chosen });
+    } else if (told && !event.altKey) this.take(told.tool, true);
+    else if (this.tool === "select") return;
+    else if (event.key === "Escape") this.leave();
+    else if (event.key === "Enter") this.enter(event);
+    else if (ARROWS[event.key] && event.target === this.crosshair) this.steer(event);
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  };
+
+  private enter(event: KeyboardEvent): void {
+    const { kind, name } = (event.target as SVGElement).closest<SVGElement>(".grip")?.dataset ?? {};
+    const place = kind === "point" && name ? this.page.stage.place({ kind, name }) : null;
+    if (place && name) this.put({ point: name, place });
+    else this.put(this.at(this.page.stage.view.px(...this.cross)));
+  }
+
+  private steer(event: KeyboardEvent): void {
+    const [dx, dy] = ARROWS[event.key] as Pair;
+    const size = step(this.page) * (event.shiftKey ? 10 : event.altKey ? 0.1 : 1);
+    const [x, y] = this.cross;
+    this.cross = [Number((x + dx * size).toPrecision(12)), Number((y + dy * size).toPrecision(12))];
+    this.aim();
+    this.draw(this.at(this.page.stage.view.px(...this.cross)));
+  }
+
+  /** Put the crosshair where it is, and say where. */
+  private aim(): void {
+    const [px, py] = this.page.stage.view.px(...this.cross);
+    const [x, y] = [length(this.cross[0]), length(this.cross[1])];
+    set(this.crosshair, {
+      transform: `translate(${px},${py})`,
+      "aria-valuenow": (this.cross[0] * lengths().factor).toFixed(2),
+      "aria-valuetext": `x ${x} ${lengths().unit}, y ${y} ${lengths().unit}`,
+    });
+    this.page.hint(`${x}, ${y} ${lengths().unit}`);
+  }
+
+  // -- what is done --------------------------------------------------------------------------------
+
+  /** One click of the tool. */
+  private put(hit: Hit): void {
+    if (TWO.has(this.tool) && !this.pending) {
+      if (this.tool === "pin" && !hit.point) return;
+      if (this.tool === "gears" && !this.linkOf(hit)) return;
+      this.pending = hit;
+      this.palette.show(this.tool, true);
+      return;
+    }
+    const asked = this.asked(hit, this.pending);
+    this.pending = null;
+    this.palette.show(this.tool, false);
+    this.draw(null);
+    if (asked) this.ask(asked);
+  }
+
+  private asked(hit: Hit, first: Hit | null): Made | null {
+    const link = this.linkOf(hit);
+    switch (this.tool) {
+      case "point":
+        return hit.point ? null : { do: "point", spot: spot(hit), on: hit.link ?? "frame" };
+      case "link":
+        return first && { do: "link", from: spot(first), to: spot(hit) };
+      case "slider":
+        return first && { do: "slider", from: spot(first), to: spot(hit) };
+      case "pin":
+        return first?.point ? this.pin(first.point, hit.point) : null;
+      case "separate":
+        return hit.point ? { do: "separate", point: hit.point } : null;
+      case "gears": {
+        const [teeth, driven_teeth] = this.palette.meshes;
+        const driver = first && this.linkOf(first);
+        return driver && link ? { do: "gears", driver, driven: link, teeth, driven_teeth } : null;
+      }
+      case "drive":
+        return link ? { do: "drive", link } : null;
+      case "delete":
+        if (hit.point) return { do: "delete", what: "point", name: hit.point };
+        return link ? { do: "delete", what: "link", name: link } : null;
+      default:
+        return null;
+    }
+  }
+
+  private pin(point: string, to: string | undefined): Made {
+    if (to && to !== point) return { do: "pin", point, to };
+    const pinned = this.page.state()?.scene.frame.includes(point);
+    return { do: pinned ? "free" : "ground", point };
+  }
+
+  /** The link that is meant; at a joint the one that turns about a point of the frame. */
+  private linkOf(hit: Hit): string | undefined {
+    const { bodies = [], frame = [] } = this.page.state()?.scene ?? {};
+    const met = bodies.filter(({ points }) => hit.point && points.includes(hit.point));
+    const turning = met.find(({ points }) => points.some((point) => frame.includes(point)));
+    return hit.link ?? (turning ?? met[0])?.name;
+  }
+
+  private rename(to: string): void {
+    const { chosen } = this;
+    if (!chosen || to === chosen.name) return;
+    this.ask({ do: "rename", ...chosen, to }, () => this.choose({ ...chosen, name: to }));
+  }
+
+  private ask(made: Made, then?: () => void): void {
+    this.page.talk.release();
+    const at = this.page.state() ? this.page.sample() : 0;
+    this.page.talk.ask({ type: "make", at, ...made }, (refusal) => refusal === null && then?.());
+  }
+}
+
+function spot(hit: Hit): object {
+  if (hit.point) return { point: hit.point };
+  return { place: hit.place, ...(hit.link && { on: hit.link }) };
+}

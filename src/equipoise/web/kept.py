@@ -1,0 +1,87 @@
+"""What a page asks about keeping what is done: saving its file, files to take along."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
+from typing import Protocol
+
+from equipoise.errors import UsageError
+from equipoise.i18n import say
+from equipoise.schema.documents import dumps
+from equipoise.web.design import Design
+from equipoise.web.disk import Disk
+from equipoise.web.downloads import downloaded
+from equipoise.web.edits import Solved
+from equipoise.web.history import History
+from equipoise.web.messages import Message
+from equipoise.web.replies import Reply
+
+SLOW = ("report", "drawing", "chart", "film", "played")
+"""Files that take longer than a moment."""
+
+
+class Session(Protocol):
+    """What answers need of a session."""
+
+    disk: Disk | None
+    history: History | None
+    wanted: tuple[str, ...]
+
+    def current(self) -> Solved:
+        """The design that is."""
+
+    def telling(self) -> AbstractContextManager[None]:
+        """Inside, the reader's language is spoken."""
+
+    def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:
+        """The design that is shown."""
+
+    def open(self, design: Design, found: Solved | None = None) -> None:
+        """Begin with a design."""
+
+    def receive(self, message: Message) -> Iterator[Reply]:
+        """Answer a message."""
+
+    def tell_more(self) -> Iterator[Reply]:
+        """What takes longer."""
+
+
+def _save(session: Session, message: Message) -> Iterator[Reply]:
+    found, disk, history = session.current(), session.disk, session.history
+    if disk is None or history is None:
+        raise UsageError("this machine was not opened from a file; download the model instead")
+    first = history.first
+    text = dumps(first.machine) if isinstance(first, Design) else disk.text
+    disk.save(found)
+    yield from session.told(message.seq)
+    saved = {"name": disk.name, "base": disk.base, "text": text}
+    yield Reply({"type": "saved", "seq": message.seq, **saved})
+
+
+def _download(session: Session, message: Message) -> Iterator[Reply]:
+    found = session.current()
+    if message.text("kind") in SLOW:
+        with session.telling():
+            what = say("making the file")
+        yield Reply({"type": "busy", "seq": message.seq, "what": what})
+
+    def everything(language: str) -> Iterator[Reply]:
+        """All that a page could be told of the design."""
+        other = type(session)()
+        other.open(found.design, found)
+        other.wanted = tuple(one.name for one in found.analysis.outputs)
+        yield from other.receive(Message("speak", None, {"languages": [language]}))
+        yield from other.receive(Message("ready", None, {}))
+        yield from other.tell_more()
+
+    with session.telling():
+        content, data = downloaded(found, message, everything)
+    yield Reply({"type": "file", "seq": message.seq, **content}, data)
+
+
+ASKED: dict[str, Callable[[Session, Message], Iterator[Reply]]] = {
+    "save": _save,
+    "download": _download,
+}
+"""Answers to messages, by their kind."""
