@@ -19,7 +19,8 @@ export interface Subject {
   values: Values;
   /** Keys of the tables below it. */
   below: string[];
-  /** Whether it is there already and may be deleted. */
+  /** Whether it is there already, and whether it may be deleted. */
+  known: boolean;
   deletable: boolean;
 }
 

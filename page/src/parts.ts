@@ -107,10 +107,11 @@ export class Parts {
       );
     });
     const result = group.result ? h("p", { class: "quiet" }, group.result) : null;
+    const heading = group.many !== "one" && h("h3", { title: group.text }, titleOf(group));
     return h(
       "section",
       { "aria-label": titleOf(group) },
-      h("h3", { title: group.text }, titleOf(group)),
+      heading,
       h("ul", {}, ...lines),
       result,
     );
@@ -132,6 +133,7 @@ export class Parts {
       name: many === "named" ? "" : null,
       values: {},
       below: [],
+      known: false,
       deletable: false,
     });
   }
@@ -147,6 +149,7 @@ export class Parts {
       name: group.many === "named" ? String(last) : null,
       values: entry.values,
       below: entry.below,
+      known: true,
       deletable: !group.required,
     });
   }
@@ -180,6 +183,8 @@ export class Parts {
     files: Record<string, string>,
   ): void {
     const fresh = subject.name === "";
+    // What is as it was is no step.
+    if (subject.known && name === subject.name && same(values, subject.values)) return this.close();
     if (fresh && name === "") {
       const message = say("Give it a name.");
       return this.form?.refused(message, null);
@@ -245,5 +250,10 @@ function titleOf({ word, of }: Group): string {
 function nameOf(group: Group, entry: EntryTold): string {
   const last = entry.place[entry.place.length - 1];
   if (group.many === "named") return String(last);
-  return group.many === "list" ? `${group.word} ${Number(last) + 1}` : group.word;
+  return group.many === "list" ? `${group.word} ${Number(last) + 1}` : titleOf(group);
+}
+
+function same(one: Values, other: Values): boolean {
+  const keys = new Set([...Object.keys(one), ...Object.keys(other)]);
+  return [...keys].every((key) => JSON.stringify(one[key]) === JSON.stringify(other[key]));
 }

@@ -190,3 +190,23 @@ def test_a_dxf_drawing_is_snapped_to_by_keyboard_too(live: Live, tmp_path: Path)
     expect(live.told("plan.dxf is no DXF drawing that can be read")).to_be_visible()
     live.button("Remove").click()
     expect(page.locator(".underlay path")).to_be_hidden()
+
+
+@pytest.mark.parametrize(
+    ("name", "part"),
+    [("transplanter", "soil of planting"), ("balance-geared-a", "geared of balance")],
+)
+def test_forms_give_back_what_they_were_given(live: Live, name: str, part: str) -> None:
+    """Whatever differed would be a step that could be taken back."""
+    page = live.page
+    page.get_by_label("Example").select_option(name)
+    page.get_by_text("Parts of the model").click()
+    expect(page.locator(".groups")).to_contain_text(part)
+    entries = page.locator(".groups .plain")
+    for number in range(entries.count()):
+        entries.nth(number).click()
+        form = page.locator(".part-form")
+        press(form, "Save")
+        expect(form).to_have_count(0)
+    assert entries.count() >= 8
+    expect(live.button("Undo")).to_be_disabled()

@@ -14,7 +14,7 @@ from equipoise.exposure.daily import (
     limit_time,
     verdict_of,
 )
-from equipoise.i18n import say, to_say
+from equipoise.i18n import say, to_say, without_middle
 from equipoise.quantities import number
 from equipoise.results.blocks import (
     Block,
@@ -63,7 +63,7 @@ def limit_broken(a8: float) -> Emphasis | None:
 def shortened(name: str) -> str:
     """A name that any terminal can print, and that leaves room for numbers."""
     name = "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in name)
-    return name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 3]}..."
+    return without_middle(name, LONGEST_NAME)
 
 
 def weighted_blocks(weighted: Weighted) -> Iterator[Block]:

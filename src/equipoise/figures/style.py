@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from equipoise.i18n import without_middle
 from equipoise.symbols.looks import LIGHT
 
 INK, LINES, FAINT, PALE = (LIGHT[name] for name in ("ink", "lines", "faint", "pale"))
@@ -216,7 +217,7 @@ def look_of(role: str, dashed: bool = False) -> Look:
 
 def short(name: str, most: int = 24) -> str:
     """A name that may be long."""
-    return name if len(name) <= most else f"{name[: most - 1]}…"
+    return without_middle(name, most)
 
 
 def free_name(name: str, taken: Iterable[str]) -> str:

@@ -34,6 +34,8 @@ ROUNDEST = ((1.0,), (5.0, 2.0), (3.0, 4.0, 7.0, 6.0, 8.0, 9.0), (1.5, 2.5))
 """First digits of the numbers of an axis of frequencies, the roundest first."""
 APART = 0.09
 """Of the height of the axes between these numbers, at least."""
+STEPS = tuple(digit * 10.0**power for power in range(-2, 5) for digit in (1, 2, 5))
+"""Of an axis of lambda."""
 PARTS = {
     "": to_say("{number} of {station}"),
     "ground": to_say("{number} of {station} to the ground"),
@@ -91,7 +93,10 @@ def zeros_of(parameter: Array, value: Array, known: Array) -> list[float]:
 
 
 def variation_charts(variation: Variation) -> dict[str, Chart]:
-    """``variation``: lambda and frequency against a number of a station (their Figs. 3 and 4)."""
+    """``variation``: frequency and lambda against a number of a station (their Figs. 3 and 4).
+
+    Places go with lambda, so that low frequencies are not crowded.
+    """
     tool, values = variation.tool, variation.values
     vertical, lateral = variation.parameter
     apart = not np.allclose(vertical, lateral, rtol=1e-6, atol=1e-9)
@@ -105,11 +110,11 @@ def variation_charts(variation: Variation) -> dict[str, Chart]:
     ]
     panel = Panel(
         x,
-        Axis("λ", low=0.0, high=top),
+        _turns_axis(scale_of(tool), top),
         tuple(curves),
         tuple(_numbers(variation, x)),
         lines=tuple(_lines(variation, x, top)),
-        right_axis=_turns_axis(scale_of(tool), top),
+        right_axis=_parameter_axis(top),
         height=225.0,
     )
     what = say("Natural frequencies without damping against the {number}", number=named(variation))
@@ -145,7 +150,7 @@ def _uneven(values: Array) -> float:
 
 
 def _turns_axis(scale: float, top: float) -> Axis:
-    """The same axis in turns a minute, which grow with the square of lambda."""
+    """An axis of lambda in turns a minute, which grow with its square."""
 
     def place(minute: float) -> float:
         return float(np.sqrt(minute / RPM.factor / scale))
@@ -159,7 +164,14 @@ def _turns_axis(scale: float, top: float) -> Axis:
             if number <= highest and far:
                 chosen.append(number)
     ticks = tuple((place(one), turns_told(one / RPM.factor)) for one in sorted(chosen))
-    return Axis(say("natural frequency"), Display("1/min", 1.0), ticks=ticks)
+    unit = Display("1/min", 1.0)
+    return Axis(say("natural frequency"), unit, low=0.0, high=top, ticks=ticks)
+
+
+def _parameter_axis(top: float) -> Axis:
+    """The same in lambda, by steps of which there are nine at most."""
+    step = next(one for one in STEPS if top <= 9 * one)
+    return Axis("λ", ticks=tuple((one, f"{one:g}") for one in np.arange(0.0, top, step).tolist()))
 
 
 def _lines(variation: Variation, x: Axis, top: float) -> Iterator[Line]:

@@ -104,6 +104,19 @@ class Worded(str):
         return self.texts.get(_spoken.get()) or str(self)
 
 
+def without_middle(name: str, most: int) -> str:
+    """A long name without its middle, so that two that only begin or end alike stay apart."""
+    if len(name) <= most:
+        return name
+    end = (most - 1) // 2
+    return f"{name[: most - 1 - end].rstrip()}…{name[-end:].lstrip()}"
+
+
+def worded(text: str | Mapping[str, str]) -> str:
+    """A text of a file as it was read: plain, or by code of the language."""
+    return Worded(text) if isinstance(text, Mapping) else text
+
+
 def said(text: Note | str) -> str:
     """A sentence, a part of one, or a text of a file, in the language that is spoken."""
     return text.said() if isinstance(text, Note | Worded) else text

@@ -26,6 +26,7 @@ import numpy as np
 
 import equipoise
 from equipoise.errors import UsageError, needed
+from equipoise.i18n import worded
 from equipoise.partial import clear_left_over, locked
 from equipoise.results.result import Result
 from equipoise.studies.design_space import Make, Output
@@ -74,7 +75,7 @@ class Store(Result):
     @property
     def title(self) -> str:
         """Of the study."""
-        return str(loads(self.texts["study"])["title"])
+        return worded(loads(self.texts["study"])["title"])
 
     @property
     def chunks(self) -> int:
@@ -236,7 +237,8 @@ def _opened(folder: Path, group: Any) -> Store:
     size, chunk = arrays[REASON].shape[0], arrays[REASON].chunks[0]
     if any((a.shape, a.chunks) != ((size,), (chunk,)) for a in arrays.values()):
         raise ValueError("its arrays differ in their number of designs or in their chunks")
-    agreed = {"chunk": chunk, "numbers": [*numbers], "outputs": [*outputs], "title": study["title"]}
+    agreed = {"chunk": chunk, "numbers": [*numbers], "outputs": [*outputs]}
+    agreed["title"] = worded(study["title"])
     for name, wanted in agreed.items():
         if about[name] != wanted:
             raise ValueError(f"{name}: got {about[name]!r:.60}, and its study has {wanted!r:.60}")

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.i18n import Worded
+from equipoise.i18n import Worded, worded
 from equipoise.mechanism.checks import unknown, wrong_text
 from equipoise.studies.design_space import (
     COMMANDS,
@@ -146,9 +146,8 @@ def from_plain(plain: Mapping[str, Any], model: Model, file: str = "") -> Study:
     for one in plain["vary"]:
         spread = dict(one["spread"])
         vary.append(Vary(**{**one, "spread": SPREADS[spread.pop("kind")](**spread)}))
-    title = plain["title"]
     made = {
-        "title": Worded(title) if isinstance(title, Mapping) else title,
+        "title": worded(plain["title"]),
         "vary": tuple(vary),
         "outputs": tuple(Output(**one) for one in plain["outputs"]),
         "sampling": Sampling(**plain["sampling"]),

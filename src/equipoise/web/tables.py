@@ -13,7 +13,6 @@ from equipoise.mechanism.model import Machine
 from equipoise.quantities import told
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
 from equipoise.schema.reading import Place, written_place
-from equipoise.schema.words import plain_word
 from equipoise.schema.writing import value_text
 from equipoise.web.design import Design, pin_of
 from equipoise.web.forms import Values, forms_of, word_of
@@ -81,7 +80,7 @@ def _groups(
         assert inner is not None
         at = (*place, key)
         many = {Tables: "list", Named: "named"}.get(type(one.kind), "one")
-        words = {"word": plain_word(one), "text": one.text.replace("`", ""), "of": name}
+        words = {"word": word_of(one), "text": one.text.replace("`", ""), "of": name}
         group = _group(at, inner.type, many, words)
         group["required"] = one.required and many == "one"
         if entry is None:
@@ -96,7 +95,7 @@ def _groups(
             called = str(below[-1]) if many == "named" else _called(one, below)
             yield from _groups(machine, inner.type, value, below, called)
         if not entries and many == "one":
-            yield from _groups(machine, inner.type, None, at, plain_word(one))
+            yield from _groups(machine, inner.type, None, at, word_of(one))
 
 
 def _group(place: Place, of: type[Frozen], many: str, words: Values) -> Values:
@@ -116,7 +115,7 @@ def _entries(held: Any, place: Place, many: str) -> Iterator[tuple[Place, Any]]:
 
 def _called(one: Any, place: Place) -> str:
     last = place[-1]
-    return f"{plain_word(one)} {last + 1}" if isinstance(last, int) else plain_word(one)
+    return f"{word_of(one)} {last + 1}" if isinstance(last, int) else word_of(one)
 
 
 def _entry(of: type[Frozen], entry: Mapping[str, Any], place: Place) -> Values:

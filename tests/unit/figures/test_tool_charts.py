@@ -174,7 +174,7 @@ def test_frequencies_against_a_number() -> None:
     variation = vary_tool(tool, "harness", "harness.stiffness", np.geomspace(1e3, 1e6, 7), 3)
     chart = tool_designs.variation_charts(variation)["variation"]
     (panel,) = chart.panels
-    assert panel.x.scale == "log" and panel.y.label == "λ"
+    assert panel.x.scale == "log" and panel.y.text == "natural frequency, 1/min"
     assert panel.x.text == "stiffness of the harness at harness, kN/m"
     for curve, row in zip(panel.curves, variation.parameter[0].T, strict=True):
         np.testing.assert_allclose(curve.y, row)
@@ -184,8 +184,11 @@ def test_frequencies_against_a_number() -> None:
     position = vary_tool(tool, "handle", "position", np.linspace(0.1, 1.4, 5))
     (panel,) = tool_designs.variation_charts(position)["variation"].panels
     assert panel.x.scale == "linear" and panel.x.text == "position of handle, mm"
-    assert panel.right_axis is not None and panel.right_axis.text == "natural frequency, 1/min"
-    ticks = panel.right_axis.ticks
+    assert panel.right_axis is not None and panel.right_axis.text == "λ"
+    top = float(np.max(position.parameter))
+    beside = panel.right_axis.ticks or ()
+    assert 4 <= len(beside) <= 10 and all(at == float(text) <= 1.06 * top for at, text in beside)
+    ticks = panel.y.ticks
     assert ticks is not None and len(ticks) >= 5
     for place, minute in ticks:
         assert scale_of(tool) * place**2 * RPM == pytest.approx(float(minute))

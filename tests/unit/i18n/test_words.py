@@ -16,6 +16,7 @@ import equipoise
 from equipoise.i18n import LANGUAGES, catalogue, say, speaking
 from equipoise.keys import (
     Direction,
+    Frozen,
     Key,
     Kind,
     Listing,
@@ -30,6 +31,7 @@ from equipoise.keys import (
     Whole,
     all_keys,
 )
+from equipoise.schema.entries import entry_of, own_keys, tables_below
 from equipoise.schema.opening import document_of
 from equipoise.schema.words import plain_word
 
@@ -71,7 +73,22 @@ def words_of_keys() -> set[str]:
 
     for document in ("linkage", "tool"):
         look(Table(document_of(document)), None)
-    return found - {"points", "schema"}
+    return (found | words_of_forms()) - {"schema"}
+
+
+def words_of_forms() -> set[str]:
+    """What keys are called in the forms of the page, and the tables that these are of."""
+    found: set[str] = set()
+    waiting: list[type[Frozen]] = [document_of("linkage")]
+    seen = set(waiting)
+    while waiting:
+        of = waiting.pop()
+        known = [*own_keys(of).values(), *tables_below(of).values()]
+        found.update(plain_word(one) for one in known if not one.word or "{" in one.word)
+        inner = {table.type for one in known if (table := entry_of(one.kind)) is not None}
+        waiting += inner - seen
+        seen |= inner
+    return found
 
 
 @cache
