@@ -93,7 +93,8 @@ export class Tour {
     const step = STEPS[number];
     if (!step) return this.end();
     this.clear();
-    const target = this.root.querySelector(step.where);
+    const targets = [...this.root.querySelectorAll(step.where)];
+    const target = targets.find((one) => one.checkVisibility());
     target?.classList.add("toured");
     target?.scrollIntoView({ block: "nearest" });
     const last = number === STEPS.length - 1;

@@ -71,7 +71,7 @@ def test_two_fingers_zoom_and_pan(new_page: Callable[..., Page], address: str) -
     live = Live.open(new_page(has_touch=True), address)
     line = live.page.context.new_cdp_session(live.page)
     before = [live.spot(live.joint(name)) for name in "AD"]
-    board = live.page.locator(".board").bounding_box()
+    board = live.page.locator(".board").first.bounding_box()
     assert board
     x, y = board["x"] + 60, board["y"] + board["height"] - 90
 
