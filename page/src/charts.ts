@@ -35,6 +35,8 @@ export class Charts {
   /** Those that the server declares, by name. */
   private readonly declared = new Map<string, Chart>();
   private state: State | null = null;
+  /** An unfinished machine has nothing to draw. */
+  private asleep = false;
   private heard: [ResponseMessage, Numbers] | null = null;
   private at = 0;
   private width = 0;
@@ -93,7 +95,10 @@ export class Charts {
     this.path.resize(this.polar.root.hidden ? width : side, height);
   }
 
-  show(state: State, other: boolean): void {
+  show(state: State, opened: boolean): void {
+    const other = opened || this.asleep;
+    this.asleep = !state.status.finished;
+    if (this.asleep) return;
     this.state = state;
     if (other) this.heard = null;
     const forces = state.numbers.has("shaking_force");
@@ -120,6 +125,7 @@ export class Charts {
   }
 
   point(k: number, degrees: number): void {
+    if (this.asleep) return;
     this.at = k;
     this.polar.point(k);
     this.path.point(k);

@@ -20,6 +20,7 @@ export function turnable(page: Turning): void {
   const { svg } = page.stage;
   const held = (event: Event): string | null => {
     const target = event.target as Element;
+    if (target.closest(".rim")) return page.state()?.status.drive ?? null;
     const link = target.closest(".grip") ? undefined : target.closest<SVGElement>(".body")?.dataset.link;
     const status = page.state()?.status;
     return link && status?.finished && link === status.drive ? link : null;

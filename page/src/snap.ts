@@ -6,7 +6,7 @@ import type { Stage } from "./stage";
 
 /** Pixels within which a joint is meant, and a line of the sheet. */
 const NEAR = 15;
-const LINE = 6;
+const LINE = 3;
 /** Pixels between two fine lines, about, and steps between them. */
 const APART = 14;
 const PARTS = 10;

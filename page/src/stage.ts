@@ -42,6 +42,7 @@ export class Stage {
   readonly lines = s("svg", { class: "sheet-lines", "aria-hidden": "true" });
   readonly view = new View();
   private readonly dims = new Dimensions();
+  private readonly rim = s("circle", { class: "rim" });
   readonly grips = new Map<string, SVGGElement>();
   /** Called when another part of the plane is shown. */
   readonly watchers: (() => void)[] = [];
@@ -234,6 +235,18 @@ export class Stage {
       const row = state.numbers.get(`place.${name}`);
       if (row) set(element, { d: curve(row, (x, y) => view.px(x, y), true) });
     }
+    this.drawRim(state);
+  }
+
+  /** The way of the crank's end, by which it is turned. */
+  private drawRim({ status, scene }: State): void {
+    const points = scene.bodies.find(({ name }) => name === status.drive)?.points ?? [];
+    const places = points.map((name) => this.place({ kind: "point", name }) as Pair);
+    const pivot = places[points.findIndex((name) => scene.frame.includes(name))];
+    if (!pivot || !status.finished) return set(this.rim, { r: 0 });
+    const [cx, cy] = this.view.px(...pivot);
+    const far = places.map(([x, y]) => Math.hypot(x - pivot[0], y - pivot[1]));
+    set(this.rim, { cx, cy, r: Math.max(...far) * this.view.scale });
   }
 
   private build(scene: Scene): void {
@@ -253,14 +266,17 @@ export class Stage {
 
   /** What has the name of a point or link: paths, names, and what can be taken hold of. */
   private name(scene: Scene): void {
+    const root = this.svg.getRootNode() as Document | ShadowRoot;
+    const held = [...this.grips].find(([, element]) => element === root.activeElement)?.[0];
     for (const layer of Object.values(this.layer)) layer.replaceChildren();
     const points = [...new Set(scene.bodies.flatMap((body) => body.points))];
     const moving = points.filter((name) => !scene.frame.includes(name));
     this.paths = moving.map((name) => ({ name, element: s("path", { class: "path" }) }));
-    this.layer.paths?.append(...this.paths.map(({ element }) => element));
+    this.layer.paths?.append(...this.paths.map(({ element }) => element), this.rim);
     this.labels = [...new Set([...scene.frame, ...points])].map((name) => labelOf(name, scene));
     this.layer.labels?.append(...this.labels.map(({ element }) => element));
     this.buildGrips(scene.movable, scene.mass_centers);
+    if (held) this.grips.get(held)?.focus({ preventScroll: true }); // keys go on where they were
   }
 
   private buildGrips(movable: string[], masses: string[]): void {

@@ -1,0 +1,222 @@
+"""Machines made on the page, from nothing to the figures of their files: mouse, finger, keys."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page, expect
+
+import equipoise as eq
+from browser.live import NUMBER, Live
+from unit.web.test_sketch import GEARED, SAME, check_same, massed
+
+TURNS = "1 free motion; crank turns fully"
+
+
+@dataclass
+class Sheet:
+    """The drawing of a page, by millimetres.  finger : whether a finger taps, and no mouse."""
+
+    live: Live
+    finger: bool = False
+
+    def take(self, tool: str) -> None:
+        self.live.page.get_by_role("button", name=tool, exact=True).click()
+
+    def says(self, text: str) -> None:
+        """Wait for what is told of the machine."""
+        expect(self.live.page.locator(".making .status")).to_contain_text(text)
+
+    @property
+    def crosshair(self) -> tuple[float, float, float, float]:
+        """Where the crosshair is, mm and pixels of the page."""
+        cross = self.live.page.get_by_role("slider", name="Crosshair")
+        told = (cross.get_attribute("aria-valuetext") or "").replace("−", "-")
+        x, y = map(float, NUMBER.findall(told))
+        px, py = map(float, NUMBER.findall(cross.get_attribute("transform") or ""))
+        box = self.live.page.locator("svg.linkage").bounding_box()
+        assert box is not None
+        return x, y, box["x"] + px, box["y"] + py
+
+    def pixel(self, x: float, y: float) -> tuple[float, float]:
+        """Where a place (mm) is on the page."""
+        x0, y0, px, py = self.crosshair
+        self.live.page.get_by_role("slider", name="Crosshair").press("Shift+ArrowRight")
+        x1, _, right, _ = self.crosshair
+        scale = (right - px) / (x1 - x0)
+        return px + (x - x0) * scale, py - (y - y0) * scale
+
+    def click(self, *places: tuple[float, float]) -> None:
+        """Click at places, mm."""
+        for place in places:
+            spot = self.pixel(*place)
+            if self.finger:
+                self.live.page.touchscreen.tap(*spot)
+            else:
+                self.live.page.mouse.click(*spot)
+
+    def steer(self, x: float, y: float) -> None:
+        """Bring the crosshair to a place (mm) by arrow keys, and press Enter there."""
+        cross = self.live.page.get_by_role("slider", name="Crosshair")
+        for axis, (more, less) in enumerate((("Right", "Left"), ("Up", "Down"))):
+            for _ in range(300):
+                now = self.crosshair[axis]
+                off = (x, y)[axis] - now
+                if abs(off) < 0.5:
+                    break
+                size = "" if abs(off) >= 10 else "Alt+"
+                cross.press(f"{size}Arrow{more if off > 0 else less}")
+        cross.press("Enter")
+
+    def type(self, **texts: str) -> None:
+        """Type lengths and angles of the machine, and wait for each."""
+        for name, text in texts.items():
+            field = self.live.field(name)
+            self.live.type(field, text)
+            expect(field).not_to_have_attribute("data-typed", "")
+            field.blur()
+
+
+@pytest.fixture
+def sheet(live: Live) -> Sheet:
+    live.button("New").click()
+    sheet = Sheet(live)
+    sheet.says("nothing moves yet")
+    return sheet
+
+
+def test_a_four_bar_is_made_by_mouse(sheet: Sheet) -> None:
+    sheet.take("Point")
+    sheet.click((0, 0), (11, -87))
+    expect(sheet.live.joint("B")).to_be_visible()
+    sheet.take("Link")
+    sheet.click((0, 0), (33, 0))
+    sheet.says("no drive: choose the crank, crank")
+    sheet.click((33, 0), (83, -52))
+    sheet.says("free motions too many: 1; coupler hangs free: pin D to something")
+    sheet.click((11, -87), (83, -52))
+    sheet.says("no drive: choose the crank, crank or rocker")
+    sheet.take("Drive")
+    sheet.click((15, 0))
+    sheet.says(TURNS)
+    sheet.take("Point")
+    sheet.click((60, -28))
+    expect(sheet.live.joint("E")).to_be_visible()
+    numbers = {"frame A to B": "88 mm", "frame A to B, direction": "-83 deg"}
+    numbers |= {"crank A to C": "33.5 mm", "coupler C to D": "71.5 mm", "rocker B to D": "80 mm"}
+    sheet.type(**numbers, **{"coupler E, x": "-160 mm", "coupler E, y": "-40 mm"})
+    made, like = sheet.live.machine(), eq.load("yamashita-1")
+    # the page keeps 12 digits of a place, and what of D is beyond is as small a part of a length
+    check_same(massed(made, like, {name: name for name in like.links}), like, 10 * SAME)
+    for _ in range(8):  # seven numbers and a point, then the drive
+        sheet.live.button("Undo").click()
+        sheet.says("1 free motion")
+    sheet.live.button("Undo").click()
+    sheet.says("no drive: choose the crank, crank or rocker")
+
+
+def test_a_slider_crank_is_made_by_finger(new_page: Callable[..., Page], address: str) -> None:
+    live = Live.open(new_page(has_touch=True), address)
+    live.button("New").tap()
+    sheet = Sheet(live, finger=True)
+    sheet.take("Point")
+    sheet.click((0, 0))
+    sheet.take("Link")
+    sheet.click((0, 0), (25, 0), (25, 0), (0, 86))
+    sheet.says("coupler hangs free: pin C to something")
+    sheet.take("Slider")
+    sheet.click((0, 86), (0, 0))
+    sheet.take("Drive")
+    sheet.click((12, 0))
+    sheet.says(TURNS)
+    sheet.type(**{"crank A to B": "25 mm", "coupler B to C": "90 mm"})
+    made, like = live.machine(), eq.load("slider-crank-engine")
+    check_same(massed(made, like, {"crank": "crank", "coupler": "rod", "slider": "piston"}), like)
+
+
+def test_a_geared_five_bar_is_made_by_keys(sheet: Sheet) -> None:
+    keys = sheet.live.page.keyboard
+    sheet.take("Point")
+    sheet.steer(0, 0)
+    sheet.steer(100, 0)
+    keys.press("l")
+    for place in ((0, 0), (30, 0), (30, 0), (91, 79), (100, 0), (88, 22), (88, 22), (91, 79)):
+        sheet.steer(*place)
+    sheet.says("free motions too many: 1")
+    keys.press("d")
+    sheet.steer(15, 0)
+    keys.press("g")
+    sheet.live.field("Teeth of the driven gear").fill("40")
+    sheet.steer(15, 0)
+    sheet.steer(94, 11)
+    sheet.says(TURNS)
+    numbers = {"crank A to C": "30 mm", "coupler C to D": "100 mm", "rocker B to E": "25 mm"}
+    numbers |= {
+        "link1 E to D": "90 mm",
+        "gears crank to rocker, angle of rocker at the start": "120 deg",
+    }
+    sheet.type(**numbers)
+    made, like = sheet.live.machine(), eq.loads(GEARED)
+    check_same(massed(made, like, {name: name for name in like.links}), like)
+
+
+def test_the_crank_turns_by_its_rim_and_grows_by_its_handle(live: Live) -> None:
+    for _ in range(3):
+        live.button("Zoom in").click()
+    a, b = live.joint("A"), live.joint("B")
+    (ax, ay), (bx, by) = live.spot(a), live.spot(b)
+    reach = np.hypot(bx - ax, by - ay)
+    mouse = live.page.mouse
+    mouse.move(ax + 0.7 * (bx - ax), ay + 0.7 * (by - ay))
+    mouse.down()
+    mouse.move(ax + 0.4 * reach, ay - 0.4 * reach, steps=8)
+    mouse.up()
+    expect(live.button("Undo")).to_be_disabled()  # nothing of the machine has changed
+    x, y = live.spot(b)
+    assert (x - ax, ay - y) == pytest.approx((reach / 2**0.5, reach / 2**0.5), abs=2)
+    mouse.move(ax - reach, ay)  # by the way of its end
+    mouse.down()
+    mouse.move(ax - reach, ay + 0.2 * reach, steps=4)
+    mouse.up()
+    turned = np.subtract(live.spot(b), (ax, ay))
+    assert np.angle(complex(turned[0], -turned[1])) == pytest.approx(np.pi / 4 + 0.197, abs=0.03)
+    live.button("Lock coupler B to C").click()
+    before = np.subtract(live.place(live.joint("C")), live.place(b))
+    live.drag(b, (20, -10))
+    expect(live.button("Undo")).to_be_enabled()
+    after = np.subtract(live.place(live.joint("C")), live.place(b))
+    assert np.hypot(*after) == pytest.approx(np.hypot(*before), abs=0.03)
+    assert np.hypot(*live.place(b)) > 35
+
+
+def test_parts_are_joined_renamed_and_deleted(live: Live) -> None:
+    sheet = Sheet(live)
+    sheet.take("Separate")
+    live.joint("C").focus()
+    live.page.keyboard.press("Enter")
+    sheet.says("free motions too many: 2; coupler hangs free: pin C or P to something")
+    expect(live.joint("E")).to_be_visible()
+    live.page.keyboard.press("Escape")
+    live.drag(live.joint("E"), (40, 30))
+    sheet.take("Pin")
+    x, y = live.spot(live.joint("E"))
+    u, v = live.spot(live.joint("C"))
+    live.page.mouse.move(x, y)
+    live.page.mouse.down()
+    live.page.mouse.move(u, v, steps=5)
+    live.page.mouse.up()
+    sheet.says(TURNS)
+    sheet.take("Select")
+    live.joint("P").focus()
+    live.type(live.field("Name of P"), "tip")
+    expect(live.joint("tip")).to_be_visible()
+    live.joint("tip").focus()
+    live.page.keyboard.press("Delete")
+    expect(live.joint("tip")).to_have_count(0)
+    assert [*live.machine().links["coupler"].points] == ["B", "C"]
+    assert not live.findings()
+    assert re.search("turns fully", live.page.locator(".making .status").inner_text())
