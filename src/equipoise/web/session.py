@@ -16,7 +16,7 @@ from equipoise.i18n import said, say, speaking
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
 from equipoise.schema.files import LARGEST
-from equipoise.web import kept
+from equipoise.web import entering, kept
 from equipoise.web.balanced import balanced, balanced_design, balanced_told, nothing_gained
 from equipoise.web.block import Values
 from equipoise.web.design import Design
@@ -27,23 +27,20 @@ from equipoise.web.drawn import (
     computed,
     drawn,
     finished,
-    plain_of,
     sketch_of,
     state_of_sketch,
-    with_entry,
 )
 from equipoise.web.edits import Solved, settled, solved
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.history import History, Step
 from equipoise.web.making import made
 from equipoise.web.messages import MOST_LANGUAGES, Message
-from equipoise.web.openings import opened_example, opened_text, titles
+from equipoise.web.openings import opened_example, opened_text, titles, tool_titles
 from equipoise.web.replies import Reply, refused
 from equipoise.web.seen import ASKED, Seen
 from equipoise.web.shaken import more, response_of
 from equipoise.web.sketch import USUAL_SIZE, Sketch
 from equipoise.web.state import first_of, state_of
-from equipoise.web.tables import tables_of
 from equipoise.web.words import language_of, spoken_in
 
 
@@ -78,6 +75,8 @@ class Session:
         try:
             if message.kind in kept.ASKED:
                 yield from kept.ASKED[message.kind](self, message)
+            elif message.kind in entering.ASKED:
+                yield from entering.ASKED[message.kind](self, message)
             elif message.kind in ASKED:
                 yield from ASKED[message.kind](self, message)
             else:
@@ -142,17 +141,6 @@ class Session:
             self._measure(found, new)
         yield from self.told(message.seq)
 
-    def _tables(self, message: Message) -> Iterator[Reply]:
-        with self.telling():
-            told = tables_of(plain_of(self.base()))
-        yield Reply({"type": "tables", "seq": message.seq, **told})
-
-    def _entry(self, message: Message) -> Iterator[Reply]:
-        with self.lock, self.telling():
-            found = with_entry(self.base(), message.entry())
-            self._go(self._past.then(found.design, message.label), found)
-        yield from self.told(message.seq)
-
     def _undo(self, message: Message) -> Iterator[Reply]:
         with self.lock:
             self._go(self._past.undone())
@@ -209,6 +197,9 @@ class Session:
                 "examples": [
                     {"name": name, "title": said(title)} for name, title in titles().items()
                 ],
+                "tools": [
+                    {"name": name, "title": said(title)} for name, title in tool_titles().items()
+                ],
                 "largest": LARGEST,
                 "numbers": display_rules(),
                 "machine": self.found is not None,
@@ -239,7 +230,7 @@ class Session:
         if machine is not None and (new or not self.wanted):
             self.wanted = first_of(machine.design.machine)[1]
 
-    def go_to(self, found: Solved, label: str) -> None:
+    def go_to(self, found: Solved | Drawn, label: str) -> None:
         """Make a design that has been computed the one that is, as one step of undo."""
         self._go(self._past.then(found.design, label), found)
 
