@@ -22,6 +22,7 @@ import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
 import type { Shelf } from "./story";
 import { Theme } from "./theme";
+import { ToolView } from "./tool";
 import { Toolbar } from "./toolbar";
 import { Tools } from "./tools";
 import { TransportBar } from "./transport";
@@ -65,6 +66,8 @@ export class App {
     settled: () => this.spell(),
   });
   private readonly undone: (() => void)[] = [];
+  private readonly body = h("div", { class: "body" });
+  private readonly tool: ToolView;
 
   private hello: Hello | null = null;
   private state: State | null = null;
@@ -95,12 +98,19 @@ export class App {
       busy: (what) => this.busy(what),
       tables: (message) => this.bench.show(message),
       file: save,
+      tool: (message, numbers) => {
+        this.opened = "";
+        this.body.hidden = true;
+        this.tool.show(message, numbers);
+        this.toolbar.show({ ...message, has_forces: false, file: null });
+      },
       saved: (name) => this.keeping.saved(name),
       line: (up) => this.line(up),
     };
     this.talk = new Conversation(wire, events, shelf);
     el.append(this.root);
     this.theme = new Theme(this.root, () => this.charts.repaint());
+    this.tool = new ToolView(this.talk, this.theme);
     const locks = new Locks();
     const page = {
       talk: this.talk,
@@ -173,6 +183,7 @@ export class App {
 
   close(): void {
     this.frames.close();
+    this.tool.close();
     this.charts.close();
     this.bench.close();
     this.talk.close();
@@ -195,11 +206,13 @@ export class App {
     const parts = [...this.bench.roots, this.inspector.root];
     this.aside.append(this.balance.root, h("fieldset", { class: "bare", disabled }, ...parts));
     if (disabled) this.aside.tabIndex = 0; // to be scrolled by keys
+    this.body.append(stage, this.side, this.aside);
     this.root.append(
       this.toolbar.root,
       this.lost,
       this.keeping.offer,
-      h("div", { class: "body" }, stage, this.side, this.aside),
+      this.body,
+      this.tool.root,
     );
     this.root.append(
       dropZone(this.root, (file) => void this.read(file)),
@@ -238,7 +251,7 @@ export class App {
     const first = !this.hello;
     this.hello = hello;
     follow(hello.numbers);
-    this.toolbar.offer(hello.examples);
+    this.toolbar.offer(hello.examples, hello.tools);
     if (this.state) this.toolbar.show(this.state);
     else if (first) void this.begin(hello);
   }
@@ -256,6 +269,8 @@ export class App {
     this.opened = "";
     const angle = this.state ? this.player.angle : 0;
     this.state = state;
+    this.tool.hide();
+    this.body.hidden = false;
     measure(state.length);
     this.player.take(state);
     if (other) {
@@ -357,6 +372,7 @@ export class App {
   }
 
   private refuse(message: string, edit: boolean): void {
+    this.tool.say(message);
     this.board.say(message, true);
     if (edit) this.hands.refused();
     this.opened = "";
@@ -401,7 +417,7 @@ export class App {
   private step(type: "undo" | "redo"): void {
     this.talk.release();
     // What was held until now is a step of its own, which the state does not tell yet.
-    if (!this.talk.busy && !this.state?.[type]) return;
+    if (!this.talk.busy && !(this.tool.shown ?? this.state)?.[type]) return;
     this.board.say("", false);
     this.inspector.forget();
     this.talk.ask({ type });

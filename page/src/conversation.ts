@@ -2,9 +2,9 @@
 
 import type { Asked, Edit, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
-import type { GhostMessage, VariantsMessage } from "./protocol";
+import type { GhostMessage, ToolMessage, VariantsMessage } from "./protocol";
 import { Numbers, type Planted, type ResponseMessage, type State } from "./protocol";
-import { type Shelf, Story, type Told as Kept } from "./story";
+import { type Shelf, type Shown, Story, type Told as Kept } from "./story";
 import { language } from "./words";
 
 export interface Events {
@@ -14,6 +14,7 @@ export interface Events {
   planting(message: Planted): void;
   ghost(message: GhostMessage, numbers: Numbers): void;
   variants(message: VariantsMessage): void;
+  tool(message: ToolMessage, numbers: Numbers): void;
   refused(message: string, edit: boolean): void;
   balanced(message: Extract<Told, { type: "balanced" }>): void;
   busy(what: string | null): void;
@@ -126,6 +127,9 @@ export class Conversation {
         return this.events.response(told, new Numbers(told.arrays, buffers[0]));
       case "ghost":
         return this.events.ghost(told, new Numbers(told.arrays, buffers[0]));
+      case "tool":
+        this.events.tool(told, new Numbers(told.arrays, buffers[0]));
+        return this.heard(told);
       case "variants":
         return this.events.variants(told);
       case "planting":
@@ -181,6 +185,11 @@ export class Conversation {
 
   private state(state: State): void {
     this.events.state(state);
+    this.heard(state);
+  }
+
+  /** A question was answered by what is open now. */
+  private heard(state: Shown): void {
     const { seq } = state;
     const asked = (this.flight?.seq === seq ? this.flight : this.aside.get(seq))?.asked;
     const tried = asked?.type === "edit" && !asked.commit;

@@ -60,6 +60,7 @@ export interface Hello {
   type: "hello";
   version: string;
   examples: Example[];
+  tools: Example[];
   /** Most bytes of a model file. */
   largest: number;
   /** Whether the server holds a machine already. */
@@ -283,6 +284,40 @@ export interface ResponseMessage {
   modes: { told: string[]; seen: boolean; shape: number[] }[];
 }
 
+/** A tool from the side at rest: lengths in m. */
+export interface ToolScene {
+  tubes: [start: number, stop: number, diameter: number][];
+  stations: { name: string; place: number; told: string }[];
+  /** Signs about a place of the shaft; `turns` where they turn with it. */
+  pieces: { layer: "below" | "above"; place: number; turns: boolean; shapes: Shape[] }[];
+  looks: Record<string, string>;
+  box: [number, number, number, number];
+}
+
+/** A hand-held tool. */
+export interface ToolMessage {
+  type: "tool";
+  seq: number;
+  name: string;
+  title: string;
+  description: string;
+  undo: string | null;
+  redo: string | null;
+  steps: [past: number, future: number];
+  length: Unit;
+  fields: Field[];
+  scene: ToolScene;
+  /** As it was opened, where it is another now. */
+  before: ToolScene | null;
+  /** Places along the shaft, and how it is seen to move: deflections there as complex numbers. */
+  along: number[];
+  views: { name: string; told: string[]; shape: number[] }[];
+  figures: Change[];
+  charts: ChartData[];
+  arrays: Arrays;
+  notes: string[];
+}
+
 /** A design that is drawn pale, or none. */
 export interface GhostMessage {
   type: "ghost";
@@ -447,6 +482,7 @@ export type Told =
   | StateMessage
   | ResponseMessage
   | GhostMessage
+  | ToolMessage
   | VariantsMessage
   | Planted
   | Balanced

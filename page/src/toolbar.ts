@@ -79,13 +79,14 @@ export class Toolbar {
     );
   }
 
-  offer(examples: Example[]): void {
-    this.examples.replaceChildren(
-      ...examples.map(({ name, title }) => h("option", { value: name, title }, name)),
-    );
+  offer(examples: Example[], tools: Example[]): void {
+    const options = (some: Example[]) =>
+      some.map(({ name, title }) => h("option", { value: name, title }, name));
+    const group = h("optgroup", { label: say("Hand-held tools") }, ...options(tools));
+    this.examples.replaceChildren(...options(examples), group);
   }
 
-  show(state: State): void {
+  show(state: Pick<State, "name" | "undo" | "redo" | "has_forces" | "file">): void {
     const known = [...this.examples.options].some(
       (option) => option !== this.own && option.value === state.name,
     );
