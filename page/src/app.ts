@@ -3,10 +3,11 @@
 import { Bench } from "./bench";
 import { Charts } from "./charts";
 import { Conversation, type Events } from "./conversation";
-import { h, write } from "./dom";
-import { dropZone, save, tooLarge } from "./files";
+import { h, set, write } from "./dom";
+import { dropZone, picker, save, tooLarge } from "./files";
 import { follow, measure } from "./format";
 import { Frames } from "./frames";
+import { Gallery } from "./gallery";
 import { Hands } from "./hands";
 import { Heading } from "./heading";
 import { helpDialog } from "./help";
@@ -22,8 +23,10 @@ import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
 import type { Shelf } from "./story";
 import { Theme } from "./theme";
+import { ToolView } from "./tool";
 import { Toolbar } from "./toolbar";
 import { Tools } from "./tools";
+import { Tour } from "./tour";
 import { TransportBar } from "./transport";
 import { language, say } from "./words";
 
@@ -52,7 +55,17 @@ export class App {
   private readonly toolbar: Toolbar;
   private readonly tools: Tools;
   private readonly transport: TransportBar;
-  private readonly help = helpDialog(() => this.hello?.version ?? "");
+  private readonly tour = new Tour(this.root);
+  private readonly help = helpDialog(
+    () => this.hello?.version ?? "",
+    () => this.tour.begin(),
+  );
+  private readonly picker = picker((file) => void this.read(file));
+  private readonly gallery = new Gallery({
+    wanted: () => this.talk.ask({ type: "gallery" }),
+    example: (name) => void this.open({ type: "open", example: name }, name),
+    file: () => this.picker.click(),
+  });
   private readonly heading = new Heading();
   private readonly keeping: Keeping;
   private readonly lost = h("div", { class: "lost", role: "alert", hidden: true });
@@ -65,6 +78,8 @@ export class App {
     settled: () => this.spell(),
   });
   private readonly undone: (() => void)[] = [];
+  private readonly body = h("div", { class: "body" });
+  private readonly tool: ToolView;
 
   private hello: Hello | null = null;
   private state: State | null = null;
@@ -95,12 +110,21 @@ export class App {
       busy: (what) => this.busy(what),
       tables: (message) => this.bench.show(message),
       file: save,
+      pictured: (one, numbers) => (one ? this.gallery.add(one, numbers) : this.gallery.done()),
+      tool: (message, numbers) => {
+        this.opened = "";
+        this.body.hidden = true;
+        this.tool.show(message, numbers);
+        this.toolbar.show({ ...message, has_forces: false, file: null });
+      },
       saved: (name) => this.keeping.saved(name),
       line: (up) => this.line(up),
+      waiting: (on) => set(this.root, { "data-waiting": on }),
     };
     this.talk = new Conversation(wire, events, shelf);
     el.append(this.root);
     this.theme = new Theme(this.root, () => this.charts.repaint());
+    this.tool = new ToolView(this.talk, this.theme);
     const locks = new Locks();
     const page = {
       talk: this.talk,
@@ -157,7 +181,7 @@ export class App {
     );
     this.toolbar = new Toolbar({
       example: (name) => void this.open({ type: "open", example: name }, name),
-      file: (file) => void this.read(file),
+      gallery: () => this.gallery.show(),
       undo: () => this.step("undo"),
       redo: () => this.step("redo"),
       save: () => void this.keeping.save(),
@@ -174,6 +198,7 @@ export class App {
 
   close(): void {
     this.frames.close();
+    this.tool.close();
     this.charts.close();
     this.bench.close();
     this.talk.close();
@@ -192,19 +217,24 @@ export class App {
     stage.append(this.strokes.root, this.planted.root);
     this.side.append(this.charts.root);
     // A file that plays shows numbers, and takes none.
-    const disabled = this.el.classList.contains("equipoise-played");
+    const disabled = this.played;
     const parts = [...this.bench.roots, this.inspector.root];
     this.aside.append(this.balance.root, h("fieldset", { class: "bare", disabled }, ...parts));
     if (disabled) this.aside.tabIndex = 0; // to be scrolled by keys
+    this.body.append(stage, this.side, this.aside);
     this.root.append(
       this.toolbar.root,
       this.lost,
       this.keeping.offer,
-      h("div", { class: "body" }, stage, this.side, this.aside),
+      this.tour.offer,
+      this.body,
+      this.tool.root,
     );
     this.root.append(
       dropZone(this.root, (file) => void this.read(file)),
       this.help,
+      this.gallery.root,
+      this.picker,
     );
     this.watcher.observe(this.board.root);
     this.watcher.observe(this.charts.root);
@@ -235,17 +265,24 @@ export class App {
     return this.el.classList.contains("equipoise-page");
   }
 
+  private get played(): boolean {
+    return this.el.classList.contains("equipoise-played");
+  }
+
   private greet(hello: Hello): void {
     const first = !this.hello;
     this.hello = hello;
     follow(hello.numbers);
-    this.toolbar.offer(hello.examples);
+    this.toolbar.offer(hello.examples, hello.tools);
     if (this.state) this.toolbar.show(this.state);
     else if (first) void this.begin(hello);
   }
 
   private async begin(hello: Hello): Promise<void> {
-    if (!(await this.keeping.begin(hello)) && !hello.machine) {
+    const begun = await this.keeping.begin(hello);
+    if (this.full && !this.played) this.tour.propose();
+    if (!begun && !hello.machine) {
+      this.gallery.show();
       const names = hello.examples.map(({ name }) => name);
       const example = names.find((name) => name === FIRST) ?? names[0];
       if (example) void this.open({ type: "open", example }, example);
@@ -257,6 +294,8 @@ export class App {
     this.opened = "";
     const angle = this.state ? this.player.angle : 0;
     this.state = state;
+    this.tool.hide();
+    this.body.hidden = false;
     measure(state.length);
     this.player.take(state);
     if (other) {
@@ -358,6 +397,7 @@ export class App {
   }
 
   private refuse(message: string, edit: boolean): void {
+    this.tool.say(message);
     this.board.say(message, true);
     if (edit) this.hands.refused();
     this.opened = "";
@@ -402,7 +442,7 @@ export class App {
   private step(type: "undo" | "redo"): void {
     this.talk.release();
     // What was held until now is a step of its own, which the state does not tell yet.
-    if (!this.talk.busy && !this.state?.[type]) return;
+    if (!this.talk.busy && !(this.tool.shown ?? this.state)?.[type]) return;
     this.board.say("", false);
     this.inspector.forget();
     this.talk.ask({ type });

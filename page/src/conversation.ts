@@ -2,9 +2,9 @@
 
 import type { Asked, Edit, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
-import type { GhostMessage, VariantsMessage } from "./protocol";
-import { Numbers, type Planted, type ResponseMessage, type State } from "./protocol";
-import { type Shelf, Story, type Told as Kept } from "./story";
+import { Numbers, type Pictured, type Planted, type ResponseMessage, type State } from "./protocol";
+import type { GhostMessage, ToolMessage, VariantsMessage } from "./protocol";
+import { type Shelf, type Shown, Story, type Told as Kept } from "./story";
 import { language } from "./words";
 
 export interface Events {
@@ -14,13 +14,17 @@ export interface Events {
   planting(message: Planted): void;
   ghost(message: GhostMessage, numbers: Numbers): void;
   variants(message: VariantsMessage): void;
+  tool(message: ToolMessage, numbers: Numbers): void;
   refused(message: string, edit: boolean): void;
   balanced(message: Extract<Told, { type: "balanced" }>): void;
   busy(what: string | null): void;
   tables(message: Tables): void;
   saved(name: string): void;
+  pictured(message: Pictured | null, numbers: Numbers): void;
   file(name: string, mime: string, bytes: DataView | undefined): void;
   line(up: boolean): void;
+  /** An answer takes longer than a reader waits without a sign. */
+  waiting(on: boolean): void;
 }
 
 /** Hears that something was done, or why not. */
@@ -35,7 +39,10 @@ interface Question {
 }
 
 /** What takes long: other questions do not wait for it. */
-const SLOW = new Set(["balance", "download"]);
+const SLOW = new Set(["balance", "download", "gallery"]);
+
+/** Without a sign nobody waits longer than this, ms. */
+const PATIENCE = 100;
 
 /** What leaves the machine on the server as it was; all else is said again after a broken line. */
 const IDLE = new Set(["ready", "speak", "save", "download", "tables"]);
@@ -52,6 +59,7 @@ export class Conversation {
   private waiting: Question | null = null;
   private readonly aside = new Map<number, Question>();
   private readonly story: Story;
+  private late = 0;
   private repeating = false;
 
   /** `shelf` is where what was done outlives a reload. */
@@ -106,6 +114,7 @@ export class Conversation {
     // What follows a balance in a story was done to its result.
     if (SLOW.has(question.asked.type) && !this.repeating) this.aside.set(question.seq, question);
     else this.flight = question;
+    if (this.flight) this.late ||= window.setTimeout(() => this.events.waiting(true), PATIENCE);
     this.wire.send({ ...question.asked, seq: question.seq });
     this.next();
   }
@@ -114,11 +123,16 @@ export class Conversation {
     switch (told.type) {
       case "hello":
         // Without a machine a `hello` is all the answer there is to `ready`.
-        if (!told.machine && this.flight?.asked.type === "ready") this.flight = null;
+        if (!told.machine && this.flight?.asked.type === "ready") this.land();
         this.events.hello(told);
         return this.next();
       case "state":
         return this.state({ ...told, numbers: new Numbers(told.arrays, buffers[0]) });
+      case "pictured":
+        return this.events.pictured(told, new Numbers(told.arrays, buffers[0]));
+      case "gallery":
+        this.events.pictured(null, new Numbers({}, undefined));
+        return this.end(told.seq, null);
       case "saved":
         this.story.saved(told.base, told.text);
         return this.events.saved(told.name);
@@ -126,6 +140,9 @@ export class Conversation {
         return this.events.response(told, new Numbers(told.arrays, buffers[0]));
       case "ghost":
         return this.events.ghost(told, new Numbers(told.arrays, buffers[0]));
+      case "tool":
+        this.events.tool(told, new Numbers(told.arrays, buffers[0]));
+        return this.heard(told);
       case "variants":
         return this.events.variants(told);
       case "planting":
@@ -167,7 +184,7 @@ export class Conversation {
   private end(seq: number, refusal: string | null, told: Refused | null = null): void {
     const question = this.flight?.seq === seq ? this.flight : this.aside.get(seq);
     if (!question) return;
-    if (question === this.flight) this.flight = null;
+    if (question === this.flight) this.land();
     else if (this.aside.delete(seq)) this.events.busy(null);
     // Without what a story began with, nothing of it can be done.
     if (this.repeating && refusal !== null && question.asked.type === "open") {
@@ -179,8 +196,20 @@ export class Conversation {
     this.next();
   }
 
+  private land(): void {
+    this.flight = null;
+    clearTimeout(this.late);
+    this.late = 0;
+    this.events.waiting(false);
+  }
+
   private state(state: State): void {
     this.events.state(state);
+    this.heard(state);
+  }
+
+  /** A question was answered by what is open now. */
+  private heard(state: Shown): void {
     const { seq } = state;
     const asked = (this.flight?.seq === seq ? this.flight : this.aside.get(seq))?.asked;
     const tried = asked?.type === "edit" && !asked.commit;
@@ -215,7 +244,7 @@ export class Conversation {
   /** A new connection knows nothing: tell it all that was done. */
   private line(up: boolean): void {
     this.events.line(up);
-    this.flight = null;
+    this.land();
     this.waiting = null;
     this.queue.length = 0;
     if (this.aside.size) this.events.busy(null);

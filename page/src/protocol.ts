@@ -39,7 +39,7 @@ export type Asked =
   | { type: "open"; name: string; text: string; file?: true }
   | { type: "edit"; commit: boolean; label: string; edits: Edit[] }
   | ({ type: "make"; at: number } & Made)
-  | { type: "undo" | "redo" | "balance" | "save" }
+  | { type: "undo" | "redo" | "balance" | "save" | "gallery" }
   | { type: "compare"; on: false }
   | { type: "tables" }
   | EntryAsked
@@ -61,6 +61,7 @@ export interface Hello {
   type: "hello";
   version: string;
   examples: Example[];
+  tools: Example[];
   /** Most bytes of a model file. */
   largest: number;
   /** Whether the server holds a machine already. */
@@ -68,6 +69,19 @@ export interface Hello {
   /** Sign of the file that it can save; empty where there is none. */
   base: string;
   numbers: NumberRules;
+}
+
+/** A bundled machine, with its drawing. */
+export interface Pictured {
+  type: "pictured";
+  seq: number;
+  name: string;
+  title: string;
+  line: string;
+  /** Sample at which it is drawn where it stands still. */
+  at: number;
+  scene: Scene;
+  arrays: Arrays;
 }
 
 /** The language that is spoken from now on. */
@@ -284,6 +298,40 @@ export interface ResponseMessage {
   modes: { told: string[]; seen: boolean; shape: number[] }[];
 }
 
+/** A tool from the side at rest: lengths in m. */
+export interface ToolScene {
+  tubes: [start: number, stop: number, diameter: number][];
+  stations: { name: string; place: number; told: string }[];
+  /** Signs about a place of the shaft; `turns` where they turn with it. */
+  pieces: { layer: "below" | "above"; place: number; turns: boolean; shapes: Shape[] }[];
+  looks: Record<string, string>;
+  box: [number, number, number, number];
+}
+
+/** A hand-held tool. */
+export interface ToolMessage {
+  type: "tool";
+  seq: number;
+  name: string;
+  title: string;
+  description: string;
+  undo: string | null;
+  redo: string | null;
+  steps: [past: number, future: number];
+  length: Unit;
+  fields: Field[];
+  scene: ToolScene;
+  /** As it was opened, where it is another now. */
+  before: ToolScene | null;
+  /** Places along the shaft, and how it is seen to move: deflections there as complex numbers. */
+  along: number[];
+  views: { name: string; told: string[]; shape: number[] }[];
+  figures: Change[];
+  charts: ChartData[];
+  arrays: Arrays;
+  notes: string[];
+}
+
 /** A design that is drawn pale, or none. */
 export interface GhostMessage {
   type: "ghost";
@@ -445,9 +493,13 @@ export interface Tables {
 export type Told =
   | Hello
   | Spoken
+  | Pictured
+  /** All of them have come. */
+  | { type: "gallery"; seq: number }
   | StateMessage
   | ResponseMessage
   | GhostMessage
+  | ToolMessage
   | VariantsMessage
   | Planted
   | Balanced

@@ -160,7 +160,11 @@ export class BalancePanel {
   }
 }
 
-function comparison(figures: Change[]): HTMLTableElement {
+/** Figures before and after, and by how much they have changed. */
+export function comparison(
+  figures: Change[],
+  heads = [say("before"), say("after"), say("change")],
+): HTMLTableElement {
   const rows = figures.map(({ label, unit, texts: [before, after, change], way }) =>
     h(
       "tr",
@@ -176,7 +180,6 @@ function comparison(figures: Change[]): HTMLTableElement {
       h("td", { class: way }, change),
     ),
   );
-  const words = [say("before"), say("after"), say("change")];
-  const head = words.map((text) => h("th", { scope: "col" }, text));
+  const head = heads.map((text) => h("th", { scope: "col" }, text));
   return h("table", {}, h("thead", {}, h("tr", {}, h("td"), ...head)), h("tbody", {}, ...rows));
 }

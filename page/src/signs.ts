@@ -46,7 +46,7 @@ export class Piece {
     runs(sign.shapes).forEach((run, i) => {
       const element = this.parts[i] as SVGElement;
       const [, , radius, grown, corners] = run[0] as Shape;
-      if (!(radius + grown)) return element.setAttribute("d", run.map(path(scale)).join(""));
+      if (!(radius + grown)) return element.setAttribute("d", run.map(shapePath(scale)).join(""));
       const [cx, cy] = corner(corners, 0, scale);
       const r = (radius * scale + grown).toFixed(2);
       set(element, { cx: cx.toFixed(2), cy: cy.toFixed(2), r });
@@ -106,7 +106,7 @@ export function build(scene: Scene): string {
 }
 
 /** Neighbours that are drawn alike: lines of a role together, circles each by itself. */
-function runs(shapes: Shape[]): Shape[][] {
+export function runs(shapes: Shape[]): Shape[][] {
   const found: Shape[][] = [];
   for (const shape of shapes) {
     const last = found[found.length - 1];
@@ -117,7 +117,8 @@ function runs(shapes: Shape[]): Shape[][] {
   return found;
 }
 
-function path(scale: number): (shape: Shape) => string {
+/** The outline of a shape with so many pixels a metre. */
+export function shapePath(scale: number): (shape: Shape) => string {
   return ([, closed, , , corners]) => {
     let d = "";
     for (let i = 0; i < corners.length; i += 4) {

@@ -41,6 +41,9 @@ const STEPS = new Set(["edit", "make", "balance", "entry"]);
 /** Of these the last one is enough. */
 const SETTINGS = new Set(["compare", "outputs", "arrows"]);
 
+/** What is told of a machine, or a tool, that is open. */
+export type Shown = Pick<State, "seq" | "name" | "steps">;
+
 export class Story {
   private told: Told = empty("");
   /** Steps that the server could undo when it was heard last. */
@@ -80,18 +83,18 @@ export class Story {
   }
 
   /** Whether an answer tells of a step more. */
-  private deeper(question: Asked, { steps: [past, future] }: State): boolean {
+  private deeper(question: Asked, { steps: [past, future] }: Shown): boolean {
     if (past !== this.depth || past < DEEPEST) return past > this.depth;
     return future === 0 && STEPS.has(question.type);
   }
 
   /** A state was told. */
-  heard(state: State): void {
+  heard(state: Shown): void {
     [this.depth] = state.steps;
   }
 
   /** A question was answered by a state. */
-  remember(question: Asked, state: State): void {
+  remember(question: Asked, state: Shown): void {
     const { told } = this;
     if (question.type === "open") this.told = { ...empty(told.base), start: [question] };
     else if (question.type === "undo") move(told.past, told.future, "start");

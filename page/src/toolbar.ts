@@ -16,7 +16,7 @@ const ICONS = {
 
 export interface Commands {
   example(name: string): void;
-  file(file: File): void;
+  gallery(): void;
   undo(): void;
   save(): void;
   link(): void;
@@ -43,19 +43,7 @@ export class Toolbar {
       "aria-label": say("Example"),
       onchange: () => commands.example(this.examples.value),
     });
-    const file = h("input", {
-      type: "file",
-      hidden: true,
-      accept: ".toml",
-      "aria-label": say("Model file"),
-      tabindex: -1,
-    });
-    file.addEventListener("change", () => {
-      const [chosen] = file.files ?? [];
-      file.value = "";
-      if (chosen) commands.file(chosen);
-    });
-    const open = button(say("Choose file"), "open", () => file.click());
+    const open = button(say("Open"), "open", () => commands.gallery());
     this.undo = button("", "undo", () => commands.undo(), say("Undo"));
     this.redo = button("", "redo", () => commands.redo(), say("Redo"));
     this.balance = button(say("Balance"), "balance", () => commands.balance());
@@ -69,7 +57,6 @@ export class Toolbar {
       h("span", { class: "mark" }, "equipoise"),
       this.examples,
       open,
-      file,
       h("span", { class: "gap" }),
       h("span", { class: "together" }, this.undo, this.redo, this.save),
       this.balance,
@@ -79,13 +66,14 @@ export class Toolbar {
     );
   }
 
-  offer(examples: Example[]): void {
-    this.examples.replaceChildren(
-      ...examples.map(({ name, title }) => h("option", { value: name, title }, name)),
-    );
+  offer(examples: Example[], tools: Example[]): void {
+    const options = (some: Example[]) =>
+      some.map(({ name, title }) => h("option", { value: name, title }, name));
+    const group = h("optgroup", { label: say("Hand-held tools") }, ...options(tools));
+    this.examples.replaceChildren(...options(examples), group);
   }
 
-  show(state: State): void {
+  show(state: Pick<State, "name" | "undo" | "redo" | "has_forces" | "file">): void {
     const known = [...this.examples.options].some(
       (option) => option !== this.own && option.value === state.name,
     );

@@ -122,12 +122,12 @@ def test_a_picture_is_scaled_and_traced_over(live: Live, tmp_path: Path) -> None
         assert box is not None
         across, down = MARKS[mark]
         place = box["x"] + across / 400 * box["width"], box["y"] + down / 200 * box["height"]
-        expect(page.locator(".aim")).to_be_visible()
+        expect(page.locator(".picking")).to_be_visible()
         page.mouse.click(*place)
 
     live.button("Scale by two places").click()
     click("first")
-    expect(page.locator(".aim")).to_have_attribute("aria-label", "Click the second place.")
+    expect(page.locator(".picking")).to_have_attribute("aria-label", "Click the second place.")
     click("second")
     distance = page.get_by_label("True distance of the two places")
     expect(distance).to_be_focused()
@@ -136,7 +136,7 @@ def test_a_picture_is_scaled_and_traced_over(live: Live, tmp_path: Path) -> None
 
     live.button("Measure").click()
     click("first")
-    expect(page.locator(".aim")).to_have_attribute("aria-label", "Click where to measure to.")
+    expect(page.locator(".picking")).to_have_attribute("aria-label", "Click where to measure to.")
     click("third")
     told = page.locator(".measured")
     expect(told).to_have_text(re.compile("along y$"))
@@ -168,7 +168,7 @@ def test_a_dxf_drawing_is_snapped_to_by_keyboard_too(live: Live, tmp_path: Path)
     page.get_by_label("Picture or DXF drawing").set_input_files(file)
     expect(page.locator(".underlay path")).to_be_attached()
     live.button("Measure").click()
-    aim = page.locator(".aim")
+    aim = page.locator(".picking")
     expect(aim).to_be_focused()
     expect(live.told("Click where to measure from.")).to_be_visible()
     box = page.locator(".underlay path").bounding_box()

@@ -383,7 +383,6 @@ REFUSED = {
     },
     "serve --no-browser": {
         "nowhere.toml": "nowhere.toml: there is no such file",
-        "brush-cutter": "brush-cutter.toml: this is the file of a hand-held tool; ",
         "study-of-lengths": "study-of-lengths.toml: this is a study",
         "yamashita-1 --port 99999": "--port: got '99999'; give a whole number from 0 to",
         "yamashita-1 --port 8o": "--port: got '8o'",

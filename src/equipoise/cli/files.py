@@ -13,7 +13,7 @@ from equipoise.cli.outputs import Shown, wrote
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
-    from equipoise.web.session import Session
+    pass
 
 STARTS = {
     # kind of file: text to start from, usual name, what comes next
@@ -132,22 +132,10 @@ def serve(
         Print the address, and open no browser.
     """
     from equipoise.web import server
-    from equipoise.web.disk import on_disk
-    from equipoise.web.openings import opened_file
-    from equipoise.web.session import Session
+    from equipoise.web.desk import begun
 
-    first = Session()
-    if file is not None:
-        with naming(file):  # what is wrong with the machine is told before a page is opened
-            first.open(opened_file(file))
-            first.disk = on_disk(file, first.shown)
-
-    def begin() -> Session:
-        session = Session(disk=first.disk)
-        if first.found is not None:
-            found = first.shown if first.disk is None else first.disk.found
-            session.open(found.design, found)
-        return session
+    with naming(file or ""):  # what is wrong with a file is told before a page is opened
+        begin = begun(file)
 
     def tell(address: str) -> None:
         print(address, flush=True)

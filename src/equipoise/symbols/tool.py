@@ -101,14 +101,35 @@ class ToolScene:
         low, high = (complex(end(corners.real), end(corners.imag)) for end in (np.min, np.max))
         return low - room, high + room
 
+    def pieces(self) -> list[tuple[str, Seat, bool, tuple[Shape, ...]]]:
+        """What every seat has, about its place on the shaft: layer, seat, whether it turns with the
+        shaft, shapes.  The shaft lies between the layers ``below`` and ``above``.
+        """
+        kinds = (
+            ("below", _held, False),
+            ("below", _absorber, True),
+            ("above", _body, True),
+            ("above", _hands, False),
+        )
+        found = [
+            (layer, one, turns, tuple(draw(one)))
+            for layer, draw, turns in kinds
+            for one in self.seats
+        ]
+        return [one for one in found if one[3]]
+
     def at(self, k: int) -> list[Shape]:
         """Everything that is drawn at the k-th instant, from the back to the front."""
-        tracks = self.tracks
-        held, hung, bodies, hands = (
-            [tracks[one.name][upright].moved(shape, k) for one in self.seats for shape in draw(one)]
-            for draw, upright in ((_held, 1), (_absorber, 0), (_body, 0), (_hands, 1))
+        below, above = (
+            [
+                self.tracks[seat.name][not turns].moved(shape, k)
+                for where, seat, turns, shapes in self.pieces()
+                for shape in shapes
+                if where == layer
+            ]
+            for layer in ("below", "above")
         )
-        return [*held, *hung, *self._shaft(k), *bodies, *hands]
+        return [*below, *self._shaft(k), *above]
 
     def _shaft(self, k: int) -> Iterator[Shape]:
         for tube in self.shaft:

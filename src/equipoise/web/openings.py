@@ -11,13 +11,19 @@ from equipoise.schema.models import load_linkage, loads_linkage
 from equipoise.schema.opening import examples, kind_of_text, opened
 from equipoise.web.design import Design
 
-TOOLS = "this is the file of a hand-held tool; `equipoise report` and `equipoise plot` show those"
+TOOLS = "this is the file of a hand-held tool; give that of a linkage, or `equipoise serve` it"
 
 
 @cache
 def titles() -> dict[str, str]:
     """Titles of the bundled machines by name."""
     return examples("linkage")
+
+
+@cache
+def tool_titles() -> dict[str, str]:
+    """Titles of the bundled tools by name."""
+    return examples("tool")
 
 
 def opened_example(name: str) -> Design:

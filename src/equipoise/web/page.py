@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any
 from starlette.websockets import WebSocketDisconnect
 
 from equipoise.errors import UsageError
+from equipoise.web.desk import Desk
 from equipoise.web.lanes import MOMENT, Lanes, Work
 from equipoise.web.messages import SLOW, Message, read
 from equipoise.web.replies import Reply, refused
-from equipoise.web.session import Session
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
@@ -40,8 +40,8 @@ class Page:
     lanes : threads that compute; what takes long has its own, so that dragging goes on.
     """
 
-    def __init__(self, socket: WebSocket, session: Session, lanes: Lanes) -> None:
-        self.socket, self.session, self.lanes, self.work = socket, session, lanes, Work()
+    def __init__(self, socket: WebSocket, desk: Desk, lanes: Lanes) -> None:
+        self.socket, self.desk, self.lanes, self.work = socket, desk, lanes, Work()
         self.waiting: deque[Message | UsageError] = deque()
         self.come = asyncio.Event()
         self.closed = False
@@ -65,7 +65,7 @@ class Page:
             await asyncio.gather(*tasks, return_exceptions=True)
 
     async def _talk(self) -> None:
-        await self._send(self.session.hello())
+        await self._send(self.desk.hello())
         while (message := await self._next()) is not None:
             await self._take(message)
 
@@ -103,7 +103,7 @@ class Page:
             self.last = message
             known = message.kind != "open" and self.work.spent < MOMENT
             lane = self.lanes.quick if known else self.lanes.heavy
-            await self._answer(self.session.receive(message), message.seq, lane, self.work.timed)
+            await self._answer(self.desk.receive(message), message.seq, lane, self.work.timed)
             if _done(self.more):
                 self.more = asyncio.create_task(self._tell_more())
         elif self.questions.full():
@@ -115,15 +115,15 @@ class Page:
         """Answer what takes long, one after the other, beside what does not."""
         while True:
             message = await self.questions.get()
-            await self._answer(self.session.receive(message), message.seq, self.lanes.long)
+            await self._answer(self.desk.receive(message), message.seq, self.lanes.long)
 
     async def _tell_more(self) -> None:
         """What takes too long to be told at every move of a drag."""
-        while not self.closed and self.session.has_more:
+        while not self.closed and self.desk.has_more:
             last = self.last
             await asyncio.sleep(PAUSE)
             if not self.waiting and self.last is last:
-                await self._answer(self.session.tell_more(), None, self.lanes.long)
+                await self._answer(self.desk.tell_more(), None, self.lanes.long)
 
     async def _answer(
         self, replies: Iterator[Reply], seq: int | None, lane: Executor, do: Do | None = None

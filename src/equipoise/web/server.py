@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING
 from equipoise.errors import UsageError
 from equipoise.schema.files import reason
 from equipoise.web.assets import TYPES, assets
+from equipoise.web.desk import Desk
 from equipoise.web.lanes import Lanes
 from equipoise.web.messages import LARGEST_MESSAGE
 from equipoise.web.page import Page, turn_away
-from equipoise.web.session import Session
 
 if TYPE_CHECKING:
     import uvicorn
@@ -134,7 +134,7 @@ HTML = """<!doctype html>
 """
 
 
-def application(port: int, token: str, begin: Callable[[], Session], lanes: Lanes) -> ASGIApp:
+def application(port: int, token: str, begin: Callable[[], Desk], lanes: Lanes) -> ASGIApp:
     """The server as an ASGI application.
 
     port : on which it is served.  token : that every request has to carry.
@@ -180,7 +180,7 @@ def application(port: int, token: str, begin: Callable[[], Session], lanes: Lane
 
 @contextmanager
 def served(
-    begin: Callable[[], Session], port: int | None = 0
+    begin: Callable[[], Desk], port: int | None = 0
 ) -> Iterator[tuple[uvicorn.Server, socket.socket, str]]:
     """A server that is ready to run on a socket that listens, and the address of its page.
 
@@ -214,7 +214,7 @@ def served(
         yield uvicorn.Server(config), listener, f"http://{ADDRESS}:{port}/?token={token}"
 
 
-def serve(begin: Callable[[], Session], port: int | None, tell: Callable[[str], None]) -> None:
+def serve(begin: Callable[[], Desk], port: int | None, tell: Callable[[str], None]) -> None:
     """Serve pages on this machine until interrupted; errors as `served`.
 
     tell : is given the address of the page, which is served from then on.

@@ -35,7 +35,7 @@ from equipoise.web.fields import Scale, fields_of
 from equipoise.web.history import History, Step
 from equipoise.web.making import made
 from equipoise.web.messages import MOST_LANGUAGES, Message
-from equipoise.web.openings import opened_example, opened_text, titles
+from equipoise.web.openings import opened_example, opened_text, titles, tool_titles
 from equipoise.web.replies import Reply, refused
 from equipoise.web.seen import ASKED, Seen
 from equipoise.web.shaken import more, response_of
@@ -194,6 +194,9 @@ class Session:
                 "version": __version__,
                 "examples": [
                     {"name": name, "title": said(title)} for name, title in titles().items()
+                ],
+                "tools": [
+                    {"name": name, "title": said(title)} for name, title in tool_titles().items()
                 ],
                 "largest": LARGEST,
                 "numbers": display_rules(),

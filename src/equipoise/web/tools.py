@@ -1,0 +1,259 @@
+"""A hand-held tool on the page: numbers by the paths of studies, what was done, what is shown."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from equipoise.errors import ModelError, UsageError
+from equipoise.handheld.model import Tool
+from equipoise.i18n import LANGUAGES, said, say
+from equipoise.mechanism.checks import unknown
+from equipoise.quantities import in_unit, parse, typeset
+from equipoise.quantities.units import KINDS
+from equipoise.schema.documents import dumps
+from equipoise.schema.files import printable
+from equipoise.schema.numbers import Number, format_share, parse_share
+from equipoise.schema.opening import kind_of_text, opened
+from equipoise.schema.template import Template
+from equipoise.web.messages import Message, Setting
+from equipoise.web.openings import tool_titles
+from equipoise.web.replies import Reply
+from equipoise.web.tool_state import ToolFigures, tool_state
+
+Values = dict[str, Any]
+MOST_STEPS = 500
+NOT_SHOWN = ("design.", "title", "description")
+"""Begin paths of what only says what a design may change."""
+SHOWN = 5
+"""Significant digits of a number that is not typed."""
+
+
+@dataclass(frozen=True, eq=False)
+class ToolStep:
+    """One state of a tool: numbers that are others than in the file, by path, SI units."""
+
+    values: Mapping[str, float]
+    tool: Tool
+    label: str = ""
+
+    @cached_property
+    def figures(self) -> ToolFigures:
+        """What is computed of it."""
+        return ToolFigures(self.tool)
+
+
+@dataclass
+class ToolDesk:
+    """A tool that is open on a page.
+
+    name : of its file.  template : in which numbers are put.
+    past, now, future : what was done.  preview : while a slider is held.
+    """
+
+    name: str
+    template: Template
+    now: ToolStep
+    past: tuple[ToolStep, ...] = ()
+    future: tuple[ToolStep, ...] = ()
+    preview: ToolStep | None = None
+
+    @property
+    def first(self) -> ToolStep:
+        """As it was opened, or the oldest that is kept."""
+        return (*self.past, self.now)[0]
+
+    @property
+    def again(self) -> ToolDesk:
+        """The same tool for another page, as it was opened."""
+        return ToolDesk(self.name, self.template, self.first)
+
+    @classmethod
+    def of(cls, name: str, template: Template) -> ToolDesk:
+        """That of a file; the errors are those of its tool."""
+        tool = template.base()
+        if not isinstance(tool, Tool):
+            raise UsageError(f"{name}: got the file of a linkage; give that of a tool")
+        return cls(name, template, ToolStep({}, tool))
+
+    # -- what a page may ask -----------------------------------------------------------------------
+
+    def receive(self, message: Message) -> Iterator[Reply]:
+        """Answer what can be asked of a tool; errors where it cannot."""
+        if message.kind == "edit":
+            self._edit(message)
+        elif message.kind in ("undo", "redo"):
+            self._step(message.kind)
+        elif message.kind == "download":
+            yield self._download(message)
+            return
+        elif message.kind not in ("ready", "open"):
+            raise UsageError(f"{message.kind} is for linkages; a tool is open")
+        yield self.told(message.seq)
+
+    def _edit(self, message: Message) -> None:
+        commit, values = message.flag("commit", True), dict(self.now.values)
+        for change in message.changes():
+            if not isinstance(change, Setting):
+                raise UsageError("a tool has no joints to be dragged; set a number of it")
+            values[change.path] = self._value(change)
+        try:
+            found = ToolStep(values, self._tool(values), message.label)
+            _ = found.figures.whole
+        except (ModelError, UsageError):
+            if not commit or self.preview is None:
+                raise
+            found = self.preview  # the last place of a slider at which it could be
+        if commit:
+            self.past = (*self.past[1 - MOST_STEPS :], self.now)
+            self.now, self.future, self.preview = found, (), None
+        else:
+            self.preview = found
+
+    def _value(self, change: Setting) -> float:
+        """What a number is set to, SI units."""
+        numbers = self._numbers()
+        if change.path not in numbers:
+            raise UsageError(unknown(change.path, numbers, "number of this tool"))
+        number, typed = numbers[change.path], change.to
+        if not isinstance(typed, str):
+            return typed
+        text = typed.strip()
+        if number.dimension is not None:
+            return parse(text, number.dimension)
+        share = parse_share(text)
+        try:
+            return float(text) if share is None else share
+        except ValueError:
+            raise UsageError(f"got {printable(text)!r}; give a plain number, such as 2") from None
+
+    def _tool(self, values: Mapping[str, float]) -> Tool:
+        found = self.template.machine(values)
+        assert isinstance(found, Tool)
+        return found
+
+    def _step(self, way: str) -> None:
+        where = self.past if way == "undo" else self.future
+        if not where:
+            raise UsageError(f"there is nothing to {way}")
+        if way == "undo":
+            self.future, self.now, self.past = (self.now, *self.future), where[-1], where[:-1]
+        else:
+            self.past, self.now, self.future = (*self.past, self.now), where[0], where[1:]
+        self.preview = None
+
+    def _download(self, message: Message) -> Reply:
+        kind, language = message.text("kind"), message.text("language", "en")
+        stem = self.name.removesuffix(".toml") or "tool"
+        text = dumps(self.now.tool)
+        name, mime = f"{stem}.toml", "application/toml"
+        if kind == "report":
+            from equipoise.present.composition import report_page
+            from equipoise.present.findings import ToolFindings
+
+            if language not in LANGUAGES:
+                raise UsageError(unknown(language, LANGUAGES, "language of reports"))
+            found = ToolFindings(self.now.tool, text, name)
+            text, name, mime = report_page(found, language), f"{stem}-report.html", "text/html"
+        elif kind != "model":
+            raise UsageError(f"{kind}: that is there for linkages; of a tool, model or report")
+        told = {"type": "file", "seq": message.seq, "name": name, "mime": mime}
+        return Reply(told, text.encode())
+
+    # -- what it is told ---------------------------------------------------------------------------
+
+    @property
+    def shown(self) -> ToolStep:
+        """What the page sees."""
+        return self.preview or self.now
+
+    def told(self, seq: int | None) -> Reply:
+        """Everything that the page shows of the tool."""
+        content, data = tool_state(self.shown.figures, self.first.figures)
+        history = {
+            "undo": self.now.label if self.past else None,
+            "redo": self.future[0].label if self.future else None,
+            "steps": [len(self.past), len(self.future)],
+        }
+        fields = [*self._fields()]
+        told = {"type": "tool", "seq": seq, "name": self.name, "fields": fields, **history}
+        return Reply({**told, **content}, data)
+
+    def _numbers(self) -> dict[str, Number]:
+        found = self.template.numbers()
+        return {path: one for path, one in found.items() if not path.startswith(NOT_SHOWN)}
+
+    def _fields(self) -> Iterator[Values]:
+        """Numbers as `fields` tells those of a linkage."""
+        values, length = self.shown.values, self.first.tool.shaft.length
+        for path, number in self._numbers().items():
+            value = float(values.get(path, number.value))
+            usual = float(number.value)
+            low, high = sorted((0.0, 2 * usual or 1.0))
+            if path.endswith(".position"):
+                low, high = 0.0, length
+            group = _group(self.first.tool, path)
+            told = {
+                "path": path,
+                "group": group,
+                "label": said(self.template.words(path)).replace(f" of the {group}", ""),
+                "value": value,
+                "min": min(low, value),
+                "max": max(high, value),
+                "step": (high - low) / 1000,
+                "kind": "number",
+            }
+            yield {**told, **_written(number, value, self.template.unit(path))}
+
+
+def _group(tool: Tool, path: str) -> str:
+    """The heading that a number belongs under."""
+    parts = path.replace("[", ".").replace("]", "").split(".")
+    if parts[:2] == ["shaft", "stations"]:
+        return tool.stations[int(parts[2]) - 1].name
+    if parts[0] == "excitations":
+        one = tool.excitations[int(parts[1]) - 1]
+        return one.name or one.file or one.station
+    if parts[0] == "work":
+        return tool.work[int(parts[1]) - 1].name
+    return say("shaft") if parts[0] == "shaft" else parts[0]
+
+
+def _written(number: Number, value: float, unit: str) -> Values:
+    """A number in the unit of its file: as it is typed, and as it is read."""
+    if number.share:
+        text = format_share(value)
+        return {"text": text, "shown": text, "unit": "%", "factor": 100.0}
+    if number.dimension is None:
+        text = f"{value:.{SHOWN}g}"
+        return {"text": repr(value), "shown": typeset(text), "unit": "", "factor": 1.0}
+    shown = in_unit(unit or KINDS[number.dimension].printed[0])
+    text = f"{shown.factor * value:.12g} {shown.unit}"
+    read = shown.with_unit(typeset(f"{shown.factor * value:.{SHOWN}g}"))
+    return {"text": text, "shown": read, "unit": shown.unit, "factor": shown.factor}
+
+
+def tool_asked(message: Message) -> ToolDesk | None:
+    """The tool that a message of the kind `open` wants; None where it wants something else."""
+    if "example" in message.values:
+        name = message.text("example")
+        return tool_of_file(name) if name in tool_titles() else None
+    text = message.text("text")
+    if kind_of_text(text) != "tool":
+        return None
+    return tool_of_text(message.text("name", "tool.toml"), text)
+
+
+def tool_of_text(name: str, text: str) -> ToolDesk:
+    """The tool of a file's text."""
+    shown = printable(name)
+    return ToolDesk.of(shown, Template(text.removeprefix("\ufeff"), shown))
+
+
+def tool_of_file(path_or_name: str | os.PathLike[str]) -> ToolDesk:
+    """The tool of a file, with the tables beside it, or of an example."""
+    name = printable(os.path.basename(path_or_name))
+    return ToolDesk.of(name, Template.of_opened(opened(path_or_name)))

@@ -1,0 +1,124 @@
+"""A hand-held tool on a page without a browser: what it is told and what can be asked."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.handheld.modes import vibrate_tool
+from equipoise.web.desk import Desk, begun
+from equipoise.web.messages import message_of
+from surface.running import TOOLS, example_text
+
+PATH = "shaft.outer_diameter"
+
+
+def ask(desk: Desk, asked: str, /, **values):
+    """The answers to a message, which goes by way of JSON."""
+    message = message_of(json.loads(json.dumps({"type": asked, "seq": 1, **values})))
+    return [*desk.receive(message)]
+
+
+def shown(replies):
+    """What the page is told of the tool."""
+    (found,) = [one for one in replies if one.content["type"] == "tool"]
+    assert json.dumps(found.content, allow_nan=False)
+    return found.content
+
+
+def figures(content):
+    return {one["name"]: one for one in content["figures"]}
+
+
+def setting(desk: Desk, text: str, commit=True, path=PATH):
+    edits = [{"set": path, "text": text}]
+    return ask(desk, "edit", commit=commit, label=path, edits=edits)
+
+
+@pytest.mark.parametrize("name", TOOLS)
+def test_a_tool_is_told_from_the_side_with_its_modes(name) -> None:
+    desk = begun(name)()
+    hello, told = ask(desk, "ready")
+    assert hello.content["machine"]
+    assert {one["name"] for one in hello.content["tools"]} == set(TOOLS)
+    content, tool = told.content, eq.load(name)
+    assert [one["name"] for one in content["scene"]["stations"]] == [s.name for s in tool.stations]
+    assert content["along"][-1] == tool.shaft.length
+    modes = vibrate_tool(tool)
+    elastic = [f for f in modes.planes[0].cycles_per_second if f > 0]
+    views = [one for one in content["views"] if one["name"].startswith("mode ")]
+    assert len(views) == 4
+    for view, frequency in zip(views, elastic, strict=False):
+        assert f"{frequency:.4g} Hz" in view["name"]
+        shape = np.array(view["shape"]).view(complex)
+        assert np.max(np.abs(shape)) == pytest.approx(0.05 * tool.shaft.length, rel=1e-3)
+    told_masses = float(figures(content)["mass"]["texts"][1])
+    assert told_masses == pytest.approx(tool.mass, rel=1e-3)
+    assert {one["path"].partition(".")[0] for one in content["fields"]} >= {"shaft", "operation"}
+
+
+def test_numbers_are_set_by_the_paths_of_studies_and_figures_told_before_and_after() -> None:
+    desk = begun("brush-cutter")()
+    start = shown(ask(desk, "ready"))
+    assert start["before"] is None
+    dragged = shown(setting(desk, "27 mm", commit=False))
+    after = shown(setting(desk, "30 mm"))
+    assert dragged["undo"] is None and after["undo"] == PATH
+    wanted = eq.loads(
+        example_text("brush-cutter").replace('outer_diameter = "26 mm"', 'outer_diameter = "30 mm"')
+    )
+    mass = figures(after)["mass"]
+    assert mass["before"] == pytest.approx(eq.load("brush-cutter").mass)
+    assert mass["after"] == pytest.approx(wanted.mass)
+    lowest = figures(after)["vertical.4"]
+    assert lowest["after"] == pytest.approx(vibrate_tool(wanted).planes[0].cycles_per_second[3])
+    assert after["scene"]["tubes"][0][2] == 0.03 and after["before"]["tubes"][0][2] == 0.026
+    assert [name for name in after["arrays"] if name.startswith("before.a_hv.")]
+    (field,) = [one for one in after["fields"] if one["path"] == PATH]
+    assert (field["text"], field["label"]) == ("30 mm", "outer diameter")
+    (file,) = ask(desk, "download", kind="model")
+    assert eq.loads(file.buffer.decode()) == wanted
+    undone = shown(ask(desk, "undo"))
+    assert figures(undone)["mass"]["after"] == mass["before"] and undone["redo"] == PATH
+    assert figures(shown(ask(desk, "redo")))["mass"]["after"] == mass["after"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        (("edit", {"edits": [{"set": PATH, "text": "20 mm"}]}), "got 23 mm inside of 20 mm"),
+        (("edit", {"edits": [{"set": PATH, "text": "wide"}]}), "got 'wide'"),
+        (("edit", {"edits": [{"set": "shaft.colour", "text": "1"}]}), "shaft.colour"),
+        (("edit", {"edits": [{"move": "A", "to": [0, 0]}]}), "no joints to be dragged"),
+        (("balance", {}), "balance is for linkages; a tool is open"),
+        (("undo", {}), "there is nothing to undo"),
+        (("download", {"kind": "csv"}), "of a tool, model or report"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_nothing_changes(asked, said) -> None:
+    desk = begun("brush-cutter")()
+    before = figures(shown(ask(desk, "ready")))
+    (refused,) = ask(desk, asked[0], **asked[1])
+    assert refused.content["type"] == "refused" and said in refused.content["message"]
+    assert figures(shown(ask(desk, "ready"))) == before
+
+
+def test_tools_and_machines_are_opened_in_turn() -> None:
+    desk = begun("yamashita-1")()
+    assert shown(ask(desk, "open", example="pole-saw"))["name"] == "pole-saw"
+    assert not desk.has_more
+    text = example_text("nagamine-irie")
+    assert shown(ask(desk, "open", name="mine.toml", text=text))["name"] == "mine.toml"
+    wrong = text.replace('"1.544 m"', '"-1 m"')
+    assert ask(desk, "open", name="bad.toml", text=wrong)[0].content["type"] == "refused"
+    assert shown(ask(desk, "ready"))["name"] == "mine.toml"
+    machine = ask(desk, "open", example="yamashita-rig")[0].content
+    assert (machine["type"], machine["name"]) == ("state", "yamashita-rig")
+    assert desk.tool is None and desk.has_more
+    spoken = ask(desk, "speak", languages=["ja"])[0].content
+    assert spoken["language"] == "ja"
+    told = shown(ask(desk, "open", example="pole-saw"))
+    assert figures(told)["mass"]["label"] != "mass of the tool"
