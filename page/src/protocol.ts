@@ -38,7 +38,7 @@ export type Asked =
   | { type: "open"; name: string; text: string; file?: true }
   | { type: "edit"; commit: boolean; label: string; edits: Edit[] }
   | ({ type: "make"; at: number } & Made)
-  | { type: "undo" | "redo" | "balance" | "save" }
+  | { type: "undo" | "redo" | "balance" | "save" | "gallery" }
   | { type: "compare"; on: false }
   | { type: "tables" }
   | EntryAsked
@@ -68,6 +68,19 @@ export interface Hello {
   /** Sign of the file that it can save; empty where there is none. */
   base: string;
   numbers: NumberRules;
+}
+
+/** A bundled machine, with its drawing. */
+export interface Pictured {
+  type: "pictured";
+  seq: number;
+  name: string;
+  title: string;
+  line: string;
+  /** Sample at which it is drawn where it stands still. */
+  at: number;
+  scene: Scene;
+  arrays: Arrays;
 }
 
 /** The language that is spoken from now on. */
@@ -479,6 +492,9 @@ export interface Tables {
 export type Told =
   | Hello
   | Spoken
+  | Pictured
+  /** All of them have come. */
+  | { type: "gallery"; seq: number }
   | StateMessage
   | ResponseMessage
   | GhostMessage
