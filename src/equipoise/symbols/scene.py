@@ -160,13 +160,6 @@ class Scene:
         )
 
     @property
-    def ends(self) -> tuple[str, ...]:
-        """Points that join nothing, such as the tip of a coupler."""
-        joining = {*self.frame, *self.pins, *(guide.point for guide in self.guides)}
-        joining.update(point for spring in self.springs for point in spring)
-        return tuple(name for name in self.places if name not in joining)
-
-    @property
     def standing(self) -> tuple[str, ...]:
         """Points of the frame at which something is held."""
         held = {to for _, to in (*self.springs, *self.planned)} | self.pins
