@@ -199,6 +199,7 @@ class ToolDesk:
             told = {
                 "path": path,
                 "group": group,
+                "heading": group,
                 "label": said(self.template.words(path)).replace(f" of the {group}", ""),
                 "value": value,
                 "min": min(low, value),
