@@ -18,7 +18,7 @@ from equipoise.web.replies import Reply, refused
 from equipoise.web.session import Session
 from equipoise.web.tools import ToolDesk, tool_asked, tool_of_file
 
-ALWAYS = ("speak",)
+ALWAYS = ("speak", "gallery")
 """What has nothing to do with what is open."""
 
 

@@ -96,7 +96,10 @@ class Session:
         yield Reply({"type": "spoken", "seq": message.seq, **spoken_in(self.language)})
 
     def _open(self, message: Message) -> Iterator[Reply]:
-        if "example" in message.values:
+        design: Design | Sketch
+        if message.flag("new", False):
+            design = Sketch()
+        elif "example" in message.values:
             design = opened_example(message.text("example"))
         else:
             design = opened_text(message.text("name", "machine.toml"), message.text("text"))
@@ -130,15 +133,10 @@ class Session:
 
     def _make(self, message: Message) -> Iterator[Reply]:
         with self.lock, self.telling():
-            new = message.text("do") == "new"
-            if new:
-                sketch, label = Sketch(), say("new machine")
-            else:
-                sketch, label = made(sketch_of(self.base(), message.whole("at", 0)), message)
-            found, past = drawn(sketch), self.history
-            step = Step(found.design, label)
-            self._go(past.then(found.design, label) if past else History(step), found)
-            self._measure(found, new)
+            sketch, label = made(sketch_of(self.base(), message.whole("at", 0)), message)
+            found = drawn(sketch)
+            self._go(self._past.then(found.design, label), found)
+            self._measure(found, False)
         yield from self.told(message.seq)
 
     def _undo(self, message: Message) -> Iterator[Reply]:
@@ -207,15 +205,15 @@ class Session:
             }
         )
 
-    def open(self, design: Design, found: Solved | None = None) -> None:
-        """Begin with a design; what was done before is forgotten.
+    def open(self, design: Design | Sketch, found: Solved | None = None) -> None:
+        """Begin with a design, or with a sketch; what was done before is forgotten.
 
         found : the design, if it has been computed.
         """
-        found = found or solved(design)
+        seen = found or computed(design)
         with self.lock:
-            self._go(History(Step(design, "")), found)
-            self._measure(found, True)
+            self._go(History(Step(design, "")), seen)
+            self._measure(seen, True)
 
     def _measure(self, found: Solved | Drawn, new: bool) -> None:
         """What goes by the build of a machine: ranges of sliders, and outputs that are drawn.
