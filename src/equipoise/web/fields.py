@@ -73,7 +73,7 @@ class Field:
                 raise
             if isinstance(error, ModelError):
                 raise ModelError(error.where, given.retold(error.what, typed)) from error
-            raise UsageError(given.retold(str(error), typed)) from error
+            raise UsageError(given.retold(error.note, typed)) from error
 
 
 @dataclass(frozen=True)

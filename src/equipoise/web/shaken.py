@@ -57,7 +57,13 @@ def response_of(shown: Solved) -> tuple[Values, bytes] | None:
     try:
         found = responded(shown)
     except EquipoiseError as error:
-        return {"charts": [], "arrays": {}, "notes": [str(error)], "swing": None, "modes": []}, b""
+        return {
+            "charts": [],
+            "arrays": {},
+            "notes": [error.told()],
+            "swing": None,
+            "modes": [],
+        }, b""
     return _told(shown, found, block), block.data
 
 
@@ -191,7 +197,7 @@ def _planted(machine: Machine) -> Values:
     try:
         found = plant(machine)
     except EquipoiseError as error:
-        return {"type": "planting", "figures": [], "notes": [str(error)]}
+        return {"type": "planting", "figures": [], "notes": [error.told()]}
     figures = [
         {"name": name, "label": say(one.words), **_shown(float(value), told.dimension, told.unit)}
         for name, one in FIGURES.items()

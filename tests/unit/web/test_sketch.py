@@ -26,7 +26,9 @@ class Maker:
 
     def do(self, do: str, **values: Any) -> str:
         """Do something, and return what is told of the machine."""
-        self.seen = state(ask(self.session, "make", do=do, **values)[0])
+        asked = {"new": True} if do == "new" else {"do": do, **values}
+        kind = "open" if do == "new" else "make"
+        self.seen = state(ask(self.session, kind, **asked)[0])
         return str(self.seen.content["status"]["text"])
 
     def refused(self, do: str, **values: Any) -> str:
