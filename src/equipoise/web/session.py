@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from threading import Lock
 
 from equipoise import __version__
-from equipoise.errors import EquipoiseError, ModelError, UsageError
-from equipoise.i18n import said, say, speaking
+from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
+from equipoise.i18n import Note, said, say, speaking
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
 from equipoise.schema.files import LARGEST
@@ -82,7 +82,7 @@ class Session:
             else:
                 yield from getattr(self, f"_{message.kind}")(message)
         except EquipoiseError as error:
-            yield refused(message.seq, error)
+            yield refused(message.seq, error, self.language)
 
     # -- what a page may ask -----------------------------------------------------------------------
 
@@ -127,7 +127,7 @@ class Session:
             elif found is not None:
                 self.preview = found
         if problem is not None:
-            yield refused(message.seq, problem)
+            yield refused(message.seq, problem, self.language)
         if found is not None:
             yield from self.told(message.seq)
 
@@ -178,7 +178,9 @@ class Session:
             told = balanced_told(base, after, found)
         with self.lock:
             if self.found is not base:
-                raise UsageError("the machine was changed while it was balanced; balance it again")
+                raise UsageError(
+                    Note("the machine was changed while it was balanced; balance it again")
+                )
             self._go(self._past.then(after.design, "balance"), after)
             self.before = base
         yield Reply({"type": "balanced", "seq": message.seq, **told})
@@ -276,7 +278,7 @@ class Session:
     def base(self) -> Solved | Drawn:
         """What is, finished or not; a `UsageError` where there is nothing."""
         if self.found is None:
-            raise UsageError("no machine is open; pick an example, or drop a model file")
+            raise UsageError(Note("no machine is open; pick an example, or drop a model file"))
         return self.found
 
     def current(self) -> Solved:
@@ -339,4 +341,4 @@ def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:
     """The same error with the name of the file in front."""
     if isinstance(error, ModelError):
         return error.in_file(name)
-    return UsageError(f"{name}: {error}")
+    return UsageError(at_place(name, error.note))
