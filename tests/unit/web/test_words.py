@@ -68,7 +68,7 @@ def english(values: object, names: set[str]) -> Iterator[str]:
             yield from english(value, names)
     elif isinstance(values, str):
         words = set(re.findall(r"[A-Za-z][A-Za-z-]{2,}", values)) - names
-        if words - {"RMS", "rad", "rpm", "mrad"}:
+        if words - {"RMS", "rad", "rpm", "mrad", "deg"}:
             yield values
 
 
