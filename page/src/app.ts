@@ -158,6 +158,7 @@ export class App {
       stage: this.stage,
       board: this.board.root,
       snaps: () => this.bench.snaps(),
+      begin: () => void this.open({ type: "open", new: true }, say("a new machine")),
       angle: () => this.player.angle,
       turn: (degrees) => this.turn(degrees),
       chosen: (link) => this.chooseLink(link),

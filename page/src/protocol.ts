@@ -34,6 +34,7 @@ export type Asked =
   /** Codes of languages, the one that is liked best first. */
   | { type: "speak"; languages: string[] }
   | { type: "open"; example: string }
+  | { type: "open"; new: true }
   /** `file`: it is what the file held that the server was started with. */
   | { type: "open"; name: string; text: string; file?: true }
   | { type: "edit"; commit: boolean; label: string; edits: Edit[] }
@@ -115,6 +116,8 @@ export interface NumberRules {
 export interface Field extends Unit {
   path: string;
   group: string;
+  /** What the group is called. */
+  heading: string;
   label: string;
   value: number;
   /** With all digits that are kept, as it is typed. */

@@ -44,7 +44,7 @@ class Desk:
             if message.kind == "open":
                 self.tool = tool_asked(message)
         except EquipoiseError as error:
-            yield refused(message.seq, error)
+            yield refused(message.seq, error, self.session.language)
             return
         if self.tool is None or message.kind in ALWAYS:
             yield from self.session.receive(message)
@@ -55,7 +55,7 @@ class Desk:
             with self._telling():
                 replies = [*self.tool.receive(message)]
         except EquipoiseError as error:
-            replies = [refused(message.seq, error)]
+            replies = [refused(message.seq, error, self.session.language)]
         yield from replies
 
     @property

@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager
 from typing import Protocol
 
 from equipoise.errors import UsageError
-from equipoise.i18n import say
+from equipoise.i18n import Note, say
 from equipoise.schema.documents import dumps
 from equipoise.web.design import Design
 from equipoise.web.disk import Disk
@@ -51,7 +51,9 @@ class Session(Protocol):
 def _save(session: Session, message: Message) -> Iterator[Reply]:
     found, disk, history = session.current(), session.disk, session.history
     if disk is None or history is None:
-        raise UsageError("this machine was not opened from a file; download the model instead")
+        raise UsageError(
+            Note("this machine was not opened from a file; download the model instead")
+        )
     first = history.first
     text = dumps(first.machine) if isinstance(first, Design) else disk.text
     disk.save(found)
