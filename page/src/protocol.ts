@@ -116,6 +116,8 @@ export interface NumberRules {
 export interface Field extends Unit {
   path: string;
   group: string;
+  /** What the group is called. */
+  heading: string;
   label: string;
   value: number;
   /** With all digits that are kept, as it is typed. */
