@@ -27,7 +27,7 @@ export interface Spot {
 }
 
 export class Aim {
-  private readonly svg = s("svg", { class: "aim", tabindex: 0, role: "application" });
+  private readonly svg = s("svg", { class: "picking", tabindex: 0, role: "application" });
   private readonly cross = s("path", { class: "cross" });
   private readonly ring = s("circle", { class: "ring", r: 9 });
   private at: Pair = [0, 0];

@@ -3,10 +3,11 @@
 import { Bench } from "./bench";
 import { Charts } from "./charts";
 import { Conversation, type Events } from "./conversation";
-import { h, write } from "./dom";
-import { dropZone, save, tooLarge } from "./files";
+import { h, set, write } from "./dom";
+import { dropZone, picker, save, tooLarge } from "./files";
 import { follow, measure } from "./format";
 import { Frames } from "./frames";
+import { Gallery } from "./gallery";
 import { Hands } from "./hands";
 import { Heading } from "./heading";
 import { helpDialog } from "./help";
@@ -24,6 +25,7 @@ import type { Shelf } from "./story";
 import { Theme } from "./theme";
 import { Toolbar } from "./toolbar";
 import { Tools } from "./tools";
+import { Tour } from "./tour";
 import { TransportBar } from "./transport";
 import { Views } from "./views";
 import { language, say } from "./words";
@@ -53,7 +55,17 @@ export class App {
   private readonly toolbar: Toolbar;
   private readonly tools: Tools;
   private readonly transport: TransportBar;
-  private readonly help = helpDialog(() => this.hello?.version ?? "");
+  private readonly tour = new Tour(this.root);
+  private readonly help = helpDialog(
+    () => this.hello?.version ?? "",
+    () => this.tour.begin(),
+  );
+  private readonly picker = picker((file) => void this.read(file));
+  private readonly gallery = new Gallery({
+    wanted: () => this.talk.ask({ type: "gallery" }),
+    example: (name) => void this.open({ type: "open", example: name }, name),
+    file: () => this.picker.click(),
+  });
   private readonly heading = new Heading();
   private readonly keeping: Keeping;
   private readonly lost = h("div", { class: "lost", role: "alert", hidden: true });
@@ -97,6 +109,7 @@ export class App {
       busy: (what) => this.busy(what),
       tables: (message) => this.bench.show(message),
       file: save,
+      pictured: (one, numbers) => (one ? this.gallery.add(one, numbers) : this.gallery.done()),
       tool: (message, numbers) => {
         this.opened = "";
         this.views.showTool(message, numbers);
@@ -110,6 +123,7 @@ export class App {
       },
       saved: (name) => this.keeping.saved(name),
       line: (up) => this.line(up),
+      waiting: (on) => set(this.root, { "data-waiting": on }),
     };
     this.talk = new Conversation(wire, events, shelf);
     el.append(this.root);
@@ -151,6 +165,7 @@ export class App {
       stage: this.stage,
       board: this.board.root,
       snaps: () => this.bench.snaps(),
+      begin: () => void this.open({ type: "open", new: true }, say("a new machine")),
       angle: () => this.player.angle,
       turn: (degrees) => this.turn(degrees),
       chosen: (link) => this.chooseLink(link),
@@ -173,7 +188,7 @@ export class App {
     );
     this.toolbar = new Toolbar({
       example: (name) => void this.open({ type: "open", example: name }, name),
-      file: (file) => void this.read(file),
+      gallery: () => this.gallery.show(),
       undo: () => this.step("undo"),
       redo: () => this.step("redo"),
       save: () => void this.keeping.save(),
@@ -210,7 +225,7 @@ export class App {
     stage.append(this.strokes.root, this.planted.root);
     this.side.append(this.charts.root);
     // A file that plays shows numbers, and takes none.
-    const disabled = this.el.classList.contains("equipoise-played");
+    const disabled = this.played;
     const parts = [...this.bench.roots, this.inspector.root];
     this.aside.append(this.balance.root, h("fieldset", { class: "bare", disabled }, ...parts));
     if (disabled) this.aside.tabIndex = 0; // to be scrolled by keys
@@ -219,11 +234,14 @@ export class App {
       this.toolbar.root,
       this.lost,
       this.keeping.offer,
+      this.tour.offer,
       ...this.views.roots,
     );
     this.root.append(
       dropZone(this.root, (file) => void this.read(file)),
       this.help,
+      this.gallery.root,
+      this.picker,
     );
     this.watcher.observe(this.board.root);
     this.watcher.observe(this.charts.root);
@@ -254,6 +272,10 @@ export class App {
     return this.el.classList.contains("equipoise-page");
   }
 
+  private get played(): boolean {
+    return this.el.classList.contains("equipoise-played");
+  }
+
   private greet(hello: Hello): void {
     const first = !this.hello;
     this.hello = hello;
@@ -265,7 +287,10 @@ export class App {
   }
 
   private async begin(hello: Hello): Promise<void> {
-    if (!(await this.keeping.begin(hello)) && !hello.machine) {
+    const begun = await this.keeping.begin(hello);
+    if (this.full && !this.played) this.tour.propose();
+    if (!begun && !hello.machine) {
+      this.gallery.show();
       const names = hello.examples.map(({ name }) => name);
       const example = names.find((name) => name === FIRST) ?? names[0];
       if (example) void this.open({ type: "open", example }, example);

@@ -2,6 +2,7 @@
 
 import { h, icon, write } from "./dom";
 import type { Stage } from "./stage";
+import { Touch } from "./touch";
 import { say } from "./words";
 
 /** How long a sentence about a mistake stays at least, once nothing is held any more, ms. */
@@ -11,6 +12,7 @@ export class Board {
   readonly root: HTMLElement;
   private since = 0;
   private later = 0;
+  private readonly touch: Touch;
   private readonly spoken = h("p", { class: "said", role: "status", "aria-live": "polite" });
   private readonly hinted = h("p", { class: "hint", "aria-hidden": "true" });
 
@@ -38,6 +40,7 @@ export class Board {
       zooms,
       this.spoken,
     );
+    this.touch = new Touch(stage);
     stage.svg.addEventListener("pointerdown", this.press);
     stage.svg.addEventListener("wheel", this.wheel, { passive: false });
   }
@@ -70,6 +73,7 @@ export class Board {
     let [x, y] = [event.clientX, event.clientY];
     let far = false;
     const drag = (now: PointerEvent) => {
+      if (now.pointerId !== event.pointerId || this.touch.pinching) return;
       if (!far && Math.hypot(now.clientX - x, now.clientY - y) < 4) return;
       if (!far) svg.setPointerCapture(event.pointerId);
       far = true;

@@ -2,8 +2,8 @@
 
 import type { Asked, Edit, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
+import { Numbers, type Pictured, type Planted, type ResponseMessage, type State } from "./protocol";
 import type { GhostMessage, StudyMessage, ToolMessage, VariantsMessage } from "./protocol";
-import { Numbers, type Planted, type ResponseMessage, type State } from "./protocol";
 import { OPENS, type Shelf, type Shown, Story, type Told as Kept } from "./story";
 import { language } from "./words";
 
@@ -21,8 +21,11 @@ export interface Events {
   busy(what: string | null): void;
   tables(message: Tables): void;
   saved(name: string): void;
+  pictured(message: Pictured | null, numbers: Numbers): void;
   file(name: string, mime: string, bytes: DataView | undefined): void;
   line(up: boolean): void;
+  /** An answer takes longer than a reader waits without a sign. */
+  waiting(on: boolean): void;
 }
 
 /** Hears that something was done, or why not. */
@@ -37,7 +40,10 @@ interface Question {
 }
 
 /** What takes long: other questions do not wait for it. */
-const SLOW = new Set(["balance", "download"]);
+const SLOW = new Set(["balance", "download", "gallery"]);
+
+/** Without a sign nobody waits longer than this, ms. */
+const PATIENCE = 100;
 
 /** What leaves the machine on the server as it was; all else is said again after a broken line. */
 const IDLE = new Set(["ready", "speak", "save", "download", "tables", "study"]);
@@ -54,6 +60,7 @@ export class Conversation {
   private waiting: Question | null = null;
   private readonly aside = new Map<number, Question>();
   private readonly story: Story;
+  private late = 0;
   private repeating = false;
 
   /** `shelf` is where what was done outlives a reload. */
@@ -108,6 +115,7 @@ export class Conversation {
     // What follows a balance in a story was done to its result.
     if (SLOW.has(question.asked.type) && !this.repeating) this.aside.set(question.seq, question);
     else this.flight = question;
+    if (this.flight) this.late ||= window.setTimeout(() => this.events.waiting(true), PATIENCE);
     this.wire.send({ ...question.asked, seq: question.seq });
     this.next();
   }
@@ -116,11 +124,16 @@ export class Conversation {
     switch (told.type) {
       case "hello":
         // Without a machine a `hello` is all the answer there is to `ready`.
-        if (!told.machine && this.flight?.asked.type === "ready") this.flight = null;
+        if (!told.machine && this.flight?.asked.type === "ready") this.land();
         this.events.hello(told);
         return this.next();
       case "state":
         return this.state({ ...told, numbers: new Numbers(told.arrays, buffers[0]) });
+      case "pictured":
+        return this.events.pictured(told, new Numbers(told.arrays, buffers[0]));
+      case "gallery":
+        this.events.pictured(null, new Numbers({}, undefined));
+        return this.end(told.seq, null);
       case "saved":
         this.story.saved(told.base, told.text);
         return this.events.saved(told.name);
@@ -175,7 +188,7 @@ export class Conversation {
   private end(seq: number, refusal: string | null, told: Refused | null = null): void {
     const question = this.flight?.seq === seq ? this.flight : this.aside.get(seq);
     if (!question) return;
-    if (question === this.flight) this.flight = null;
+    if (question === this.flight) this.land();
     else if (this.aside.delete(seq)) this.events.busy(null);
     // Without what a story began with, nothing of it can be done.
     if (this.repeating && refusal !== null && OPENS.has(question.asked.type)) {
@@ -185,6 +198,13 @@ export class Conversation {
     if (this.repeating && !this.queue.length) this.repeating = false;
     question.answered?.(refusal, told);
     this.next();
+  }
+
+  private land(): void {
+    this.flight = null;
+    clearTimeout(this.late);
+    this.late = 0;
+    this.events.waiting(false);
   }
 
   private state(state: State): void {
@@ -228,7 +248,7 @@ export class Conversation {
   /** A new connection knows nothing: tell it all that was done. */
   private line(up: boolean): void {
     this.events.line(up);
-    this.flight = null;
+    this.land();
     this.waiting = null;
     this.queue.length = 0;
     if (this.aside.size) this.events.busy(null);

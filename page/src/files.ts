@@ -23,6 +23,23 @@ export function dropZone(root: HTMLElement, dropped: (file: File) => void): HTML
   return veil;
 }
 
+/** Let a file be picked; gives the element that has to be on the page. */
+export function picker(picked: (file: File) => void): HTMLInputElement {
+  const input = h("input", {
+    type: "file",
+    hidden: true,
+    accept: ".toml",
+    "aria-label": say("Model file"),
+    tabindex: -1,
+  });
+  input.addEventListener("change", () => {
+    const [chosen] = input.files ?? [];
+    input.value = "";
+    if (chosen) picked(chosen);
+  });
+  return input;
+}
+
 /** Why a file is not read, or null. */
 export function tooLarge(file: File, largest: number): string | null {
   if (file.size <= largest) return null;

@@ -11,6 +11,8 @@ export interface Subject {
   heading: string;
   text: string;
   form: string;
+  /** Path of the key below which it stands. */
+  group: string;
   place: Steps;
   /** Its path, as refusals tell it. */
   where: string;

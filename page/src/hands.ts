@@ -172,7 +172,8 @@ export class Hands {
         return;
       if (!moved) this.begin(grip, false);
       moved = true;
-      this.move(this.stage.view.metres(now.clientX + offX, now.clientY + offY), now.timeStamp);
+      const to = this.stage.view.metres(now.clientX + offX, now.clientY + offY);
+      this.move(now.shiftKey ? straight(start, to) : to, now.timeStamp);
     };
     const stop = (now: PointerEvent) => {
       if (now.pointerId !== event.pointerId) return;
@@ -205,6 +206,11 @@ export class Hands {
     const box = this.page.state()?.scene.box ?? [0, 0, 1, 1];
     return round(Math.max(box[2] - box[0], box[3] - box[1]) / 300);
   }
+}
+
+/** In the row or the column of where it was, whichever is nearer. */
+function straight([x, y]: Pair, [toX, toY]: Pair): Pair {
+  return Math.abs(toX - x) > Math.abs(toY - y) ? [toX, y] : [x, toY];
 }
 
 export function nameOf(grip: Grip): string {

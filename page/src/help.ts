@@ -16,10 +16,12 @@ export const KEYS: [keys: string, what: string][] = [
   ["Ctrl + Z", toSay("undo")],
   ["Ctrl + Shift + Z", toSay("redo")],
   ["Ctrl + S", toSay("save the file that was opened, or download the model")],
+  ["V P L J X S G D", toSay("tools: select, point, link, pin, separate, slider, gears, drive")],
+  ["Delete", toSay("delete the joint or link that is chosen")],
   ["?", toSay("this list")],
 ];
 
-export function helpDialog(version: () => string): HTMLDialogElement {
+export function helpDialog(version: () => string, tour: () => void): HTMLDialogElement {
   const rows = KEYS.map(([keys, what]) =>
     h("tr", {}, h("th", { scope: "row" }, h("kbd", {}, say(keys))), h("td", {}, say(what))),
   );
@@ -37,9 +39,19 @@ export function helpDialog(version: () => string): HTMLDialogElement {
       say("Numbers take any unit: 71.5 mm, 7.15 cm, 0.2 kg, 200 rpm, 30 deg."),
     ),
     told,
-    h("form", { method: "dialog" }, h("button", { class: "strong" }, say("Close"))),
+    h(
+      "form",
+      { method: "dialog", class: "buttons" },
+      h("button", { value: "tour" }, say("Take the tour")),
+      h("button", { class: "strong" }, say("Close")),
+    ),
   );
   dialog.addEventListener("click", (event) => event.target === dialog && dialog.close());
+  // Only then the focus is back on the page.
+  dialog.addEventListener("close", () => {
+    if (dialog.returnValue === "tour") tour();
+    dialog.returnValue = "";
+  });
   dialog.addEventListener("toggle", () => told.replaceChildren(`Equipoise ${version()}`));
   return dialog;
 }

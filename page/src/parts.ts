@@ -26,6 +26,7 @@ export class Parts {
   private readonly slot = h("div", {});
   private tables: Tables | null = null;
   private form: Form | null = null;
+  private subject: Subject | null = null;
   private seen = -1;
 
   constructor(private readonly page: Page) {
@@ -67,6 +68,24 @@ export class Parts {
     this.list.replaceChildren(
       ...tables.groups.filter(({ entries }) => entries.length).map((group) => this.listed(group)),
     );
+    this.check();
+  }
+
+  /** What is being edited may be another by now, or gone, as after undo. */
+  private check(): void {
+    const { subject, tables } = this;
+    if (!subject || !tables) return;
+    const group = tables.groups.find(({ where }) => where === subject.group);
+    if (!group || group.needs) return this.close();
+    if (!subject.known) {
+      const place = [...subject.place];
+      if (group.many === "list") place.splice(-1, 1, group.entries.length);
+      subject.place = place;
+    } else {
+      const entry = group.entries.find(({ where }) => where === subject.where);
+      if (!entry) this.close();
+      else if (!same(entry.values, subject.values)) this.edit(group, entry);
+    }
   }
 
   /** What can be added: a single one only while it is not there. */
@@ -128,6 +147,7 @@ export class Parts {
       heading: say("New: {what}", { what: titleOf(group) }),
       text: group.text,
       form: group.form,
+      group: where,
       place: next,
       where: path,
       name: many === "named" ? "" : null,
@@ -144,6 +164,7 @@ export class Parts {
       heading: nameOf(group, entry),
       text: group.text,
       form: group.form,
+      group: group.where,
       place: entry.place,
       where: entry.where,
       name: group.many === "named" ? String(last) : null,
@@ -164,6 +185,7 @@ export class Parts {
       pick: (body, named, taken) => void this.pick(body, named, taken),
     });
     this.form = form;
+    this.subject = subject;
     this.slot.replaceChildren(form.root);
     form.root.scrollIntoView({ block: "nearest" });
     form.focus();
@@ -171,7 +193,7 @@ export class Parts {
 
   private close(): void {
     this.page.aim.end();
-    this.form = null;
+    this.form = this.subject = null;
     this.slot.replaceChildren();
   }
 

@@ -34,11 +34,12 @@ export type Asked =
   /** Codes of languages, the one that is liked best first. */
   | { type: "speak"; languages: string[] }
   | { type: "open"; example: string }
+  | { type: "open"; new: true }
   /** `file`: it is what the file held that the server was started with. */
   | { type: "open"; name: string; text: string; file?: true }
   | { type: "edit"; commit: boolean; label: string; edits: Edit[] }
   | ({ type: "make"; at: number } & Made)
-  | { type: "undo" | "redo" | "balance" | "save" }
+  | { type: "undo" | "redo" | "balance" | "save" | "gallery" }
   | { type: "compare"; on: false }
   | { type: "tables" }
   | EntryAsked
@@ -74,6 +75,19 @@ export interface Hello {
   numbers: NumberRules;
 }
 
+/** A bundled machine, with its drawing. */
+export interface Pictured {
+  type: "pictured";
+  seq: number;
+  name: string;
+  title: string;
+  line: string;
+  /** Sample at which it is drawn where it stands still. */
+  at: number;
+  scene: Scene;
+  arrays: Arrays;
+}
+
 /** The language that is spoken from now on. */
 export interface Spoken {
   type: "spoken";
@@ -106,6 +120,8 @@ export interface NumberRules {
 export interface Field extends Unit {
   path: string;
   group: string;
+  /** What the group is called. */
+  heading: string;
   label: string;
   value: number;
   /** With all digits that are kept, as it is typed. */
@@ -512,6 +528,9 @@ export interface Tables {
 export type Told =
   | Hello
   | Spoken
+  | Pictured
+  /** All of them have come. */
+  | { type: "gallery"; seq: number }
   | StateMessage
   | ResponseMessage
   | GhostMessage

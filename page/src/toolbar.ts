@@ -16,7 +16,7 @@ const ICONS = {
 
 export interface Commands {
   example(name: string): void;
-  file(file: File): void;
+  gallery(): void;
   undo(): void;
   save(): void;
   link(): void;
@@ -43,19 +43,7 @@ export class Toolbar {
       "aria-label": say("Example"),
       onchange: () => commands.example(this.examples.value),
     });
-    const file = h("input", {
-      type: "file",
-      hidden: true,
-      accept: ".toml",
-      "aria-label": say("Model file"),
-      tabindex: -1,
-    });
-    file.addEventListener("change", () => {
-      const [chosen] = file.files ?? [];
-      file.value = "";
-      if (chosen) commands.file(chosen);
-    });
-    const open = button(say("Choose file"), "open", () => file.click());
+    const open = button(say("Open"), "open", () => commands.gallery());
     this.undo = button("", "undo", () => commands.undo(), say("Undo"));
     this.redo = button("", "redo", () => commands.redo(), say("Redo"));
     this.balance = button(say("Balance"), "balance", () => commands.balance());
@@ -69,7 +57,6 @@ export class Toolbar {
       h("span", { class: "mark" }, "equipoise"),
       this.examples,
       open,
-      file,
       h("span", { class: "gap" }),
       h("span", { class: "together" }, this.undo, this.redo, this.save),
       this.balance,

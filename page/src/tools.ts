@@ -27,6 +27,8 @@ export interface Making extends Turning, Snapping {
   board: HTMLElement;
   sample(): number;
   hint(text: string): void;
+  /** Begin a machine from nothing. */
+  begin(): void;
 }
 
 type Chosen = { what: "point" | "link"; name: string };
@@ -49,7 +51,7 @@ export class Tools {
   constructor(private readonly page: Making) {
     this.palette = new Palette({
       chosen: (tool) => this.take(tool, true),
-      made: () => this.ask({ do: "new" }),
+      made: () => page.begin(),
       renamed: (name) => this.rename(name),
     });
     this.layer.append(this.rubber, this.target, this.crosshair);

@@ -12,10 +12,10 @@ export class View {
   private center: Pair = [0, 0];
 
   /** Show a box with some room around it, the more below and left for the scales there. */
-  fit(box: readonly [number, number, number, number]): void {
+  fit(box: readonly [number, number, number, number], least = 20): void {
     const [x0, y0, x1, y1] = box;
     const [w, h] = [Math.max(x1 - x0, 1e-9), Math.max(y1 - y0, 1e-9)];
-    const room = Math.min(this.width, this.height) * MARGIN + 20;
+    const room = Math.min(this.width, this.height) * MARGIN + least;
     const [freeX, freeY] = [
       Math.max(this.width - 2 * room, 20),
       Math.max(this.height - 2 * room, 20),

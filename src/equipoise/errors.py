@@ -21,6 +21,8 @@ from importlib import import_module
 from typing import Any, Self
 from unicodedata import normalize
 
+from equipoise.i18n import Note, in_english, said, speaking, spoken
+
 
 @dataclass(frozen=True)
 class Given:
@@ -32,18 +34,36 @@ class Given:
     value: float
     text: str
 
-    def retold(self, sentence: str, typed: str) -> str:
+    def retold(self, sentence: Note | str, typed: str) -> Note | str:
         """The sentence with what was typed in the number's place."""
+        if isinstance(sentence, Note):
+            return sentence.with_values(lambda one: typed if one == self.text else one)
         return sentence.replace(self.text, typed, 1)
 
 
 class EquipoiseError(Exception):
-    """Base of all errors; `str(error)` is one sentence a user can act on.
+    """Base of all errors; `str(error)` is one sentence a user can act on, in English.
+
+    It is made of that sentence, as a `Note` where other languages have it too.
 
     given : the number that the sentence complains of, where it is one.
     """
 
     given: Given | None = None
+
+    @property
+    def note(self) -> Note | str:
+        """The sentence, to be said in any language."""
+        sentence: Note | str = self.args[0] if self.args else ""
+        return sentence
+
+    def told(self, language: str = "") -> str:
+        """The sentence in a language, that which is spoken where none is given.
+
+        Where the language lacks it, the English sentence, and that it is in English.
+        """
+        with speaking(language or spoken()):
+            return said(in_english(self.note))
 
     def about(self, value: float, text: str) -> Self:
         """The same error, with the number (SI units) that its sentence tells as a text."""
@@ -71,12 +91,17 @@ class ModelError(EquipoiseError):
     source : name of the file, once known.
     """
 
-    def __init__(self, where: str, what: str, source: str = "") -> None:
+    def __init__(self, where: str, what: Note | str, source: str = "") -> None:
         self.where, self.what, self.source = where, what, source
         super().__init__(where, what, source)
 
     def __str__(self) -> str:
         return ": ".join(part for part in (self.source, self.where, self.what) if part)
+
+    @property
+    def note(self) -> Note | str:
+        place = ": ".join(part for part in (self.source, self.where) if part)
+        return at_place(place, self.what) if place else self.what
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -98,6 +123,11 @@ class ModelError(EquipoiseError):
         return found
 
 
+def at_place(place: Note | str, what: Note | str) -> Note:
+    """A sentence behind the place, file or option that it is about."""
+    return Note("{place}: {what}", place=place, what=what)
+
+
 class MobilityError(EquipoiseError):
     """The number of free motions is not one."""
 
@@ -109,7 +139,7 @@ class MotionError(EquipoiseError):
 class RangeError(MotionError):
     """The crank cannot turn fully; `ranges` holds the intervals (rad) in which it can."""
 
-    def __init__(self, message: str, ranges: tuple[tuple[float, float], ...] = ()) -> None:
+    def __init__(self, message: Note | str, ranges: tuple[tuple[float, float], ...] = ()) -> None:
         super().__init__(message)
         self.ranges = ranges
 
@@ -117,7 +147,7 @@ class RangeError(MotionError):
 class ChangePointError(MotionError):
     """The linkage passes a change point at `crank_angle` (rad)."""
 
-    def __init__(self, message: str, crank_angle: float = float("nan")) -> None:
+    def __init__(self, message: Note | str, crank_angle: float = float("nan")) -> None:
         super().__init__(message)
         self.crank_angle = crank_angle
 
@@ -141,8 +171,10 @@ MOST_SHOWN = 20
 def unknown(given: str, known: Iterable[str], kind: str) -> str:
     """Say that a name is unknown, and what would be right."""
     names = list(known)
-    hint = meant(given, names) or f"there are {_listed(names)}"
-    return f"no {kind} is called {given!r}; {hint}"
+    near = meant(given, names)
+    hint = near or Note("there are {names}", names=_listed(names))
+    what = kind if isinstance(kind, Note) else Note(kind)
+    return Note("no {kind} is called {given!r}; {hint}", kind=what, given=given, hint=hint)
 
 
 def meant(given: str, names: Sequence[str]) -> str:
@@ -151,7 +183,7 @@ def meant(given: str, names: Sequence[str]) -> str:
 
     by_form = {form_of(name): name for name in reversed(names)}
     near = get_close_matches(form_of(given), by_form, 1)
-    return f"did you mean {by_form[near[0]]!r}?" if near else ""
+    return Note("did you mean {name!r}?", name=by_form[near[0]]) if near else ""
 
 
 def form_of(name: str) -> str:
@@ -160,8 +192,9 @@ def form_of(name: str) -> str:
 
 
 def _listed(names: list[str]) -> str:
-    shown = ", ".join(repr(name) for name in names[:MOST_SHOWN]) or "none"
-    return shown if len(names) <= MOST_SHOWN else f"{shown} and {len(names) - MOST_SHOWN} more"
+    shown = ", ".join(repr(name) for name in names[:MOST_SHOWN]) or Note("none")
+    more = len(names) - MOST_SHOWN
+    return Note("{names} and {more} more", names=shown, more=more) if more > 0 else shown
 
 
 EXTRAS = {"distributed": "cluster", "av": "video"}

@@ -87,6 +87,15 @@ def new_page(
 
 
 @pytest.fixture
+def free_page(browser: Browser, address: str) -> Iterator[Page]:
+    """A page that may go to servers of its own test."""
+    context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
+    context.set_default_timeout(SECONDS * 1000)
+    yield context.new_page()
+    context.close()
+
+
+@pytest.fixture
 def live(new_page: Callable[..., Page], address: str) -> Live:
     """The live page with its machine, 1280 pixels wide."""
     return Live.open(new_page(), address)

@@ -6,8 +6,7 @@ import socket
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
 import equipoise as eq
 from browser.live import Live
@@ -15,24 +14,15 @@ from support.chromium import serving
 from surface.running import example_text
 
 
-@pytest.fixture
-def page(browser: Browser, address: str) -> Page:
-    """A page that may go to several servers."""
-    context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
-    context.set_default_timeout(15_000)
-    yield context.new_page()
-    context.close()
-
-
 def free_port() -> str:
     with socket.create_server(("127.0.0.1", 0)) as held:
         return str(held.getsockname()[1])
 
 
-def test_a_file_is_saved_and_its_steps_outlive_the_server(page: Page, tmp_path: Path) -> None:
+def test_a_file_is_saved_and_its_steps_outlive_the_server(free_page: Page, tmp_path: Path) -> None:
     path, port = tmp_path / "mine.toml", free_port()
     path.write_text(example_text("yamashita-1"), encoding="utf-8")
-    own = eq.load("yamashita-1")
+    own, page = eq.load("yamashita-1"), free_page
     with serving(path, "--port", port) as address:
         live = Live.open(page, address)
         assert live.button("Save").is_disabled()

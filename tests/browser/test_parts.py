@@ -12,15 +12,33 @@ from browser.live import NUMBER, Live
 
 MARKS = {"first": (100, 150), "second": (300, 150), "third": (200, 50)}
 """Centres of circles on a picture of 400 by 200, pixels."""
-DRAWING = [
-    ("SECTION", {2: "HEADER"}), (None, {9: "$INSUNITS", 70: 1}), ("ENDSEC", {}),
-    ("SECTION", {2: "ENTITIES"}),
-    ("LINE", {8: 0, 10: -3, 20: 1, 11: 2, 21: -2}),
-    ("CIRCLE", {8: 0, 10: 1, 20: 2, 40: 0.5}),
-    ("LWPOLYLINE", {8: 0, 90: 2, 70: 0, 10: -4, 20: -2, 42: 1}),
-    ("ENDSEC", {}), ("EOF", {}),
-]  # fmt: skip
-"""A drawing in inches."""
+DRAWING = """
+0 SECTION 2 HEADER 9 $INSUNITS 70 1 0 ENDSEC
+0 SECTION 2 BLOCKS
+0 BLOCK 8 0 2 ARM 70 0 10 0 20 0 3 ARM 1 .
+0 LINE 8 0 10 0 20 0 11 1 21 0
+0 ENDBLK 8 0
+0 ENDSEC
+0 SECTION 2 ENTITIES
+0 LINE 8 0 10 -3 20 1 11 2 21 -2
+0 CIRCLE 8 0 10 1 20 2 40 0.5
+0 ARC 8 0 10 0 20 0 40 2 50 0 51 90
+0 LWPOLYLINE 8 0 90 2 70 0 10 -4 20 0 42 1 10 -2 20 0
+0 SPLINE 8 0 70 8 71 2 72 6 73 3 40 0 40 0 40 0 40 1 40 1 40 1 10 0 20 0 10 1 20 2 10 2 20 0
+0 INSERT 8 0 2 ARM 10 5 20 5 41 2 42 2 50 90
+0 ENDSEC
+0 EOF
+"""
+"""A drawing in inches: codes and values in turn."""
+BOXES = [
+    (-3, -2, 2, 1),
+    (0.5, 1.5, 1.5, 2.5),
+    (0, 0, 2, 2),
+    (-4, -1, -2, 0),
+    (0, 0, 2, 1),
+    (5, 5, 5, 7),
+]
+"""Of its lines: least x and y, largest x and y, inches."""
 
 
 def part(live: Live, heading: str) -> Locator:
@@ -40,11 +58,17 @@ def press(form: Locator, name: str) -> None:
 
 
 def dxf() -> str:
-    pairs = []
-    for name, codes in DRAWING:
-        pairs += [] if name is None else [f"0\n{name}"]
-        pairs += [f"{code}\n{value}" for code, value in codes.items()]
-    return "\n".join(pairs) + "\n"
+    return "\n".join(DRAWING.split()) + "\n"
+
+
+def boxes(path: str) -> list[tuple[float, ...]]:
+    """Least and largest coordinates of each line of a path in m, inches."""
+    found = []
+    for line in path.split("M")[1:]:
+        places = [[float(one) / 0.0254 for one in place.split()] for place in line.split("L")]
+        xs, ys = zip(*places, strict=True)
+        found.append((min(xs), min(ys), max(xs), max(ys)))
+    return found
 
 
 def test_a_spring_and_a_body_are_added_changed_and_deleted(live: Live) -> None:
@@ -101,6 +125,13 @@ def test_a_spring_and_a_body_are_added_changed_and_deleted(live: Live) -> None:
     press(form, "Save")
     expect(form).to_be_hidden()
     assert live.machine().springs[0].free_length == 0.05
+    page.get_by_role("button", name=re.compile("^springs 1 ")).click()
+    length = form.get_by_label("free length", exact=True)
+    expect(length).to_have_value("50 mm")
+    live.button("Undo").click()  # an open form follows
+    expect(length).to_have_value("")
+    live.button("Redo").click()
+    expect(length).to_have_value("50 mm")
     page.reload()  # what was done is done again
     expect(live.button("Undo")).to_have_attribute("title", "Undo: springs 1")
     assert live.machine().springs[0].free_length == 0.05
@@ -122,12 +153,12 @@ def test_a_picture_is_scaled_and_traced_over(live: Live, tmp_path: Path) -> None
         assert box is not None
         across, down = MARKS[mark]
         place = box["x"] + across / 400 * box["width"], box["y"] + down / 200 * box["height"]
-        expect(page.locator(".aim")).to_be_visible()
+        expect(page.locator(".picking")).to_be_visible()
         page.mouse.click(*place)
 
     live.button("Scale by two places").click()
     click("first")
-    expect(page.locator(".aim")).to_have_attribute("aria-label", "Click the second place.")
+    expect(page.locator(".picking")).to_have_attribute("aria-label", "Click the second place.")
     click("second")
     distance = page.get_by_label("True distance of the two places")
     expect(distance).to_be_focused()
@@ -136,7 +167,7 @@ def test_a_picture_is_scaled_and_traced_over(live: Live, tmp_path: Path) -> None
 
     live.button("Measure").click()
     click("first")
-    expect(page.locator(".aim")).to_have_attribute("aria-label", "Click where to measure to.")
+    expect(page.locator(".picking")).to_have_attribute("aria-label", "Click where to measure to.")
     click("third")
     told = page.locator(".measured")
     expect(told).to_have_text(re.compile("along y$"))
@@ -166,14 +197,14 @@ def test_a_dxf_drawing_is_snapped_to_by_keyboard_too(live: Live, tmp_path: Path)
     file.write_text(dxf(), encoding="utf-8")
     page.get_by_text("Underlay and ruler").click()
     page.get_by_label("Picture or DXF drawing").set_input_files(file)
-    expect(page.locator(".underlay path")).to_be_attached()
+    lines = page.locator(".underlay path")
+    expect(lines).to_be_attached()
+    for found, wanted in zip(boxes(lines.get_attribute("d") or ""), BOXES, strict=True):
+        assert found == pytest.approx(wanted, abs=1e-3)
     live.button("Measure").click()
-    aim = page.locator(".aim")
+    aim = page.locator(".picking")
     expect(aim).to_be_focused()
     expect(live.told("Click where to measure from.")).to_be_visible()
-    box = page.locator(".underlay path").bounding_box()
-    assert box is not None
-    assert box["width"] > 0
     page.mouse.click(*live.spot(live.joint("A")))
     expect(aim).to_have_attribute("aria-label", "Click where to measure to.")
     for _ in range(200):  # to the centre of the circle, 25.4 mm to the right and 50.8 mm up

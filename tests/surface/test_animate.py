@@ -28,6 +28,13 @@ def test_an_svg_is_written_beside_you_unless_told_otherwise() -> None:
     assert "shaking force, at most 35.91 N" in text  # 23.22 N at 193 rpm, by the square
 
 
+@pytest.mark.parametrize(("name", "path"), [("sieve", "C, D"), ("transplanter", "P")])
+def test_paths_are_those_that_page_and_report_follow(name: str, path: str) -> None:
+    """Also where every point joins something; of a planting finger its tip alone."""
+    succeeded(equipoise("animate", name, "-o", "a.svg"))
+    assert f"Path of {path}." in Path("a.svg").read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize(
     ("name", "begins", "more"),
     [

@@ -17,6 +17,7 @@ from equipoise.balancing.multi_row import Rows, Term
 from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.balance import (
     MATERIALS,
     AddedMass,
@@ -91,9 +92,11 @@ def advise(machine: Machine, solve: Solve = balance) -> Balanced:
                 break  # of which nothing brings twice as much
     if not problems and not found:
         raise UsageError(
-            "there is nothing that could be tried: no link has a pin in the frame and another "
-            "point, which would tell the room of a counterweight; say in [balance] what may be "
-            "changed"
+            Note(
+                "there is nothing that could be tried: no link has a pin in the frame and "
+                "another point, which would tell the room of a counterweight; say in "
+                "[balance] what may be changed"
+            )
         )
     if not found:
         raise problems[0]

@@ -68,13 +68,18 @@ def _checked(machine: Machine, plan: Balance | None) -> Balance:
         raise MassError(missing)
     if plan is None or plan.changes_nothing:
         raise UsageError(
-            "nothing is free to change; give tables such as [[balance.masses]] or "
-            "[[balance.moves]], or options such as --crank-counterweight or --move-cm LINK"
+            Note(
+                "nothing is free to change; give tables such as [[balance.masses]] or "
+                "[[balance.moves]], or options such as --crank-counterweight or --move-cm "
+                "LINK"
+            )
         )
     if not plan.objectives:
         raise UsageError(
-            "nothing is to become small; give [[balance.objectives]], or an option such as "
-            '--objective "shaking_force.y"'
+            Note(
+                "nothing is to become small; give [[balance.objectives]], or an option "
+                'such as --objective "shaking_force.y"'
+            )
         )
     check_moving(machine)
     machine.with_balance(plan)  # checks that what it names is there
@@ -126,8 +131,10 @@ def solve_plan(machine: Machine, plan: Balance, progress: Progress | None = None
             return _scan(found, gearing, meshes, progress)
         else:
             raise UsageError(
-                "only the last of [[balance.geared]] may have several ratios; give the others "
-                "one ratio each"
+                Note(
+                    "only the last of [[balance.geared]] may have several ratios; give the "
+                    "others one ratio each"
+                )
             )
     return found.solved(progress)
 
@@ -207,7 +214,7 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
     method = Note("branch and bound over all phases of the rows")
     if linkage.changes_nothing:
         if len(limits) < len(plan.limits):
-            raise UsageError("no phase changes the force in a joint; leave its limit out")
+            raise UsageError(Note("no phase changes the force in a joint; leave its limit out"))
         phasing = choose_phases(
             machine, plan.objectives, plan.phases, plan.combine, progress, limits
         )

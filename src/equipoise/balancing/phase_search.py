@@ -28,6 +28,7 @@ from equipoise.balancing.phase_grid import (
 )
 from equipoise.balancing.phase_polish import polished
 from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.balance import Limit, Objective, Phases
 from equipoise.mechanism.model import Machine
 from equipoise.signals import Array
@@ -66,13 +67,20 @@ class PhaseSearch:
         count, step = len(self.machine.rows), self.phases.step
         if count < 2:
             raise ModelError(
-                "rows", f"got {count} rows, which leaves no phase to choose; give two at least"
+                "rows",
+                Note(
+                    "got {count} rows, which leaves no phase to choose; give two at least",
+                    count=count,
+                ),
             )
         if not self.objectives:
-            raise UsageError("got no objective; give what is to become small")
+            raise UsageError(Note("got no objective; give what is to become small"))
         if not 0 < step <= pi / 2 * (1 + 1e-12):
             raise UsageError(
-                f"got a step of {degrees(step):g} deg; give more than 0 deg and at most 90 deg"
+                Note(
+                    "got a step of {step:g} deg; give more than 0 deg and at most 90 deg",
+                    step=degrees(step),
+                )
             )
 
     @cached_property
@@ -99,7 +107,10 @@ class PhaseSearch:
         term = Term(objective, self.rows.signals(objective, f"objectives[{number}]"))
         if not term.influenced:
             raise UsageError(
-                f"{objective.name}: no phase changes it; choose another output, measure or orders"
+                Note(
+                    "{name}: no phase changes it; choose another output, measure or orders",
+                    name=objective.name,
+                )
             )
         before = float(term.values(self.present))
         return replace(term, scale=term.single if self.vanishes(term) else before)
@@ -110,8 +121,10 @@ class PhaseSearch:
         most = (limit.ratio or 0.0) * before if limit.at_most is None else limit.at_most
         if not most > NOTHING * term.single:
             raise UsageError(
-                f"the {limit.name} is 0 before, of which there is no share; give the limit in "
-                "a unit"
+                Note(
+                    "the {name} is 0 before, of which there is no share; give the limit in a unit",
+                    name=limit.name,
+                )
             )
         return replace(term, scale=most)
 

@@ -20,6 +20,7 @@ from equipoise.balancing.objectives import Near, bound_measure, measured, signal
 from equipoise.balancing.program import Affine, Program
 from equipoise.balancing.weights import AddedWeight
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.parameters import parameter_values
@@ -177,22 +178,36 @@ class Problem:
                 whole = abs(order * turns - round(order * turns)) < 1e-9
                 if order > HIGHEST or not whole:
                     raise UsageError(
-                        f"the {one.name}: there is no order {order:g}; orders are whole numbers"
-                        f"{f' over {turns}' if turns > 1 else ''} up to {HIGHEST}"
+                        Note(
+                            "the {name}: there is no order {order:g}; orders are whole "
+                            "numbers{parts} up to {highest}",
+                            name=one.name,
+                            order=order,
+                            parts=Note(" over {turns}", turns=turns) if turns > 1 else "",
+                            highest=HIGHEST,
+                        )
                     )
         for one in self.plan.objectives:
             if self._is_nothing(one):
-                raise UsageError(f"the {one.name} is 0 already; choose another objective")
+                raise UsageError(
+                    Note("the {name} is 0 already; choose another objective", name=one.name)
+                )
             if self._effect(one) < WITHOUT_EFFECT * self.scale(one):
                 raise UsageError(
-                    f"nothing that is free to change has an effect on the {one.name}; free "
-                    "something else, or choose another objective"
+                    Note(
+                        "nothing that is free to change has an effect on the {name}; free "
+                        "something else, or choose another objective",
+                        name=one.name,
+                    )
                 )
         for limit in self.plan.limits:
             if limit.ratio is not None and self._is_nothing(limit.objective):
                 raise UsageError(
-                    f"the {limit.name} is 0 before, of which there is no share; give the limit in "
-                    "a unit"
+                    Note(
+                        "the {name} is 0 before, of which there is no share; give the limit in "
+                        "a unit",
+                        name=limit.name,
+                    )
                 )
 
     def _is_nothing(self, objective: Objective) -> bool:

@@ -7,7 +7,7 @@ limits, the fewest that clash are told, and how far one of them can be met.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import inf, isfinite
 
@@ -21,7 +21,7 @@ from equipoise.balancing.program import Affine, NoSolutionError, Program, Stalle
 from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
 from equipoise.errors import UsageError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, all_of
 from equipoise.mechanism.balance import Limit
 from equipoise.mechanism.model import Machine
 from equipoise.signals import Array
@@ -127,7 +127,9 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
     try:
         best = minimise(built.program, built.squares, problem.whole, progress, above)
     except StalledError as error:
-        raise UsageError(f"{error}; change a limit a little, or free less") from error
+        raise UsageError(
+            Note("{error}; change a limit a little, or free less", error=error.note)
+        ) from error
     except NoSolutionError:
         raise infeasibility(problem) from None
     numbers = _split(problem, best.x) if above < inf else _lightest_numbers(problem, best)
@@ -225,18 +227,23 @@ def infeasibility(problem: Problem) -> UsageError:
     names = program.names
     if program.without(set(names)).feasible():
         clash = _infeasible_subset(program) if len(names) <= MOST_LIMITS else names
-        told = listed([_limit_in_words(problem, name) for name in clash])
-        which = "this limit cannot be met" if len(clash) == 1 else "these limits clash"
-        return UsageError(f"{which}: {told}; {_way_out(problem, clash)}")
+        told = all_of([_limit_in_words(problem, name) for name in clash], commas=True)
+        alone = len(clash) == 1
+        which = Note("this limit cannot be met") if alone else Note("these limits clash")
+        return UsageError(
+            Note(
+                "{which}: {told}; {way_out}",
+                which=which,
+                told=told,
+                way_out=_way_out(problem, clash),
+            )
+        )
     return UsageError(
-        "what may be changed contradicts itself: a given mass has no place in its room, or the "
-        "most that may be added is less than what is given"
+        Note(
+            "what may be changed contradicts itself: a given mass has no place in its "
+            "room, or the most that may be added is less than what is given"
+        )
     )
-
-
-def listed(names: Sequence[str]) -> str:
-    """Names as they are told one after the other."""
-    return " and ".join([*filter(None, [", ".join(names[:-1])]), *names[-1:]])
 
 
 def _infeasible_subset(program: Program) -> list[str]:
@@ -250,21 +257,25 @@ def _infeasible_subset(program: Program) -> list[str]:
     return needed
 
 
-def _limit_in_words(problem: Problem, name: str) -> str:
+def _limit_in_words(problem: Problem, name: str) -> Note | str:
     limit = next((limit for limit in problem.plan.limits if limit.name == name), None)
     if limit is None:
         most = problem.plan.added_mass
-        return f"{name} at most {1e3 * most:.4g} g" if name == ADDED and most else name
+        if name != ADDED or not most:
+            return name
+        return Note("{name} at most {value:.4g} {unit}", name=name, value=1e3 * most, unit="g")
     if limit.ratio is not None:
-        return f"{name} at most {limit.ratio * 100:.4g} % of before"
-    return f"{name} at most {limit.at_most:.4g} {unit_of(limit.objective, problem.machine)}"
+        share = limit.ratio * 100
+        return Note("{name} at most {share:.4g} % of before", name=name, share=share)
+    unit = unit_of(limit.objective, problem.machine)
+    return Note("{name} at most {value:.4g} {unit}", name=name, value=limit.at_most, unit=unit)
 
 
-def _way_out(problem: Problem, clash: list[str]) -> str:
+def _way_out(problem: Problem, clash: list[str]) -> Note:
     """How small the first of the clashing outputs can become while the others are kept."""
     limit = next((limit for limit in problem.plan.limits if limit.name in clash), None)
     if limit is None:
-        return "allow more of it" if len(clash) == 1 else "allow more of one of them"
+        return Note("allow more of it") if len(clash) == 1 else Note("allow more of one of them")
     plan = problem.plan
     others = tuple(other for other in plan.limits if other.name in clash and other != limit)
     relaxed = replace(plan, objectives=(limit.objective,), limits=others)
@@ -272,9 +283,13 @@ def _way_out(problem: Problem, clash: list[str]) -> str:
         asked = Problem(problem.machine, relaxed, problem.start, problem.parts, problem.close)
         least = asked.built.program.solve().value * asked.scale(limit.objective)
     except NoSolutionError:
-        return "allow more of one of them"
+        return Note("allow more of one of them")
     least /= limit.objective.weight
-    kept = "the other is kept" if len(clash) == 2 else "the others are kept"
-    where = f" while {kept}" if len(clash) > 1 else ""
     unit = unit_of(limit.objective, problem.machine)
-    return f"{limit.name} can become {least:.4g} {unit} at the least{where}"
+    told = {"name": limit.name, "least": least, "unit": unit}
+    found = Note("{name} can become {least:.4g} {unit} at the least", **told)
+    if len(clash) == 1:
+        return found
+    if len(clash) == 2:
+        return Note("{found} while the other is kept", found=found)
+    return Note("{found} while the others are kept", found=found)

@@ -36,7 +36,6 @@ SVG_FRAMES = 60
 """In a turn; from one to the next, parts go evenly."""
 LEAST_ANGLES = 720
 """In a turn, for smooth paths."""
-MOST_PATHS = 3
 MOST_LARGER = 1e9
 """Times that the movement of a support may be drawn larger than true."""
 
@@ -69,7 +68,8 @@ def animate(
     width
         Width of the picture in pixels.
     trace
-        A point whose path is drawn; can be given again.  If not given, points that join nothing.
+        A point whose path is drawn; can be given again.  If not given, a planting tip, or points of
+        couplers.
     force
         Draw the shaking force on the frame as an arrow.
     speed
@@ -82,6 +82,7 @@ def animate(
     dark
         With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
     """
+    from equipoise.figures.points import followed
     from equipoise.figures.stage import Arrow, check_seconds, check_width
     from equipoise.results.analysis import analyze
     from equipoise.schema.files import write
@@ -111,7 +112,7 @@ def animate(
             scene = _swinging(found, exaggerate)
             options["arrow"] = Arrow.of(found) if force else None
         if trace is None:
-            options["traced"] = () if mode is not None else scene.ends[:MOST_PATHS]
+            options["traced"] = () if mode is not None else followed(found.motion)
         data = _animated(scene, machine.title, kind, options)
     write(name, data)
     wrote(name)
@@ -142,10 +143,11 @@ def _check_support(
 def _swinging(found: Analysis, factor: float | None) -> Scene:
     """What moves at speed, its support too, as far as that can be computed."""
     from equipoise.figures.swing import swinging
+    from equipoise.symbols.rows import with_rows
     from equipoise.symbols.scene import Scene
     from equipoise.vibration.forced import respond
 
-    scene = Scene.of(found.motion)
+    scene = with_rows(Scene.of(found.motion), found.motion)
     if found.machine.support is None or factor == 0:
         return scene
     try:

@@ -107,7 +107,7 @@ def weighted_blocks(weighted: Weighted) -> Iterator[Block]:
 
 def times_blocks(tools: Sequence[tuple[str, float]]) -> Iterator[Block]:
     """How long a day one may work with each tool: names, and vibration total values in m/s2."""
-    columns = (Column(""), _acceleration("a_hv"), *_allowed())
+    columns = (Column(""), _acceleration(say("total value a_hv")), *_allowed())
     rows = tuple(
         (shortened(name), Value(a_hv), *_hours(WorkingTimes(a_hv))) for name, a_hv in tools
     )
@@ -186,9 +186,9 @@ def _tasks(day: Exposure) -> Table:
         rows.append((say("all of them"), *cells, *_hours(day.times)))
     columns = (
         Column(say("task")),
-        _acceleration("a_hv"),
+        _acceleration(say("total value a_hv")),
         Column(say("time"), unit="h"),
-        _acceleration("A_i(8)"),
+        _acceleration(say("partial exposure A_i(8)")),
         Column(say("share"), unit="%"),
         *_allowed(),
     )

@@ -67,7 +67,7 @@ def spectrum(weighted: Weighted, title: str) -> Chart:
     if weighted.band_a_h is not None:
         label = say("RMS, {value} m/s²", value=shown(_root(weighted.a_h)))
         areas.append(_stairs(before, low, "unweighted", label))
-    label = say("weighted, a_hv = {value} m/s²", value=shown(weighted.a_hv))
+    label = say("weighted, total value a_hv = {value} m/s²", value=shown(weighted.a_hv))
     areas.append(_stairs(after, low, "weighted", label))
     curves = tuple(Curve(area.x, area.high, "", area.role) for area in areas)
     ticks = tuple((float(10 ** (0.1 * round(10 * np.log10(one)))), f"{one:g}") for one in TOLD)

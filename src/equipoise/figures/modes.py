@@ -203,8 +203,8 @@ def parts_of(free: FreeVibration, mode: Mode) -> list[str]:
         phase = round(float(np.degrees(np.angle(part))))
         told = f"{size if phase == 0 else -size:.3g} {unit}"
         if phase % 180:
-            told = f"{size:.3g} {unit} at {phase}°"
-        words.append(typeset(f"{name} {told if size >= NOTHING else 0}"))
+            told = say("{value} at {angle}", value=f"{size:.3g} {unit}", angle=f"{phase}°")
+        words.append(typeset(f"{say(name)} {told if size >= NOTHING else 0}"))
     return words
 
 

@@ -34,6 +34,8 @@ STILL = 1e-9
 """Over the motion of what moves most: what is less stands still."""
 MOST_POINTS, MOST_VECTORS = 4, 3
 """Points that are followed in one picture: their paths, and their hodographs."""
+MOST_PATHS = 3
+"""In an animation."""
 FEW = (0, 90)
 """Crank angles, deg, that are told on the hodographs of several points."""
 
@@ -61,6 +63,13 @@ def traced(motion: Motion) -> list[str]:
     tip = [] if machine.planting is None else [machine.planting.tip]
     every = dict.fromkeys([*tip, *found])
     return sorted(every, key=lambda name: (name not in tip, name in joints.pins))
+
+
+def followed(motion: Motion) -> list[str]:
+    """Points whose paths are drawn where something moves: a planting tip alone, else the first of
+    those with a path worth following.
+    """
+    return traced(motion)[: MOST_PATHS if motion.machine.planting is None else 1]
 
 
 def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:

@@ -108,8 +108,10 @@ class Search:
         ]
         if not within:
             raise ResponseError(
-                "no design within the limits was found; raise a limit, or widen the range of a "
-                "variable"
+                Note(
+                    "no design within the limits was found; raise a limit, or widen the range "
+                    "of a variable"
+                )
             )
         values = np.array([self.measure(place) for place in within])
         best = int(np.argmin(values))
@@ -172,7 +174,7 @@ DIGITS = 6
 """Significant digits of the numbers of a better tool, for people to set."""
 EDGE = 1e-6
 """Share of its range within which a variable is at an end of it."""
-NO_DESIGN = (
+NO_DESIGN = Note(
     "missing; add the table [design] with the band of speeds, and [[design.variables]] with what "
     "may be changed"
 )
@@ -303,12 +305,12 @@ def _figures(search: Search, better: Tool) -> Iterable[Before]:
         tops.append({name: float(np.max(one)) for name, one in curves.items()})
     rms, top, both = to_say("RMS over the band"), to_say("largest"), to_say("{what}, {measure}")
     for said, found in (
-        (Note(to_say("a_hv of the worst hand, RMS over the band")), means),
-        (Note(to_say("a_hv of the worst hand, largest")), tops),
+        (Note(to_say("total value a_hv of the worst hand, RMS over the band")), means),
+        (Note(to_say("total value a_hv of the worst hand, largest")), tops),
     ):
         yield _before(said, "acceleration", *(max(one.values()) for one in found))
     for name in search.hands if len(search.hands) > 1 else ():
-        what = Note(to_say("a_hv at {station}"), station=name)
+        what = Note(to_say("total value a_hv at {station}"), station=name)
         for measure, found in ((rms, means), (top, tops)):
             said = Note(both, what=what, measure=Note(measure))
             yield _before(said, "acceleration", *(one[name] for one in found))
@@ -321,4 +323,5 @@ def _figures(search: Search, better: Tool) -> Iterable[Before]:
 
 
 def _before(said: Note, dimension: str, before: float, after: float) -> Before:
-    return Before(str(said), dimension, before, after, said)
+    key = str(said).removeprefix("total value ")  # which JSON has without
+    return Before(key, dimension, before, after, said)

@@ -29,12 +29,15 @@ from equipoise.handheld.response import (
     shakes,
 )
 from equipoise.handheld.studies import has, number_of
+from equipoise.i18n import Note
 from equipoise.results.result import Result
 from equipoise.signals import Array
 
 WORKING, IDLING, RACING = "working", "idling", "racing"
-NO_HANDS = "no hand holds the tool; give a station a hand with its stiffness, or its impedance"
-NO_OPERATION = (
+NO_HANDS = Note(
+    "no hand holds the tool; give a station a hand with its stiffness, or its impedance"
+)
+NO_OPERATION = Note(
     'missing; add the table [operation] with the speed of the engine, such as speed = "7000 rpm"'
 )
 

@@ -13,6 +13,7 @@ from equipoise.handheld.chain import carry, count, log_determinant
 from equipoise.handheld.duals import Dual
 from equipoise.handheld.layout import Layout
 from equipoise.handheld.model import Tool
+from equipoise.i18n import Note
 from equipoise.signals import Array
 
 PARTS, ROUNDS = 63, 20
@@ -62,7 +63,7 @@ def _free(tool: Tool, plane: int) -> Array:
     return np.eye(2)[: 1 if turning else 2]
 
 
-TOO_FAR_APART = (
+TOO_FAR_APART = Note(
     "sizes are too far apart for natural frequencies and modes to be computed; check its length, "
     "stiffness and mass, and the masses and springs on it"
 )
@@ -79,7 +80,9 @@ def natural_frequencies(tool: Tool, number: int) -> Array:
     UsageError : too many are asked for.
     """
     if not 1 <= number <= MOST:
-        raise UsageError(f"got {number} natural frequencies; ask for 1 to {MOST}")
+        raise UsageError(
+            Note("got {number} natural frequencies; ask for 1 to {most}", number=number, most=MOST)
+        )
     layout, below = _enough(tool, number)
     wanted = np.arange(1, number + 1)
     free = zip(rigid_modes(tool), floating(tool), strict=True)
@@ -116,7 +119,9 @@ def _enough(tool: Tool, number: int) -> tuple[Layout, float]:
         if np.all(_count(layout, np.full((2, 1), highest)) >= number):
             return layout, highest
         highest *= GROWTH
-    raise ModelError("shaft", "has no such high natural frequencies; check its length and section")
+    raise ModelError(
+        "shaft", Note("has no such high natural frequencies; check its length and section")
+    )
 
 
 def _count(layout: Layout, frequency: Array) -> Array:

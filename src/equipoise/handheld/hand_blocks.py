@@ -81,8 +81,16 @@ def exposure_of_tool(found: ToolExposure) -> Iterator[Block | Section]:
         )
         for k in (highest_at(-found.a_hv, smooth=False), highest_at(found.a_hv, smooth=False))
     )
-    yield Text(say("Worst hand over this range: a_hv from {low} to {high}", low=least, high=most))
-    yield Text(say("Along the shaft nothing moves in bending, so a_hv has two axes."))
+    yield Text(
+        say(
+            "Worst hand over this range: total value a_hv from {low} to {high}",
+            low=least,
+            high=most,
+        )
+    )
+    yield Text(
+        say("Along the shaft nothing moves in bending, so the total value a_hv has two axes.")
+    )
     yield from unbounded(found.response.tool)
     if found.worst is None:
         yield Text(say("There is no daily exposure without work; the file tells none."))
@@ -106,7 +114,7 @@ def _hands(found: ToolExposure) -> Table:
         k = int(highest_at(grip.a_hv, smooth=False))
         top = Value(float(grip.a_hv[k]), at=float(found.speed[k]))
         rows.append((name, say("most"), None, None, None, top))
-    labels = (say("unweighted"), say("vertical"), say("lateral"), "a_hv")
+    labels = (say("unweighted"), say("vertical"), say("lateral"), say("total value a_hv"))
     columns = (
         Column(say("hand")),
         Column(say("engine")),
@@ -192,8 +200,8 @@ def sensitivity_blocks(
     rows = sorted((row for row in rows if row[2].value), key=lambda row: -abs(row[2].value))
     columns = (Column(""), Column(say("now")), Column(say("effect"), unit="mm/s^2"))
     title = say(
-        "What 1 % more of each number (of a position, 1 % of the shaft) does to a_hv of the worst "
-        "hand, RMS over {low} to {high} rpm",
+        "What 1 % more of each number (of a position, 1 % of the shaft) does to the total value "
+        "a_hv of the worst hand, RMS over {low} to {high} rpm",
         **ends_told(np.array(ends)),
     )
     yield Table(title, columns, tuple(rows))

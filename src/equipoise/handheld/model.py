@@ -30,7 +30,7 @@ from equipoise.handheld.station import (
     is_damped,
     wrong_station,
 )
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     PLANES,
     SCHEMA_VERSION,
@@ -139,7 +139,7 @@ class Excitation(Frozen):
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Excitation:
         if "direction" in given and "force" not in given:
-            raise ModelError("direction", "goes with a force; leave it out")
+            raise ModelError("direction", Note("goes with a force; leave it out"))
         cause = next((name for name in CAUSES if name in given), "")
         return cls(**{"name": usual_name(given["station"], cause), **given})
 
@@ -320,20 +320,24 @@ def _wrong_names(named: Mapping[str, Sequence[Any]]) -> Iterator[ModelError]:
             name = item.name
             yield from wrong_text(f"{where}.name", name)
             if not name.strip():
-                yield ModelError(f"{where}.name", "is empty; give a name")
+                yield ModelError(f"{where}.name", Note("is empty; give a name"))
             if name in seen:
-                yield ModelError(f"{where}.name", f"{name!r} is given twice; give another name")
+                yield ModelError(
+                    f"{where}.name", Note("{name!r} is given twice; give another name", name=name)
+                )
             seen.add(name)
 
 
 def _wrong_excitation(where: str, excitation: Excitation, tool: Tool) -> Iterator[ModelError]:
     yield from unknown_station(f"{where}.station", excitation.station, tool.stations)
     if sum(getattr(excitation, cause) is not None for cause in CAUSES) != 1:
-        yield ModelError(where, "give exactly one of force, unbalance and linkage")
+        yield ModelError(where, Note("give exactly one of force, unbalance and linkage"))
     if excitation.direction != "vertical" and excitation.force is None:
-        yield ModelError(f"{where}.direction", "goes with a force; leave it out")
+        yield ModelError(f"{where}.direction", Note("goes with a force; leave it out"))
     if excitation.ratio == 0:
-        yield ModelError(f"{where}.ratio", "got 0; what does not turn shakes nothing, give another")
+        yield ModelError(
+            f"{where}.ratio", Note("got 0; what does not turn shakes nothing, give another")
+        )
 
 
 def _wrong_day(tool: Tool) -> Iterator[ModelError]:
@@ -343,7 +347,9 @@ def _wrong_day(tool: Tool) -> Iterator[ModelError]:
         if tool.operation.speeds:
             yield from wrong_speeds("operation.speeds", tool.operation.speeds)
         if idling is not None and racing is not None and idling >= racing:
-            yield ModelError("operation.racing", "is not above idling; give a higher speed")
+            yield ModelError("operation.racing", Note("is not above idling; give a higher speed"))
     total = sum(work.duration for work in tool.work)
     if total > DAY * (1 + 1e-9):
-        yield ModelError("work", f"takes {total / 3600:.4g} h together; a day has 24 h")
+        yield ModelError(
+            "work", Note("takes {total:.4g} h together; a day has 24 h", total=total / 3600)
+        )

@@ -13,6 +13,7 @@ from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.handheld.chain import Pair, carry, solve
 from equipoise.handheld.layout import Field, Layout, Line, check_coverage
 from equipoise.handheld.model import Excitation, Tool
+from equipoise.i18n import Note
 from equipoise.mechanism.dynamics import forces, massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import move
@@ -273,13 +274,17 @@ def _check_finite(field: Field, orders: Array, speeds: Array) -> None:
     met = int(np.argmin(np.all(finite, axis=0)))
     order, speed = np.unravel_index(met, (len(orders), len(speeds)))
     raise ResponseError(
-        f"at {speeds[speed] * 30 / np.pi:.6g} rpm order {orders[order]:.4g} meets a resonance "
-        "without damping, and the vibration has no bound; give dampers, a loss_factor, or another "
-        "speed"
+        Note(
+            "at {speeds:.6g} rpm order {orders:.4g} meets a resonance without damping, "
+            "and the vibration has no bound; give dampers, a loss_factor, or another "
+            "speed",
+            speeds=speeds[speed] * 30 / np.pi,
+            orders=orders[order],
+        )
     )
 
 
-NOTHING = (
+NOTHING = Note(
     "nothing shakes the tool; add a table [[excitations]] with a station and a force, an unbalance "
     "or a linkage"
 )
@@ -289,7 +294,7 @@ def checked_speeds(speed: float | Iterable[float] | Array) -> Array:
     """Speeds (S,), rad/s, all above 0."""
     speeds = np.atleast_1d(np.asarray(speed, dtype=float))
     if speeds.ndim != 1 or not speeds.size or not np.all((speeds > 0) & np.isfinite(speeds)):
-        raise UsageError("the speeds of the engine must be more than 0")
+        raise UsageError(Note("the speeds of the engine must be more than 0"))
     return speeds
 
 

@@ -13,7 +13,7 @@ from math import inf, pi
 from typing import Any, ClassVar, Literal, NamedTuple, Self, get_args
 
 from equipoise.errors import ModelError
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     Conditions,
     Frozen,
@@ -125,7 +125,7 @@ PROFILE: Keys = {
 OF_MATERIAL = ("youngs_modulus", "density", "poisson_ratio")
 OF_TUBE = ("outer_diameter", "inner_diameter", "material", *OF_MATERIAL, "carried")
 OF_SECTION = ("bending_stiffness", "mass_per_length", "mass")
-EITHER = "give either bending_stiffness and mass_per_length, or outer_diameter and material"
+EITHER = Note("give either bending_stiffness and mass_per_length, or outer_diameter and material")
 
 
 def profile_conditions(*masses: str) -> dict[str, Any]:
@@ -157,10 +157,12 @@ def profile_of(given: Mapping[str, Any], linear: float | None = None) -> Section
         return _tube(given)
     for name in OF_TUBE:
         if name in given:
-            raise ModelError(name, "has no place beside bending_stiffness; leave it out")
+            raise ModelError(name, Note("has no place beside bending_stiffness; leave it out"))
     mass_per_length = given.get("mass_per_length") if linear is None else linear
     if mass_per_length is None:
-        raise ModelError("mass_per_length", "missing; give it together with bending_stiffness")
+        raise ModelError(
+            "mass_per_length", Note("missing; give it together with bending_stiffness")
+        )
     return Section(given["bending_stiffness"], mass_per_length)
 
 
@@ -169,9 +171,9 @@ def _linear(given: dict[str, Any]) -> float | None:
     if "mass" not in given:
         return None
     if "mass_per_length" in given:
-        raise ModelError("mass", "has no place beside mass_per_length; give one of both")
+        raise ModelError("mass", Note("has no place beside mass_per_length; give one of both"))
     if given.get("segments"):
-        raise ModelError("mass", "does not tell that of each part; give mass_per_length")
+        raise ModelError("mass", Note("does not tell that of each part; give mass_per_length"))
     length, mass = given["length"], given["mass"]
     return mass / length if length > 0 else 0.0  # told by the checks of the tool
 
@@ -181,7 +183,9 @@ def _tube(given: Mapping[str, Any]) -> Tube:
         raise ModelError("", EITHER)
     for name in OF_SECTION:
         if name in given:
-            raise ModelError(name, "has no place beside outer_diameter; carried adds to a tube")
+            raise ModelError(
+                name, Note("has no place beside outer_diameter; carried adds to a tube")
+            )
     measures = (given["outer_diameter"], given.get("inner_diameter", 0.0))
     return Tube(*measures, *_material(given), carried=given.get("carried", 0.0))
 
@@ -191,17 +195,19 @@ def _material(given: Mapping[str, Any]) -> Material:
     if "material" not in given:
         for name, other in (("density", "youngs_modulus"), ("youngs_modulus", "density")):
             if name not in given and other in given:
-                raise ModelError(name, f"missing; give it together with {own[0]}")
+                raise ModelError(name, Note("missing; give it together with {own}", own=own[0]))
         if "density" not in given:
             sentence = 'missing; give one such as "aluminium", or youngs_modulus and density'
             raise ModelError("material", sentence)
         return Material(**{name: given[name] for name in own})
     if own:
-        raise ModelError(own[0], "has no place beside material; give one of both")
+        raise ModelError(own[0], Note("has no place beside material; give one of both"))
     if given["material"] not in MATERIALS:
         sentence = unknown(given["material"], MATERIALS, "material")
-        others = "youngs_modulus and density stand for any other"
-        raise ModelError("material", f"{sentence} ({others})")
+        others = Note(
+            "{sentence} (youngs_modulus and density stand for any other)", sentence=sentence
+        )
+        raise ModelError("material", others)
     return MATERIALS[given["material"]]
 
 
@@ -319,8 +325,13 @@ def wrong_shaft(shaft: Shaft) -> Iterator[ModelError]:
         if not 0 <= segment.start < segment.stop <= shaft.length:
             yield ModelError(
                 where,
-                f"goes from {segment.start:g} m to {segment.stop:g} m; give a part of the shaft, "
-                f"which goes from 0 m to {shaft.length:g} m",
+                Note(
+                    "goes from {start:g} m to {stop:g} m; give a part of the shaft, which goes "
+                    "from 0 m to {length:g} m",
+                    start=segment.start,
+                    stop=segment.stop,
+                    length=shaft.length,
+                ),
             )
         yield from _wrong_profile(where, segment.profile, shaft)
     ordered = sorted(numbered("shaft.segments", shaft.segments), key=lambda place: place[1].start)
@@ -328,8 +339,13 @@ def wrong_shaft(shaft: Shaft) -> Iterator[ModelError]:
         if second.start < first.stop:
             yield ModelError(
                 where,
-                f"begins at {second.start:g} m, where {before} still goes on to {first.stop:g} m; "
-                "parts must not overlap",
+                Note(
+                    "begins at {start:g} m, where {before} still goes on to {stop:g} m; parts "
+                    "must not overlap",
+                    start=second.start,
+                    before=before,
+                    stop=first.stop,
+                ),
             )
 
 
@@ -338,8 +354,10 @@ def _wrong_profile(where: str, profile: Section | Tube, shaft: Shaft) -> Iterato
         if shaft.theory == "timoshenko" and profile == profile.section("euler-bernoulli"):
             yield ModelError(
                 f"{where}.bending_stiffness",
-                "does not tell what shear does; with theory timoshenko give the measures of a "
-                "tube, outer_diameter and material",
+                Note(
+                    "does not tell what shear does; with theory timoshenko give the measures "
+                    "of a tube, outer_diameter and material"
+                ),
             )
         return
     inner, outer, ratio = profile.inner_diameter, profile.outer_diameter, profile.poisson_ratio
@@ -347,4 +365,7 @@ def _wrong_profile(where: str, profile: Section | Tube, shaft: Shaft) -> Iterato
         sentence = f"got {1e3 * inner:g} mm inside of {1e3 * outer:g} mm; give less than that"
         yield ModelError(f"{where}.inner_diameter", sentence)
     if not 0 <= ratio <= 0.5:
-        yield ModelError(f"{where}.poisson_ratio", f"got {ratio:g}; give a number from 0 to 0.5")
+        yield ModelError(
+            f"{where}.poisson_ratio",
+            Note("got {ratio:g}; give a number from 0 to 0.5", ratio=ratio),
+        )

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.errors import ModelError
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     PLANES,
     ROW,
@@ -178,7 +178,11 @@ def wrong_station(where: str, station: Station, length: float) -> Iterator[Model
     if not 0 <= station.position <= length:
         yield ModelError(
             f"{where}.position",
-            f"got {station.position:g} m, which is off the shaft; give 0 m to {length:g} m",
+            Note(
+                "got {position:g} m, which is off the shaft; give 0 m to {length:g} m",
+                position=station.position,
+                length=length,
+            ),
         )
     if station.hand is not None:
         yield from _wrong_hand(f"{where}.hand", station.hand)
@@ -187,15 +191,21 @@ def wrong_station(where: str, station: Station, length: float) -> Iterator[Model
 def _wrong_hand(where: str, hand: Hand) -> Iterator[ModelError]:
     given = [name for name in OF_HAND if np.any(getattr(hand, name))]
     if hand.impedance and given:
-        yield ModelError(f"{where}.{given[0]}", "has no place beside an impedance; leave it out")
+        yield ModelError(
+            f"{where}.{given[0]}", Note("has no place beside an impedance; leave it out")
+        )
     elif not hand.impedance and not given:
         yield ModelError(
-            where, "nothing is said of the hand; give mass, stiffness and damping, or an impedance"
+            where,
+            Note("nothing is said of the hand; give mass, stiffness and damping, or an impedance"),
         )
     if len(hand.impedance) > 2:
         yield ModelError(
             f"{where}.impedance",
-            f"got {len(hand.impedance)} tables; give one, or one for each plane",
+            Note(
+                "got {impedance} tables; give one, or one for each plane",
+                impedance=len(hand.impedance),
+            ),
         )
     for table in hand.impedance:
         what = _wrong_rows(table)

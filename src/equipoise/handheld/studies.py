@@ -12,6 +12,7 @@ from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.frequencies import characteristic, natural_frequencies, scale_of
 from equipoise.handheld.layout import Layout
 from equipoise.handheld.model import NOTHING, Station, Tool
+from equipoise.i18n import Note
 from equipoise.mechanism.checks import unknown
 from equipoise.results.result import Result
 from equipoise.signals import Array
@@ -39,7 +40,7 @@ def check_key(station: Station, key: str) -> None:
     """A station must have the number that a key names."""
     known = [name for name in KEYS if has(station, name)]
     if key not in KEYS:
-        raise UsageError(unknown(key, known, f"number of {station.name!r}"))
+        raise UsageError(unknown(key, known, Note("number of {name!r}", name=station.name)))
     if key not in known:
         raise UsageError(f"{station.name!r} has no {key.partition('.')[0]}; give it one first")
 

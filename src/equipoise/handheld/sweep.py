@@ -22,6 +22,7 @@ from equipoise.handheld.response import (
     rms_over_time,
     shakes,
 )
+from equipoise.i18n import Note
 from equipoise.results.result import Result
 from equipoise.signals import Array, highest_at
 
@@ -113,7 +114,9 @@ def source_of(tool: Tool) -> str:
     if tool.excitations:
         return tool.excitations[0].station
     if not tool.stations:
-        raise ModelError("shaft.stations", "there is none; add what sits on the shaft and holds it")
+        raise ModelError(
+            "shaft.stations", Note("there is none; add what sits on the shaft and holds it")
+        )
     return min(tool.stations, key=lambda one: one.position).name
 
 
@@ -131,7 +134,7 @@ def transmit(tool: Tool, speed: Array, source: str | None = None) -> Transmissio
     source = source_of(tool) if source is None else tool.station(source).name
     names = [one.name for one in held(tool)]
     if not names:
-        raise ModelError("shaft.stations", "nothing holds the tool; give a hand or a harness")
+        raise ModelError("shaft.stations", Note("nothing holds the tool; give a hand or a harness"))
 
     forces = tuple(  # 1 N in each plane; the planes know nothing of each other
         Excitation(f"unit {plane}", source, force=1.0, direction=plane)  # type: ignore[arg-type]
@@ -306,7 +309,9 @@ def sweep_tool(tool: Tool, speed: Array, further: Sequence[float] = ()) -> ToolS
     transmissions = transmit(tool, speed) if held(tool) else None
     response = respond_tool(tool, speed) if tool.excitations else None
     if transmissions is None and response is None:
-        raise ModelError("shaft", "nothing holds the tool and nothing shakes it; add a station")
+        raise ModelError(
+            "shaft", Note("nothing holds the tool and nothing shakes it; add a station")
+        )
     found = ToolSweep(tool, np.asarray(speed), transmissions, response, tuple(further))
     if further:
         found.places(further)  # a place off the shaft is told at once

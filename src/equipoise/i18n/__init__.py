@@ -6,10 +6,9 @@ The catalogues beside this file hold a line for each text: ``"shaking force" = "
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from typing import Any, Self
@@ -34,9 +33,8 @@ def to_say(text: str) -> str:
     return text
 
 
-@dataclass(frozen=True, init=False, repr=False)
-class Note:
-    """A sentence with its values, said in the language of whoever reads it.
+class Note(str):
+    """A sentence with its values, said in the language of whoever reads it; as a `str` in English.
 
     template : as in the catalogues.  values : for its ``{placeholders}``; Notes among them are said
     in the same language.
@@ -45,30 +43,37 @@ class Note:
     template: str
     values: Mapping[str, Any]
 
-    def __init__(self, template: str, /, **values: Any) -> None:
-        object.__setattr__(self, "template", template)
-        object.__setattr__(self, "values", values)
-
-    def __str__(self) -> str:
-        """The sentence in English."""
+    def __new__(cls, template: str, /, **values: Any) -> Self:
         with speaking("en"):
-            return self.said()
+            made = super().__new__(cls, _said(template, values))
+        made.template, made.values = template, values
+        return made
 
-    def __repr__(self) -> str:
-        return f"Note({str(self)!r})"
-
-    def __hash__(self) -> int:
-        return hash((self.template, *map(str, self.values.values())))
+    def __getnewargs_ex__(self) -> tuple[tuple[str], dict[str, Any]]:
+        return (self.template,), dict(self.values)
 
     def said(self) -> str:
         """The sentence in the language that is spoken."""
-        values = {name: said(value) for name, value in self.values.items()}
-        return say(self.template, **values)
+        return _said(self.template, self.values)
 
     @property
     def is_translated(self) -> bool:
-        """Whether the language that is spoken has the sentence."""
-        return spoken() == "en" or self.template in catalogue(spoken())
+        """Whether the language that is spoken has the sentence, and what is in it."""
+        inner = (one for one in self.values.values() if isinstance(one, Note))
+        here = spoken() == "en" or self.template in catalogue(spoken())
+        return here and all(one.is_translated for one in inner)
+
+    def with_values(self, change: Callable[[Any], Any]) -> Note:
+        """The same sentence with other values, those of Notes in it too."""
+        changed = {
+            name: one.with_values(change) if isinstance(one, Note) else change(one)
+            for name, one in self.values.items()
+        }
+        return Note(self.template, **changed)
+
+
+def _said(template: str, values: Mapping[str, Any]) -> str:
+    return say(template, **{name: said(value) for name, value in values.items()})
 
 
 class Worded(str):
@@ -120,6 +125,25 @@ def worded(text: str | Mapping[str, str]) -> str:
 def said(text: Note | str) -> str:
     """A sentence, a part of one, or a text of a file, in the language that is spoken."""
     return text.said() if isinstance(text, Note | Worded) else text
+
+
+def in_english(text: Note | str) -> Note | str:
+    """A sentence, with the remark that it is in English where the language spoken lacks it."""
+    if spoken() == "en" or (isinstance(text, Note) and text.is_translated):
+        return text
+    return Note("in English: {sentence}", sentence=str(text))
+
+
+def all_of(parts: Sequence[Note | str], commas: bool = False) -> Note | str:
+    """Parts of a sentence with "and" between the last two; commas, or "and" between the others."""
+    *first, last = parts or [""]
+    if not first:
+        return last
+    before = first[0]
+    for one in first[1:]:
+        template = to_say("{first}, {last}") if commas else to_say("{first} and {last}")
+        before = Note(template, first=before, last=one)
+    return Note("{first} and {last}", first=before, last=last)
 
 
 def in_each(text: str, change: Callable[[str], str]) -> str:

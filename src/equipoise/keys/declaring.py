@@ -11,6 +11,7 @@ from typing import Any, ClassVar, Self, TypeVar, dataclass_transform
 
 from equipoise.errors import ModelError
 from equipoise.guarding import keyworded
+from equipoise.i18n import Note
 from equipoise.keys.base import Kind, Record
 from equipoise.keys.kinds import (
     PLANES,
@@ -60,7 +61,7 @@ class Key:
     at_least: float | None = None
     above: float | None = None
     below: float | None = None
-    why: str = ""
+    why: Note | str = ""
     endless: bool = False
     inside: bool = False
     word: str = ""
@@ -86,15 +87,15 @@ class Key:
         kind = innermost(self.kind)
         return f" {SI[kind.dimension]}" if isinstance(kind, Quantity) else ""
 
-    def right(self, value: float) -> str:
+    def right(self, value: float) -> Note | str:
         """What to give instead of a number beyond the limits."""
         if self.why:
             return self.why
         if self.below is not None and value >= self.below:
-            return f"give less than {self.below:g}"
+            return Note("give less than {limit:g}", limit=self.below)
         if self.above is not None:
-            return f"give more than {self.above:g}"
-        return f"give {self.at_least:g} or more"
+            return Note("give more than {limit:g}", limit=self.above)
+        return Note("give {limit:g} or more", limit=self.at_least)
 
 
 Keys = Mapping[str, Key]
@@ -268,17 +269,23 @@ def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
         if isinstance(leaf, str):
             continue
         if not isfinite(leaf):
-            yield ModelError(place, f"got {leaf}; give a finite number")
+            yield ModelError(place, Note("got {leaf}; give a finite number", leaf=leaf))
         elif abs(leaf) > HUGE or 0 < abs(leaf) < TINY:
             text = f"{leaf:g} in SI units"
-            yield ModelError(place, f"got {text}, which no machine can have").about(leaf, text)
+            yield ModelError(place, Note("got {text}, which no machine can have", text=text)).about(
+                leaf, text
+            )
     for place, leaf, one in leaves:
         names = () if one is None else getattr(innermost(one.kind), "names", ())
         if names and leaf not in names:
-            yield ModelError(place, f"got {leaf!r}; give {choice(names)}")
+            yield ModelError(
+                place, Note("got {leaf!r}; give {choice}", leaf=leaf, choice=choice(names))
+            )
         elif one is not None and not isinstance(leaf, str) and not one.allows(leaf):
             text = f"{leaf:g}{one.unit}"
-            yield ModelError(place, f"got {text}; {one.right(leaf)}").about(leaf, text)
+            yield ModelError(
+                place, Note("got {text}; {right}", text=text, right=one.right(leaf))
+            ).about(leaf, text)
 
 
 def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, Key | None]]:

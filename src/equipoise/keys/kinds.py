@@ -9,20 +9,20 @@ from numbers import Integral, Real
 from types import MappingProxyType
 from typing import Any, Literal
 
-from equipoise.i18n import LANGUAGES, Worded
+from equipoise.i18n import LANGUAGES, Note, Worded
 from equipoise.keys.base import Kind, Record
 from equipoise.quantities import Dimension
 
 MOST_WHOLE = 1_000_000
 
 
-NO_INERTIA = "no body has a negative moment of inertia"
+NO_INERTIA = Note("no body has a negative moment of inertia")
 
 
-def choice(names: Iterable[Any]) -> str:
+def choice(names: Iterable[Any]) -> Note | str:
     """Say which there are: ``'a', 'b' or 'c'``."""
     *most, last = map(repr, names)
-    return f"{', '.join(most)} or {last}" if most else last
+    return Note("{most} or {last}", most=", ".join(most), last=last) if most else last
 
 
 @dataclass(frozen=True)

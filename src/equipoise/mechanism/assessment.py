@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import acos, asin, degrees, isclose, pi, sqrt
 
+from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import numbered
 from equipoise.mechanism.dynamics import massless
@@ -157,7 +158,7 @@ LEVEL = 1e-6
 """Degrees up to which axes are not turned."""
 
 
-def remarks(linkage: Linkage) -> Iterator[str]:
+def remarks(linkage: Linkage) -> Iterator[Note | str]:
     """Things worth a second look, each one sentence; none of them keeps a model from running."""
     machine = linkage.machine
     if missing := massless(machine):

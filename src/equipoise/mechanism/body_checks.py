@@ -9,6 +9,7 @@ from math import pi
 from typing import Any
 
 from equipoise.errors import ModelError
+from equipoise.i18n import Note
 from equipoise.keys import quantities_of
 from equipoise.mechanism.bodies import (
     MASSES,
@@ -89,7 +90,7 @@ def wrong_bodies(bodies: Sequence[Body], points: Points) -> Iterator[ModelError]
                 yield ModelError(f"{where}.{name}", what)
 
 
-Wrong = Iterator[tuple[str, str]]
+Wrong = Iterator[tuple[str, Note | str]]
 """Keys, and what is wrong with each."""
 
 

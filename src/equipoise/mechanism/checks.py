@@ -7,7 +7,7 @@ from math import pi
 from typing import Any, TypeVar
 
 from equipoise.errors import ModelError, form_of, meant, unknown
-from equipoise.i18n import Worded
+from equipoise.i18n import Note, Worded
 
 __all__ = [
     "FRAME",
@@ -80,7 +80,9 @@ def numbered(key: str, items: Sequence[Any]) -> Iterator[tuple[str, Any]]:
 def too_many(key: str, items: Sequence[Any] | Mapping[str, Any], most: int) -> Iterator[ModelError]:
     """Complain of a list that is far longer than that of any machine."""
     if len(items) > most:
-        yield ModelError(key, f"got {len(items)}; at most {most} are computed with")
+        yield ModelError(
+            key, Note("got {items}; at most {most} are computed with", items=len(items), most=most)
+        )
 
 
 def wrong_text(where: str, text: str) -> Iterator[ModelError]:
@@ -89,32 +91,56 @@ def wrong_text(where: str, text: str) -> Iterator[ModelError]:
         for code, one in text.texts.items():
             yield from wrong_text(f"{where}.{code}", one)
     elif len(text) > LONGEST_NAME:
-        yield ModelError(where, f"{len(text)} characters; give at most {LONGEST_NAME}")
+        yield ModelError(
+            where,
+            Note(
+                "{text} characters; give at most {longest_name}",
+                text=len(text),
+                longest_name=LONGEST_NAME,
+            ),
+        )
     elif not text.isprintable():
-        yield ModelError(where, f"got {text!r}; give printable characters")
+        yield ModelError(where, Note("got {text!r}; give printable characters", text=text))
 
 
 def positive(where: str, value: float | None, unit: str) -> Iterator[ModelError]:
     """Complain of a number, where it is given, that is not above 0."""
     if value is not None and value <= 0:
-        yield ModelError(where, f"got {value:g} {unit}; give more than 0")
+        yield ModelError(
+            where, Note("got {value:g} {unit}; give more than 0", value=value, unit=unit)
+        )
 
 
 def wrong_range(where: str, pair: Vector | None, scale: float, unit: str) -> Iterator[ModelError]:
     """Complain of a range, where it is given, that ends before it begins."""
     if pair is not None and pair[0] > pair[1]:
         low, high = (scale * value for value in pair)
-        yield ModelError(where, f"got {low:.6g} to {high:.6g}{unit}; give the smaller one first")
+        yield ModelError(
+            where,
+            Note(
+                "got {low:.6g} to {high:.6g}{unit}; give the smaller one first",
+                low=low,
+                high=high,
+                unit=unit,
+            ),
+        )
 
 
 def wrong_speeds(where: str, speeds: Sequence[float]) -> Iterator[ModelError]:
     """Two speeds, the lower one first."""
     if len(speeds) != 2:
-        yield ModelError(where, f"got {len(speeds)}; give the lowest and the highest speed")
+        yield ModelError(
+            where, Note("got {speeds}; give the lowest and the highest speed", speeds=len(speeds))
+        )
     elif not 0 < speeds[0] < speeds[1]:
         low, high = (speed * 30 / pi for speed in speeds)
         yield ModelError(
-            where, f"got {low:.6g} to {high:.6g} rpm; give two above 0, the lower one first"
+            where,
+            Note(
+                "got {low:.6g} to {high:.6g} rpm; give two above 0, the lower one first",
+                low=low,
+                high=high,
+            ),
         )
 
 
@@ -127,4 +153,4 @@ def unknown_link(where: str, name: str, bodies: Bodies) -> Iterator[ModelError]:
 def unknown_point(where: str, point: str, body: str, bodies: Bodies) -> Iterator[ModelError]:
     """Complain of a name that no point of a body has."""
     if point not in bodies[body]:
-        yield ModelError(where, unknown(point, bodies[body], f"point of {body}"))
+        yield ModelError(where, unknown(point, bodies[body], Note("point of {body}", body=body)))

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ChangePointError, MotionError, RangeError
+from equipoise.i18n import Note, all_of
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.steps import (
     Array,
@@ -104,8 +105,11 @@ def close(machine: Machine, groups: Iterable[Group]) -> Cycle:
             continue
         return Cycle(turns, grid.windings, grid.tables, grid.weakest)
     raise MotionError(
-        f"the motion does not repeat within {tried} turns of the crank; "
-        "give gears numbers of teeth (or ratios) whose motion closes sooner"
+        Note(
+            "the motion does not repeat within {tried} turns of the crank; give gears "
+            "numbers of teeth (or ratios) whose motion closes sooner",
+            tried=tried,
+        )
     )
 
 
@@ -175,9 +179,13 @@ class _Grid:
         ratio = gear.exact_ratio
         if ratio is None:
             raise MotionError(
-                f"the motion never repeats, or only after far too many turns: the ratio "
-                f"{gear.speed_ratio!r} of the gears {name} is no fraction of small whole numbers; "
-                "give numbers of teeth"
+                Note(
+                    "the motion never repeats, or only after far too many turns: the ratio "
+                    "{speed_ratio!r} of the gears {name} is no fraction of small whole "
+                    "numbers; give numbers of teeth",
+                    speed_ratio=gear.speed_ratio,
+                    name=name,
+                )
             )
         winding = carrier + ratio * relative
         if winding.denominator == 1:
@@ -185,9 +193,15 @@ class _Grid:
         longer = self.turns * winding.denominator
         if longer > MOST_TURNS:
             raise MotionError(
-                f"the motion repeats only after {longer} turns of the crank (gears {name}, ratio "
-                f"{ratio}), more than the {MOST_TURNS} that are analysed; give numbers of teeth "
-                "that close sooner"
+                Note(
+                    "the motion repeats only after {longer} turns of the crank (gears {name}, "
+                    "ratio {ratio}), more than the {most_turns} that are analysed; give "
+                    "numbers of teeth that close sooner",
+                    longer=longer,
+                    name=name,
+                    ratio=ratio,
+                    most_turns=MOST_TURNS,
+                )
             )
         raise _LongerCycle(longer)
 
@@ -199,13 +213,17 @@ class _Grid:
         margin = np.broadcast_to(self.state[group.margin], self.theta.shape)
         margin = np.where(np.isfinite(margin), margin, -np.inf)
         smallest, at = self.smallest(group, margin)
-        names = " and ".join(repr(link) for link in group.links)
+        names = all_of([repr(link) for link in group.links])
         if smallest < -CHANGE_POINT:
             raise self.range_error(group, margin, at, names)
         if smallest < CHANGE_POINT:
             raise ChangePointError(
-                f"change point at crank angle {_in_degrees(at)}: {group.dead} there, and "
-                "nothing decides how they go on; change a length or direction so that they do not",
+                Note(
+                    "change point at crank angle {angle}: {dead} there, and nothing "
+                    "decides how they go on; change a length or direction so that they do not",
+                    angle=_in_degrees(at),
+                    dead=group.dead,
+                ),
                 at,
             )
         self.weakest[group.joint] = (smallest, at)
@@ -246,12 +264,15 @@ class _Grid:
         assert group.margin is not None
         return np.broadcast_to(state[group.margin], theta.shape)
 
-    def range_error(self, group: Group, margin: Array, dip: float, names: str) -> RangeError:
+    def range_error(self, group: Group, margin: Array, dip: float, names: Note | str) -> RangeError:
         """Tell between which crank angles a dyad can be closed; not at the angle `dip`."""
         if not np.any(margin > 0):
             return RangeError(
-                f"{names} cannot be joined at any crank angle; check their lengths and where "
-                "their pins are"
+                Note(
+                    "{names} cannot be joined at any crank angle; check their lengths and "
+                    "where their pins are",
+                    names=names,
+                )
             )
         period = 2 * pi * self.turns
         theta, where = np.unique([*self.theta[:-1], dip % period], return_index=True)
@@ -266,9 +287,18 @@ class _Grid:
         for begin in starts:
             later = [stop for stop in stops if stop > begin]
             ranges.append((begin, min(later)) if later else (begin - period, min(stops)))
-        told = " and ".join(f"from {_in_degrees(a)} to {_in_degrees(b)}" for a, b in ranges)
+        told = all_of(
+            [
+                Note("from {low} to {high}", low=_in_degrees(a), high=_in_degrees(b))
+                for a, b in ranges
+            ]
+        )
         return RangeError(
-            f"the crank cannot turn fully: {names} reach each other only {told} of crank angle",
+            Note(
+                "the crank cannot turn fully: {names} reach each other only {told} of crank angle",
+                names=names,
+                told=told,
+            ),
             tuple(ranges),
         )
 

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import MassError, UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
@@ -232,14 +233,15 @@ def forces(motion: Motion, about: str | Vector | complex | None = None) -> Force
     return Forces(motion, pole, inertia, weights, *held)
 
 
-def massless(machine: Machine) -> str:
+def massless(machine: Machine) -> Note | str:
     """Say which links lack masses; empty where none does."""
     missing = [name for name, link in machine.links.items() if not link.has_mass]
     if not missing:
         return ""
-    return (
-        f"forces need mass, center_of_mass and inertia of every link; missing for "
-        f"{', '.join(missing)} (a link to be neglected has mass 0)"
+    return Note(
+        "forces need mass, center_of_mass and inertia of every link; missing for {links} (a link "
+        "to be neglected has mass 0)",
+        links=", ".join(missing),
     )
 
 
@@ -319,5 +321,7 @@ def place_of(machine: Machine, point: str | Vector | complex) -> complex:
     except (TypeError, ValueError, OverflowError):
         place = complex("nan")
     if not np.isfinite(hypot(place.real, place.imag)):
-        raise UsageError(f"got {point!r}; give a point of the frame or two finite coordinates")
+        raise UsageError(
+            Note("got {point!r}; give a point of the frame or two finite coordinates", point=point)
+        )
     return place

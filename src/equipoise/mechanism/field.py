@@ -11,7 +11,7 @@ from math import pi
 from typing import ClassVar, Literal
 
 from equipoise.errors import ModelError
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     ROW,
     Conditions,
@@ -31,7 +31,7 @@ from equipoise.mechanism.checks import FRAME, Bodies, Vector, unknown
 WAYS = ("forward", "backward")
 PARTS = ("resistance", "per_depth", "per_speed", "per_depth_and_speed")
 """Of the resistance of soil."""
-RESISTS = "soil resists, give 0 or more"
+RESISTS = Note("soil resists, give 0 or more")
 
 
 @declared
@@ -114,7 +114,7 @@ class Planting(Frozen):
         default=None,
         example="0.6 m/s",
         at_least=0,
-        why='give its size, and travel = "backward" for a machine that drives against x',
+        why=Note('give its size, and travel = "backward" for a machine that drives against x'),
     )
     depth: float | None = key(
         "length",
@@ -192,25 +192,31 @@ def wrong_planting(planting: Planting | None, bodies: Bodies) -> Iterator[ModelE
         what = f"other point of {links[0]}, the tip's link,"
         yield ModelError("planting.finger_from", unknown(planting.finger_from, points, what))
     if (planting.forward_speed is None) == (planting.hill_spacing is None):
-        yield ModelError("planting", "give either forward_speed or hill_spacing")
+        yield ModelError("planting", Note("give either forward_speed or hill_spacing"))
     if (planting.depth is None) == (planting.surface is None):
-        yield ModelError("planting", "give either depth or surface")
+        yield ModelError("planting", Note("give either depth or surface"))
     if planting.tray is not None and planting.tray[0] == planting.tray[1]:
-        yield ModelError("planting.tray", "its two points are the same; give both ends of the edge")
+        yield ModelError(
+            "planting.tray", Note("its two points are the same; give both ends of the edge")
+        )
     if planting.soil is None:
         return
     if not any(getattr(planting.soil, part) for part in (*PARTS, "table")):
-        yield ModelError("planting.soil", f"give at least one of {', '.join(PARTS)} and table")
+        yield ModelError(
+            "planting.soil", Note("give at least one of {names} and table", names=", ".join(PARTS))
+        )
     if planting.soil.table is not None:
         yield from _wrong_table("planting.soil.table", planting.soil.table)
 
 
 def _wrong_table(where: str, table: SoilTable) -> Iterator[ModelError]:
     if not table.depth:
-        yield ModelError(where, "the table has no rows")
+        yield ModelError(where, Note("the table has no rows"))
     elif len(table.depth) != len(table.resistance):
-        yield ModelError(where, "the columns differ in length")
+        yield ModelError(where, Note("the columns differ in length"))
     elif table.depth[0] < 0 or any(b <= a for a, b in pairwise(table.depth)):
-        yield ModelError(where, "the depths must rise from row to row, from 0 or more")
+        yield ModelError(where, Note("the depths must rise from row to row, from 0 or more"))
     elif min(table.resistance) < 0:
-        yield ModelError(where, f"got {min(table.resistance):g} N; soil resists, give 0 or more")
+        yield ModelError(
+            where, Note("got {least:g} N; {right}", right=RESISTS, least=min(table.resistance))
+        )

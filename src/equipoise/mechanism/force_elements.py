@@ -8,7 +8,7 @@ from math import ceil, degrees, pi
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     NO_INERTIA,
     ROW,
@@ -139,7 +139,7 @@ class Spring(Frozen):
         default=0.0,
         shown="0 m",
         at_least=0,
-        why="a length cannot be negative, give 0 or more",
+        why=Note("a length cannot be negative, give 0 or more"),
     )
 
 
@@ -217,23 +217,25 @@ def wrong_load(where: str, load: Load, bodies: Bodies) -> Iterator[ModelError]:
         yield from unknown_point(f"{where}.point", load.point, load.link, bodies)
     given = [load.force is not None, load.torque is not None, load.table is not None]
     if sum(given) != 1:
-        yield ModelError(where, "give exactly one of force, torque and table")
+        yield ModelError(where, Note("give exactly one of force, torque and table"))
         return
     forces = load.force is not None or (load.table is not None and len(load.table.values) == 2)
     if forces and load.point is None:
-        yield ModelError(f"{where}.point", "missing; a force acts at a point of the link")
+        yield ModelError(f"{where}.point", Note("missing; a force acts at a point of the link"))
     if not forces and load.point is not None:
-        yield ModelError(f"{where}.point", "a torque acts on a link, not at a point; leave it out")
+        yield ModelError(
+            f"{where}.point", Note("a torque acts on a link, not at a point; leave it out")
+        )
     if (load.start is None) != (load.stop is None):
-        yield ModelError(where, "give both from and to, or neither")
+        yield ModelError(where, Note("give both from and to, or neither"))
     elif None not in (load.start, load.stop) and not 0 < abs(load.stop - load.start) <= TURN:  # type: ignore[operator]
         yield ModelError(
-            where, "from and to must differ, by one turn at most; leave both out for always"
+            where, Note("from and to must differ, by one turn at most; leave both out for always")
         )
     if load.table is not None:
         yield from _wrong_loads(where, load.table, load.outside is not None or _within_rows(load))
     elif load.outside is not None:
-        yield ModelError(f"{where}.outside", "goes with a table; leave it out")
+        yield ModelError(f"{where}.outside", Note("goes with a table; leave it out"))
 
 
 def _within_rows(load: Load) -> bool:
@@ -246,24 +248,37 @@ def _within_rows(load: Load) -> bool:
 
 
 def _wrong_loads(where: str, table: LoadTable, known: bool) -> Iterator[ModelError]:
-    at, angles, named = f"{where}.table", table.crank_angle, table.file or "the table"
+    at, angles, named = f"{where}.table", table.crank_angle, table.file or Note("the table")
     if not angles:
-        yield ModelError(at, "the table has no rows")
+        yield ModelError(at, Note("the table has no rows"))
     elif any(b <= a for a, b in pairwise(angles)):
-        yield ModelError(at, "the crank angles must rise from row to row")
+        yield ModelError(at, Note("the crank angles must rise from row to row"))
     elif any(len(column) != len(angles) for column in table.values):
-        yield ModelError(at, "the columns differ in length")
+        yield ModelError(at, Note("the columns differ in length"))
     elif table.turns > MOST_TURNS:
-        yield ModelError(at, f"{named} covers {table.turns} turns; give at most {MOST_TURNS}")
+        yield ModelError(
+            at,
+            Note(
+                "{named} covers {turns} turns; give at most {most_turns}",
+                named=named,
+                turns=table.turns,
+                most_turns=MOST_TURNS,
+            ),
+        )
     elif table.covers:
         yield from _contradiction(at, table, named)
     elif not known:
         turns = "a turn" if table.turns == 1 else f"{table.turns} turns"
         yield ModelError(
             f"{where}.outside",
-            f"missing; {named} goes {_from_to(table)}, not round {turns}; say what acts in the "
-            'rest: outside = "zero" for nothing, "hold" for what the last row has, or "wrap" for '
-            "a straight line to the first row",
+            Note(
+                "missing; {named} goes {from_to}, not round {turns}; say what acts in the "
+                'rest: outside = "zero" for nothing, "hold" for what the last row has, or '
+                '"wrap" for a straight line to the first row',
+                named=named,
+                from_to=_from_to(table),
+                turns=turns,
+            ),
         )
 
 
@@ -275,16 +290,24 @@ def _contradiction(where: str, table: LoadTable, named: str) -> Iterator[ModelEr
         if abs(column[-1] - column[0]) > SAME_LOAD * largest:
             yield ModelError(
                 where,
-                f"{named} has {column[0]:g} {unit} at {degrees(table.crank_angle[0]):.6g} deg and "
-                f"{column[-1]:g} {unit} at {degrees(table.crank_angle[-1]):.6g} deg, where the "
-                "crank is back; give the same in both rows, or leave the last one out",
+                Note(
+                    "{named} has {column:g} {unit} at {crank_angle:.6g} deg and {column_2:g} "
+                    "{unit} at {crank_angle_2:.6g} deg, where the crank is back; give the same "
+                    "in both rows, or leave the last one out",
+                    named=named,
+                    column=column[0],
+                    unit=unit,
+                    crank_angle=degrees(table.crank_angle[0]),
+                    column_2=column[-1],
+                    crank_angle_2=degrees(table.crank_angle[-1]),
+                ),
             )
             return
 
 
-def _from_to(table: LoadTable) -> str:
+def _from_to(table: LoadTable) -> Note:
     first, last = (f"{degrees(table.crank_angle[end]):.6g} deg" for end in (0, -1))
-    return f"from {first} to {last}"
+    return Note("from {low} to {high}", low=first, high=last)
 
 
 def wrong_ends(where: str, spring: Any, bodies: Bodies) -> Iterator[ModelError]:
@@ -295,15 +318,18 @@ def wrong_ends(where: str, spring: Any, bodies: Bodies) -> Iterator[ModelError]:
         return
     points, frame = bodies[link], bodies[FRAME]
     if point not in points:
-        sentence = unknown(point, points, f"point of {link}")
+        sentence = unknown(point, points, Note("point of {body}", body=link))
         yield ModelError(f"{where}.point", sentence)
     elif to not in frame:
         yield ModelError(f"{where}.to", unknown(to, frame, "point of the frame"))
     elif point in frame:
         yield ModelError(
             f"{where}.point",
-            f"{point!r} is pinned to the frame, where a spring does nothing; give a point "
-            "that moves",
+            Note(
+                "{point!r} is pinned to the frame, where a spring does nothing; give a "
+                "point that moves",
+                point=point,
+            ),
         )
 
 
@@ -312,12 +338,12 @@ def wrong_motor(where: str, motor: Motor) -> Iterator[ModelError]:
     line, table = (motor.no_load_speed, motor.stall_torque), motor.table
     where_table = f"{where}.table"
     if line.count(None) != (0 if table is None else 2):
-        yield ModelError(where, "give either no_load_speed and stall_torque, or table")
+        yield ModelError(where, Note("give either no_load_speed and stall_torque, or table"))
     elif table is None:
         return
     elif len(table.speed) != len(table.torque):
-        yield ModelError(where_table, "the columns differ in length")
+        yield ModelError(where_table, Note("the columns differ in length"))
     elif len(table.speed) < 2:
-        yield ModelError(where_table, "the table has fewer than two rows; a curve needs two")
+        yield ModelError(where_table, Note("the table has fewer than two rows; a curve needs two"))
     elif any(b <= a for a, b in pairwise(table.speed)):
-        yield ModelError(where_table, "the speeds must rise from row to row")
+        yield ModelError(where_table, Note("the speeds must rise from row to row"))

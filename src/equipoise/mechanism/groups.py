@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError
+from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.joints import Structure, gear_pins
 from equipoise.mechanism.model import Gear, Slider
@@ -47,7 +48,7 @@ def _dyad(
     *,
     joint: str,
     point: str = "",
-    dead: str = "",
+    dead: Note | str = "",
 ) -> Group:
     """Two links of which the outer joints are known, and that are known afterwards.
 
@@ -95,7 +96,7 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         (kernels.rrr_forces, places, ()),
         joint=pin,
         point=pin,
-        dead=f"{link!r} and {other!r} lie in line",
+        dead=Note("{link!r} and {other!r} lie in line", link=link, other=other),
     )
 
 
@@ -115,7 +116,7 @@ def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
         (kernels.rrp_forces, places, (guide.along,)),
         joint=pin,
         point=pin,
-        dead=f"{link!r} stands square to the line of {guide.name!r}",
+        dead=Note("{link!r} stands square to the line of {guide!r}", link=link, guide=guide.name),
     )
 
 
@@ -136,7 +137,12 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
         (kernels.rpr, (offset, guide.turn, back, (NEAR * builder.size()) ** 2, side)),
         (kernels.rpr_forces, places, (guide.turn.conjugate(),)),
         joint=slider.point,
-        dead=f"{block.point} comes to {other.point}, or square to it across {slider.name!r}",
+        dead=Note(
+            "{point} comes to {other}, or square to it across {slider!r}",
+            point=block.point,
+            other=other.point,
+            slider=slider.name,
+        ),
     )
 
 
@@ -156,7 +162,7 @@ def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         (kernels.prp_forces, turns, (near.along, far.along)),
         joint=pin,
         point=pin,
-        dead=f"the lines of {near.name!r} and {far.name!r} are parallel",
+        dead=Note("the lines of {near!r} and {far!r} are parallel", near=near.name, far=far.name),
     )
 
 

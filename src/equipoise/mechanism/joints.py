@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import islice
 
 from equipoise.errors import MobilityError, ModelError
+from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.checks import Bodies, bodies_at, form_of
 from equipoise.mechanism.model import FRAME, Gear, Machine, Slider
 
@@ -93,8 +94,12 @@ def _check_apart(machine: Machine, pins: Mapping[str, tuple[str, ...]]) -> None:
                 where = "frame" if body == FRAME else f"links.{body}"
                 raise ModelError(
                     f"{where}.points",
-                    f"{seen[place]} and {point} lie at the same place; set them apart, or give "
-                    "them one name if they are one pin",
+                    Note(
+                        "{seen} and {point} lie at the same place; set them apart, or give them "
+                        "one name if they are one pin",
+                        seen=seen[place],
+                        point=point,
+                    ),
                 )
             seen[place] = point
 
@@ -105,8 +110,12 @@ def drive_pivot(joints: Structure, drive: str) -> str:
     if len(pivots) != 1:
         raise ModelError(
             "drive.link",
-            f"{drive!r} shares {len(pivots)} points with the frame; the drive link turns about "
-            "exactly one point of the frame",
+            Note(
+                "{drive!r} shares {pivots} points with the frame; the drive link turns "
+                "about exactly one point of the frame",
+                drive=drive,
+                pivots=len(pivots),
+            ),
         )
     return pivots[0]
 
@@ -119,14 +128,19 @@ def gear_pins(joints: Structure, gear: Gear) -> tuple[str, str]:
         if len(shared) != 1:
             raise ModelError(
                 f"gears[{joints.gears.index(gear) + 1}]",
-                f"{body!r} shares {len(shared)} points with the carrier {gear.carrier!r}; each "
-                "gear turns about exactly one point of the carrier",
+                Note(
+                    "{body!r} shares {shared} points with the carrier {carrier!r}; each gear "
+                    "turns about exactly one point of the carrier",
+                    body=body,
+                    shared=len(shared),
+                    carrier=gear.carrier,
+                ),
             )
         pins += shared
     return pins[0], pins[1]
 
 
-def _alike(bodies: Bodies, pins: Iterable[str]) -> str:
+def _alike(bodies: Bodies, pins: Iterable[str]) -> Note | str:
     """Ask after a point that is no pin, but would be one if its name had the case of another."""
     seen: dict[str, tuple[str, str]] = {}
     for body, points in bodies.items():
@@ -134,29 +148,50 @@ def _alike(bodies: Bodies, pins: Iterable[str]) -> str:
             first, at = seen.setdefault(form_of(point), (point, body))
             if point != first and body != at and point not in pins:
                 name = min(first, point)
-                pair = f"{first!r} of {at} is no pin with {point!r} of {body}"
-                return f"; {pair}: did you mean {name!r}?"
+                return Note(
+                    "; {first!r} of {at} is no pin with {point!r} of {body}: "
+                    "did you mean {name!r}?",
+                    first=first,
+                    at=at,
+                    point=point,
+                    body=body,
+                    name=name,
+                )
     return ""
 
 
-def _check_mobility(joints: Structure, drive: str, alike: str) -> None:
+def _check_mobility(joints: Structure, drive: str, alike: Note | str) -> None:
     links = joints.bodies[1:]
     mobility = joints.freedom(links, [FRAME])
     if mobility == 1:
         return
     pins = sum(len(bodies) - 1 for bodies in joints.pins.values())
-    count = (
-        f"{_number(len(links), 'moving link')}, {_number(pins, 'pin')}, "
-        f"{_number(len(joints.sliders), 'sliding joint')} and {_number(len(joints.gears), 'gear')}"
+    count = Note(
+        "{links}, {pins}, {sliders} and {gears}",
+        links=_number(len(links), MOVING_LINKS),
+        pins=_number(pins, PINS),
+        sliders=_number(len(joints.sliders), SLIDING_JOINTS),
+        gears=_number(len(joints.gears), GEARS),
     )
     if mobility < 1:
         raise MobilityError(
-            f"the linkage has no free motion (count {mobility}: {count}); "
-            f"too many joints hold {_names(held_too_often(joints, drive))}"
+            Note(
+                "the linkage has no free motion (count {mobility}: {count}); too many "
+                "joints hold {names}",
+                mobility=mobility,
+                count=count,
+                names=_names(held_too_often(joints, drive)),
+            )
         )
     raise MobilityError(
-        f"the linkage has {mobility} free motions ({count}), and one drive can command only one; "
-        f"the drive leaves {_names(undetermined(joints, drive))} undetermined{alike}"
+        Note(
+            "the linkage has {mobility} free motions ({count}), and one drive can "
+            "command only one; the drive leaves {names} undetermined{alike}",
+            mobility=mobility,
+            count=count,
+            names=_names(undetermined(joints, drive)),
+            alike=alike,
+        )
     )
 
 
@@ -189,11 +224,15 @@ def subsets(joints: Structure, links: list[str]) -> Iterator[tuple[str, ...]]:
         )
 
 
-def _number(count: int, word: str) -> str:
-    return f"{count} {word}{'' if count == 1 else 's'}"
+MOVING_LINKS = (to_say("{count} moving link"), to_say("{count} moving links"))
+PINS = (to_say("{count} pin"), to_say("{count} pins"))
+SLIDING_JOINTS = (to_say("{count} sliding joint"), to_say("{count} sliding joints"))
+GEARS = (to_say("{count} gear"), to_say("{count} gears"))
 
 
-def _names(links: Sequence[str]) -> str:
-    if len(links) < 2:
-        return "".join(repr(link) for link in links) or "the drive link"
-    return f"{', '.join(repr(link) for link in links[:-1])} and {links[-1]!r}"
+def _number(count: int, words: tuple[str, str]) -> Note:
+    return Note(words[count != 1], count=count)
+
+
+def _names(links: Sequence[str]) -> Note | str:
+    return all_of([repr(link) for link in links], commas=True) or Note("the drive link")

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import MobilityError, ModelError
+from equipoise.i18n import Note
 from equipoise.mechanism import groups
 from equipoise.mechanism.checks import meant
 from equipoise.mechanism.cycle import Cycle, close
@@ -152,7 +153,10 @@ def ordered(
         hint = meant(joint, [*builder.sides]) or f"the dyads of this linkage meet at {dyads}"
         raise ModelError(
             f"assembly.{joint}",
-            f"no dyad has its inner joint there that could be assembled on two sides; {hint}",
+            Note(
+                "no dyad has its inner joint there that could be assembled on two sides; {hint}",
+                hint=hint,
+            ),
         )
     return Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
 
@@ -224,16 +228,22 @@ def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group
         freedom = joints.freedom(links, known)
         if freedom < 0:
             raise MobilityError(
-                f"too many joints hold {', '.join(links)}, while other links are free to move; "
-                "the linkage as a whole has one free motion, but no drive can command it"
+                Note(
+                    "too many joints hold {names}, while other links are free to move; the "
+                    "linkage as a whole has one free motion, but no drive can command it",
+                    names=", ".join(links),
+                )
             )
         if freedom == 0:
             from equipoise.mechanism.loopgroup import loop_group
 
             return loop_group(builder, joints, links)
     raise MobilityError(
-        f"the drive does not determine {', '.join(unknown)}: no group of these links has as many "
-        "joint equations as unknowns"
+        Note(
+            "the drive does not determine {names}: no group of these links has as many "
+            "joint equations as unknowns",
+            names=", ".join(unknown),
+        )
     )
 
 
@@ -262,8 +272,12 @@ def _dyad(builder: Builder, joints: Structure, first: Outer, second: Outer) -> G
     kinds = "".join("R" if pinned else "P" for pinned in is_pin)
     if kinds == "PPP":
         raise MobilityError(
-            f"three sliding joints in a row cannot position {pair[0]!r} and {pair[1]!r}; "
-            "replace one by a pin"
+            Note(
+                "three sliding joints in a row cannot position {pair!r} and {pair_2!r}; "
+                "replace one by a pin",
+                pair=pair[0],
+                pair_2=pair[1],
+            )
         )
     if kinds in ("PRR", "PPR") or (kinds == "RPR" and slides[0].link != first.link):
         first, second, kinds = second, first, kinds[::-1]

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     NO_INERTIA,
     Conditions,
@@ -32,8 +32,12 @@ from equipoise.mechanism.checks import FRAME, Vector, unknown
 MASS_FIELDS = {"mass", "center_of_mass", "inertia"}
 FLAT = 1e-12
 """Over the square of a side: that of a height which is rounding."""
-TOLD_BY_BODIES = "the bodies tell it; leave out mass, center_of_mass and inertia, or the bodies"
-TOLD_BY_LENGTHS = "length or sides tell the places; give the names of the points alone, in a list"
+TOLD_BY_BODIES = Note(
+    "the bodies tell it; leave out mass, center_of_mass and inertia, or the bodies"
+)
+TOLD_BY_LENGTHS = Note(
+    "length or sides tell the places; give the names of the points alone, in a list"
+)
 
 
 @declared
@@ -68,7 +72,7 @@ class Link(Frozen):
         example={"A": ["0 mm", "0 mm"], "B": ["33.5 mm", "0 mm"]},
     )
     mass: float | None = key(
-        "mass", "needed for forces", default=None, at_least=0, why="a mass cannot be negative"
+        "mass", "needed for forces", default=None, at_least=0, why=Note("a mass cannot be negative")
     )
     center_of_mass: Vector | None = key(
         Point(),
@@ -105,7 +109,9 @@ class Link(Frozen):
             raise problem
         names = not isinstance(self.points, Mapping)
         if names and not measured:
-            raise ModelError("points", "got names alone; give length or sides too, or the places")
+            raise ModelError(
+                "points", Note("got names alone; give length or sides too, or the places")
+            )
         if measured:
             points = placed(tuple(self.points), self.length, self.sides)
             if not names and self.points != points:
@@ -196,11 +202,14 @@ def placed(
     ModelError : there are not so many points, or the sides are not those of a triangle.
     """
     if length is not None and sides:
-        raise ModelError("sides", "given beside length; give one of both")
+        raise ModelError("sides", Note("given beside length; give one of both"))
     count, words = (2, "length goes") if sides is None or length is not None else (3, "sides go")
     if len({*names}) != count or len(names) != count:
         several = {2: "two", 3: "three"}[count]
-        raise ModelError("points", f"got {len(names)}; {words} with {several} names, each once")
+        raise ModelError(
+            "points",
+            f"got {len(names)}; {words} with {several} names, each once",
+        )
     first, second, *third = names
     if length is not None:
         return {first: (0.0, 0.0), second: (length, 0.0)}
@@ -208,8 +217,14 @@ def placed(
     x, square, closes = _apex(a, b, c)
     if closes is False:
         told = ", ".join(f"{1e3 * side:.6g}" for side in (a, b, c))
-        right = "the longest must be shorter than the other two together"
-        raise ModelError("sides", f"got {told} mm, which do not close to a triangle; {right}")
+        raise ModelError(
+            "sides",
+            Note(
+                "got {sides} mm, which do not close to a triangle; the longest must be shorter "
+                "than the other two together",
+                sides=told,
+            ),
+        )
     return {first: (0.0, 0.0), second: (a, 0.0), third[0]: (x, abs(square) ** 0.5)}
 
 
@@ -234,7 +249,7 @@ def _sides_of(names: Sequence[str], sides: Mapping[str, Any]) -> Iterator[Any]:
             raise ModelError(f"sides.{one}-{other}", f"missing; give that length{wrong}")
         yield left.pop(either[0])
     for name in left:
-        raise ModelError(f"sides.{name}", "given beside three others; leave it out")
+        raise ModelError(f"sides.{name}", Note("given beside three others; leave it out"))
 
 
 def size_of(points: Mapping[str, Vector]) -> float:
@@ -249,24 +264,28 @@ def size_of(points: Mapping[str, Vector]) -> float:
 def wrong_points(where: str, points: Mapping[str, Vector]) -> Iterator[ModelError]:
     """Everything that is wrong with what has to have points, each with a name."""
     if not points:
-        yield ModelError(f"{where}.points", "there is no point; give at least one")
+        yield ModelError(f"{where}.points", Note("there is no point; give at least one"))
     for name in points:
         if not name.strip():
-            yield ModelError(f"{where}.points", "a point has an empty name")
+            yield ModelError(f"{where}.points", Note("a point has an empty name"))
 
 
 def wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
     """Everything that is wrong with a link."""
     if name == FRAME or not name.strip():
-        yield ModelError(where, f"a link cannot be called {name!r}; choose another name")
+        yield ModelError(
+            where, Note("a link cannot be called {name!r}; choose another name", name=name)
+        )
     yield from wrong_points(where, link.points)
     given = {"mass": link.mass, "center_of_mass": link.center_of_mass, "inertia": link.inertia}
     missing = [key for key, value in given.items() if value is None]
     if 0 < len(missing) < 3:
         yield ModelError(
             where,
-            f"{' and '.join(missing)} missing; give mass, center_of_mass and inertia together, "
-            "or none of them",
+            Note(
+                "{names} missing; give mass, center_of_mass and inertia together, or none of them",
+                names=" and ".join(missing),
+            ),
         )
         return
     if link.mass is None or link.inertia is None:
@@ -274,5 +293,6 @@ def wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
     if link.mass == 0 and link.inertia > 0:
         text = f"{link.inertia:g} kg m^2"
         yield ModelError(
-            f"{where}.inertia", f"got {text} for a mass of 0; no body can have that, give 0"
+            f"{where}.inertia",
+            Note("got {text} for a mass of 0; no body can have that, give 0", text=text),
         ).about(link.inertia, text)

@@ -9,6 +9,7 @@ from math import ceil, degrees, pi
 import numpy as np
 
 from equipoise.errors import ModelError
+from equipoise.i18n import Note
 from equipoise.mechanism.groups import Mesh
 from equipoise.mechanism.joints import Structure
 from equipoise.mechanism.loops import (
@@ -175,8 +176,11 @@ class _Maker:
         if gear.driven not in self.links:
             raise ModelError(
                 f"gears[{self.joints.gears.index(gear) + 1}]",
-                f"{gear.driven!r} is moved already by other joints; name the gear that is moved "
-                "already first in between",
+                Note(
+                    "{driven!r} is moved already by other joints; name the gear that is moved "
+                    "already first in between",
+                    driven=gear.driven,
+                ),
             )
         mesh = Mesh.of(self.builder, self.joints, gear)
         on, by = self.end(gear.driven, mesh.driven_pin), self.end(gear.driver, mesh.driver_pin)
@@ -202,16 +206,22 @@ def _solve_start(
     if position is None:
         raise ModelError(
             "position",
-            f"missing; no dyad solves {', '.join(group.links)}, so the file must say roughly "
-            "where they are: crank_angle, and points or angles of these links",
+            Note(
+                "missing; no dyad solves {names}, so the file must say roughly where they "
+                "are: crank_angle, and points or angles of these links",
+                names=", ".join(group.links),
+            ),
         )
     gears = {gear.name: gear for gear in builder.machine.gears}
     meshes = {loop.name: loop for loop in loops if isinstance(loop, GearLoop)}
     if meshes and position.crank_angle != 0:
         raise ModelError(
             "position.crank_angle",
-            f"got {degrees(position.crank_angle):g} deg; give the position at 0 deg, where the "
-            "start angle of the gears holds",
+            Note(
+                "got {crank_angle:g} deg; give the position at 0 deg, where the start "
+                "angle of the gears holds",
+                crank_angle=degrees(position.crank_angle),
+            ),
         )
     # Its gears stand still at the angle at which they start.
     standing = tuple(
@@ -257,8 +267,13 @@ def _check_near(builder: Builder, poses: Poses, position: Position, group: LoopG
             if abs(found - complex(*position.points[name])) > FAR * group.size:
                 raise ModelError(
                     f"position.points.{name}",
-                    f"too rough: the links meet with {name} at ({found.real * 1e3:.4g}, "
-                    f"{found.imag * 1e3:.4g}) mm; give a place nearer to where it is",
+                    Note(
+                        "too rough: the links meet with {name} at ({real:.4g}, {imag:.4g}) mm; "
+                        "give a place nearer to where it is",
+                        name=name,
+                        real=found.real * 1000.0,
+                        imag=found.imag * 1000.0,
+                    ),
                 )
 
 
@@ -286,8 +301,13 @@ def _guess(
     if angle is None or not given:
         raise ModelError(
             "position",
-            f"does not place {link!r} at crank angle {degrees(position.crank_angle):g} deg; give "
-            f"two of its points ({', '.join(points)}), or one and its angle",
+            Note(
+                "does not place {link!r} at crank angle {crank_angle:g} deg; give two of "
+                "its points ({names}), or one and its angle",
+                link=link,
+                crank_angle=degrees(position.crank_angle),
+                names=", ".join(points),
+            ),
         )
     turn = np.exp(1j * angle)
     place = given[0][1] + turn * (anchor - given[0][0])

@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     SCHEMA_VERSION,
     VERSION,
@@ -229,7 +229,9 @@ class Machine(Frozen):
             raise ModelError(f"links.{body}", unknown(body, self.bodies, "link"))
         where = "frame" if body == FRAME else f"links.{body}"
         if point not in (points := self.points_of(body)):
-            raise ModelError(f"{where}.points", unknown(point, points, f"point of {body}"))
+            raise ModelError(
+                f"{where}.points", unknown(point, points, Note("point of {body}", body=body))
+            )
         moved = {**points, point: place}
         return replace(self, frame=moved) if body == FRAME else self.with_link(body, points=moved)
 

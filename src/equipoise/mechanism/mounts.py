@@ -7,7 +7,7 @@ from math import cos, hypot, pi, sin
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, all_of, to_say
 from equipoise.keys import Conditions, Flag, Frozen, Key, Keys, Point, Quantity, Text, declared, key
 from equipoise.keys import Direction as DirectionKind
 
@@ -54,10 +54,10 @@ def _check_company(given: Mapping[str, Any]) -> None:
     """Refuse keys of a point beside an axis, and the other way round."""
     if ("point" in given) == ("axis" in given):
         return  # told by the checks of the machine
-    others, has = (OF_AXIS, "a point") if "point" in given else (OF_POINT, "an axis")
+    others, has = (OF_AXIS, Note("a point")) if "point" in given else (OF_POINT, Note("an axis"))
     for one in others:
         if one in given:
-            raise ModelError(one, f"has no place beside {has}; leave it out")
+            raise ModelError(one, Note("has no place beside {has}; leave it out", has=has))
 
 
 @declared
@@ -169,22 +169,26 @@ def wrong_mount(where: str, mount: Mount) -> Iterator[ModelError]:
     about = {key: getattr(mount, key) for key in ("torsional_stiffness", "torsional_damping")}
     own, other = (along, about) if mount.axis is None else (about, along)
     if not any(own.values()):
-        yield ModelError(where, f"give at least one of {' and '.join(own)}")
-    place = "a point" if mount.axis is None else "an axis"
+        yield ModelError(where, Note("give at least one of {names}", names=all_of([*own])))
+    place = Note("a point") if mount.axis is None else Note("an axis")
     for name, value in other.items():
         if value:
-            yield ModelError(f"{where}.{name}", f"has no place in a mount with {place}")
+            yield ModelError(
+                f"{where}.{name}", Note("has no place in a mount with {place}", place=place)
+            )
     if mount.one_sided and mount.axis is not None:
-        yield ModelError(f"{where}.one_sided", "only a mount with a point can push on one side")
+        yield ModelError(
+            f"{where}.one_sided", Note("only a mount with a point can push on one side")
+        )
     if mount.one_sided and mount.preload is not None and not mount.stiffness:
-        yield ModelError(f"{where}.one_sided", "a contact without stiffness carries nothing")
+        yield ModelError(f"{where}.one_sided", Note("a contact without stiffness carries nothing"))
 
 
 def wrong_reading(where: str, item: Mount | Gauge) -> Iterator[ModelError]:
     """Everything that is wrong with where a mount acts, or a gauge reads."""
     if (item.point is None) == (item.axis is None):
-        yield ModelError(where, "give either point or axis")
+        yield ModelError(where, Note("give either point or axis"))
     if item.axis is not None and item.direction != UP:
-        yield ModelError(f"{where}.direction", "goes with a point, not with an axis")
+        yield ModelError(f"{where}.direction", Note("goes with a point, not with an axis"))
     if isinstance(item.direction, tuple) and hypot(*item.direction) == 0:
-        yield ModelError(f"{where}.direction", "got [0, 0, 0]; give a direction")
+        yield ModelError(f"{where}.direction", Note("got [0, 0, 0]; give a direction"))

@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import MotionError
+from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.loops import GearLoop, Loop, Place, Pose, Poses
 from equipoise.mechanism.steps import Array, Reaction, State, p, u
@@ -209,12 +210,13 @@ class LoopGroup:
         q, q1, q2 = (np.stack(level, axis=-1) for level in zip(*found, strict=True))
         return q, q1, q2
 
-    def failure(self, angle: float) -> str:
-        links = ", ".join(self.links)
-        return (
-            f"the links {links} cannot be moved past crank angle {degrees(angle):.4g} deg: "
-            "the loop equations have no solution nearby; change the geometry, or start from "
-            "another position in [position]"
+    def failure(self, angle: float) -> Note:
+        return Note(
+            "the links {links} cannot be moved past crank angle {angle:.4g} deg: the loop "
+            "equations have no solution nearby; change the geometry, or start from another "
+            "position in [position]",
+            links=", ".join(self.links),
+            angle=degrees(angle),
         )
 
     def write(self, state: State, known: Poses, q: Array, q1: Array, q2: Array) -> None:

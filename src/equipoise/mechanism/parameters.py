@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import MassError, UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.dynamics import (
     Forces,
@@ -240,7 +241,7 @@ def spring_columns(
     if link not in links:
         raise UsageError(unknown(link, links, "link"))
     if point not in (points := links[link].points):
-        raise UsageError(unknown(point, points, f"point of {link}"))
+        raise UsageError(unknown(point, points, Note("point of {body}", body=link)))
     if to not in frame:
         raise UsageError(unknown(to, frame, "point of the frame"))
     units = np.stack([spring_vector(motion, point, to), spring_direction(motion, link, point, to)])

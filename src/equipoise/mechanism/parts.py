@@ -8,7 +8,7 @@ from math import copysign, pi, radians
 from typing import Any, ClassVar, Literal, Protocol
 
 from equipoise.errors import ModelError
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     NO_INERTIA,
     Conditions,
@@ -145,7 +145,7 @@ class Gear(Frozen):
         default=radians(20),
         at_least=0,
         below=pi / 2,
-        why="give an angle from 0 deg to less than 90 deg",
+        why=Note("give an angle from 0 deg to less than 90 deg"),
     )
 
     @classmethod
@@ -153,8 +153,11 @@ class Gear(Frozen):
         if "mesh" in given and "teeth" not in given:
             raise ModelError(
                 "mesh",
-                f"got {given['mesh']!r} without teeth; leave it out, the sign of ratio tells: "
-                "negative for external",
+                Note(
+                    "got {given!r} without teeth; leave it out, the sign of ratio tells: "
+                    "negative for external",
+                    given=given["mesh"],
+                ),
             )
         return cls(*given.pop("between"), **given)
 
@@ -217,7 +220,7 @@ def wrong_slider(where: str, slider: Slider, bodies: Bodies) -> Iterator[ModelEr
         return
     yield from _unknown_body(f"{where}.on", slider.on, bodies)
     if slider.link == slider.on:
-        yield ModelError(f"{where}.on", f"{slider.link!r} cannot slide on itself")
+        yield ModelError(f"{where}.on", Note("{link!r} cannot slide on itself", link=slider.link))
     if slider.on in bodies:
         yield from unknown_point(f"{where}.through", slider.through, slider.on, bodies)
     yield from unknown_point(f"{where}.point", slider.point, slider.link, bodies)
@@ -234,16 +237,23 @@ def wrong_gear(where: str, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:
     if len({gear.driver, gear.driven, gear.carrier}) < 3 and not (
         gear.driver != gear.driven and gear.carrier not in (gear.driver, gear.driven)
     ):
-        yield ModelError(where, "driver, driven link and carrier must be three different bodies")
+        yield ModelError(
+            where, Note("driver, driven link and carrier must be three different bodies")
+        )
     if (gear.ratio is None) == (gear.teeth is None):
-        yield ModelError(where, "give either ratio or teeth")
+        yield ModelError(where, Note("give either ratio or teeth"))
         return
     if gear.teeth is not None and min(gear.teeth) < 1:
-        yield ModelError(f"{where}.teeth", f"got {list(gear.teeth)}; give two positive numbers")
+        yield ModelError(
+            f"{where}.teeth", Note("got {teeth}; give two positive numbers", teeth=list(gear.teeth))
+        )
     elif gear.speed_ratio in (0.0, 1.0):
         yield ModelError(
             where,
-            f"the ratio is {gear.speed_ratio:g}; no pair of gears has that, it would be rigid",
+            Note(
+                "the ratio is {speed_ratio:g}; no pair of gears has that, it would be rigid",
+                speed_ratio=gear.speed_ratio,
+            ),
         )
 
 

@@ -22,6 +22,7 @@ from typing import Any, Literal, Protocol
 
 import numpy as np
 
+from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.model import FRAME, Machine, Slider, Vector
 
@@ -159,7 +160,7 @@ class Group:
     reactions: tuple[Reaction, ...]
     margin: str | None = None
     joint: str = ""
-    dead: str = ""
+    dead: Note | str = ""
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, all_of, to_say
 from equipoise.keys import (
     Conditions,
     Frozen,
@@ -55,7 +55,14 @@ __all__ = [
 
 
 PLANAR = ("surge", "heave", "pitch")
-FREEDOMS = ("surge", "heave", "sway", "roll", "yaw", "pitch")
+FREEDOMS = (
+    to_say("surge"),
+    to_say("heave"),
+    to_say("sway"),
+    to_say("roll"),
+    to_say("yaw"),
+    to_say("pitch"),
+)
 """Along x, y, z and about x, y, z: the order of coordinates in `equipoise.vibration`."""
 HELD = ("surge", "heave", "sway")
 """What a pivot takes away."""
@@ -170,7 +177,9 @@ class Support(Frozen):
 def wrong_support(support: Support | None, rows: Sequence[Row]) -> Iterator[ModelError]:
     """Everything that is wrong with the support and the rows of a machine."""
     if len(rows) > MOST["rows"]:
-        yield ModelError("rows", f"got {len(rows)}; at most {MOST['rows']} are used")
+        yield ModelError(
+            "rows", Note("got {rows}; at most {most} are used", rows=len(rows), most=MOST["rows"])
+        )
     if support is None:
         return
     yield from _wrong_freedoms(support)
@@ -179,7 +188,9 @@ def wrong_support(support: Support | None, rows: Sequence[Row]) -> Iterator[Mode
         yield from too_many(f"support.{kind}", items, MOST[kind])
         for name in items:
             if not name.strip() or not name.isprintable() or len(name) > 200:
-                yield ModelError(f"support.{kind}", f"got the name {name[:60]!r}; give another")
+                yield ModelError(
+                    f"support.{kind}", Note("got the name {name!r}; give another", name=name[:60])
+                )
     for name, mount in support.mounts.items():
         yield from wrong_mount(f"support.mounts.{name}", mount)
     for name, gauge in support.gauges.items():
@@ -191,39 +202,50 @@ def _wrong_freedoms(support: Support) -> Iterator[ModelError]:
         if support.pivot is not None and name in HELD:
             yield ModelError(
                 f"support.freedoms[{number}]",
-                f"the pivot is a pin in the ground, which leaves no {name}; leave out one of them",
+                Note(
+                    "the pivot is a pin in the ground, which leaves no {name}; leave out one "
+                    "of them",
+                    name=name,
+                ),
             )
         elif name in support.freedoms[: number - 1]:
-            yield ModelError(f"support.freedoms[{number}]", f"{name!r} is given twice")
+            yield ModelError(
+                f"support.freedoms[{number}]", Note("{name!r} is given twice", name=name)
+            )
 
 
 def _wrong_body(support: Support) -> Iterator[ModelError]:
     if bool(support.inertia) == (support.pivot_inertia is not None):
-        yield ModelError("support", "give either inertia or pivot_inertia")
+        yield ModelError("support", Note("give either inertia or pivot_inertia"))
         return
     if support.pivot_inertia is not None:
         if support.products:
-            yield ModelError("support.products", "goes with an inertia of three values")
+            yield ModelError("support.products", Note("goes with an inertia of three values"))
         yield from _wrong_pivot_inertia(support)
         return
     if len(support.inertia) not in {1, 3}:
-        yield ModelError("support.inertia", f"got {len(support.inertia)} values; give one or three")
+        yield ModelError(
+            "support.inertia",
+            Note("got {inertia} values; give one or three", inertia=len(support.inertia)),
+        )
     elif len(support.inertia) == 1 and not support.planar:
         yield ModelError(
             "support.inertia",
-            f"got one value, but the support can {_out_of_plane(support)}; give three, about x, y "
-            "and z",
+            Note(
+                "got one value, but the support can {out_of_plane}; give three, about x, y and z",
+                out_of_plane=_out_of_plane(support),
+            ),
         )
     elif len(support.inertia) == 3:
         yield from _wrong_moments(support)
     if support.products and len(support.inertia) != 3:
-        yield ModelError("support.products", "goes with an inertia of three values")
+        yield ModelError("support.products", Note("goes with an inertia of three values"))
     elif support.products and len(support.products) != 3:
-        yield ModelError("support.products", "give three values, of x y, y z and z x")
+        yield ModelError("support.products", Note("give three values, of x y, y z and z x"))
 
 
-def _out_of_plane(support: Support) -> str:
-    return " and ".join(name for name in support.coordinates if name not in PLANAR)
+def _out_of_plane(support: Support) -> Note | str:
+    return all_of([Note(name) for name in support.coordinates if name not in PLANAR])
 
 
 def _wrong_moments(support: Support) -> Iterator[ModelError]:
@@ -231,8 +253,13 @@ def _wrong_moments(support: Support) -> Iterator[ModelError]:
     if c > (a + b) * (1 + 1e-9):
         yield ModelError(
             "support.inertia",
-            f"got {c:g} kg m^2 beside {a:g} and {b:g}; no body has one moment of inertia above the "
-            "sum of the others",
+            Note(
+                "got {c:g} kg m^2 beside {a:g} and {b:g}; no body has one moment of "
+                "inertia above the sum of the others",
+                c=c,
+                a=a,
+                b=b,
+            ),
         )
     if len(support.products) == 3:
         (xx, yy, zz), (xy, yz, zx) = support.inertia, support.products
@@ -241,8 +268,16 @@ def _wrong_moments(support: Support) -> Iterator[ModelError]:
         if min(*minors, whole) <= 0:
             yield ModelError(
                 "support.products",
-                f"got {xy:g}, {yz:g} and {zx:g} kg m^2 beside an inertia of {xx:g}, {yy:g} and "
-                f"{zz:g}; no body has that, give smaller ones",
+                Note(
+                    "got {xy:g}, {yz:g} and {zx:g} kg m^2 beside an inertia of {xx:g}, {yy:g} "
+                    "and {zz:g}; no body has that, give smaller ones",
+                    xy=xy,
+                    yz=yz,
+                    zx=zx,
+                    xx=xx,
+                    yy=yy,
+                    zz=zz,
+                ),
             )
 
 
@@ -250,21 +285,28 @@ def _wrong_pivot_inertia(support: Support) -> Iterator[ModelError]:
     assert support.pivot_inertia is not None
     where = "support.pivot_inertia"
     if support.pivot is None:
-        yield ModelError(where, "there is no pivot; give inertia, about the centre of mass")
+        yield ModelError(where, Note("there is no pivot; give inertia, about the centre of mass"))
         return
     if not support.planar:
         yield ModelError(
             where,
-            f"the support can {_out_of_plane(support)} too; give inertia about the centre of mass, "
-            "three values",
+            Note(
+                "the support can {out_of_plane} too; give inertia about the centre of "
+                "mass, three values",
+                out_of_plane=_out_of_plane(support),
+            ),
         )
     x, y = (c - p for c, p in zip(support.center_of_mass[:2], support.pivot, strict=True))
     least = support.mass * (x * x + y * y)
     if support.pivot_inertia <= least:
         yield ModelError(
             where,
-            f"got {support.pivot_inertia:g} kg m^2; mass and center_of_mass alone make {least:g}, "
-            "give more",
+            Note(
+                "got {pivot_inertia:g} kg m^2; mass and center_of_mass alone make "
+                "{least:g}, give more",
+                pivot_inertia=support.pivot_inertia,
+                least=least,
+            ),
         )
 
 

@@ -11,6 +11,7 @@ from math import ceil, degrees, pi
 import numpy as np
 
 from equipoise.errors import ChangePointError, RangeError
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.cycle import CHANGE_POINT, POINTS_PER_TURN
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.steps import Array, State, plain_angle, run
@@ -34,7 +35,7 @@ def solve_swinging(linkage: Linkage, theta: Array, error: Stuck) -> State:
             _add_references(linkage, start, theta * side >= 0, side, error)
     with np.errstate(all="ignore"):
         state = run(linkage.motion, start)
-    _check(linkage, state, theta, error, "asked for")
+    _check(linkage, state, theta, error, to_say("{error} (asked for {angle:.4g} deg)"))
     return state
 
 
@@ -60,7 +61,8 @@ def _add_references(linkage: Linkage, state: State, chosen: Array, side: int, er
     way = np.linspace(0.0, far, 2 + ceil(far / (2 * pi) * POINTS_PER_TURN))
     with np.errstate(all="ignore"):
         followed = run(linkage.motion, linkage.start(side * way))
-    _check(linkage, followed, side * way, error, "on the way from 0 deg, where gears start, at")
+    doing = to_say("{error} (on the way from 0 deg, where gears start, at {angle:.4g} deg)")
+    _check(linkage, followed, side * way, error, doing)
     for name in linkage.needed_references:
         reference = state.setdefault(f"reference({name})", np.zeros_like(theta))
         reference[chosen] = np.interp(np.abs(theta[chosen]), way, followed[f"phi({name})"])
@@ -75,7 +77,7 @@ def _check(linkage: Linkage, state: State, theta: Array, error: Stuck, doing: st
         bad = ~(margin > CHANGE_POINT)
         if np.any(bad):
             angle = degrees(theta[int(np.argmax(bad))])
-            told = f"{error} ({doing} {angle:.4g} deg)"
+            told = Note(doing, error=error.note, angle=angle)
             if isinstance(error, RangeError):
                 raise RangeError(told, error.ranges) from None
             raise ChangePointError(told, error.crank_angle) from None

@@ -7,7 +7,7 @@ from math import inf, isfinite, pi, sqrt
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
-from equipoise.i18n import to_say
+from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     Conditions,
     Frozen,
@@ -268,5 +268,7 @@ def wrong_added(where: str, added: AddedMass, machine: Mechanism) -> Iterator[Mo
     if added.link not in links:
         yield ModelError(f"{where}.link", unknown(added.link, links, "link"))
     elif added.at not in (points := links[added.link].points):
-        yield ModelError(f"{where}.at", unknown(added.at, points, f"point of {added.link}"))
+        yield ModelError(
+            f"{where}.at", unknown(added.at, points, Note("point of {body}", body=added.link))
+        )
     yield from wrong_weight(where, added.weight)

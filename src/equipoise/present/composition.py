@@ -62,8 +62,6 @@ Parts = dict[str, list[Block | Section]]
 
 SHORT = 6
 """Rows of a table that stands among the pictures; longer ones stand in the appendix."""
-MOST_TRACED = 3
-"""Points whose paths are drawn beside the moving linkage, where no finger plants."""
 
 
 def build(
@@ -216,13 +214,13 @@ def parted(blocks: Iterable[Block | Section]) -> tuple[list[Block | Section], li
 
 def _animation(found: Findings) -> str:
     from equipoise.figures.animation import animated_svg
+    from equipoise.figures.points import followed
     from equipoise.figures.stage import Arrow
+    from equipoise.symbols.rows import with_rows
     from equipoise.symbols.scene import Scene
 
     analysis = found.analysis
-    scene = Scene.of(analysis.motion)
-    ends = [name for name in scene.places if name not in (*scene.pins, *scene.frame)]
-    tip = () if found.machine.planting is None else (found.machine.planting.tip,)
+    scene = with_rows(Scene.of(analysis.motion), analysis.motion)
     if found.response is not None:
         from equipoise.figures.swing import swinging
 
@@ -230,7 +228,7 @@ def _animation(found: Findings) -> str:
     return animated_svg(
         scene,
         title=found.machine.title,
-        traced=tip or ends[:MOST_TRACED],
+        traced=followed(analysis.motion),
         arrow=None if analysis.solved is None else Arrow.of(analysis),
         width=440,  # as wide as it stands on the page, so that its texts have their size
     )

@@ -8,7 +8,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, wraps
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-from equipoise.errors import EquipoiseError, UsageError
+from equipoise.errors import EquipoiseError, UsageError, at_place
+from equipoise.i18n import Note, to_say
 
 if TYPE_CHECKING:
     import numpy as np
@@ -39,7 +40,7 @@ class _Found:
     told: ClassVar[tuple[str, ...]]
     """Parts that ask for all others."""
 
-    failed: dict[str, str] = field(default_factory=dict, init=False, repr=False)
+    failed: dict[str, Note | str] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def owner(self) -> Machine | Tool:
@@ -48,11 +49,11 @@ class _Found:
         return owner
 
     @property
-    def notes(self) -> tuple[str, ...]:
+    def notes(self) -> tuple[Note | str, ...]:
         """A sentence on each part that could not be computed, and why; computes all of them."""
         for part in self.told:
             getattr(self, part)
-        return tuple(f"{part}: {why}" for part, why in self.failed.items())
+        return tuple(at_place(Note(part), why) for part, why in self.failed.items())
 
 
 def part(name: str) -> Callable[[Callable[[Any], Part]], cached_property[Part | None]]:
@@ -64,7 +65,7 @@ def part(name: str) -> Callable[[Callable[[Any], Part]], cached_property[Part | 
             try:
                 return compute(self)
             except EquipoiseError as error:
-                self.failed[name] = str(error)
+                self.failed[name] = error.note
                 return None
 
         return cached_property(found)
@@ -95,21 +96,21 @@ class Findings(_Found):
 
         return analyze(self.machine, self.angles)
 
-    @part("planting")
+    @part(to_say("planting"))
     def planting(self) -> PlantingFigures | None:
         """Path of the finger over ground; None where nothing is planted."""
         from equipoise.planting.summary import plant
 
         return None if self.machine.planting is None else plant(self.machine)
 
-    @part("vibration")
+    @part(to_say("vibration"))
     def response(self) -> Response | None:
         """Vibration at the speed of the machine; None where it has no support."""
         from equipoise.vibration.forced import respond
 
         return None if self.machine.support is None else respond(self.machine)
 
-    @part("vibration over speed")
+    @part(to_say("vibration over speed"))
     def sweep(self) -> Sweep | None:
         """Vibration over speeds around that of the machine."""
         from equipoise.vibration.resonance import around
@@ -121,14 +122,14 @@ class Findings(_Found):
         ends = around(self.machine.drive, self.response.speed)
         return sweep_speed(self.machine, *ends, speeds=COARSE)
 
-    @part("natural frequencies")
+    @part(to_say("natural frequencies"))
     def modes(self) -> FreeVibration | None:
         """Free vibration on the support."""
         from equipoise.vibration.free import modes
 
         return None if self.machine.support is None else modes(self.machine)
 
-    @part("balance")
+    @part(to_say("balance"))
     def balanced(self) -> Balanced | None:
         """The machine balanced by its own plan, or by the remedy that helps most."""
         from equipoise.balancing.advice import advise
@@ -162,7 +163,7 @@ class ToolFindings(_Found):
     text: str
     file: str
 
-    @part("natural frequencies")
+    @part(to_say("natural frequencies"))
     def modes(self) -> ToolModes | None:
         """Free vibration."""
         from equipoise.handheld.modes import vibrate_tool
@@ -170,7 +171,7 @@ class ToolFindings(_Found):
 
         return vibrate_tool(self.tool, MODES)
 
-    @part("speeds")
+    @part(to_say("speeds"))
     def speeds(self) -> np.ndarray[Any, Any] | None:
         """Speeds of the engine, rad/s, closer about resonances; None where the tool tells none."""
         from equipoise.handheld.sweep import SPEEDS, default_speeds, speeds_between
@@ -178,7 +179,7 @@ class ToolFindings(_Found):
         ends = default_speeds(self.tool)
         return None if ends is None else speeds_between(self.tool, *ends, SPEEDS)
 
-    @part("vibration over speed")
+    @part(to_say("vibration over speed"))
     def sweep(self) -> ToolSweep | None:
         """The tool over these speeds."""
         from equipoise.handheld.sweep import sweep_tool
@@ -192,7 +193,7 @@ class ToolFindings(_Found):
         """Of a unit force to what holds the tool."""
         return None if self.sweep is None else self.sweep.transmissions
 
-    @part("exposure")
+    @part(to_say("exposure"))
     def exposure(self) -> ToolExposure | None:
         """What the hands get; None where nothing shakes the tool or no hand holds it."""
         from equipoise.handheld.exposed import expose_tool
@@ -201,7 +202,7 @@ class ToolFindings(_Found):
             return None
         return expose_tool(self.tool, self.speeds)
 
-    @part("design")
+    @part(to_say("design"))
     def design(self) -> ToolDesign | None:
         """What to change, where the file asks for it."""
         from equipoise.handheld.design import design_tool

@@ -13,6 +13,7 @@ from functools import cache
 from math import isfinite
 
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.quantities.numbers import chosen_unit
 from equipoise.quantities.units import FACTORS, HUGE, KINDS, TINY, Dimension, Kind
 
@@ -72,12 +73,19 @@ def described(given: object) -> str:
     if isinstance(given, str):
         return _quoted(given)
     if isinstance(given, int | float):
-        return f"the number {_shown(_digits(given))}"
+        return Note("the number {number}", number=_shown(_digits(given)))
     if isinstance(given, dict):
-        return "a table"
+        return Note("a table")
     if isinstance(given, list | tuple):
-        return f"a list of {len(given)}"
-    return "nothing" if given is None else f"{_shown(str(given))}"
+        return Note("a list of {count}", count=len(given))
+    return Note("nothing") if given is None else f"{_shown(str(given))}"
+
+
+def _bare_number(given: object) -> str:
+    """The same of what has to have a unit."""
+    if isinstance(given, int | float) and not isinstance(given, bool):
+        return Note("the bare number {number}", number=_shown(_digits(given)))
+    return described(given)
 
 
 def _digits(number: int | float) -> str:
@@ -97,7 +105,7 @@ def _quoted(text: str) -> str:
 
 def too_far(text: str) -> str:
     """Complain of an impossible size."""
-    return f"got {_quoted(text)}, which no machine can have; give a usual size"
+    return Note("got {text}, which no machine can have; give a usual size", text=_quoted(text))
 
 
 DECIMAL_COMMA = re.compile(r"([+-]?[0-9]*),([0-9]*(?:[eE][+-]?[0-9]{1,3})?)")
@@ -132,10 +140,16 @@ def separators_told(number: str, unit: str = "") -> str:
     """
     decimal, whole = (f'"{one} {unit}"' if one and unit else one for one in readings(number))
     if decimal and whole:
-        return f"a comma may be the decimal sign or separate thousands; write {decimal} or {whole}"
+        return Note(
+            "a comma may be the decimal sign or separate thousands; write {decimal} or {whole}",
+            decimal=decimal,
+            whole=whole,
+        )
     if whole:
-        return f"leave out what separates thousands: {whole}"
-    return f"the decimal sign is a point, not a comma: {decimal}" if decimal else ""
+        return Note("leave out what separates thousands: {whole}", whole=whole)
+    if decimal:
+        return Note("the decimal sign is a point, not a comma: {decimal}", decimal=decimal)
+    return ""
 
 
 def usual_unit(unit: str, dimension: Dimension) -> str:
@@ -146,54 +160,70 @@ def usual_unit(unit: str, dimension: Dimension) -> str:
 
 def wrong_text(text: str, dimension: Dimension) -> str:
     """Complain of a text outside the grammar of its dimension."""
-    kind, got = KINDS[dimension], f"got {_quoted(text)}"
+    return got(_quoted(text), _right(text, dimension))
+
+
+def got(given: object, right: str) -> str:
+    """Say what was given, and what would be right."""
+    return Note("got {given}; {right}", given=given, right=right)
+
+
+def _right(text: str, dimension: Dimension) -> str:
+    """What to give instead of a text outside the grammar of its dimension."""
+    kind = KINDS[dimension]
     parts = re.fullmatch(r"(.*[0-9.,]) *([^\s0-9.,].*)", text)
     known = parts is not None and plain_unit(parts[2]) in kind.units
     if parts is not None and known and (told := separators_told(*parts.groups())):
-        return f"{got}; {told}"
+        return told
     whole = re.fullmatch(rf"({NUMBER})( *)(\S.*)", text)
     if whole is None:
-        return f"{got}; {_number_complaint(text, kind)}"
+        return _number_complaint(text, kind)
     number, space, unit = whole.groups()
     if not space and re.fullmatch(r"[0-9.,_xXoObBeE\s]+.*", unit) and not _known(unit):
-        return f"{got}; {_number_complaint(text, kind)}"
+        return _number_complaint(text, kind)
     if not space and plain_unit(unit) in kind.units:
-        return f'{got}; put a space between number and unit: "{number} {plain_unit(unit)}"'
-    return f"{got}; {_unit_complaint(unit, number, dimension)}"
+        return Note(
+            'put a space between number and unit: "{number} {unit}"',
+            number=number,
+            unit=plain_unit(unit),
+        )
+    return _unit_complaint(unit, number, dimension)
 
 
 def _number_complaint(text: str, kind: Kind) -> str:
-    such = f'such as "{kind.example}"'
+    such = Note('such as "{example}"', example=kind.example)
     if not text.strip():
-        return f"give number and unit, {such}"
+        return Note("give number and unit, {such}", such=such)
     if re.fullmatch(NUMBER, text.strip()):
-        return f"the unit is missing; give {kind.noun}, {such}"
+        return Note("the unit is missing; give {noun}, {such}", noun=Note(kind.noun), such=such)
     if text != text.strip():
-        return f"leave out the space before or after it, {such}"
+        return Note("leave out the space before or after it, {such}", such=such)
     if re.match(r"[+-]?[0-9]+,[0-9]+", text):
-        return f"the decimal sign is a point, not a comma, {such}"
+        return Note("the decimal sign is a point, not a comma, {such}", such=such)
     if re.match(r"[+-]?(nan|inf)", text, re.IGNORECASE):
-        return f"give a finite number and a unit, {such}"
-    return (
+        return Note("give a finite number and a unit, {such}", such=such)
+    return Note(
         "write the number with the digits 0 to 9, a decimal point and at most an exponent, then a "
-        f"space and the unit, {such}"
+        "space and the unit, {such}",
+        such=such,
     )
 
 
 def _unit_complaint(unit: str, number: str, dimension: Dimension) -> str:
     kind = KINDS[dimension]
-    wanted = f"{kind.noun} is wanted: {', '.join(kind.units)}"
+    wanted = Note("{noun} is wanted: {units}", noun=Note(kind.noun), units=", ".join(kind.units))
     plain = plain_unit(unit)
     if plain == "Hz" and dimension == "angular speed":
-        return 'Hz does not tell turns from radians; give "50 turn/s" or "3000 rpm"'
+        return Note('Hz does not tell turns from radians; give "50 turn/s" or "3000 rpm"')
     if plain in kind.units:
-        return f'write "{number} {plain}"'
+        return Note('write "{number} {unit}"', number=number, unit=plain)
     if meant := unit_meant(unit, dimension):
-        return f'did you mean "{number} {meant}"?'
+        return Note('did you mean "{number} {unit}"?', number=number, unit=meant)
     other = _known(plain)
     if other is not None:
-        return f"{plain} is the unit of {other.noun}; {wanted}"
-    return f"there is no unit {_quoted(unit)} here; {wanted}"
+        of = Note(other.noun)
+        return Note("{unit} is the unit of {of}; {wanted}", unit=plain, of=of, wanted=wanted)
+    return Note("there is no unit {unit} here; {wanted}", unit=_quoted(unit), wanted=wanted)
 
 
 def unit_meant(unit: str, dimension: Dimension) -> str:
@@ -238,9 +268,9 @@ def parse(text: object, dimension: Dimension) -> float:
         One sentence: what was given and what would be right.
     """
     if not isinstance(text, str):
-        got = described(text).replace("the number", "the bare number", 1)
-        right = f'give number and unit in quotes, such as "{KINDS[dimension].example}"'
-        raise UsageError(f"got {got}; {right}")
+        example = KINDS[dimension].example
+        right = Note('give number and unit in quotes, such as "{example}"', example=example)
+        raise UsageError(got(_bare_number(text), right))
     match = re.fullmatch(pattern(dimension), text)
     if match is None:
         raise UsageError(wrong_text(text, dimension))

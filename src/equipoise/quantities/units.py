@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
+from equipoise.i18n import to_say
+
 Dimension = Literal[
     "length",
     "angle",
@@ -70,7 +72,7 @@ class Kind:
 
 KINDS: dict[Dimension, Kind] = {
     "length": Kind(
-        "a length",
+        to_say("a length"),
         {
             "m": "1",
             "mm": "0.001",
@@ -84,7 +86,7 @@ KINDS: dict[Dimension, Kind] = {
         usual=("mm", "m"),
     ),
     "angle": Kind(
-        "an angle",
+        to_say("an angle"),
         {
             "rad": "1",
             "deg": "0.01745329251994329576923690768",
@@ -94,7 +96,7 @@ KINDS: dict[Dimension, Kind] = {
         usual=("deg", "rad"),
     ),
     "mass": Kind(
-        "a mass",
+        to_say("a mass"),
         {
             "kg": "1",
             "g": "0.001",
@@ -107,7 +109,7 @@ KINDS: dict[Dimension, Kind] = {
         usual=("g", "kg"),
     ),
     "inertia": Kind(
-        "a moment of inertia",
+        to_say("a moment of inertia"),
         {
             "kg m^2": "1",
             "kg cm^2": "0.0001",
@@ -125,7 +127,7 @@ KINDS: dict[Dimension, Kind] = {
         usual=("kg mm^2", "kg m^2"),
     ),
     "angular speed": Kind(
-        "an angular speed",
+        to_say("an angular speed"),
         {
             "rad/s": "1",
             "deg/s": "0.01745329251994329576923690768",
@@ -136,7 +138,7 @@ KINDS: dict[Dimension, Kind] = {
         usual=("rpm", "rad/s"),
     ),
     "angular acceleration": Kind(
-        "an angular acceleration",
+        to_say("an angular acceleration"),
         {
             "rad/s^2": "1",
             "deg/s^2": "0.01745329251994329576923690768",
@@ -146,7 +148,7 @@ KINDS: dict[Dimension, Kind] = {
         usual=("rad/s^2", "rpm/s"),
     ),
     "acceleration": Kind(
-        "an acceleration",
+        to_say("an acceleration"),
         {
             "m/s^2": "1",
             "mm/s^2": "0.001",
@@ -157,7 +159,7 @@ KINDS: dict[Dimension, Kind] = {
         example="-9.80665 m/s^2",
     ),
     "force": Kind(
-        "a force",
+        to_say("a force"),
         {
             "N": "1",
             "kN": "1000",
@@ -169,7 +171,7 @@ KINDS: dict[Dimension, Kind] = {
         example="12 N",
     ),
     "torque": Kind(
-        "a torque",
+        to_say("a torque"),
         {
             "N m": "1",
             "N mm": "0.001",
@@ -184,7 +186,7 @@ KINDS: dict[Dimension, Kind] = {
         example="1.5 N m",
     ),
     "speed": Kind(
-        "a speed",
+        to_say("a speed"),
         {
             "m/s": "1",
             "mm/s": "0.001",
@@ -196,15 +198,15 @@ KINDS: dict[Dimension, Kind] = {
         example="0.3 m/s",
         usual=("m/s", "km/h"),
     ),
-    "frequency": Kind("a frequency", {"Hz": "1", "kHz": "1000"}, example="50 Hz"),
+    "frequency": Kind(to_say("a frequency"), {"Hz": "1", "kHz": "1000"}, example="50 Hz"),
     "time": Kind(
-        "a time",
+        to_say("a time"),
         {"s": "1", "ms": "0.001", "min": "60", "h": "3600"},
         example="2 s",
         usual=("s", "h", "min"),
     ),
     "stiffness": Kind(
-        "a stiffness",
+        to_say("a stiffness"),
         {
             "N/m": "1",
             "N/mm": "1000",
@@ -217,7 +219,7 @@ KINDS: dict[Dimension, Kind] = {
         example="20 kN/m",
     ),
     "damping": Kind(
-        "a damping coefficient",
+        to_say("a damping coefficient"),
         {
             "N s/m": "1",
             "N s/mm": "1000",
@@ -228,12 +230,12 @@ KINDS: dict[Dimension, Kind] = {
         example="300 N s/m",
     ),
     "damping per length": Kind(
-        "a damping coefficient per length",
+        to_say("a damping coefficient per length"),
         {"N s/m^2": "1", "kN s/m^2": "1000"},
         example="300 N s/m^2",
     ),
     "torsional stiffness": Kind(
-        "a torsional stiffness",
+        to_say("a torsional stiffness"),
         {
             "N m/rad": "1",
             "kN m/rad": "1000",
@@ -244,13 +246,13 @@ KINDS: dict[Dimension, Kind] = {
         example="500 N m/rad",
     ),
     "torsional damping": Kind(
-        "a torsional damping coefficient",
+        to_say("a torsional damping coefficient"),
         {"N m s/rad": "1", "N m s/deg": "57.29577951308232087679815481", "kgf m s/rad": "9.80665"},
         example="3 N m s/rad",
     ),
-    "power": Kind("a power", {"W": "1", "mW": "0.001", "kW": "1000"}, example="40 W"),
+    "power": Kind(to_say("a power"), {"W": "1", "mW": "0.001", "kW": "1000"}, example="40 W"),
     "density": Kind(
-        "a density",
+        to_say("a density"),
         {
             "kg/m^3": "1",
             "g/cm^3": "1000",
@@ -259,9 +261,9 @@ KINDS: dict[Dimension, Kind] = {
         },
         example="7850 kg/m^3",
     ),
-    "energy": Kind("an energy", {"J": "1", "mJ": "0.001", "kJ": "1000"}, example="12 J"),
+    "energy": Kind(to_say("an energy"), {"J": "1", "mJ": "0.001", "kJ": "1000"}, example="12 J"),
     "bending stiffness": Kind(
-        "a bending stiffness",
+        to_say("a bending stiffness"),
         {
             "N m^2": "1",
             "N mm^2": "0.000001",
@@ -274,13 +276,13 @@ KINDS: dict[Dimension, Kind] = {
         example="980 N m^2",
     ),
     "mass per length": Kind(
-        "a mass per length",
+        to_say("a mass per length"),
         {"kg/m": "1", "g/m": "0.001", "kg/mm": "1000", "lb/ft": "1.488163943569553805774278215"},
         example="2.3 kg/m",
         usual=("g/m", "kg/m"),
     ),
     "modulus": Kind(
-        "a modulus of elasticity",
+        to_say("a modulus of elasticity"),
         {
             "Pa": "1",
             "kPa": "1000",
@@ -294,7 +296,7 @@ KINDS: dict[Dimension, Kind] = {
         usual=("GPa", "MPa"),
     ),
     "unbalance": Kind(
-        "an unbalance",
+        to_say("an unbalance"),
         {
             "kg m": "1",
             "kg mm": "0.001",
@@ -307,7 +309,9 @@ KINDS: dict[Dimension, Kind] = {
         example="300 g mm",
         usual=("g mm", "kg m"),
     ),
-    "force per torque": Kind("a force per torque", {"1/m": "1", "1/mm": "1000"}, example="20 1/m"),
+    "force per torque": Kind(
+        to_say("a force per torque"), {"1/m": "1", "1/mm": "1000"}, example="20 1/m"
+    ),
 }
 
 FACTORS: dict[str, str] = {

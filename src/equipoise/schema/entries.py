@@ -14,12 +14,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from equipoise.errors import ModelError
+from equipoise.i18n import Note
 from equipoise.keys import Frozen, Key, Named, Table, Tables, Whole, all_keys, innermost, keys_of
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import Machine
 from equipoise.schema.files import printable
 from equipoise.schema.models import Beside, machine_of, plain_of
-from equipoise.schema.reading import Context, Place, read_table, written_place
+from equipoise.schema.places import Context, Place, written_place
+from equipoise.schema.reading import read_table
 from equipoise.schema.tables import parse_table
 from equipoise.schema.template import named_parts
 
@@ -41,7 +43,10 @@ class Held(Beside):
             return parse_table(sort, self.texts[file], file)
         if (sort, file) not in self.tables:
             raise ModelError(
-                "", f"got {printable(file)!r}, which is not known here; choose that file"
+                "",
+                Note(
+                    "got {file!r}, which is not known here; choose that file", file=printable(file)
+                ),
             )
         return self.tables[sort, file]
 
@@ -104,7 +109,9 @@ class Document:
         content = deepcopy(self.content)
         above = _above(self.of, content, place) if place else {}
         if not place or not _held(above, place[-1]):
-            raise ModelError(written_place(place), "there is no such entry; it may be deleted")
+            raise ModelError(
+                written_place(place), Note("there is no such entry; it may be deleted")
+            )
         del above[place[-1]]
         if not above and len(place) > 1:
             del _above(self.of, content, place[:-1])[place[-2]]
@@ -165,7 +172,9 @@ def kind_at(of: type[Frozen], place: Place) -> Table:
             last = next(steps, None)
             if isinstance(last, int) != isinstance(one, Tables) or last is None:
                 what = "the number" if isinstance(one, Tables) else "the name"
-                raise ModelError(written_place(place), f"give {what} of the entry too")
+                raise ModelError(
+                    written_place(place), Note("give {what} of the entry too", what=what)
+                )
         held = inner
     return held
 
@@ -195,7 +204,9 @@ def _above(of: type[Frozen], content: Content, place: Place) -> Any:
             # a list, or a table of names, begins with its first entry; another table does not
             if length != len(place) - 1 or _is_entry(of, place[:length]):
                 first = written_place(place[:length])
-                raise ModelError(written_place(place), f"there is no {first}; add that first")
+                raise ModelError(
+                    written_place(place), Note("there is no {first}; add that first", first=first)
+                )
             here[step] = [] if isinstance(place[length], int) else {}
         here = here[step]
     return here
@@ -219,7 +230,9 @@ def _set(above: Any, place: Place, entry: Content, name: str | None) -> None:
         return
     new = step if name is None else name
     if new != step and new in above:
-        raise ModelError(written_place(place), f"{new!r} is taken already; give another name")
+        raise ModelError(
+            written_place(place), Note("{new!r} is taken already; give another name", new=new)
+        )
     items = [(new, entry) if key == step else (key, value) for key, value in above.items()]
     above.clear()
     above.update(items)

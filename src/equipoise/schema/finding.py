@@ -21,7 +21,7 @@ from equipoise.quantities import KINDS, NUMBER, Dimension, plain_unit
 from equipoise.quantities.reading import described
 from equipoise.schema.numbers import POLAR, XYZ, Number, Planes, Vector, read_number, vector_of
 from equipoise.schema.opening import Kind, document_of
-from equipoise.schema.reading import Place, written_place
+from equipoise.schema.places import Place, written_place
 from equipoise.schema.writing import plain_default
 
 Content = Mapping[str, Any]

@@ -25,7 +25,8 @@ from equipoise.schema.opening import (
     opened,
     opened_example,
 )
-from equipoise.schema.reading import Context, read_table
+from equipoise.schema.places import Context
+from equipoise.schema.reading import read_table
 from equipoise.schema.writing import Writer, beside, toml_text
 
 if TYPE_CHECKING:

@@ -7,63 +7,21 @@ the inside out, with what lies in files beside; what does not go together is tol
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from math import isfinite
 from typing import Any
 
 from equipoise import keys
 from equipoise.errors import ModelError, UsageError
-from equipoise.i18n import LANGUAGES, Worded
+from equipoise.i18n import LANGUAGES, Note, Worded
 from equipoise.mechanism.checks import unknown
-from equipoise.quantities import KINDS, described, parse
-from equipoise.schema.files import quoted, written_key
+from equipoise.quantities import KINDS, parse
+from equipoise.schema.files import quoted
 from equipoise.schema.numbers import Polar
-
-Place = tuple[str | int, ...]
-"""Keys, and numbers in lists from 0."""
-
-
-def written_place(place: Iterable[str | int]) -> str:
-    """Dotted path with numbers from 1, as the machine's own checks write it."""
-    text = "".join(f"[{s + 1}]" if isinstance(s, int) else f".{written_key(s)}" for s in place)
-    return text.removeprefix(".")
-
-
-def within(place: Place, error: ModelError) -> ModelError:
-    """The same error, whose place is inside of another."""
-    return error.within(written_place(place))
-
-
-WRONG = object()
-"""Instead of a value that could not be read."""
-
-
-@dataclass
-class Context:
-    """What reading needs besides the content.
-
-    beside : reads what lies in a file of its own, by its sort and the file's name.
-    makers : make the objects of some classes otherwise than by `Frozen.from_table`.
-    problems : what has been found wrong, with its place.
-    """
-
-    beside: Callable[[str, str], Any] | None = None
-    makers: Mapping[type[keys.Frozen], Callable[[dict[str, Any]], Any]] = field(
-        default_factory=dict
-    )
-    problems: list[tuple[Place, str]] = field(default_factory=list)
-
-    def wrong(self, place: Place, given: Any, right: str) -> Any:
-        """Note that a value is none that can be read."""
-        self.problems.append((place, f"got {described(given)}; {right}"))
-        return WRONG
-
-    def say(self, place: Place, sentence: str) -> Any:
-        self.problems.append((place, sentence))
-        return WRONG
+from equipoise.schema.places import WRONG, Context, Place, within, written_place
 
 
 @dataclass(frozen=True)
@@ -96,14 +54,15 @@ def read_table(
     found = _table(keys.Table(of), content, place, context)
     if context.problems:
         (where, what), *others = context.problems
-        more = f" (and {len(others)} more)" if others else ""
-        raise ModelError(written_place(where), what + more)
+        if others:
+            what = Note("{sentence} (and {more} more)", sentence=what, more=len(others))
+        raise ModelError(written_place(where), what)
     return made(found, context)
 
 
 def _table(kind: keys.Table, given: Any, place: Place, context: Context) -> Any:
     if not isinstance(given, dict):
-        return context.wrong(place, given, "give a table")
+        return context.wrong(place, given, Note("give a table"))
     of = kind.type
     known = keys.all_keys(of)
     for name in given:
@@ -111,7 +70,9 @@ def _table(kind: keys.Table, given: Any, place: Place, context: Context) -> Any:
             return context.say((*place, name), unknown(name, known, "key"))
     for name, one in known.items():
         if one.required and name not in given:
-            return context.say((*place, name), f"missing; add {_example(one)}")
+            return context.say(
+                (*place, name), Note("missing; add {example}", example=_example(one))
+            )
     return Values(of, place, _values(of, given, place, context))
 
 
@@ -133,7 +94,7 @@ def _example(one: keys.Key) -> str:
     """Return a key and its value as they would stand in the file."""
     name, example = one.name, one.example
     if example is None:
-        return f"the table [{name}]"
+        return Note("the table [{name}]", name=name)
     if isinstance(example, dict):
         first, example = next(iter(example.items()))
         name = f"{name}.{first}"
@@ -151,7 +112,11 @@ def _named(kind: keys.Named, given: Any, place: Place, context: Context) -> Any:
     if kind.listed and isinstance(given, list):
         return _listing(keys.Listing(keys.Text(), right="names in quotes"), given, place, context)
     if not isinstance(given, dict):
-        return context.wrong(place, given, "give a table" + ", or a list of names" * kind.listed)
+        return context.wrong(
+            place,
+            given,
+            Note("give a table, or a list of names") if kind.listed else Note("give a table"),
+        )
     read, item = READERS[type(kind.item)], kind.item
     return {name: read(item, one, (*place, name), context) for name, one in given.items()}
 
@@ -190,14 +155,18 @@ def _quantity(kind: keys.Quantity, given: Any, place: Place, context: Context) -
     try:
         return parse(given, kind.dimension)
     except UsageError as error:
-        return context.say(place, str(error))
+        return context.say(place, error.note)
 
 
 def _text(kind: keys.Text, given: Any, place: Place, context: Context) -> Any:
     if kind.names:
-        right = f"give {keys.choice(kind.names)}"
+        right = Note("give {what}", what=keys.choice(kind.names))
         return given if given in kind.names else context.wrong(place, given, right)
-    return given if isinstance(given, str) else context.wrong(place, given, "give text in quotes")
+    return (
+        given
+        if isinstance(given, str)
+        else context.wrong(place, given, Note("give text in quotes"))
+    )
 
 
 def _wording(kind: keys.Wording, given: Any, place: Place, context: Context) -> Any:
@@ -205,35 +174,41 @@ def _wording(kind: keys.Wording, given: Any, place: Place, context: Context) -> 
         return _text(kind, given, place, context)
     example = f'{place[-1]}.en = "..."'
     if not given:
-        return context.wrong(place, given, f"give text in quotes, or by language: {example}")
+        return context.wrong(
+            place, given, Note("give text in quotes, or by language: {example}", example=example)
+        )
     for code, text in given.items():
         if code not in LANGUAGES:
             return context.say((*place, code), unknown(code, LANGUAGES, "language"))
         if text == "":
-            return context.say((*place, code), "is empty; give text, or leave it out")
+            return context.say((*place, code), Note("is empty; give text, or leave it out"))
     read = {code: _text(kind, one, (*place, code), context) for code, one in given.items()}
     return WRONG if WRONG in read.values() else Worded(read)
 
 
 def _number(kind: keys.Number, given: Any, place: Place, context: Context) -> Any:
     if isinstance(given, bool) or not isinstance(given, int | float):
-        return context.wrong(place, given, "give a plain number without unit and quotes")
+        return context.wrong(place, given, Note("give a plain number without unit and quotes"))
     with suppress(OverflowError):
         if isfinite(value := float(given)):
             return value
-    return context.wrong(place, given, "give a finite number")
+    return context.wrong(place, given, Note("give a finite number"))
 
 
 def _whole(kind: keys.Whole, given: Any, place: Place, context: Context) -> Any:
     whole = isinstance(given, int) and not isinstance(given, bool)
     if kind.names:
-        right = f"give {keys.choice(kind.names)}"
+        right = Note("give {what}", what=keys.choice(kind.names))
         return given if whole and given in kind.names else context.wrong(place, given, right)
     if not whole:
-        return context.wrong(place, given, "give a whole number without quotes")
+        return context.wrong(place, given, Note("give a whole number without quotes"))
     if kind.least is not None and given < kind.least:
-        return context.wrong(place, given, f"give {kind.least} or more")
-    return given if given <= kind.most else context.wrong(place, given, f"give {kind.most} or less")
+        return context.wrong(place, given, Note("give {limit:g} or more", limit=kind.least))
+    return (
+        given
+        if given <= kind.most
+        else context.wrong(place, given, Note("give {limit} or less", limit=kind.most))
+    )
 
 
 def _file(kind: keys.File, given: Any, place: Place, context: Context) -> Any:
@@ -250,13 +225,13 @@ def _listing(kind: keys.Listing, given: Any, place: Place, context: Context) -> 
         if not isinstance(given, list) or len(given) not in counts:
             return context.wrong(place, given, f"give {kind.right}")
     elif not isinstance(given, list):
-        return context.wrong(place, given, "give a list of two values in brackets")
+        return context.wrong(place, given, Note("give a list of two values in brackets"))
     read, item = READERS[type(kind.item)], kind.item
     values = tuple(read(item, one, (*place, n), context) for n, one in enumerate(given))
     if kind.right or len(given) == 2:
         return values
     for _ in range(max(2 - len(given), 1)):
-        context.wrong(place, given, "give a list of two values")
+        context.wrong(place, given, Note("give a list of two values"))
     return WRONG
 
 
@@ -320,7 +295,9 @@ def _planes(kind: keys.Planes, given: Any, place: Place, context: Context) -> An
             return context.say((*place, name), unknown(name, keys.PLANES, "plane"))
     for plane in keys.PLANES:
         if plane not in given:
-            return context.say((*place, plane), f'missing; add {plane} = "{example}"')
+            return context.say(
+                (*place, plane), Note("missing; add {example}", example=f'{plane} = "{example}"')
+            )
     return tuple(read(item, given[plane], (*place, plane), context) for plane in keys.PLANES)
 
 
@@ -336,7 +313,7 @@ READERS: dict[type[keys.Kind], Callable[[Any, Any, Place, Context], Any]] = {
     keys.Flag: lambda kind, given, place, context: (
         given
         if isinstance(given, bool)
-        else context.wrong(place, given, "give true or false without quotes")
+        else context.wrong(place, given, Note("give true or false without quotes"))
     ),
     keys.Listing: _listing,
     keys.Named: _named,

@@ -21,7 +21,8 @@ from equipoise.schema.opening import (
     opened_example,
     toml_content,
 )
-from equipoise.schema.reading import Context, read_table
+from equipoise.schema.places import Context
+from equipoise.schema.reading import read_table
 from equipoise.schema.study_keys import (
     SPREADS,
     AccuracyTable,

@@ -32,7 +32,8 @@ from equipoise.planting.search import GENERATIONS, POPULATION
 from equipoise.schema.files import FileError, printable, read_text
 from equipoise.schema.numbers import si_value
 from equipoise.schema.opening import in_file, toml_content
-from equipoise.schema.reading import Context, read_table
+from equipoise.schema.places import Context
+from equipoise.schema.reading import read_table
 
 Quantity = str | float
 VALUE = Anything()

@@ -25,7 +25,7 @@ from equipoise.schema.finding import Found, all_numbers, find, replaced, unit_in
 from equipoise.schema.models import Beside, machine_of, parts_of, text_of, tool_of
 from equipoise.schema.numbers import Number
 from equipoise.schema.opening import Kind, Opened, in_file, kind_of, model_content, opened
-from equipoise.schema.reading import Place, written_place
+from equipoise.schema.places import Place, written_place
 from equipoise.schema.words import words_of
 
 Known = dict[tuple[str, str], Any]

@@ -17,7 +17,7 @@ from equipoise.keys import Kind as KeyKind
 from equipoise.schema.finding import Content, Found
 from equipoise.schema.numbers import vector_of
 from equipoise.schema.opening import Kind, document_of
-from equipoise.schema.reading import Place
+from equipoise.schema.places import Place
 
 PARTS = {
     "distance": to_say("distance"),

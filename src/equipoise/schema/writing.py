@@ -11,7 +11,7 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Worded
 from equipoise.quantities import format_exact
 from equipoise.schema.numbers import written_point
-from equipoise.schema.reading import Place, within, written_place
+from equipoise.schema.places import Place, within, written_place
 
 
 @dataclass(frozen=True)

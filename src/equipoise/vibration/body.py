@@ -17,11 +17,12 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError
+from equipoise.i18n import Note, all_of
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import AXES, FREEDOMS, Gauge, Mount, Support, unit_vector
 from equipoise.signals import Array, Periodic
 
-MISSING = (
+MISSING = Note(
     "the machine stands on solid ground; add a table [support] with its mass, mounts and gauges"
 )
 LOOSE = 1e-9
@@ -204,12 +205,13 @@ def _shared(body: Body, load: Array) -> dict[str, float]:
     return {**{name: found.get(name, 0.0) for name in mounts}, **known}
 
 
-def _uncarried(body: Body, over: Array) -> str:
+def _uncarried(body: Body, over: Array) -> Note:
     is_loose = np.abs(over) > 0.05 * np.max(np.abs(over))
     names = zip(body.support.coordinates, is_loose, strict=True)
-    loose = " and ".join(name for name, loose in names if loose)
-    return (
-        f"they do not carry the weight in {loose}; add a mount there, or give the mounts a preload"
+    loose = all_of([Note(name) for name, loose in names if loose])
+    return Note(
+        "they do not carry the weight in {loose}; add a mount there, or give the mounts a preload",
+        loose=loose,
     )
 
 

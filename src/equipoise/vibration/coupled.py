@@ -23,6 +23,7 @@ from math import copysign, pi
 import numpy as np
 
 from equipoise.errors import ResponseError
+from equipoise.i18n import Note
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.steps import size_of_bodies
@@ -241,8 +242,12 @@ def follow(
         left -= 1
         if left < 0:
             raise ResponseError(
-                f"the motion over {time[-1]:g} s takes more than {evaluations} evaluations to "
-                "follow; give a shorter time, or softer mounts with less damping"
+                Note(
+                    "the motion over {time:g} s takes more than {evaluations} evaluations to "
+                    "follow; give a shorter time, or softer mounts with less damping",
+                    time=time[-1],
+                    evaluations=evaluations,
+                )
             )
         driven = [] if system.torque is None else [y[2 * d], 0.0, shift]
         states = np.array([*y[: 2 * d], *driven])
@@ -255,7 +260,9 @@ def follow(
     limits = {"rtol": RELATIVE, "atol": least, "max_step": 2 * pi / abs(system.speed) / 24}
     done = solve_ivp(rates, span, begin, "DOP853", t_eval=time, **limits)
     if not done.success or not np.all(np.isfinite(done.y)):
-        raise ResponseError(f"the motion cannot be followed beyond {done.t[-1]:g} s: it grows away")
+        raise ResponseError(
+            Note("the motion cannot be followed beyond {t:g} s: it grows away", t=done.t[-1])
+        )
     return np.asarray(done.y)
 
 

@@ -25,8 +25,8 @@ from equipoise.vibration.resonance import warned
 from equipoise.vibration.response import MODELS, Model, Response, range_shown
 from equipoise.vibration.small_motion import respond_coupled, respond_linear
 
-STANDSTILL = "a crank that stands still shakes nothing; give another speed"
-FREE = (
+STANDSTILL = Note("a crank that stands still shakes nothing; give another speed")
+FREE = Note(
     'it is "free", so that the speed follows from the motor and cannot be asked for; leave the '
     'speed out, or make it "held"'
 )
@@ -42,11 +42,17 @@ STEP_OF: dict[str, Step] = {
 def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
     """The model asked for, or the usual one; refused where the machine has no part for it."""
     if model is not None and model not in MODELS:
-        raise UsageError(f"got the model {model!r}; give one of {', '.join(MODELS)}")
+        raise UsageError(
+            Note(
+                "got the model {model!r}; give one of {names}", model=model, names=", ".join(MODELS)
+            )
+        )
     if drive and machine.drive.motor is None:
-        raise ModelError("drive.motor", "missing; give its no_load_speed and stall_torque")
+        raise ModelError("drive.motor", Note("missing; give its no_load_speed and stall_torque"))
     if drive and model not in {None, "exact"}:
-        raise UsageError(f"the speed follows from the motor in the model exact, not in {model}")
+        raise UsageError(
+            Note("the speed follows from the motor in the model exact, not in {model}", model=model)
+        )
     support = machine.support
     if support is None:
         if drive:
@@ -56,8 +62,12 @@ def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
         others = [name for name in support.coordinates if name in {"sway", "roll", "yaw"}]
         raise ModelError(
             "support.freedoms",
-            f"the model {model or 'exact'} is for motion in the plane of the drawing; leave out "
-            f"{' and '.join(others)}, or choose moment",
+            Note(
+                "the model {value} is for motion in the plane of the drawing; leave out "
+                "{names}, or choose moment",
+                value=model or "exact",
+                names=" and ".join(others),
+            ),
         )
     if model is not None:
         return model
@@ -67,7 +77,7 @@ def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
 def check_moving(machine: Machine) -> None:
     """Refuse a machine of which nothing shakes, with a `UsageError`."""
     if machine.drive.speed == 0:
-        raise UsageError("a crank that stands still shakes nothing; give the drive a speed")
+        raise UsageError(Note("a crank that stands still shakes nothing; give the drive a speed"))
 
 
 def steady_speed(machine: Machine, speed: float | None, drive: bool) -> float:
@@ -78,11 +88,13 @@ def steady_speed(machine: Machine, speed: float | None, drive: bool) -> float:
     ModelError, UsageError : it is 0, or the motor sets it.
     """
     if speed is not None and not abs(speed) < HUGE:
-        raise UsageError(f"got {speed!r} for speed; give a finite number in SI units")
+        raise UsageError(
+            Note("got {speed!r} for speed; give a finite number in SI units", speed=speed)
+        )
     if machine.drive.speed == 0 and speed is None:
-        raise ModelError("drive.speed", f"got 0; {STANDSTILL}")
+        raise ModelError("drive.speed", Note("got 0; {standstill}", standstill=STANDSTILL))
     if speed == 0:
-        raise UsageError(f"got a speed of 0; {STANDSTILL}")
+        raise UsageError(Note("got a speed of 0; {standstill}", standstill=STANDSTILL))
     motor = machine.drive.motor
     if drive and speed is not None and motor is not None and motor.mean_speed == "free":
         raise ModelError("drive.motor.mean_speed", FREE)
@@ -101,7 +113,11 @@ def left_out(machine: Machine) -> list[Note | str]:
 def usual_step(machine: Machine, model: str | None = None) -> Step:
     """The linear step that fits the support, or that goes with a model."""
     if model is not None and model not in MODELS:
-        raise UsageError(f"got the model {model!r}; give one of {', '.join(MODELS)}")
+        raise UsageError(
+            Note(
+                "got the model {model!r}; give one of {names}", model=model, names=", ".join(MODELS)
+            )
+        )
     if model is not None:
         return STEP_OF[model]
     assert machine.support is not None

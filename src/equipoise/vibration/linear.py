@@ -18,6 +18,7 @@ from typing import Literal
 import numpy as np
 
 from equipoise.errors import ModelError, ResponseError
+from equipoise.i18n import Note, all_of
 from equipoise.mechanism.dynamics import Forces, forces
 from equipoise.mechanism.kernels import cross
 from equipoise.mechanism.model import Machine
@@ -295,8 +296,11 @@ class Linear:
         loads[0], impedance[0] = mean, np.eye(len(mean))
         if self._resonant(impedance, frequency):
             raise ResponseError(
-                f"resonance without damping at {speed:g} rad/s; give the mounts a damping, or take "
-                "another speed"
+                Note(
+                    "resonance without damping at {speed:g} rad/s; give the mounts a damping, "
+                    "or take another speed",
+                    speed=speed,
+                )
             )
         moved = np.linalg.solve(impedance, loads[..., None])[..., 0]
         return Periodic(moved.T, wrench.turns)
@@ -321,10 +325,13 @@ class Linear:
         over = np.abs(self.stiffness @ mean - load) > 1e-9 * scale
         if np.any(over):
             names = zip(self.body.support.coordinates, over, strict=True)
-            loose = " and ".join(name for name, is_over in names if is_over)
+            loose = all_of([Note(name) for name, is_over in names if is_over])
             raise ModelError(
                 "support.mounts",
-                f"a constant force drives the support away in {loose}; add a mount there",
+                Note(
+                    "a constant force drives the support away in {loose}; add a mount there",
+                    loose=loose,
+                ),
             )
         return mean
 

@@ -9,6 +9,7 @@ from math import ceil, copysign, pi
 import numpy as np
 
 from equipoise.errors import ResponseError
+from equipoise.i18n import Note
 from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.force_elements import Motor
 from equipoise.mechanism.linkage import assemble
@@ -22,7 +23,7 @@ from equipoise.vibration.linkages import rows_of
 
 Guess = Callable[[Array], Array]
 
-NO_STEADY_STATE = (
+NO_STEADY_STATE = Note(
     "no steady state was found; the machine may not settle into one. Look at it from rest "
     "(`equipoise simulate`), or try another speed or more damping"
 )
@@ -83,9 +84,13 @@ def steady(
     """
     if not swings <= MOST_SWINGS:
         raise ResponseError(
-            f"the support swings freely {swings:.3g} times in a turn of the crank, more often than "
-            f"the {MOST_SWINGS} that the exact equations follow; for so slow a crank choose the "
-            "model moment"
+            Note(
+                "the support swings freely {swings:.3g} times in a turn of the crank, more "
+                "often than the {most_swings} that the exact equations follow; for so slow "
+                "a crank choose the model moment",
+                swings=swings,
+                most_swings=MOST_SWINGS,
+            )
         )
     intervals = (INTERVALS + ceil(swings)) * turns
     points = np.linspace(0.0, 2 * pi * turns, intervals + 1)
@@ -206,8 +211,11 @@ def speed_at(motor: Motor, torque: float) -> float:
         if low <= speed <= high:
             return float(speed)
     raise ResponseError(
-        f"drive.motor: its torque nowhere falls through {torque:g} N m, which the machine takes in "
-        "the mean; give a stronger motor, or a higher ratio"
+        Note(
+            "drive.motor: its torque nowhere falls through {torque:g} N m, which the "
+            "machine takes in the mean; give a stronger motor, or a higher ratio",
+            torque=torque,
+        )
     )
 
 

@@ -185,11 +185,21 @@ def sweep_speed(
         steady_speed(machine, end, drive)
     if slowest * fastest <= 0 or abs(slowest) >= abs(fastest):
         raise UsageError(
-            f"got speeds from {slowest:g} to {fastest:g} rad/s; give two of the same sign that are "
-            "not 0, the slower one first"
+            Note(
+                "got speeds from {slowest:g} to {fastest:g} rad/s; give two of the same "
+                "sign that are not 0, the slower one first",
+                slowest=slowest,
+                fastest=fastest,
+            )
         )
     if not 2 <= speeds <= MOST_SPEEDS:
-        raise UsageError(f"got {speeds} speeds; give 2 to {MOST_SPEEDS}")
+        raise UsageError(
+            Note(
+                "got {speeds} speeds; give 2 to {most_speeds}",
+                speeds=speeds,
+                most_speeds=MOST_SPEEDS,
+            )
+        )
     step = cast(Step, model) if model in get_args(Step) else usual_step(machine, model)
     linear = Linear.of(machine, step)
     met = resonances(linear, slowest, fastest)[:MOST_RESONANCES]
@@ -212,7 +222,7 @@ def _silent(done: int, total: int) -> None:
 def _missing(grid: Array, answers: list[Response | None]) -> list[Note]:
     lost = [speed for speed, answer in zip(grid.tolist(), answers, strict=True) if answer is None]
     if len(lost) == len(grid):
-        raise ResponseError("no steady state was found at any of these speeds")
+        raise ResponseError(Note("no steady state was found at any of these speeds"))
     if not lost:
         return []
     template = to_say("no steady state was found at {lost} of {count} speeds, {speeds}")
@@ -235,7 +245,7 @@ def _noted(grid: Array, answers: list[Response | None]) -> Iterator[Note | str]:
 
 def _kind(note: Note | str) -> str:
     """The same for notes that differ in numbers only."""
-    if isinstance(note, str):
+    if not isinstance(note, Note):
         return note
     words = map(str, note.values.values())
     is_number = re.compile(r"[\d.-]*\d[\d.-]*").fullmatch

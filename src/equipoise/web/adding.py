@@ -12,6 +12,7 @@ from math import pi
 from string import ascii_uppercase
 
 from equipoise.errors import UsageError
+from equipoise.i18n import Note, all_of
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import FRAME, Drive, Gear, Link, Slider
 from equipoise.web.design import clean
@@ -26,7 +27,7 @@ TOGETHER = 1e-9
 
 def the(body: str) -> str:
     """A body in a sentence."""
-    return "the frame" if body == FRAME else body
+    return Note("the frame") if body == FRAME else body
 
 
 def check_point(sketch: Sketch, name: str) -> None:
@@ -92,7 +93,13 @@ def with_point(sketch: Sketch, spot: Spot, on: str = FRAME) -> Sketch:
         return put(sketch, replace(spot, on=on))[0]
     check_point(sketch, spot.point)
     if spot.point in sketch.bodies[on]:
-        raise UsageError(f"{spot.point} is a point of {the(on)} already; choose another point")
+        raise UsageError(
+            Note(
+                "{point} is a point of {the} already; choose another point",
+                point=spot.point,
+                the=the(on),
+            )
+        )
     return sketch.with_place(on, spot.point, sketch.places[spot.point])
 
 
@@ -104,7 +111,9 @@ def with_link(sketch: Sketch, start: Spot, end: Spot) -> Sketch:
     sketch, first, begin = put(sketch, start)
     sketch, second, there = put(sketch, end, [first])
     if first == second or abs(there - begin) <= TOGETHER * sketch.size:
-        raise UsageError("both ends of the link lie at one place; choose another place for one")
+        raise UsageError(
+            Note("both ends of the link lie at one place; choose another place for one")
+        )
     link = Link(points={first: (0.0, 0.0), second: (length_between(begin, there), 0.0)})
     name = _named(sketch, first, second)
     return sketch.with_link(name, link, pose_between(begin, there))
@@ -124,14 +133,18 @@ def with_slider(
     sketch, through, other = put(sketch, second, [point])
     _check_line(sketch, point, on, through)
     if abs(other - place) <= TOGETHER * sketch.size:
-        raise UsageError("the line of a slider goes through two places; choose another second one")
+        raise UsageError(
+            Note("the line of a slider goes through two places; choose another second one")
+        )
     way = phase(place - other)
     if link is None:
         link = _new_link(sketch, "slider")
         sketch = sketch.with_link(link, Link(points={point: (0.0, 0.0)}), Pose(place, way))
     check_link(sketch, link)
     if point not in sketch.links[link].points:
-        raise UsageError(f"{point} is no point of {link}; choose one of its points")
+        raise UsageError(
+            Note("{point} is no point of {link}; choose one of its points", point=point, link=link)
+        )
     angle = clean(sketch.pose(link).angle - way, "angle")
     direction = clean(way - sketch.pose(on).angle, "angle")
     slider = Slider(link, point, on, through, direction, angle)
@@ -151,11 +164,21 @@ def _check_line(sketch: Sketch, point: str, on: str, through: str) -> None:
     check_body(sketch, on)
     if through not in sketch.bodies[on]:
         raise UsageError(
-            f"{through} is no point of {the(on)}; choose one for the line to go through"
+            Note(
+                "{through} is no point of {the}; choose one for the line to go through",
+                through=through,
+                the=the(on),
+            )
         )
     if point in sketch.bodies[on]:
-        what = f"{point} is pinned to {the(on)}, and cannot slide on it"
-        raise UsageError(f"{what}; separate it first, or choose another line")
+        raise UsageError(
+            Note(
+                "{point} is pinned to {the}, and cannot slide on it; separate it first, or choose "
+                "another line",
+                point=point,
+                the=the(on),
+            )
+        )
 
 
 def with_drive(sketch: Sketch, link: str) -> Sketch:
@@ -163,9 +186,15 @@ def with_drive(sketch: Sketch, link: str) -> Sketch:
     check_link(sketch, link)
     pivots = [point for point in sketch.links[link].points if point in sketch.frame]
     if len(pivots) != 1:
-        where = f"at {' and '.join(pivots)}" if pivots else "nowhere"
-        what = f"{link} is pinned to the frame {where}"
-        raise UsageError(f"{what}; the crank turns about exactly one point of the frame")
+        where = Note("at {points}", points=all_of(pivots)) if pivots else Note("nowhere")
+        raise UsageError(
+            Note(
+                "{link} is pinned to the frame {where}; the crank turns about exactly one point of "
+                "the frame",
+                link=link,
+                where=where,
+            )
+        )
     drive = sketch.drive or Drive(link, USUAL_SPEED)
     return replace(sketch, drive=replace(drive, link=link))
 
@@ -179,7 +208,14 @@ def with_gears(
     for body in (driver, driven):
         shared = len(sketch.bodies[body].keys() & sketch.bodies[carrier].keys())
         if body == carrier or shared != 1:
-            what = f"{the(body)} shares {shared} points with {the(carrier)}"
-            raise UsageError(f"{what}; each gear turns about exactly one point of it")
+            raise UsageError(
+                Note(
+                    "{body} shares {shared} points with {carrier}; each gear turns about exactly "
+                    "one point of it",
+                    body=the(body),
+                    shared=shared,
+                    carrier=the(carrier),
+                )
+            )
     gear = Gear(driver, driven, teeth=teeth, carrier=carrier)
     return replace(sketch, gears=(*sketch.gears, gear))

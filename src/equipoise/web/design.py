@@ -12,6 +12,7 @@ from typing import Any
 
 from equipoise.balancing.advice import reach_of
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.links import MASS_FIELDS
 from equipoise.mechanism.model import Link, Machine, Vector
@@ -119,10 +120,15 @@ class Design:
         ------
         UsageError : its mass or radius is below 0.
         """
-        for value, what, unit in ((weight.mass, "mass", "g"), (weight.radius, "radius", "mm")):
+        for value, what, unit in (
+            (weight.mass, Note("mass"), "g"),
+            (weight.radius, Note("radius"), "mm"),
+        ):
             if value < 0:
                 text = f"{1e3 * value:.6g} {unit}"
-                raise UsageError(f"got a {what} of {text}; give 0 or more").about(value, text)
+                raise UsageError(
+                    Note("got a {what} of {text}; give 0 or more", what=what, text=text)
+                ).about(value, text)
         weights = {**self.counterweights, link: weight}
         return replace(self, counterweights=MappingProxyType(weights))
 
@@ -145,7 +151,11 @@ class Design:
         mass = self.own.links[link].mass or 0.0
         if not mass:
             raise UsageError(
-                f"{link} has no mass but its counterweight; change that, or give the link a mass"
+                Note(
+                    "{link} has no mass but its counterweight; change that, or give the link a "
+                    "mass",
+                    link=link,
+                )
             )
         return center + (center - place_of_pin(self.own, link) - weight.arm) * (weight.mass / mass)
 

@@ -22,7 +22,7 @@ from equipoise.web.session import Session
 from equipoise.web.stores import StoreDesk, is_store
 from equipoise.web.tools import ToolDesk, tool_asked, tool_of_file
 
-ALWAYS = ("speak",)
+ALWAYS = ("speak", "gallery")
 """What has nothing to do with what is open."""
 OF_STORE = ("ready", "study", "design")
 """What is asked of a store."""
@@ -57,7 +57,7 @@ class Desk:
             self._turn_to(message)
             replies = [] if self._of_session else [*self._answers(message)]
         except EquipoiseError as error:
-            yield refused(message.seq, error)
+            yield refused(message.seq, error, self.session.language)
             return
         if self._of_session and message.kind == "design":
             yield from self.session.told(message.seq)

@@ -10,6 +10,7 @@ from threading import Lock
 from typing import Any
 
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.schema.documents import dumps
 from equipoise.schema.files import FileError, printable, read_text, write
 from equipoise.web.design import Design
@@ -64,8 +65,11 @@ class Disk:
         with self.lock:
             if self._on_disk() != self.text:
                 raise UsageError(
-                    f"{self.name}: the file was changed on disk since it was opened; download the "
-                    "model to keep this one, or start `equipoise serve` again to see that one"
+                    Note(
+                        "{name}: the file was changed on disk since it was opened; download the "
+                        "model to keep this one, or start `equipoise serve` again to see that one",
+                        name=self.name,
+                    )
                 )
             write(self.path, text)
             design = Design(found.design.name, found.design.machine)

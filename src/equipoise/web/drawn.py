@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from equipoise.errors import EquipoiseError, MobilityError, UsageError, to_paste
+from equipoise.i18n import Note
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.quantities import display
@@ -42,7 +43,7 @@ class Drawn:
     @property
     def refusal(self) -> UsageError:
         """Why something cannot be had that only a finished machine has."""
-        return UsageError(f"the machine is not finished: {self.lacks}")
+        return UsageError(Note("the machine is not finished: {lacks}", lacks=self.lacks))
 
 
 def drawn(sketch: Sketch) -> Solved | Drawn:
@@ -52,7 +53,7 @@ def drawn(sketch: Sketch) -> Solved | Drawn:
         try:
             return replace(sketch.finished(), stand=sketch.crank_angle)
         except EquipoiseError as error:
-            told = to_paste(str(error))[0]
+            told = to_paste(error.told())[0]
     return Drawn(sketch, told)
 
 
@@ -78,7 +79,9 @@ def sketch_of(found: Solved | Drawn, at: int) -> Sketch:
         return found.design
     count = len(found.motion.crank_angle)
     if not 0 <= at < count:
-        raise UsageError(f"at: got {at}; there are the crank angles 0 to {count - 1}")
+        raise UsageError(
+            Note("at: got {at}; there are the crank angles 0 to {count}", at=at, count=count - 1)
+        )
     return Sketch.of(found, at)
 
 
@@ -119,7 +122,7 @@ def plain_of(found: Solved | Drawn) -> Machine:
     if isinstance(found, Solved):
         return found.design.own
     if not found.design.links:
-        raise UsageError("the machine has no links yet; draw one first")
+        raise UsageError(Note("the machine has no links yet; draw one first"))
     return replace(found.design.machine(), position=None)
 
 
@@ -147,7 +150,7 @@ def redrawn(sketch: Sketch, changes: list[Change]) -> Sketch:
                 raise UsageError(unknown(change.path, fields, "number of this machine"))
             sketch = fields[change.path].typed(sketch, change.to)
         elif change.of_mass:
-            raise UsageError("a centre of mass can be dragged once the machine is finished")
+            raise UsageError(Note("a centre of mass can be dragged once the machine is finished"))
         else:
             sketch = moved(sketch, change.name, held(sketch.places, change))
     return sketch

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from equipoise.errors import EquipoiseError, MotionError, UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, Position, Vector
@@ -134,7 +135,13 @@ def _mass_moved(base: Solved, design: Design, change: Drag) -> Design:
 def _check_sample(motion: Motion, change: Drag) -> None:
     count = len(motion.crank_angle)
     if not 0 <= change.at < count:
-        raise UsageError(f"at: got {change.at}; there are the crank angles 0 to {count - 1}")
+        raise UsageError(
+            Note(
+                "at: got {at}; there are the crank angles 0 to {count}",
+                at=change.at,
+                count=count - 1,
+            )
+        )
 
 
 def _local(motion: Motion, link: str, at: int, place: complex) -> Vector:

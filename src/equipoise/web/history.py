@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.web.design import Design
 from equipoise.web.sketch import Sketch
 
@@ -49,11 +50,11 @@ class History:
     def undone(self) -> History:
         """One step back, or a `UsageError`."""
         if not self.past:
-            raise UsageError("there is nothing to undo")
+            raise UsageError(Note("there is nothing to undo"))
         return History(self.past[-1], self.past[:-1], (self.now, *self.future))
 
     def redone(self) -> History:
         """One step forth again, or a `UsageError`."""
         if not self.future:
-            raise UsageError("there is nothing to redo")
+            raise UsageError(Note("there is nothing to redo"))
         return History(self.future[0], (*self.past, self.now), self.future[1:])

@@ -1,4 +1,4 @@
-"""What a page asks about keeping what is done: saving its file, files to take along."""
+"""What a page asks about files: saving its own, others to take along, bundled ones to open."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ from contextlib import AbstractContextManager
 from typing import Protocol
 
 from equipoise.errors import UsageError
-from equipoise.i18n import say
+from equipoise.i18n import Note, say
 from equipoise.schema.documents import dumps
 from equipoise.web.design import Design
 from equipoise.web.disk import Disk
 from equipoise.web.downloads import downloaded
 from equipoise.web.edits import Solved
+from equipoise.web.gallery import pictured
 from equipoise.web.history import History
 from equipoise.web.messages import Message
 from equipoise.web.replies import Reply
@@ -50,7 +51,9 @@ class Session(Protocol):
 def _save(session: Session, message: Message) -> Iterator[Reply]:
     found, disk, history = session.current(), session.disk, session.history
     if disk is None or history is None:
-        raise UsageError("this machine was not opened from a file; download the model instead")
+        raise UsageError(
+            Note("this machine was not opened from a file; download the model instead")
+        )
     first = history.first
     text = dumps(first.machine) if isinstance(first, Design) else disk.text
     disk.save(found)
@@ -80,8 +83,21 @@ def _download(session: Session, message: Message) -> Iterator[Reply]:
     yield Reply({"type": "file", "seq": message.seq, **content}, data)
 
 
+def _gallery(session: Session, message: Message) -> Iterator[Reply]:
+    pictures = pictured()
+    while True:
+        with session.telling():  # left where this waits: whoever goes on may be another thread
+            one = next(pictures, None)
+        if one is None:
+            break
+        content, data = one
+        yield Reply({"type": "pictured", "seq": message.seq, **content}, data)
+    yield Reply({"type": "gallery", "seq": message.seq})
+
+
 ASKED: dict[str, Callable[[Session, Message], Iterator[Reply]]] = {
     "save": _save,
     "download": _download,
+    "gallery": _gallery,
 }
 """Answers to messages, by their kind."""

@@ -31,10 +31,11 @@ KINDS = (
     "study",
     "design",
     "download",
+    "gallery",
     "tables",
     "entry",
 )
-SLOW = ("balance", "download")
+SLOW = ("balance", "download", "gallery")
 """Those that take more than a moment."""
 MOST_EDITS, MOST_OUTPUTS, MOST_LANGUAGES = 100, 20, 50
 DEEPEST = 8

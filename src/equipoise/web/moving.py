@@ -9,6 +9,7 @@ from math import pi, remainder
 from typing import Any
 
 from equipoise.errors import UsageError
+from equipoise.i18n import Note, all_of
 from equipoise.mechanism.model import FRAME, Slider
 from equipoise.web.adding import TOGETHER, check_point
 from equipoise.web.design import DIGITS, DRAGGED, clean, clean_place
@@ -53,8 +54,15 @@ def _aimed(sketch: Sketch, number: int, slider: Slider) -> Sketch:
     """The line of a slider from the point that it goes through to its block, in the old sense."""
     place, other = sketch.places[slider.point], sketch.places[slider.through]
     if abs(place - other) <= TOGETHER * sketch.size:
-        what = f"{slider.through} and {slider.point} would lie at one place"
-        raise UsageError(f"{what}; the line of {slider.link} goes through both")
+        raise UsageError(
+            Note(
+                "{through} and {point} would lie at one place; the line of {link} goes through "
+                "both",
+                through=slider.through,
+                point=slider.point,
+                link=slider.link,
+            )
+        )
     way = phase(place - other) - sketch.pose(slider.on).angle
     if abs(remainder(way - slider.direction, 2 * pi)) > pi / 2:
         way += pi
@@ -76,7 +84,13 @@ def straight(sketch: Sketch, links: Iterable[str], digits: int = DIGITS) -> Sket
         places = {point: sketch.pose(name).out(at) for point, at in link.points.items()}
         first, second, *_ = places.values()
         if abs(second - first) <= TOGETHER * sketch.size:
-            raise UsageError(f"{' and '.join([*places][:2])} of {name} would lie at one place")
+            raise UsageError(
+                Note(
+                    "{names} of {name} would lie at one place",
+                    names=all_of([*places][:2]),
+                    name=name,
+                )
+            )
         pose = pose_between(first, second)
         points = {
             point: clean_place(pose.into(at), sketch.size, digits) for point, at in places.items()

@@ -6,6 +6,7 @@ import os
 from functools import cache
 
 from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import Note
 from equipoise.schema.files import printable
 from equipoise.schema.models import load_linkage, loads_linkage
 from equipoise.schema.opening import examples, kind_of_text, opened
@@ -29,7 +30,7 @@ def tool_titles() -> dict[str, str]:
 def opened_example(name: str) -> Design:
     """A bundled machine."""
     if name not in titles():
-        raise UsageError(f"there is no example of the name {printable(name)!r}")
+        raise UsageError(Note("there is no example of the name {name!r}", name=printable(name)))
     return Design(name, load_linkage(name))
 
 

@@ -26,7 +26,6 @@ drawing = Lock()
 """Matplotlib draws one picture after the other."""
 SECONDS = 2.0
 """That a turn of the crank takes in a film."""
-MOST_PATHS = 3
 
 
 def chart_of(found: Solved, name: str, choice: str) -> Chart:
@@ -96,22 +95,24 @@ def linkage_at(found: Solved, sample: int) -> Chart:
 def film_of(found: Solved) -> bytes:
     """The whole cycle as a GIF, the support too where it moves."""
     from equipoise.figures.film import gif
+    from equipoise.figures.points import followed
     from equipoise.figures.stage import in_a_turn
     from equipoise.results.analysis import analyze
 
     frames = in_a_turn("gif", SECONDS)
-    scene = _swinging(analyze(found.design.machine, frames * -(-720 // frames)))
+    analysis = analyze(found.design.machine, frames * -(-720 // frames))
     with drawing:
-        return gif(scene, traced=scene.ends[:MOST_PATHS], seconds=SECONDS)
+        return gif(_swinging(analysis), traced=followed(analysis.motion), seconds=SECONDS)
 
 
 def _swinging(analysis: Any) -> Any:
     """What moves at speed; the support stands still where it has no steady state."""
     from equipoise.figures.swing import swinging
+    from equipoise.symbols.rows import with_rows
     from equipoise.symbols.scene import Scene
     from equipoise.vibration.forced import respond
 
-    scene = Scene.of(analysis.motion)
+    scene = with_rows(Scene.of(analysis.motion), analysis.motion)
     if analysis.machine.support is None:
         return scene
     try:

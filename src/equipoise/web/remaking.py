@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.bodies import Body
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.model import FRAME
@@ -42,8 +43,14 @@ def pinned(sketch: Sketch, point: str, to: str) -> Sketch:
         check_point(sketch, name)
     both = [body for body in sketch.holders(point) if to in sketch.bodies[body]]
     if both:
-        what = f"{point} and {to} are points of {the(both[0])}"
-        raise UsageError(f"{what}; pin points of two bodies together")
+        raise UsageError(
+            Note(
+                "{point} and {to} are points of {the}; pin points of two bodies together",
+                point=point,
+                to=to,
+                the=the(both[0]),
+            )
+        )
     place, bodies = sketch.places[to], sketch.holders(point)
     for body in bodies:
         sketch = sketch.with_place(body, point, place)
@@ -57,7 +64,13 @@ def separated(sketch: Sketch, point: str, link: str | None = None) -> Sketch:
     body = link or holders[-1]
     check_body(sketch, body)
     if body not in holders or len(holders) < 2:
-        raise UsageError(f"{point} is no pin of {the(body)} and another body; choose a pin")
+        raise UsageError(
+            Note(
+                "{point} is no pin of {the} and another body; choose a pin",
+                point=point,
+                the=the(body),
+            )
+        )
     if body == FRAME:
         return freed(sketch, point)
     name = new_point(sketch)
@@ -74,7 +87,9 @@ def freed(sketch: Sketch, point: str) -> Sketch:
     """A point that the frame no longer has."""
     check_point(sketch, point)
     if point not in sketch.frame:
-        raise UsageError(f"{point} is not pinned to the frame; choose a point of the frame")
+        raise UsageError(
+            Note("{point} is not pinned to the frame; choose a point of the frame", point=point)
+        )
     frame = {name: place for name, place in sketch.frame.items() if name != point}
     return _tidied(replace(sketch, frame=frame))
 
@@ -106,7 +121,14 @@ def without_entry(sketch: Sketch, key: str, number: int) -> Sketch:
     """One slider or pair of gears less, numbered from 1."""
     entries = [*getattr(sketch, key)]
     if not 0 < number <= len(entries):
-        raise UsageError(f"{key}: got number {number}; there are {len(entries)}")
+        raise UsageError(
+            Note(
+                "{key}: got number {number}; there are {entries}",
+                key=key,
+                number=number,
+                entries=len(entries),
+            )
+        )
     del entries[number - 1]
     one: dict[str, Any] = {key: tuple(entries)}
     return replace(sketch, **one)
@@ -144,9 +166,13 @@ def renamed(sketch: Sketch, what: str, old: str, new: str) -> Sketch:
     known = sketch.places if what == "point" else sketch.bodies
     name = new.strip()
     if not name:
-        raise UsageError(f"a {what} needs a name; give at least one letter")
+        raise UsageError(Note("a {what} needs a name; give at least one letter", what=Note(what)))
     if name in known:
-        raise UsageError(f"another {what} is called {name!r}; choose another name")
+        raise UsageError(
+            Note(
+                "another {what} is called {name!r}; choose another name", what=Note(what), name=name
+            )
+        )
     return (renamed_point if what == "point" else _renamed_link)(sketch, old, name)
 
 

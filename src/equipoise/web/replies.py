@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from equipoise.errors import ModelError, to_paste
+from equipoise.errors import EquipoiseError, ModelError, to_paste
 
 LONGEST = 800
 """Signs of a sentence."""
@@ -19,11 +19,13 @@ class Reply:
     buffer: bytes = b""
 
 
-def refused(seq: int | None, error: Exception) -> Reply:
-    """Say why something cannot be done."""
-    content: dict[str, Any] = {"type": "refused", "seq": seq, "message": _shortened(str(error))}
+def refused(seq: int | None, error: EquipoiseError, language: str = "en") -> Reply:
+    """Say why something cannot be done, in a language."""
+    told = _shortened(error.told(language))
+    content: dict[str, Any] = {"type": "refused", "seq": seq, "message": told}
     if isinstance(error, ModelError) and error.where:
-        content |= {"path": error.where, "what": _shortened(error.what)}
+        what = EquipoiseError(error.what).told(language)
+        content |= {"path": error.where, "what": _shortened(what)}
     return Reply(content)
 
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from threading import Lock
 
 from equipoise import __version__
-from equipoise.errors import EquipoiseError, ModelError, UsageError
-from equipoise.i18n import said, say, speaking
+from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
+from equipoise.i18n import Note, said, say, speaking
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
 from equipoise.schema.files import LARGEST
@@ -82,7 +82,7 @@ class Session:
             else:
                 yield from getattr(self, f"_{message.kind}")(message)
         except EquipoiseError as error:
-            yield refused(message.seq, error)
+            yield refused(message.seq, error, self.language)
 
     # -- what a page may ask -----------------------------------------------------------------------
 
@@ -96,7 +96,10 @@ class Session:
         yield Reply({"type": "spoken", "seq": message.seq, **spoken_in(self.language)})
 
     def _open(self, message: Message) -> Iterator[Reply]:
-        if "example" in message.values:
+        design: Design | Sketch
+        if message.flag("new", False):
+            design = Sketch()
+        elif "example" in message.values:
             design = opened_example(message.text("example"))
         else:
             design = opened_text(message.text("name", "machine.toml"), message.text("text"))
@@ -124,21 +127,16 @@ class Session:
             elif found is not None:
                 self.preview = found
         if problem is not None:
-            yield refused(message.seq, problem)
+            yield refused(message.seq, problem, self.language)
         if found is not None:
             yield from self.told(message.seq)
 
     def _make(self, message: Message) -> Iterator[Reply]:
         with self.lock, self.telling():
-            new = message.text("do") == "new"
-            if new:
-                sketch, label = Sketch(), say("new machine")
-            else:
-                sketch, label = made(sketch_of(self.base(), message.whole("at", 0)), message)
-            found, past = drawn(sketch), self.history
-            step = Step(found.design, label)
-            self._go(past.then(found.design, label) if past else History(step), found)
-            self._measure(found, new)
+            sketch, label = made(sketch_of(self.base(), message.whole("at", 0)), message)
+            found = drawn(sketch)
+            self._go(self._past.then(found.design, label), found)
+            self._measure(found, False)
         yield from self.told(message.seq)
 
     def _undo(self, message: Message) -> Iterator[Reply]:
@@ -180,7 +178,9 @@ class Session:
             told = balanced_told(base, after, found)
         with self.lock:
             if self.found is not base:
-                raise UsageError("the machine was changed while it was balanced; balance it again")
+                raise UsageError(
+                    Note("the machine was changed while it was balanced; balance it again")
+                )
             self._go(self._past.then(after.design, "balance"), after)
             self.before = base
         yield Reply({"type": "balanced", "seq": message.seq, **told})
@@ -207,15 +207,15 @@ class Session:
             }
         )
 
-    def open(self, design: Design, found: Solved | None = None) -> None:
-        """Begin with a design; what was done before is forgotten.
+    def open(self, design: Design | Sketch, found: Solved | None = None) -> None:
+        """Begin with a design, or with a sketch; what was done before is forgotten.
 
         found : the design, if it has been computed.
         """
-        found = found or solved(design)
+        seen = found or computed(design)
         with self.lock:
-            self._go(History(Step(design, "")), found)
-            self._measure(found, True)
+            self._go(History(Step(design, "")), seen)
+            self._measure(seen, True)
 
     def _measure(self, found: Solved | Drawn, new: bool) -> None:
         """What goes by the build of a machine: ranges of sliders, and outputs that are drawn.
@@ -278,7 +278,7 @@ class Session:
     def base(self) -> Solved | Drawn:
         """What is, finished or not; a `UsageError` where there is nothing."""
         if self.found is None:
-            raise UsageError("no machine is open; pick an example, or drop a model file")
+            raise UsageError(Note("no machine is open; pick an example, or drop a model file"))
         return self.found
 
     def current(self) -> Solved:
@@ -341,4 +341,4 @@ def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:
     """The same error with the name of the file in front."""
     if isinstance(error, ModelError):
         return error.in_file(name)
-    return UsageError(f"{name}: {error}")
+    return UsageError(at_place(name, error.note))

@@ -57,7 +57,13 @@ def response_of(shown: Solved) -> tuple[Values, bytes] | None:
     try:
         found = responded(shown)
     except EquipoiseError as error:
-        return {"charts": [], "arrays": {}, "notes": [str(error)], "swing": None, "modes": []}, b""
+        return {
+            "charts": [],
+            "arrays": {},
+            "notes": [error.told()],
+            "swing": None,
+            "modes": [],
+        }, b""
     return _told(shown, found, block), block.data
 
 
@@ -80,7 +86,7 @@ def swept(shown: Solved, progress: Callable[[int, int], None]) -> tuple[Values, 
     for name, curve in curves.gauges.items():
         array = f"sweep.{name}"
         block.add(array, curve.peak_to_peak)
-        label = f"{_spoken(name)} against speed, peak to peak"
+        label = say("{gauge} against speed, peak to peak", gauge=_spoken(name))
         choices.append(gauge_choice(name, label, curve.rotation, array, log=True))
     rpm = display("angular speed", (), "rpm")
     over = {"array": "sweep.speed", "unit": rpm.name, "factor": rpm.factor, "at": found.speed}
@@ -96,9 +102,9 @@ def _told(shown: Solved, found: Response, block: Block) -> Values:
     for name, gauge in found.gauges.items():
         array = f"response.{name}"
         block.add(array, gauge.displacement.samples(count))
-        label = f"response of {_spoken(name)}"
+        label = say("response of {gauge}", gauge=_spoken(name))
         choices.append(gauge_choice(name, label, gauge.rotation, array))
-    charts = [chart("response", choices, chooser="Response of")]
+    charts = [chart("response", choices, chooser=say("Response of"))]
     notes = list(map(said, found.notes))
     swing = _swing(swinging(shown.scene, found), block)
     modes = [*_modes(shown.scene, found)]
@@ -191,9 +197,9 @@ def _planted(machine: Machine) -> Values:
     try:
         found = plant(machine)
     except EquipoiseError as error:
-        return {"type": "planting", "figures": [], "notes": [str(error)]}
+        return {"type": "planting", "figures": [], "notes": [error.told()]}
     figures = [
-        {"name": name, "label": one.words, **_shown(float(value), told.dimension, told.unit)}
+        {"name": name, "label": say(one.words), **_shown(float(value), told.dimension, told.unit)}
         for name, one in FIGURES.items()
         if name in found.figures
         for value in [found.figures[name]]

@@ -12,7 +12,7 @@ from equipoise.keys import Frozen, Key, Named, Tables, Wording
 from equipoise.mechanism.model import Machine
 from equipoise.quantities import told
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
-from equipoise.schema.reading import Place, written_place
+from equipoise.schema.places import Place, written_place
 from equipoise.schema.writing import value_text
 from equipoise.web.design import Design, pin_of
 from equipoise.web.forms import Values, forms_of, word_of

@@ -10,7 +10,7 @@ from typing import Any
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.model import Tool
-from equipoise.i18n import LANGUAGES, said, say
+from equipoise.i18n import LANGUAGES, Note, said, say
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import in_unit, parse, typeset
 from equipoise.quantities.units import KINDS
@@ -76,7 +76,9 @@ class ToolDesk:
         """That of a file; the errors are those of its tool."""
         tool = template.base()
         if not isinstance(tool, Tool):
-            raise UsageError(f"{name}: got the file of a linkage; give that of a tool")
+            raise UsageError(
+                Note("{name}: got the file of a linkage; give that of a tool", name=name)
+            )
         return cls(name, template, ToolStep({}, tool))
 
     # -- what a page may ask -----------------------------------------------------------------------
@@ -91,14 +93,14 @@ class ToolDesk:
             yield self._download(message)
             return
         elif message.kind not in ("ready", "open"):
-            raise UsageError(f"{message.kind} is for linkages; a tool is open")
+            raise UsageError(Note("{kind} is for linkages; a tool is open", kind=message.kind))
         yield self.told(message.seq)
 
     def _edit(self, message: Message) -> None:
         commit, values = message.flag("commit", True), dict(self.now.values)
         for change in message.changes():
             if not isinstance(change, Setting):
-                raise UsageError("a tool has no joints to be dragged; set a number of it")
+                raise UsageError(Note("a tool has no joints to be dragged; set a number of it"))
             values[change.path] = self._value(change)
         try:
             found = ToolStep(values, self._tool(values), message.label)
@@ -128,7 +130,9 @@ class ToolDesk:
         try:
             return float(text) if share is None else share
         except ValueError:
-            raise UsageError(f"got {printable(text)!r}; give a plain number, such as 2") from None
+            raise UsageError(
+                Note("got {text!r}; give a plain number, such as 2", text=printable(text))
+            ) from None
 
     def _tool(self, values: Mapping[str, float]) -> Tool:
         found = self.template.machine(values)
@@ -138,7 +142,11 @@ class ToolDesk:
     def _step(self, way: str) -> None:
         where = self.past if way == "undo" else self.future
         if not where:
-            raise UsageError(f"there is nothing to {way}")
+            raise UsageError(
+                Note("there is nothing to undo")
+                if way == "undo"
+                else Note("there is nothing to redo")
+            )
         if way == "undo":
             self.future, self.now, self.past = (self.now, *self.future), where[-1], where[:-1]
         else:
@@ -159,7 +167,9 @@ class ToolDesk:
             found = ToolFindings(self.now.tool, text, name)
             text, name, mime = report_page(found, language), f"{stem}-report.html", "text/html"
         elif kind != "model":
-            raise UsageError(f"{kind}: that is there for linkages; of a tool, model or report")
+            raise UsageError(
+                Note("{kind}: that is there for linkages; of a tool, model or report", kind=kind)
+            )
         told = {"type": "file", "seq": message.seq, "name": name, "mime": mime}
         return Reply(told, text.encode())
 
@@ -199,6 +209,7 @@ class ToolDesk:
             told = {
                 "path": path,
                 "group": group,
+                "heading": group,
                 "label": said(self.template.words(path)).replace(f" of the {group}", ""),
                 "value": value,
                 "min": min(low, value),
@@ -241,6 +252,8 @@ def tool_asked(message: Message) -> ToolDesk | None:
     if "example" in message.values:
         name = message.text("example")
         return tool_of_file(name) if name in tool_titles() else None
+    if message.flag("new", False):
+        return None
     text = message.text("text")
     if kind_of_text(text) != "tool":
         return None

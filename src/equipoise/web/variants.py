@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Any
 
 from equipoise.errors import EquipoiseError, UsageError
-from equipoise.i18n import say
+from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.outputs import DECLARED
 from equipoise.quantities import Dimension, display
@@ -42,7 +42,9 @@ class Variants:
         UsageError : there are too many.
         """
         if len(self.kept) >= MOST:
-            raise UsageError(f"{MOST} variants are kept already; delete one of them")
+            raise UsageError(
+                Note("{most} variants are kept already; delete one of them", most=MOST)
+            )
         letters = (a + b for b in ("", *"23456789") for a in ascii_uppercase)
         name = next(one for one in letters if one not in self.kept)
         return Variants(MappingProxyType({**self.kept, name: found}), VARIANT + name)
@@ -58,9 +60,17 @@ class Variants:
         self.of(name)
         to = "".join(sign for sign in to.strip() if sign.isprintable())
         if not to or len(to) > LONGEST:
-            raise UsageError(f"got a name of {len(to)} signs; give one of 1 to {LONGEST}")
+            raise UsageError(
+                Note(
+                    "got a name of {to} signs; give one of 1 to {longest}",
+                    to=len(to),
+                    longest=LONGEST,
+                )
+            )
         if to != name and to in self.kept:
-            raise UsageError(f"there is a variant of the name {to!r} already; give another")
+            raise UsageError(
+                Note("there is a variant of the name {to!r} already; give another", to=to)
+            )
         kept = {to if one == name else one: found for one, found in self.kept.items()}
         against = VARIANT + to if self.against == VARIANT + name else self.against
         return Variants(MappingProxyType(kept), against)

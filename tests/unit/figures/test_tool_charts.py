@@ -296,7 +296,10 @@ def designed() -> ToolDesign:
     felt = [grips(respond_tool(one, speed)) for one in (tool, better)]
     a_hv = np.array([np.max([grip.a_hv for grip in one.values()], axis=0) for one in felt])
     sizes = (np.sqrt(np.mean(a_hv**2, axis=1)), np.max(a_hv, axis=1))
-    told = [Note(f"a_hv of the worst hand, {which}") for which in ("RMS over the band", "largest")]
+    told = [
+        Note(f"total value a_hv of the worst hand, {which}")
+        for which in ("RMS over the band", "largest")
+    ]
     figures = tuple(
         Before(str(note), "acceleration", *size.tolist(), note)
         for note, size in zip(told, sizes, strict=True)

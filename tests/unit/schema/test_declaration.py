@@ -32,7 +32,8 @@ from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import Frame, Machine, Position
 from equipoise.schema import finding, models, schemas
 from equipoise.schema.documents import dumps, loads
-from equipoise.schema.reading import Context, read_table
+from equipoise.schema.places import Context
+from equipoise.schema.reading import read_table
 from equipoise.schema.schemas import json_schema
 from equipoise.schema.template import Template
 from equipoise.schema.writing import Writer, toml_text

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.web.desk import Desk
+from equipoise.web.messages import message_of
 from equipoise.web.session import Session
 from unit.web.pages import ask, opened, refusal, state
 
@@ -26,7 +28,9 @@ class Maker:
 
     def do(self, do: str, **values: Any) -> str:
         """Do something, and return what is told of the machine."""
-        self.seen = state(ask(self.session, "make", do=do, **values)[0])
+        asked = {"new": True} if do == "new" else {"do": do, **values}
+        kind = "open" if do == "new" else "make"
+        self.seen = state(ask(self.session, kind, **asked)[0])
         return str(self.seen.content["status"]["text"])
 
     def refused(self, do: str, **values: Any) -> str:
@@ -298,3 +302,12 @@ def test_tables_of_a_file_are_added_while_a_machine_is_unfinished() -> None:
     assert state(told).content["scene"]["mass_centers"] == ["crank"]
     assert page.do("drive", link="crank") == "1 free motion; crank turns fully"
     assert page.machine.links["crank"].mass == 0.2
+
+
+def test_a_new_machine_takes_the_place_of_a_tool() -> None:
+    desk = Desk()
+    told = [*desk.receive(message_of({"type": "open", "seq": 1, "example": "pole-saw"}))]
+    assert desk.tool is not None, told
+    (told,) = desk.receive(message_of({"type": "open", "seq": 2, "new": True}))
+    assert not told.content["status"]["finished"]
+    assert desk.tool is None

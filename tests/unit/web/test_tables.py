@@ -285,7 +285,7 @@ def test_gears_make_one_motion_of_two() -> None:
 
 def test_a_link_that_is_drawn_gets_its_mass_by_bodies() -> None:
     session = Session()
-    ask(session, "make", do="new")
+    ask(session, "open", new=True)
     assert "has no links yet" in refusal(ask(session, "tables"))
     ask(session, "make", do="point", spot={"place": [0.0, 0.0]})
     ask(session, "make", do="link", **{"from": {"point": "A"}, "to": {"place": [0.06, 0.0]}})

@@ -1,0 +1,133 @@
+/** The bundled machines, each drawn small; what there is to open, and what the page is for. */
+
+import { h, s } from "./dom";
+import type { Numbers, Pictured } from "./protocol";
+import { Piece } from "./signs";
+import { View } from "./view";
+import { say } from "./words";
+
+/** Of the drawing, pixels; it is shown half as large, so that its signs are small too. */
+const [WIDTH, HEIGHT] = [320, 224];
+/** A turn that is shown of a machine that is pointed at, ms. */
+const TURN = 2400;
+
+interface Wishes {
+  /** Ask for the pictures, once. */
+  wanted(): void;
+  example(name: string): void;
+  file(): void;
+}
+
+export class Gallery {
+  readonly root: HTMLDialogElement;
+  private readonly cards = h("div", { class: "cards" });
+  private readonly still = h("p", { class: "quiet", role: "status" }, say("Drawing the examples …"));
+  private asked = false;
+
+  constructor(private readonly wishes: Wishes) {
+    const search = h("input", {
+      type: "search",
+      "aria-label": say("Search examples"),
+      placeholder: say("Search examples"),
+      oninput: () => this.filter(search.value),
+    });
+    const close = h("button", { type: "button", onclick: () => this.root.close() }, say("Close"));
+    const file = h(
+      "button",
+      { type: "button", class: "strong", onclick: () => this.take(() => wishes.file()) },
+      say("Choose file"),
+    );
+    this.root = h(
+      "dialog",
+      { class: "help gallery", "aria-label": say("Open a machine") },
+      h("h2", {}, say("Open a machine")),
+      h(
+        "p",
+        {},
+        say(
+          "This page shows how a linkage moves and what it does to its frame: drag it, change its numbers, balance it.",
+        ),
+      ),
+      h("div", { class: "line" }, file, search, close),
+      this.still,
+      this.cards,
+    );
+    this.root.addEventListener("click", (event) => event.target === this.root && this.root.close());
+  }
+
+  show(): void {
+    if (!this.asked) this.wishes.wanted();
+    this.asked = true;
+    this.root.showModal();
+  }
+
+  /** All pictures have come. */
+  done(): void {
+    this.still.remove();
+  }
+
+  add(one: Pictured, numbers: Numbers): void {
+    const card = h(
+      "button",
+      {
+        type: "button",
+        class: "card",
+        "data-name": one.name,
+        onclick: () => this.take(() => this.wishes.example(one.name)),
+      },
+      h("b", {}, one.title),
+      h("span", { class: "quiet" }, one.line),
+    );
+    card.prepend(picture(card, one, numbers));
+    this.cards.append(card);
+  }
+
+  private take(then: () => void): void {
+    this.root.close();
+    then();
+  }
+
+  private filter(text: string): void {
+    const words = text.toLowerCase().split(/\s+/);
+    for (const card of this.cards.children as HTMLCollectionOf<HTMLElement>) {
+      const all = `${card.dataset.name} ${card.textContent}`.toLowerCase();
+      card.hidden = !words.every((word) => all.includes(word));
+    }
+  }
+}
+
+/** A machine, that turns while it is pointed at or has the focus. */
+function picture(card: HTMLElement, one: Pictured, numbers: Numbers): SVGSVGElement {
+  const view = new View();
+  [view.width, view.height] = [WIDTH, HEIGHT];
+  view.fit(one.scene.box, 0);
+  const pieces = one.scene.signs.map((sign) => new Piece(sign, one.scene));
+  const size = { viewBox: `0 0 ${WIDTH} ${HEIGHT}` };
+  const svg = s("svg", { class: "linkage small", "aria-hidden": "true", ...size });
+  for (const piece of pieces) {
+    piece.redraw(view.scale);
+    svg.append(piece.element);
+  }
+  const pose = (k: number) => pieces.forEach((piece) => piece.pose(numbers, view, k, null));
+  pose(one.at);
+  const count = numbers.get("crank_angle")?.length ?? 1;
+  const still = matchMedia("(prefers-reduced-motion: reduce)");
+  let [frame, begun] = [0, 0];
+  const tick = (now: number) => {
+    begun ||= now;
+    pose((one.at + Math.floor(((now - begun) / TURN) * 36)) % count);
+    frame = requestAnimationFrame(tick);
+  };
+  const stop = () => {
+    cancelAnimationFrame(frame);
+    [frame, begun] = [0, 0];
+  };
+  const start = () => {
+    if (!frame && !still.matches) frame = requestAnimationFrame(tick);
+  };
+  card.addEventListener("pointerenter", start);
+  card.addEventListener("focus", start);
+  card.addEventListener("pointerleave", stop);
+  card.addEventListener("blur", stop);
+  return svg;
+}

@@ -1,0 +1,93 @@
+"""Who opens the page for the first time: what there is, what it is for, where things are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from playwright.sync_api import Page, expect
+
+import equipoise as eq
+from browser.live import FITS, SCREENSHOTS, Live
+from support.chromium import serving
+
+STEPS = ("The linkage", "The motion", "The charts", "The numbers", "Open, balance, keep")
+
+
+def test_an_empty_page_shows_what_there_is_to_open(free_page: Page) -> None:
+    page = free_page
+    page.set_viewport_size({"width": 400, "height": 800})
+    with serving() as address:
+        page.goto(address)
+        gallery = page.get_by_role("dialog", name="Open a machine")
+        expect(gallery).to_contain_text("how a linkage moves")
+        cards = gallery.locator(".card")
+        expect(cards).to_have_count(len(eq.examples("linkage")))
+        expect(gallery.get_by_text("Drawing the examples")).to_be_hidden()
+        page.screenshot(path=SCREENSHOTS / "gallery-400.png")
+        page.set_viewport_size({"width": 1280, "height": 900})
+        page.screenshot(path=SCREENSHOTS / "gallery-1280.png")
+        for scheme in ("light", "dark"):
+            page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+            assert Live(page).findings() == []
+        gallery.get_by_role("searchbox").fill("quick ram")
+        expect(cards.filter(visible=True)).to_have_count(1)
+        cards.filter(visible=True).press("Enter")
+        expect(page.get_by_role("heading", name=eq.load("quick-return").title)).to_be_visible()
+        expect(gallery).to_be_hidden()
+
+
+def test_the_tour_is_taken_by_keyboard_alone(new_page: Callable[..., Page], address: str) -> None:
+    live = Live.open(new_page(viewport={"width": 400, "height": 800}), address)
+    page, keyboard = live.page, live.page.keyboard
+    offer = page.get_by_role("button", name="Take the tour")
+    expect(offer).to_be_visible()
+    offer.focus()
+    keyboard.press("Enter")
+    tour = page.get_by_role("dialog", name="Tour")
+    for number, step in enumerate(STEPS):
+        expect(tour).to_contain_text(f"{step} · {number + 1} of {len(STEPS)}")
+        assert page.locator(".toured").count() == 1
+        if number == 0:
+            assert page.evaluate(FITS) and live.findings() == []
+        keyboard.press("Enter")
+    expect(tour).to_be_hidden()
+    page.reload()
+    expect(live.joint("B")).to_be_visible()
+    expect(offer).to_be_hidden()
+    keyboard.press("?")
+    page.get_by_role("dialog", name="Keys").get_by_role("button", name="Take the tour").press(
+        "Enter"
+    )
+    expect(tour).to_contain_text(STEPS[0])
+    keyboard.press("ArrowRight")
+    expect(tour).to_contain_text(STEPS[1])
+    keyboard.press("ArrowLeft")
+    expect(tour).to_contain_text(STEPS[0])
+    keyboard.press("Escape")
+    expect(tour).to_be_hidden()
+
+
+def test_two_fingers_zoom_and_pan(new_page: Callable[..., Page], address: str) -> None:
+    live = Live.open(new_page(has_touch=True), address)
+    line = live.page.context.new_cdp_session(live.page)
+    before = [live.spot(live.joint(name)) for name in "AD"]
+    board = live.page.locator(".board").first.bounding_box()
+    assert board
+    x, y = board["x"] + 60, board["y"] + board["height"] - 90
+
+    def touch(kind: str, *places: tuple[float, float]) -> None:
+        points = [{"x": a, "y": b, "id": i} for i, (a, b) in enumerate(places)]
+        line.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    touch("touchStart", (x, y))
+    touch("touchStart", (x, y), (x + 50, y))
+    for step in range(1, 11):  # apart to twice the distance, and both 30 px up
+        touch("touchMove", (x - 2.5 * step, y - 3 * step), (x + 50 + 2.5 * step, y - 3 * step))
+    touch("touchEnd")
+    after = [live.spot(live.joint(name)) for name in "AD"]
+    apart = [abs(complex(*one[0]) - complex(*one[1])) for one in (before, after)]
+    assert abs(apart[1] / apart[0] - 2) < 0.1
+    fixed = complex(x + 25, y)
+    moved = complex(*after[0]) - (fixed - 30j + 2 * (complex(*before[0]) - fixed))
+    assert abs(moved) < 8
+    expect(live.button("Undo")).to_be_disabled()

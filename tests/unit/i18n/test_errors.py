@@ -1,0 +1,124 @@
+"""Errors say their one sentence in any language, and what no catalogue has in English."""
+
+from __future__ import annotations
+
+import pickle
+
+import pytest
+
+import equipoise as eq
+from equipoise.errors import (
+    EquipoiseError,
+    Given,
+    ModelError,
+    MotionError,
+    RangeError,
+    UsageError,
+    at_place,
+    unknown,
+)
+from equipoise.i18n import Note, all_of, speaking
+from equipoise.quantities import KINDS, parse
+from equipoise.schema.documents import loads
+from equipoise.web.replies import refused
+from unit.schema.samples import FOUR_BAR
+
+FAILS = {
+    "crank that cannot turn": ('["33.5 mm", "0 mm"]', '["133.5 mm", "0 mm"]', "全回転", "완전히"),
+    "a number without its unit": ('"199 g"', '"199"', "質量を指定してください", "질량을(를) 지정"),
+    "another dimension": ('"199 g"', '"199 mm"', "mm は長さの単位です", "mm은(는) 길이의 단위"),
+    "not finite": ('"199 g"', '"inf g"', "有限の数", "유한한 수"),
+    "out of range": ('"199 g"', '"-1 g"', "質量は負にできません", "질량은 음수일 수 없습니다"),
+    "too large": ('"199 g"', '"1e40 g"', "通常の大きさ", "보통의 크기"),
+    "unknown key": ('mass = "199 g"', 'mas = "199 g"', "'mass' の誤りですか", "'mass'입니까"),
+    "two free motions": ('[links.rocker]\n', '[links.more]\npoints.X = ["0 mm", "0 mm"]\n'
+                         '[links.rocker]\n', "リンク機構の自由度は", "자유도는"),
+}  # fmt: skip
+"""What is replaced in a four-bar, by what, and what is said of it in Japanese and Korean."""
+
+
+def error_of(text: str) -> EquipoiseError:
+    with pytest.raises(EquipoiseError) as caught:
+        eq.move(loads(text))
+    return caught.value
+
+
+@pytest.mark.parametrize("case", FAILS)
+def test_a_refusal_is_told_in_each_language(case):
+    old, new, *parts = FAILS[case]
+    assert old in FOUR_BAR
+    error = error_of(FOUR_BAR.replace(old, new, 1))
+    assert error.told() == error.told("en") == str(error)
+    for language, part in zip(("ja", "ko"), parts, strict=True):
+        assert part in error.told(language)
+        with speaking(language):
+            assert error.told() == error.told(language)
+        assert not any(word in error.told(language) for word in (" the ", "give ", "got "))
+        again = pickle.loads(pickle.dumps(error))
+        assert (str(again), again.told(language)) == (str(error), error.told(language))
+
+
+def test_the_place_of_an_error_stands_before_its_sentence():
+    error = ModelError("links.crank.mass", Note("a mass cannot be negative"), "a.toml")
+    assert str(error) == "a.toml: links.crank.mass: a mass cannot be negative"
+    assert error.told("ja") == "a.toml: links.crank.mass：質量は負にできません"
+    assert error.within("row").told("ko").endswith("links.crank.mass: 질량은 음수일 수 없습니다")
+    outer = UsageError(at_place("--set", error.note))
+    assert outer.told("ja") == "--set：a.toml: links.crank.mass：質量は負にできません"
+
+
+def test_what_no_catalogue_has_is_told_in_english_and_says_so():
+    error = MotionError("it does not turn")
+    assert error.told("en") == "it does not turn"
+    assert error.told("ja") == "英語のまま：it does not turn"
+    part = UsageError(Note("give {what}", what=Note("a wheel that nobody has")))
+    assert part.told("ko") == "영어 원문: give a wheel that nobody has"
+
+
+def test_a_typed_number_stands_in_every_language():
+    machine = loads(FOUR_BAR)
+    with pytest.raises(ModelError) as caught:
+        machine.with_link("crank", mass=-0.001)
+    given = caught.value.given
+    assert isinstance(given, Given)
+    told = ModelError("mass", given.retold(caught.value.what, "-1 g"))
+    assert str(told) == "mass: got -1 g; a mass cannot be negative"
+    assert told.told("ja") == "mass：-1 g が与えられました。質量は負にできません"
+
+
+def test_a_range_keeps_its_crank_angles_beside_its_sentence():
+    error = error_of(FOUR_BAR.replace('["33.5 mm", "0 mm"]', '["133.5 mm", "0 mm"]', 1))
+    assert isinstance(error, RangeError) and error.ranges
+    assert str(error).startswith("the crank cannot turn fully: 'coupler' and 'rocker' reach ")
+    assert "'coupler' と 'rocker'" in error.told("ja")
+
+
+@pytest.mark.parametrize("dimension", KINDS)
+def test_each_dimension_has_a_name_in_each_language(dimension):
+    with pytest.raises(UsageError) as caught:
+        parse("3", dimension)
+    for language in ("ja", "ko"):
+        assert KINDS[dimension].noun not in caught.value.told(language)
+
+
+def test_names_are_joined_as_each_language_does():
+    names = ["a", "b", "c"]
+    assert all_of(names) == "a and b and c"
+    assert all_of(names, commas=True) == "a, b and c"
+    assert (all_of(["a"]), all_of([])) == ("a", "")
+    with speaking("ja"):
+        assert all_of(names, commas=True).said() == "a、b と c"
+    found = unknown("crnk", ["crank", "rod"], "link")
+    assert found == "no link is called 'crnk'; did you mean 'crank'?"
+    assert unknown("x", ["crank", "rod"], "link").endswith("there are 'crank', 'rod'")
+
+
+def test_a_page_and_a_report_are_told_in_their_language():
+    error = ModelError("links.crank.mass", Note("a mass cannot be negative"))
+    content = refused(3, error, "ko").content
+    assert content["message"] == "links.crank.mass: 질량은 음수일 수 없습니다"
+    assert (content["what"], content["path"]) == ("질량은 음수일 수 없습니다", "links.crank.mass")
+    machine = eq.load("yamashita-rig").with_drive(speed=0.0)
+    with pytest.raises(ModelError) as caught:
+        eq.respond(machine)
+    assert "静止したクランクは何も加振しません" in caught.value.told("ja")
