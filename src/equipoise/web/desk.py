@@ -18,6 +18,7 @@ from equipoise.web.disk import on_disk
 from equipoise.web.messages import Message
 from equipoise.web.openings import opened_file
 from equipoise.web.replies import Reply, refused
+from equipoise.web.seen import NO_STORE
 from equipoise.web.session import Session
 from equipoise.web.stores import StoreDesk, is_store
 from equipoise.web.tools import ToolDesk, tool_asked, tool_of_file
@@ -78,7 +79,7 @@ class Desk:
         if message.kind not in ("study", "design"):
             return
         if self.store is None:
-            raise UsageError("no store of a study is open; give one to `equipoise serve`")
+            raise UsageError(NO_STORE)
         if message.kind == "study":
             self.studied = True
             return
