@@ -68,7 +68,7 @@ def english(values: object, names: set[str]) -> Iterator[str]:
             yield from english(value, names)
     elif isinstance(values, str):
         words = set(re.findall(r"[A-Za-z][A-Za-z-]{2,}", values)) - names
-        if words and not words <= {"RMS"}:
+        if words - {"RMS", "rad", "rpm", "mrad", "deg"}:
             yield values
 
 
@@ -78,7 +78,8 @@ def test_what_a_page_is_told_is_in_its_language(name: str) -> None:
     ask(session, "speak", languages=["ja"])
     machine = session.shown.design.machine
     held = {} if machine.support is None else {**machine.support.mounts, **machine.support.gauges}
-    names = {part for one in (*machine.links, *held) for part in (one, *one.split("_"))}
+    parts = {part for one in (*machine.links, *held) for part in (one, *one.split("_"))}
+    names = parts | {part.capitalize() for part in parts}
     replies = [*session.told(None), *session.tell_more()]
     contents = [reply.content for reply in replies]
     found = [text for content in contents for text in english(content, names)]
