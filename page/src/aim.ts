@@ -81,7 +81,8 @@ export class Aim {
     this.svg.remove();
     this.board.say("", false);
     this.board.hint("");
-    if (this.before instanceof HTMLElement) this.before.focus({ preventScroll: true });
+    // On a narrow screen the drawing is far from where the place was asked for.
+    if (this.before instanceof HTMLElement) this.before.focus();
     answer(spot);
   }
 

@@ -67,7 +67,7 @@ export class Inspector {
         if (partner(members[i - 1], field)) return;
         list.append(twin ? this.pair(field, twin) : this.row(field, true).root);
       });
-      const details = h("details", { class: "group" }, h("summary", {}, group), list);
+      const details = h("details", { class: "group" }, h("summary", {}, members[0]?.heading ?? group), list);
       details.open = !closed.has(group);
       this.groups.set(group, details);
     }
@@ -77,7 +77,7 @@ export class Inspector {
   private row(field: Field, slider: boolean): Row {
     const row = new Row(field, slider, this.talk, this.holding);
     if (field.between) {
-      const name = `${field.group} ${field.label}`;
+      const name = `${field.heading} ${field.label}`;
       row.root.insertBefore(this.locks.button(field.between, name), row.root.lastChild);
       row.root.classList.add("locked");
     }

@@ -35,7 +35,7 @@ export class Row {
     private readonly talk: Conversation,
     private readonly holding: (on: boolean) => void,
   ) {
-    const name = `${field.group} ${field.label}`;
+    const name = `${field.heading} ${field.label}`;
     this.input = h("input", {
       type: "text",
       class: "number",
@@ -154,7 +154,7 @@ export class Row {
   }
 
   private get label(): string {
-    return `${this.field.group} ${this.field.label}`;
+    return `${this.field.heading} ${this.field.label}`;
   }
 
   private makeSlider(name: string): HTMLInputElement {

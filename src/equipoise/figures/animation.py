@@ -29,7 +29,7 @@ from equipoise.symbols.tracks import Track
 
 HEAD = 13.0
 """Length of the head of an arrow, units."""
-BEHIND = ("field", "support", "wheels", "guides", "stands")
+BEHIND = ("field", "support", "rows", "wheels", "guides", "stands")
 """Layers of pieces on which the texts and paths stand."""
 
 

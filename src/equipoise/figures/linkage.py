@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.figures.points import moving
-from equipoise.figures.stage import beyond
+from equipoise.figures.stage import beyond, rows_named, rows_told
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.mechanism.checks import FRAME
@@ -18,6 +18,7 @@ from equipoise.mechanism.poles import instant_center, pairs, pinned
 from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, shown
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.pieces import GROUND, pieces, placed
+from equipoise.symbols.rows import with_rows
 from equipoise.symbols.scene import Scene
 
 if TYPE_CHECKING:
@@ -48,12 +49,13 @@ def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
     UsageError : there are none of them, or too many.
     """
     motion = analysis.motion
-    scene, count = Scene.of(motion), len(motion.crank_angle)
+    scene, count = with_rows(Scene.of(motion), motion), len(motion.crank_angle)
     if at is None:
         which = [clear_angle(scene)]
     else:  # after those of the cycle, so that blocks have the whole way that they run
         every = [*motion.crank_angle, *at]
-        scene = Scene.of(move(analysis.machine, every, motion.speed, motion.acceleration))
+        moved = move(analysis.machine, every, motion.speed, motion.acceleration)
+        scene = with_rows(Scene.of(moved), moved)
         which = [*range(count, len(every))]
     angles = scene.crank_angle[which]
     if not 1 <= len(angles) <= MOST:
@@ -65,7 +67,7 @@ def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
     what = say("Linkage, to scale; above each: angle of {link} in the frame", **told)
     if columns == 1:
         what = say("Linkage, to scale; angle of {link} in the frame: {angle}", **told)
-    keys, words = tuple(keys_of(scene)), tuple(beyond(scene))
+    keys, words = tuple(keys_of(scene)), (*rows_told(scene), *beyond(scene))
     return Chart("linkage", analysis.machine.title, what, panels, columns, keys=keys, words=words)
 
 
@@ -124,8 +126,12 @@ def joint_names(scene: Scene, k: int, optional: bool = False) -> Iterator[Mark]:
 
 
 def _other_names(scene: Scene, k: int) -> Iterator[Mark]:
-    """Names of links, of gauges and, where there is room, of mounts."""
+    """Names of links, of other rows, of gauges and, where there is room, of mounts."""
     yield from _link_names(scene, k)
+    for row in scene.rows.shown:
+        away = {name: abs(place[k] - scene.places[name][k]) for name, place in row.places.items()}
+        at = complex(row.places[max(away, key=lambda name: away[name])][k])
+        yield Mark.of(at, rows_named(row.numbers), "lines", 45.0, sign=False, near=4.0)
     if scene.carrier is None:
         return
     carrier, support = scene.carrier, scene.carrier.support

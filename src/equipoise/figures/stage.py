@@ -166,7 +166,7 @@ class Stage:
     def told(self) -> list[tuple[str, str]]:
         """What is to be said of the support, its movement and the force, and its colour."""
         swing = self.scene.swing
-        said = (*beyond(self.scene), *(() if swing is None else swing.told))
+        said = (*rows_told(self.scene), *beyond(self.scene), *(() if swing is None else swing.told))
         found = [(words, "ink") for words in said]
         if self.arrow is not None:
             peak = quantity(float(abs(self.arrow.force).max()), "force")
@@ -250,6 +250,29 @@ class Moves:
     place: Array
     angle: Array
     stretch: Array
+
+
+def rows_told(scene: Scene) -> list[str]:
+    """Which rows of several are drawn how."""
+    rows = scene.rows
+    parts = [say("{rows}: as drawn", rows=rows_named(rows.drawn))] if rows.drawn else []
+    for one in rows.others:
+        told = {"rows": rows_named(one.numbers), "phase": f"{np.degrees(one.phase):.4g}°"}
+        if not one.places:
+            parts.append(say("{rows}: beside the drawing, {phase} ahead", **told))
+        elif one.phase:
+            parts.append(say("{rows}: pale, {phase} ahead", **told))
+        else:
+            parts.append(say("{rows}: pale", **told))
+    return [say("; ").join(parts)] if parts else []
+
+
+def rows_named(numbers: tuple[int, ...]) -> str:
+    """Such as ``rows 2, 3``."""
+    told = ", ".join(map(str, numbers))
+    if len(numbers) == 1:
+        return say("row {number}", number=told)
+    return say("rows {numbers}", numbers=told)
 
 
 def beyond(scene: Scene) -> list[str]:

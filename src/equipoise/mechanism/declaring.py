@@ -18,7 +18,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from equipoise.i18n import Note, say, to_say
+from equipoise.i18n import Note, say, speaking, spoken, to_say
 from equipoise.quantities import SI, Dimension
 
 Array = np.ndarray[Any, Any]
@@ -168,10 +168,7 @@ class Declared:
 
         of_one : whether it is of one row of several.
         """
-        said = self.note(item).said()
-        if not Note(self.label).is_translated:
-            said = f"{said} (en)"
-        return say("one row: {what}", what=said) if of_one and self.needs == "masses" else said
+        return _said(self, item, of_one and self.needs == "masses", spoken())
 
     def items_of(self, found: Any) -> Iterable[str]:
         """Members that an analysis has; ``""`` where it is no family."""
@@ -290,3 +287,13 @@ def matches(name: str) -> Iterator[tuple[Declared, str]]:
 def declared(name: str) -> tuple[Declared, str] | None:
     """The declaration of an output, and its member, by the name of the output; None if unknown."""
     return next(matches(name), None)
+
+
+@lru_cache(8192)
+def _said(one: Declared, item: str, of_one: bool, language: str) -> str:
+    """What a member is called in a language; a page says a hundred names at each move of a drag."""
+    with speaking(language):
+        said = one.note(item).said()
+        if not Note(one.label).is_translated:
+            said = f"{said} (en)"
+        return say("one row: {what}", what=said) if of_one else said

@@ -216,10 +216,11 @@ def _animation(found: Findings) -> str:
     from equipoise.figures.animation import animated_svg
     from equipoise.figures.points import followed
     from equipoise.figures.stage import Arrow
+    from equipoise.symbols.rows import with_rows
     from equipoise.symbols.scene import Scene
 
     analysis = found.analysis
-    scene = Scene.of(analysis.motion)
+    scene = with_rows(Scene.of(analysis.motion), analysis.motion)
     if found.response is not None:
         from equipoise.figures.swing import swinging
 

@@ -73,6 +73,7 @@ LOOKS = {
     "surface": Look(None, "earth", 1.6, flat=True),
     "support-edge": Look("faint", "faint", BASE),
     "support": Look("wheel", "wheel", BASE - 1.6),
+    "row": Look(None, "faint", 2.4),
     "rest": Look("pale", "lines", 1.2),
     "wheel": Look("wheel", "lines", 1.0),
     "pitch": Look(None, "faint", 1.2, (5.0, 3.0)),

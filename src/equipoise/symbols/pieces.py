@@ -45,8 +45,8 @@ SENSE = 0.55, 30.0
 class Piece:
     """Shapes that move together, in axes of their own; those without a hold stand still.
 
-    layer : ``field``, ``support``, ``wheels``, ``guides``, ``stands``, ``links``, ``springs``,
-        ``pivots``, ``blocks``, ``joints``, ``tray`` or ``drive``.
+    layer : ``field``, ``support``, ``rows``, ``wheels``, ``guides``, ``stands``, ``links``,
+        ``springs``, ``pivots``, ``blocks``, ``joints``, ``tray`` or ``drive``.
     link : whose plate or bar it is, if any.
     still : whether it stands on the ground, and not on the support.
     """
@@ -71,7 +71,7 @@ def pieces(scene: Scene, traced: Collection[str] = (), field: bool = True) -> li
     field : whether soil and tray are among it.
     """
     found = [*_soil(scene)] if field else []
-    found += [*_carrier(scene), *_wheels(scene), *_stands(scene)]
+    found += [*_carrier(scene), *_rows(scene), *_wheels(scene), *_stands(scene)]
     found += _links(scene)
     found += [*_springs(scene), Piece("pivots", tuple(_pivots(scene)))]
     found += [
@@ -194,6 +194,17 @@ def _links(scene: Scene) -> Iterator[Piece]:
         yield Piece("links", shapes, _with(body), body.name)
 
 
+def _rows(scene: Scene) -> Iterator[Piece]:
+    """Links of other rows, pale, as lines through their points."""
+    for number, _ in enumerate(scene.rows.shown, 1):
+        for body in scene.bodies:
+            corners = [*map(complex, scene.corners(body))]
+            if len(corners) > 1:
+                shape = line("row", *corners, closed=len(corners) > 2)
+                hold = Hold(body.points[0], link=body.name, row=number)
+                yield Piece("rows", (shape,), hold)
+
+
 def _solids(body: Body) -> Iterator[Shape]:
     """What a link is made of, to scale, below its sign."""
     for corners, radius in body.solids:
@@ -268,7 +279,7 @@ def _sense(scene: Scene) -> Iterator[Piece]:
 
 # -- at one crank angle ----------------------------------------------------------------------------
 
-GROUND = ("field", "support")
+GROUND = ("field", "support", "rows")
 """Layers of pieces that paths are drawn on."""
 
 

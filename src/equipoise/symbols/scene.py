@@ -18,6 +18,7 @@ from equipoise.mechanism.model import FRAME, Link
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.tip import surface_of
 from equipoise.symbols.carrier import MOUNT, Carrier, Swing
+from equipoise.symbols.rows import ONE, Rows
 from equipoise.symbols.shapes import Array, hull
 
 
@@ -116,6 +117,7 @@ class Scene:
     angles : of each link, counted on through the turns; (N,) rad.
     planned : springs that balancing may set, likewise.
     room : places besides that are to be in sight, complex, m.
+    rows : those of its machine, where all of them are to be seen.
     swing : how the support moves, where it is to be seen; places are in the frame's axes all along.
     """
 
@@ -135,6 +137,7 @@ class Scene:
     carrier: Carrier | None = None
     swing: Swing | None = None
     room: tuple[complex, ...] = ()
+    rows: Rows = ONE
 
     @classmethod
     def of(cls, motion: Motion) -> Scene:
@@ -189,6 +192,7 @@ class Scene:
     def linkage_box(self) -> tuple[complex, complex]:
         """Lower left and upper right corner of all places, wheels and ways of blocks, m."""
         every = [*self.places.values(), *self.mass_centers.values(), np.array(self.room, complex)]
+        every += [place for row in self.rows.shown for place in row.places.values()]
         for guide in self.guides:
             place = self.places[guide.point]
             every += [place - guide.behind * guide.way, place + guide.ahead * guide.way]

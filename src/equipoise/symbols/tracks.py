@@ -38,6 +38,7 @@ class Hold:
     point : its origin.  Its x axis is that of a link, the way of a guide, or points to another
     point, between which and the origin it is stretched; one of the three is given.
     mount : between whose place on the support and its ground it is stretched, instead.
+    row : which of the other rows that the scene shows it belongs to, from 1; 0 where to none.
     """
 
     point: str = ""
@@ -45,6 +46,7 @@ class Hold:
     guide: str = ""
     to: str = ""
     mount: str = ""
+    row: int = 0
 
 
 def track_of(scene: Scene, hold: Hold | None, still: bool, unit: float) -> Track | None:
@@ -65,6 +67,9 @@ def track_of(scene: Scene, hold: Hold | None, still: bool, unit: float) -> Track
 
 def _in_frame(scene: Scene, hold: Hold) -> Track:
     """Motion with a link, on a guide or between two points, in the axes of the frame."""
+    if hold.row:
+        row = scene.rows.shown[hold.row - 1]
+        return Track(row.places[hold.point], row.angles[hold.link], np.ones(len(scene.crank_angle)))
     place = scene.places[hold.point]
     if hold.link:
         return Track(place, scene.angles[hold.link], np.ones(len(place)))

@@ -9,6 +9,7 @@ from math import pi
 from typing import Any
 
 from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import say, to_say
 from equipoise.keys import Frozen, Quantity, quantities_of
 from equipoise.mechanism.links import MASS_FIELDS
 from equipoise.mechanism.model import FRAME, Link, Machine, Vector, size_of
@@ -115,6 +116,7 @@ class Scale:
         return {
             "path": field.path,
             "group": field.group,
+            "heading": _heading(field),
             "label": field.label,
             "value": field.value,
             "text": _text(field.value, unit.unit),
@@ -127,6 +129,28 @@ class Scale:
             "kind": "number",
             **({} if field.between is None else {"between": field.between}),
         }
+
+
+SECTIONS = {
+    "drive": to_say("drive"),
+    "frame": to_say("frame"),
+    "gears": to_say("gears"),
+    "springs": to_say("springs"),
+    "rows": to_say("rows"),
+    "planting": to_say("planting"),
+    "support": to_say("support"),
+}
+"""Groups that are no links -> what they are called."""
+WEIGHT = "counterweight on "
+"""Before the name of a link: the group of its counterweight."""
+
+
+def _heading(field: Field) -> str:
+    """What the group of a number is called, in the language that is spoken."""
+    if field.path.startswith("counterweights."):
+        return say("counterweight on {link}", link=field.group.removeprefix(WEIGHT))
+    of_link = field.path.startswith("links.")
+    return field.group if of_link else say(SECTIONS.get(field.group, field.group))
 
 
 @lru_cache(4096)
@@ -178,12 +202,12 @@ def _numbers(
     for key, one in quantities_of(item).items():
         value = getattr(item, one.field)
         if value is not None and key not in without and isinstance(one.kind, Quantity):
-            label = f"{of}{key.replace('_', ' ')}"
+            label = f"{of}{say(key.replace('_', ' '))}"
             yield _field((*place, key), group, label, one.kind.dimension, value)
 
 
 def _drive(machine: Machine) -> Iterator[Field]:
-    yield _field(("drive", "speed"), "drive", "speed", "angular speed", machine.drive.speed)
+    yield _field(("drive", "speed"), "drive", say("speed"), "angular speed", machine.drive.speed)
 
 
 def _links(machine: Machine) -> Iterator[Field]:
@@ -195,7 +219,7 @@ def _links(machine: Machine) -> Iterator[Field]:
             yield _field((*where, "sides", side), name, side, "length", length)
         if link.has_mass and not link.bodies:
             center = link.center_of_mass or CENTER
-            yield from _point((*where, "center_of_mass"), name, "centre of mass", center)
+            yield from _point((*where, "center_of_mass"), name, say("centre of mass"), center)
         if link.length is None and not link.sides:
             yield from _measures(".".join(where), name, link.points)
             for point, place in link.points.items():
@@ -205,12 +229,12 @@ def _links(machine: Machine) -> Iterator[Field]:
 def _bodies(where: Place, name: str, link: Link) -> Iterator[Field]:
     for number, body in enumerate(link.bodies, 1):
         place = (*where, "bodies", str(number))
-        of = f"{body.shape} {number}, "
+        of = f"{say(body.shape)} {number}, "
         known = quantities_of(body).items()
         left_out = (key for key, one in known if getattr(body, key) == one.default)
         yield from _numbers(place, name, of, body, (*left_out,))
         if body.at is not None and not isinstance(body.at, str):
-            yield from _point((*place, "at"), name, f"{of}centre", body.at)
+            yield from _point((*place, "at"), name, f"{of}{say('centre')}", body.at)
 
 
 def _measures(where: str, body: str, points: Mapping[str, Vector]) -> Iterator[Field]:
@@ -235,21 +259,20 @@ def _frame(machine: Machine) -> Iterator[Field]:
 
 def _gears(machine: Machine) -> Iterator[Field]:
     for number, gear in enumerate(machine.gears, 1):
-        label = f"{gear.name}, angle of {gear.driven} at the start"
+        label = say("{gear}, angle of {link} at the start", gear=gear.name, link=gear.driven)
         yield _field(("gears", str(number), "start"), "gears", label, "angle", gear.start)
 
 
 def _springs(machine: Machine) -> Iterator[Field]:
     for number, spring in enumerate(machine.springs, 1):
-        of = f"{spring.point} to {spring.to}, "
+        of = say("{point} to {other}", point=spring.point, other=spring.to) + ", "
         yield from _numbers(("springs", str(number)), "springs", of, spring)
 
 
 def _rows(machine: Machine) -> Iterator[Field]:
     for number, row in enumerate(machine.rows, 1):
-        yield _field(
-            ("rows", str(number), "phase"), "rows", f"row {number}, phase", "angle", row.phase
-        )
+        label = say("row {number}, phase", number=number)
+        yield _field(("rows", str(number), "phase"), "rows", label, "angle", row.phase)
 
 
 NOT_OF_PLANTING = ("release", "acceleration_limit", "soil_acceleration_limit")
@@ -286,9 +309,9 @@ def _weights(design: Design) -> Iterator[Field]:
         for key, dimension in quantities:
             put = partial(_with_weight, name, key)
             path = f"counterweights.{name}.{key}"
-            group = f"counterweight on {name}"
-            yield Field(path, group, f"{key}, from {pin}" if key == "radius" else key, dimension,
-                        getattr(weight, key), put)  # fmt: skip
+            label = say("radius, from {point}", point=pin) if key == "radius" else say(key)
+            value = getattr(weight, key)
+            yield Field(path, f"{WEIGHT}{name}", label, dimension, value, put)
 
 
 def _with_weight(link: str, key: str, design: Design, value: float) -> Design:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import DECLARED, Declared
 from equipoise.quantities import Display, change, display, number, typeset
@@ -54,7 +55,7 @@ def _peak(values: Array) -> float:
     return float(np.max(np.abs(values)))
 
 
-MEASURES = {"rms": ("RMS", _rms), "peak": ("peak", _peak)}
+MEASURES = {"rms": (to_say("RMS"), _rms), "peak": (to_say("peak"), _peak)}
 
 
 NOTHING = 1e-12
@@ -93,7 +94,7 @@ def _figures(signals: Signals, old: Signals | None, size: float) -> Iterator[Val
                 "name": f"{name}.{measure}",
                 "signal": label,
                 "measure": measure,
-                "label": f"{label}, {shown}",
+                "label": f"{label}, {say(shown)}",
                 "unit": unit.name,
                 "value": value,
                 "text": text_of(_in(unit, value)),
@@ -193,8 +194,8 @@ def charts_of(analysis: Analysis, signals: Signals) -> list[Values]:
     orders = [*_by_order(analysis, signals)]
     return [
         *charts,
-        chart("spectrum", orders, x="order", chooser="Spectrum of"),
-        chart("joint", choices, chooser="Force in joint"),
+        chart("spectrum", orders, x="order", chooser=say("Spectrum of")),
+        chart("joint", choices, chooser=say("Force in joint")),
     ]
 
 
@@ -256,7 +257,12 @@ def _by_order(analysis: Analysis, signals: Signals) -> Iterator[Values]:
             for array, curve in zip(arrays, whole["curves"], strict=True)
         ]
         of = whole["of"] if vector else None
-        yield {**whole, "of": of, "label": f"{whole['label']}, by order", "curves": curves}
+        yield {
+            **whole,
+            "of": of,
+            "label": say("{what}, by order", what=whole["label"]),
+            "curves": curves,
+        }
 
 
 def gauge_choice(name: str, label: str, rotation: bool, array: str, log: bool = False) -> Values:

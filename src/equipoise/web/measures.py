@@ -10,6 +10,7 @@ from math import hypot
 from typing import Literal
 
 from equipoise.errors import UsageError
+from equipoise.i18n import say
 from equipoise.mechanism.model import Vector
 from equipoise.web.messages import Drag
 
@@ -45,8 +46,8 @@ class Measure:
     @property
     def label(self) -> str:
         """What a page calls it."""
-        line = f"{self.start} to {self.moves}"
-        return line if self.dimension == "length" else f"{line}, direction"
+        line = say("{point} to {other}", point=self.start, other=self.moves)
+        return line if self.dimension == "length" else f"{line}, {say('direction')}"
 
     def place(self, points: Mapping[str, Vector], value: float) -> Vector:
         """Where the second point goes for another value, in the axes of the body, m.

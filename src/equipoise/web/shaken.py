@@ -86,7 +86,7 @@ def swept(shown: Solved, progress: Callable[[int, int], None]) -> tuple[Values, 
     for name, curve in curves.gauges.items():
         array = f"sweep.{name}"
         block.add(array, curve.peak_to_peak)
-        label = f"{_spoken(name)} against speed, peak to peak"
+        label = say("{gauge} against speed, peak to peak", gauge=_spoken(name))
         choices.append(gauge_choice(name, label, curve.rotation, array, log=True))
     rpm = display("angular speed", (), "rpm")
     over = {"array": "sweep.speed", "unit": rpm.name, "factor": rpm.factor, "at": found.speed}
@@ -102,9 +102,9 @@ def _told(shown: Solved, found: Response, block: Block) -> Values:
     for name, gauge in found.gauges.items():
         array = f"response.{name}"
         block.add(array, gauge.displacement.samples(count))
-        label = f"response of {_spoken(name)}"
+        label = say("response of {gauge}", gauge=_spoken(name))
         choices.append(gauge_choice(name, label, gauge.rotation, array))
-    charts = [chart("response", choices, chooser="Response of")]
+    charts = [chart("response", choices, chooser=say("Response of"))]
     notes = list(map(said, found.notes))
     swing = _swing(swinging(shown.scene, found), block)
     modes = [*_modes(shown.scene, found)]
@@ -199,7 +199,7 @@ def _planted(machine: Machine) -> Values:
     except EquipoiseError as error:
         return {"type": "planting", "figures": [], "notes": [error.told()]}
     figures = [
-        {"name": name, "label": one.words, **_shown(float(value), told.dimension, told.unit)}
+        {"name": name, "label": say(one.words), **_shown(float(value), told.dimension, told.unit)}
         for name, one in FIGURES.items()
         if name in found.figures
         for value in [found.figures[name]]

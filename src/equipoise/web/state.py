@@ -74,7 +74,7 @@ def state_of(
             {
                 "name": one.name,
                 "label": one.label(),
-                "group": GROUPS[one.group],
+                "group": say(GROUPS[one.group]),
                 "unit": shown.name,
                 "factor": shown.factor,
             }

@@ -209,6 +209,7 @@ class ToolDesk:
             told = {
                 "path": path,
                 "group": group,
+                "heading": group,
                 "label": said(self.template.words(path)).replace(f" of the {group}", ""),
                 "value": value,
                 "min": min(low, value),
@@ -251,6 +252,8 @@ def tool_asked(message: Message) -> ToolDesk | None:
     if "example" in message.values:
         name = message.text("example")
         return tool_of_file(name) if name in tool_titles() else None
+    if message.flag("new", False):
+        return None
     text = message.text("text")
     if kind_of_text(text) != "tool":
         return None

@@ -74,7 +74,7 @@ def test_every_path_is_drawn_closed() -> None:
 def test_what_holds_a_linkage_is_named_or_told(name: str, named: list[str], beyond: str) -> None:
     chart = linkage(analysis_of(name))
     assert {*named} <= {mark.text for mark in chart.panels[0].marks}
-    assert (beyond in chart.words[0]) if beyond else not chart.words
+    assert (beyond in chart.words[-1]) if beyond else not chart.words
     assert {"support", "gauge"} < {role for role, _ in chart.keys}
     drawn = [shape.role for panel in chart.panels for shape in (*panel.ground, *panel.signs)]
     assert {role for role, _ in chart.keys} <= {*drawn}
