@@ -23,11 +23,11 @@ import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
 import type { Shelf } from "./story";
 import { Theme } from "./theme";
-import { ToolView } from "./tool";
 import { Toolbar } from "./toolbar";
 import { Tools } from "./tools";
 import { Tour } from "./tour";
 import { TransportBar } from "./transport";
+import { Views } from "./views";
 import { language, say } from "./words";
 
 /** What is shown where nothing was asked for. */
@@ -78,8 +78,7 @@ export class App {
     settled: () => this.spell(),
   });
   private readonly undone: (() => void)[] = [];
-  private readonly body = h("div", { class: "body" });
-  private readonly tool: ToolView;
+  private readonly views: Views;
 
   private hello: Hello | null = null;
   private state: State | null = null;
@@ -113,9 +112,14 @@ export class App {
       pictured: (one, numbers) => (one ? this.gallery.add(one, numbers) : this.gallery.done()),
       tool: (message, numbers) => {
         this.opened = "";
-        this.body.hidden = true;
-        this.tool.show(message, numbers);
+        this.views.showTool(message, numbers);
         this.toolbar.show({ ...message, has_forces: false, file: null });
+      },
+      study: (message, numbers) => {
+        this.opened = "";
+        this.views.showStudy(message, numbers);
+        const { name } = message;
+        this.toolbar.show({ name, undo: null, redo: null, has_forces: false, file: null });
       },
       saved: (name) => this.keeping.saved(name),
       line: (up) => this.line(up),
@@ -123,8 +127,11 @@ export class App {
     };
     this.talk = new Conversation(wire, events, shelf);
     el.append(this.root);
-    this.theme = new Theme(this.root, () => this.charts.repaint());
-    this.tool = new ToolView(this.talk, this.theme);
+    this.theme = new Theme(this.root, () => {
+      this.charts.repaint();
+      this.views.repaint();
+    });
+    this.views = new Views(this.talk, this.theme, (asked) => this.command(asked));
     const locks = new Locks();
     const page = {
       talk: this.talk,
@@ -191,6 +198,7 @@ export class App {
       help: () => this.help.showModal(),
       speak,
     });
+    this.toolbar.beside(this.views.back);
     this.lay();
     this.listen();
     this.talk.ask({ type: "ready" });
@@ -198,7 +206,7 @@ export class App {
 
   close(): void {
     this.frames.close();
-    this.tool.close();
+    this.views.close();
     this.charts.close();
     this.bench.close();
     this.talk.close();
@@ -221,14 +229,13 @@ export class App {
     const parts = [...this.bench.roots, this.inspector.root];
     this.aside.append(this.balance.root, h("fieldset", { class: "bare", disabled }, ...parts));
     if (disabled) this.aside.tabIndex = 0; // to be scrolled by keys
-    this.body.append(stage, this.side, this.aside);
+    this.views.body.append(stage, this.side, this.aside);
     this.root.append(
       this.toolbar.root,
       this.lost,
       this.keeping.offer,
       this.tour.offer,
-      this.body,
-      this.tool.root,
+      ...this.views.roots,
     );
     this.root.append(
       dropZone(this.root, (file) => void this.read(file)),
@@ -274,6 +281,7 @@ export class App {
     this.hello = hello;
     follow(hello.numbers);
     this.toolbar.offer(hello.examples, hello.tools);
+    this.views.stored(hello.study);
     if (this.state) this.toolbar.show(this.state);
     else if (first) void this.begin(hello);
   }
@@ -294,8 +302,7 @@ export class App {
     this.opened = "";
     const angle = this.state ? this.player.angle : 0;
     this.state = state;
-    this.tool.hide();
-    this.body.hidden = false;
+    this.views.machine();
     measure(state.length);
     this.player.take(state);
     if (other) {
@@ -397,7 +404,7 @@ export class App {
   }
 
   private refuse(message: string, edit: boolean): void {
-    this.tool.say(message);
+    this.views.say(message);
     this.board.say(message, true);
     if (edit) this.hands.refused();
     this.opened = "";
@@ -442,7 +449,7 @@ export class App {
   private step(type: "undo" | "redo"): void {
     this.talk.release();
     // What was held until now is a step of its own, which the state does not tell yet.
-    if (!this.talk.busy && !(this.tool.shown ?? this.state)?.[type]) return;
+    if (!this.talk.busy && !(this.views.other ?? this.state)?.[type]) return;
     this.board.say("", false);
     this.inspector.forget();
     this.talk.ask({ type });

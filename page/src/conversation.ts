@@ -3,8 +3,8 @@
 import type { Asked, Edit, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
 import { Numbers, type Pictured, type Planted, type ResponseMessage, type State } from "./protocol";
-import type { GhostMessage, ToolMessage, VariantsMessage } from "./protocol";
-import { type Shelf, type Shown, Story, type Told as Kept } from "./story";
+import type { GhostMessage, StudyMessage, ToolMessage, VariantsMessage } from "./protocol";
+import { OPENS, type Shelf, type Shown, Story, type Told as Kept } from "./story";
 import { language } from "./words";
 
 export interface Events {
@@ -15,6 +15,7 @@ export interface Events {
   ghost(message: GhostMessage, numbers: Numbers): void;
   variants(message: VariantsMessage): void;
   tool(message: ToolMessage, numbers: Numbers): void;
+  study(message: StudyMessage, numbers: Numbers): void;
   refused(message: string, edit: boolean): void;
   balanced(message: Extract<Told, { type: "balanced" }>): void;
   busy(what: string | null): void;
@@ -45,7 +46,7 @@ const SLOW = new Set(["balance", "download", "gallery"]);
 const PATIENCE = 100;
 
 /** What leaves the machine on the server as it was; all else is said again after a broken line. */
-const IDLE = new Set(["ready", "speak", "save", "download", "tables"]);
+const IDLE = new Set(["ready", "speak", "save", "download", "tables", "study"]);
 
 /** Who asks these says himself why not. */
 const ASIDE = new Set(["entry", "tables"]);
@@ -143,6 +144,9 @@ export class Conversation {
       case "tool":
         this.events.tool(told, new Numbers(told.arrays, buffers[0]));
         return this.heard(told);
+      case "study":
+        this.events.study(told, new Numbers(told.arrays, buffers[0]));
+        return this.end(told.seq, null);
       case "variants":
         return this.events.variants(told);
       case "planting":
@@ -187,7 +191,7 @@ export class Conversation {
     if (question === this.flight) this.land();
     else if (this.aside.delete(seq)) this.events.busy(null);
     // Without what a story began with, nothing of it can be done.
-    if (this.repeating && refusal !== null && question.asked.type === "open") {
+    if (this.repeating && refusal !== null && OPENS.has(question.asked.type)) {
       this.queue.length = 0;
       this.story.forget();
     }

@@ -50,7 +50,9 @@ export type Asked =
   | { type: "variant"; do: "pin" }
   | { type: "variant"; do: "rename"; name: string; to: string }
   | { type: "variant"; do: "go" | "drop"; name: string }
-  | { type: "variant"; do: "against"; to: string };
+  | { type: "variant"; do: "against"; to: string }
+  | { type: "study" }
+  | { type: "design"; number: number };
 
 export interface Example {
   name: string;
@@ -62,6 +64,8 @@ export interface Hello {
   version: string;
   examples: Example[];
   tools: Example[];
+  /** Name of the store that the server was started with. */
+  study?: string | null;
   /** Most bytes of a model file. */
   largest: number;
   /** Whether the server holds a machine already. */
@@ -334,6 +338,35 @@ export interface ToolMessage {
   notes: string[];
 }
 
+/** What varies in a study, or what came of it. */
+export interface ColumnOf extends Unit {
+  name: string;
+  label: string;
+  kind: "number" | "output";
+  /** At least and at most, SI units. */
+  limits: [number | null, number | null];
+  make: "smallest" | "largest" | null;
+}
+
+/** A store of a study. */
+export interface StudyMessage {
+  type: "study";
+  seq: number;
+  name: string;
+  title: string;
+  columns: ColumnOf[];
+  /** Of the model itself, column by column, SI units. */
+  own: number[] | null;
+  size: number;
+  drawn: number;
+  computed: number;
+  kept: number;
+  limited: boolean;
+  refused: { why: string; code: number; count: number }[];
+  best: number[];
+  arrays: Arrays;
+}
+
 /** A design that is drawn pale, or none. */
 export interface GhostMessage {
   type: "ghost";
@@ -502,6 +535,7 @@ export type Told =
   | ResponseMessage
   | GhostMessage
   | ToolMessage
+  | StudyMessage
   | VariantsMessage
   | Planted
   | Balanced

@@ -36,6 +36,8 @@ export interface Shelf {
 
 /** Steps that a server keeps; beyond, it forgets the oldest. */
 const DEEPEST = 500;
+/** What begins anew, and a story with it. */
+export const OPENS = new Set(["open", "design"]);
 /** What a step is made by. */
 const STEPS = new Set(["edit", "make", "balance", "entry"]);
 /** Of these the last one is enough. */
@@ -96,7 +98,7 @@ export class Story {
   /** A question was answered by a state. */
   remember(question: Asked, state: Shown): void {
     const { told } = this;
-    if (question.type === "open") this.told = { ...empty(told.base), start: [question] };
+    if (OPENS.has(question.type)) this.told = { ...empty(told.base), start: [question] };
     else if (question.type === "undo") move(told.past, told.future, "start");
     else if (question.type === "redo") move(told.future, told.past, "end");
     else if (this.deeper(question, state)) {
@@ -126,13 +128,13 @@ function empty(base: string): Told {
 
 /** Whether it can be told to a server which has that open: nothing, or the same file. */
 function fits(told: Told, base: string): boolean {
-  if (told.start.some(({ type }) => type === "open")) return true;
+  if (told.start.some(({ type }) => OPENS.has(type))) return true;
   return told.base === base || (told.saved === base && told.text !== undefined);
 }
 
 function asked(told: Told, base: string): Asked[] {
   const { start, past, future, text, name } = told;
-  const again = told.base !== base && text !== undefined && !start.some((a) => a.type === "open");
+  const again = told.base !== base && text !== undefined && !start.some((a) => OPENS.has(a.type));
   const open: Asked[] = again ? [{ type: "open", name, text, file: true }] : [];
   const back = future.map((): Asked => ({ type: "undo" }));
   return [...open, ...start, ...past.flat(), ...future.flat(), ...back];

@@ -92,6 +92,11 @@ export class Toolbar {
     this.save.disabled = state.file?.saved !== false;
   }
 
+  /** Put something beside what is open. */
+  beside(element: HTMLElement): void {
+    this.examples.after(element);
+  }
+
   busy(what: string | null): void {
     set(this.root, { "data-busy": what });
     this.balance.classList.toggle("working", what !== null);

@@ -230,7 +230,7 @@ def test_a_dxf_drawing_is_snapped_to_by_keyboard_too(live: Live, tmp_path: Path)
 def test_forms_give_back_what_they_were_given(live: Live, name: str, part: str) -> None:
     """Whatever differed would be a step that could be taken back."""
     page = live.page
-    page.get_by_label("Example").select_option(name)
+    page.get_by_role("combobox", name="Example", exact=True).select_option(name)
     page.get_by_text("Parts of the model").click()
     expect(page.locator(".groups")).to_contain_text(part)
     entries = page.locator(".groups .plain")

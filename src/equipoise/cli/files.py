@@ -125,7 +125,8 @@ def serve(
     Parameters
     ----------
     file
-        Path of a model file, or the name of a bundled example; else one is picked on the page.
+        Path of a model file or of a store of a study, or the name of a bundled example; else one is
+        picked on the page.
     port
         On which it is served; if not given 8471, or any that is free.
     no_browser

@@ -19,7 +19,7 @@ from markupsafe import Markup
 
 import equipoise
 from equipoise.errors import EquipoiseError, UsageError
-from equipoise.figures.style import GRID, STUBBLE
+from equipoise.figures.style import DIM, GRID, LOUD, POINTS, QUIET, STRETCH, STUBBLE
 from equipoise.i18n import LANGUAGES, said, say, speaking, spoken
 from equipoise.present.cells import Grid, Head, Text, grid, noted, printed, sign_of
 from equipoise.present.layout import Looks
@@ -96,9 +96,27 @@ class Document:
             yield
 
 
-NAMES = {color: name for name, color in LIGHT.items()} | {GRID: "grid", STUBBLE: "stubble"}
+NAMES = {color: name for name, color in LIGHT.items()} | {
+    GRID: "grid",
+    STUBBLE: "stubble",
+    QUIET: "quiet",
+    LOUD: "loud",
+    STRETCH: "stretch",
+    POINTS: "points",
+    DIM: "dim",
+}
 """Colour of a picture -> name of the page's property that takes its place."""
-DARK_ONLY = {"grid": "#2b3138", "soil": "#332c20", "stubble": "#57492f", "earth": "#c9a774"}
+DARK_ONLY = {
+    "grid": "#2b3138",
+    "soil": "#332c20",
+    "stubble": "#57492f",
+    "earth": "#c9a774",
+    "quiet": "#22272d",
+    "loud": "#343b43",
+    "stretch": "#6e4631",
+    "points": "#4f86b5",
+    "dim": "#525a63",
+}
 
 _COLOR = re.compile("#[0-9a-f]{6}(?=[;\"' ])")
 _USED = re.compile(r'(?:url\(#|href="#)([^)"]+)')

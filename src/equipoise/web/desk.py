@@ -6,20 +6,27 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import dataclass, field
 
-from equipoise.errors import EquipoiseError
+from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import speaking
+from equipoise.mechanism.model import Machine
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import showing_by_default
 from equipoise.schema.opening import kind_of_text, opened
+from equipoise.schema.template import Template
+from equipoise.web.design import Design
 from equipoise.web.disk import on_disk
 from equipoise.web.messages import Message
 from equipoise.web.openings import opened_file
 from equipoise.web.replies import Reply, refused
+from equipoise.web.seen import NO_STORE
 from equipoise.web.session import Session
+from equipoise.web.stores import StoreDesk, is_store
 from equipoise.web.tools import ToolDesk, tool_asked, tool_of_file
 
 ALWAYS = ("speak", "gallery")
 """What has nothing to do with what is open."""
+OF_STORE = ("ready", "study", "design")
+"""What is asked of a store."""
 
 
 @dataclass
@@ -27,41 +34,81 @@ class Desk:
     """The counterpart of a page.
 
     session : of its machine.  tool : that is open instead, if any.
+    store : of a study, with which the server was started.  studied : whether it is what is shown.
     """
 
     session: Session = field(default_factory=Session)
     tool: ToolDesk | None = None
+    store: StoreDesk | None = None
+    studied: bool = False
 
     def hello(self) -> Reply:
         """The first thing that a page is told."""
         reply = self.session.hello()
-        reply.content["machine"] |= self.tool is not None
+        reply.content["machine"] |= self.tool is not None or self.studied
+        reply.content["study"] = None if self.store is None else self.store.name
         return reply
 
     def receive(self, message: Message) -> Iterator[Reply]:
         """Answer a message; what takes long comes last, and may be left unasked."""
+        if message.kind in ALWAYS:
+            yield from self.session.receive(message)
+            return
         try:
-            if message.kind == "open":
-                self.tool = tool_asked(message)
+            self._turn_to(message)
+            replies = [] if self._of_session else [*self._answers(message)]
         except EquipoiseError as error:
             yield refused(message.seq, error, self.session.language)
             return
-        if self.tool is None or message.kind in ALWAYS:
-            yield from self.session.receive(message)
+        if self._of_session and message.kind == "design":
+            yield from self.session.told(message.seq)
+        elif self._of_session:
+            for reply in self.session.receive(message):
+                yield self.hello() if reply.content["type"] == "hello" else reply
+        yield from replies
+
+    @property
+    def _of_session(self) -> bool:
+        """Whether what is shown is a machine, or nothing."""
+        return self.tool is None and not self.studied
+
+    def _turn_to(self, message: Message) -> None:
+        """Open what a message wants to be open."""
+        if message.kind == "open":
+            self.tool, self.studied = tool_asked(message), False
+        if message.kind not in ("study", "design"):
             return
+        if self.store is None:
+            raise UsageError(NO_STORE)
+        if message.kind == "study":
+            self.studied = True
+            return
+        number = message.whole("number", 0)
+        model, name = self.store.model(number), f"{self.store.name} {number}"
+        if isinstance(model, Machine):
+            self.session.open(Design(name, model))
+            self.tool = None
+        else:
+            self.tool = ToolDesk.of(name, Template.of(model))
+        self.session.disk, self.studied = None, False
+
+    def _answers(self, message: Message) -> Iterator[Reply]:
+        """What a store or a tool answers."""
         if message.kind == "ready":
             yield self.hello()
-        try:
-            with self._telling():
+        with self._telling():
+            if self.tool is not None and not self.studied:
                 replies = [*self.tool.receive(message)]
-        except EquipoiseError as error:
-            replies = [refused(message.seq, error, self.session.language)]
+            elif self.store is None or message.kind not in OF_STORE:
+                raise UsageError("a study is open; choose one of its designs first")
+            else:
+                replies = [self.store.told(message.seq)]
         yield from replies
 
     @property
     def has_more(self) -> bool:
         """Whether there is more to tell, which takes longer."""
-        return self.tool is None and self.session.has_more
+        return self._of_session and self.session.has_more
 
     def tell_more(self) -> Iterator[Reply]:
         """What takes too long to be told at every move of a drag."""
@@ -71,7 +118,7 @@ class Desk:
         """Inside, the reader's language is spoken, in the units of the file that is open."""
         inside = ExitStack()
         inside.enter_context(speaking(self.session.language))
-        if self.tool is not None:
+        if self.tool is not None and not self.studied:
             inside.enter_context(showing_by_default(units_of(self.tool.now.tool)))
         return inside
 
@@ -85,6 +132,9 @@ def begun(file: str | None) -> Callable[[], Desk]:
     """
     if file is None:
         return Desk
+    if is_store(file):
+        store = StoreDesk.load(file)
+        return lambda: Desk(Session(), store=store, studied=True)
     if kind_of_text(opened(file).text) == "tool":
         tool = tool_of_file(file)
         _ = tool.first.figures.whole

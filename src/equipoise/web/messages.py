@@ -28,6 +28,8 @@ KINDS = (
     "save",
     "arrows",
     "variant",
+    "study",
+    "design",
     "download",
     "gallery",
     "tables",

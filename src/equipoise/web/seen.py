@@ -148,6 +148,14 @@ def _against(session: Session, message: Message) -> None:
     session.seen.variants = session.seen.variants.told_against(message.text("to"))
 
 
+NO_STORE = "no store of a study is open; give one to `equipoise serve`"
+
+
+def _stored(session: Session, message: Message) -> Iterator[Reply]:
+    """Nothing that is asked of a store is here."""
+    raise UsageError(NO_STORE)
+
+
 DOING: dict[str, Callable[[Session, Message], None]] = {
     "pin": _pin,
     "rename": _rename,
@@ -158,5 +166,7 @@ DOING: dict[str, Callable[[Session, Message], None]] = {
 ASKED: dict[str, Callable[[Session, Message], Iterator[Reply]]] = {
     "arrows": _arrows,
     "variant": _variant,
+    "study": _stored,
+    "design": _stored,
 }
 """Answers to messages, by their kind."""

@@ -1,0 +1,103 @@
+/** Designs of a study: columns of numbers, and which of them are within ranges that are chosen. */
+
+import type { ColumnOf, Numbers, Pair, StudyMessage } from "./protocol";
+import { extremes, type Scale, share, wide } from "./scale";
+
+/** Free at both ends of a scale, over its length. */
+const ROOM = 0.03;
+
+export interface Column {
+  told: ColumnOf;
+  /** In the unit that is told; NaN where a design has none. */
+  values: Float64Array;
+  scale: Scale;
+  /** Of the model itself. */
+  own: number | null;
+}
+
+/** Why a design is not drawn as a good one. */
+export type Kind = "kept" | "beyond" | "failed";
+
+export class Designs {
+  readonly columns: Column[];
+  readonly count: number;
+  /** Chosen ranges by column. */
+  readonly ranges = new Map<number, Pair>();
+  private readonly number: Float32Array;
+  private readonly reason: Float32Array;
+  private readonly kept: Float32Array;
+
+  constructor(
+    readonly study: StudyMessage,
+    numbers: Numbers,
+  ) {
+    const read = (name: string) => numbers.get(name) ?? new Float32Array(0);
+    [this.number, this.reason, this.kept] = [read("number"), read("reason"), read("kept")];
+    this.count = this.number.length;
+    this.columns = study.columns.map((told, k) => {
+      const values = Float64Array.from(read(`column.${told.name}`), (x) => x * told.factor);
+      const own = study.own?.[k];
+      return { told, values, scale: scaleFor(values, own), own: own === undefined ? null : own * told.factor };
+      function scaleFor(all: Float64Array, model: number | undefined): Scale {
+        const here = model === undefined ? [] : [model * told.factor];
+        const [low, high] = extremes([all, here]);
+        if (wide(all) && (here[0] ?? 1) > 0) return { ends: [low / 1.1, high * 1.1], log: true };
+        const span = high - low || Math.abs(low) || 1;
+        if (!Number.isFinite(span)) return { ends: [0, 1], log: false };
+        return { ends: [low - ROOM * span, high + ROOM * span], log: false };
+      }
+    });
+  }
+
+  /** The number of the i-th design that is drawn. */
+  numberOf(i: number): number {
+    return this.number[i] ?? 0;
+  }
+
+  indexOf(number: number): number {
+    return this.number.indexOf(number);
+  }
+
+  kind(i: number): Kind {
+    if (this.reason[i]) return "failed";
+    return this.kept[i] ? "kept" : "beyond";
+  }
+
+  why(i: number): string {
+    const code = this.reason[i];
+    return this.study.refused.find((one) => one.code === code)?.why ?? "";
+  }
+
+  /** Whether the i-th design is within every range. */
+  within(i: number): boolean {
+    for (const [k, [low, high]] of this.ranges) {
+      const value = this.columns[k]?.values[i] ?? NaN;
+      if (!(value >= low && value <= high)) return false;
+    }
+    return true;
+  }
+
+  /** How far along its axis a design is, from 0 to 1. */
+  share(i: number, k: number): number {
+    const column = this.columns[k] as Column;
+    return share(column.values[i] ?? NaN, column.scale);
+  }
+
+  /** The value so far along an axis. */
+  value(k: number, at: number): number {
+    const { ends, log } = (this.columns[k] as Column).scale;
+    return log ? ends[0] * (ends[1] / ends[0]) ** at : ends[0] + (ends[1] - ends[0]) * at;
+  }
+
+  range(k: number, range: Pair | null): void {
+    if (range) this.ranges.set(k, [Math.min(...range), Math.max(...range)]);
+    else this.ranges.delete(k);
+  }
+
+  /** Designs within every range, the best first. */
+  chosen(): number[] {
+    const found: number[] = [];
+    for (let i = 0; i < this.count; i++) if (this.within(i)) found.push(i);
+    return found;
+  }
+}

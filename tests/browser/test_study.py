@@ -1,0 +1,93 @@
+"""A store of a study on the live page: brushed in two pictures, its designs opened as machines."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Locator, expect
+
+import equipoise as eq
+from browser.live import AXE, SCREENSHOTS, Live
+from equipoise.studies import run_study
+from support.chromium import serving
+from unit.web.test_stores import STUDY
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The address of a server with a store."""
+    path: Path = tmp_path_factory.mktemp("studies") / "lengths.zarr"
+    run_study(eq.loads(STUDY), path, workers=1)
+    with serving(str(path)) as address:
+        yield address
+
+
+def count(told: Locator) -> int:
+    found = re.search(r"(\d+) within the ranges", told.inner_text())
+    return int(found[1]) if found else -1
+
+
+def test_designs_are_brushed_and_opened(browser: Browser, store: str) -> None:
+    page = browser.new_page(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
+    wrong: list[str] = []
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.goto(store)
+    told = page.get_by_role("status").filter(has_text="designs are drawn")
+    expect(told).to_contain_text("64 of 64 designs are drawn")
+    expect(page.get_by_text(re.compile(r"\d+ × does not turn fully"))).to_be_visible()
+    lines = page.get_by_role("img", name="Designs from axis to axis").locator("svg")
+    points = page.get_by_role("img", name="Designs over two columns").locator("svg")
+    assert lines.locator(".own").count() == points.locator(".own").count() == 1
+    box = lines.bounding_box()
+    assert box
+    x, y = box["x"] + 46, box["y"]
+    page.mouse.move(x, y + 150)
+    page.mouse.down()
+    page.mouse.move(x, y + 288, steps=5)
+    page.mouse.up()
+    expect(told).to_contain_text("within the ranges")
+    first = count(told)
+    assert 0 < first < 64
+    typed = page.get_by_role("textbox", name=re.compile("^length A–B of the crank, to"))
+    typed.fill("30")
+    typed.press("Enter")
+    expect(points.locator(".range")).to_have_count(1)  # brushed in the other picture as well
+    assert 0 < count(told) < first
+    typed.fill("wide")
+    typed.press("Enter")
+    expect(page.get_by_text("got “wide”; give a number")).to_be_visible()
+    page.get_by_role("button", name="All designs").click()
+    expect(told).not_to_contain_text("within the ranges")
+    page.evaluate(AXE.read_text(encoding="utf-8"))
+    found = page.evaluate("axe.run(document, {resultTypes: ['violations']})")["violations"]
+    assert [one for one in found if one["impact"] in {"serious", "critical"}] == []
+    page.screenshot(path=SCREENSHOTS / "study.png")
+    page.set_viewport_size({"width": 400, "height": 900})
+    page.wait_for_timeout(200)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 400
+    page.set_viewport_size({"width": 1280, "height": 900})
+    page.wait_for_timeout(200)
+    frame = points.bounding_box()
+    assert frame
+    for step in range(600):  # until a design is under the pointer
+        across, up = divmod(step, 24)
+        page.mouse.move(frame["x"] + 60 + 20 * across, frame["y"] + 12 + 10 * up)
+        if points.locator(".hovered").count():
+            break
+    expect(page.get_by_text(re.compile(r"^design \d+ · ")).first).to_be_visible()
+    page.mouse.down()
+    page.mouse.up()
+    live = Live(page)
+    expect(live.joint("B")).to_be_visible()
+    expect(page.get_by_role("combobox", name="Example")).to_have_value(re.compile("lengths.zarr "))
+    page.get_by_role("button", name="Designs of the study").click()
+    expect(told).to_be_visible()
+    page.get_by_role("button", name=re.compile("^Open design")).first.click()
+    expect(live.joint("B")).to_be_visible()
+    page.reload()
+    expect(live.joint("B")).to_be_visible()
+    assert wrong == []
+    page.close()

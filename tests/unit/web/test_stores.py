@@ -1,0 +1,117 @@
+"""A store of a study on a page without a browser: columns, kinds of designs, machines of them."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import UsageError
+from equipoise.schema.study_units import machine_of
+from equipoise.studies import best, open_store, run_study
+from equipoise.web import stores
+from equipoise.web.desk import begun
+from equipoise.web.messages import message_of
+
+STUDY = """
+schema = 1
+title = "Lengths"
+model = "yamashita-1"
+
+[[vary]]
+path = "links.crank.points.B.x"
+range = ["10 mm", "80 mm"]
+
+[[vary]]
+path = "drive.speed"
+range = ["100 rpm", "200 rpm"]
+
+[sampling]
+method = "sobol"
+designs = 64
+
+[[outputs]]
+name = "force"
+value = "shaking_force.rms"
+make = "smallest"
+at_most = "20 N"
+"""
+
+
+@pytest.fixture(scope="module")
+def path(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("studies")
+    study = eq.loads(STUDY)
+    run_study(study, folder / "lengths.zarr", workers=1)
+    return str(folder / "lengths.zarr")
+
+
+def ask(desk, asked, /, **values):
+    """The answers to a message, which goes by way of JSON."""
+    return [*desk.receive(message_of(json.loads(json.dumps({"type": asked, "seq": 1, **values}))))]
+
+
+def column(reply, name):
+    offset, length = reply.content["arrays"][name]
+    return np.frombuffer(reply.buffer, "<f4")[offset : offset + length].astype(float)
+
+
+def test_a_store_is_told_design_by_design(path) -> None:
+    desk = begun(path)()
+    hello, told = ask(desk, "ready")
+    assert hello.content["machine"] and hello.content["study"] == "lengths.zarr"
+    content = told.content
+    assert json.dumps(content, allow_nan=False)
+    assert [one["kind"] for one in content["columns"]] == ["number", "number", "output"]
+    assert [one["unit"] for one in content["columns"]] == ["mm", "rpm", "N"]
+    block = open_store(path).read(range(64))
+    reasons = block.outcome.reason
+    np.testing.assert_array_equal(column(told, "number"), np.arange(64))
+    np.testing.assert_array_equal(column(told, "reason") == 0, reasons == 0)
+    lengths = column(told, "column.links.crank.points.B.x")
+    np.testing.assert_allclose(lengths, block.values[:, 0], rtol=1e-6)
+    inside = (reasons == 0) & (block.outcome.figures[:, 0] <= 20)
+    np.testing.assert_array_equal(column(told, "kept") == 1, inside)
+    assert 0 < content["kept"] == np.sum(inside) < content["computed"] < content["size"] == 64
+    assert sum(one["count"] for one in content["refused"]) == 64 - content["computed"]
+    assert content["best"] == best(open_store(path), 50).designs.tolist()
+    force = eq.analyze(eq.load("yamashita-1"), 720).forces.shaking_force.value
+    rms = np.sqrt(np.mean(np.abs(force) ** 2))
+    assert content["own"][2] == pytest.approx(rms, rel=1e-6)
+
+
+def test_a_design_is_opened_as_a_machine_and_left_again(path) -> None:
+    desk = begun(path)()
+    chosen = ask(desk, "ready")[1].content["best"][0]
+    (state,) = (one for one in ask(desk, "design", number=chosen) if one.content["type"] == "state")
+    assert state.content["name"] == f"lengths.zarr {chosen}"
+    assert desk.session.shown.design.machine == machine_of(open_store(path), chosen)
+    assert ask(desk, "edit", edits=[{"set": "drive.speed", "text": "90 rpm"}])[0].content["undo"]
+    assert ask(desk, "study")[0].content["type"] == "study"
+    refused = ask(desk, "undo")[0].content
+    assert refused["message"] == "a study is open; choose one of its designs first"
+    assert ask(desk, "open", example="class-three")[0].content["name"] == "class-three"
+    again = ask(desk, "ready")
+    assert (again[0].content["study"], again[1].content["type"]) == ("lengths.zarr", "state")
+
+
+def test_what_cannot_be_opened_is_told(path, tmp_path) -> None:
+    desk = begun(path)()
+    content = ask(desk, "ready")[1]
+    failed = int(np.flatnonzero(column(content, "reason"))[0])
+    assert "choose another" in ask(desk, "design", number=failed)[0].content["message"]
+    assert "has 64 designs" in ask(desk, "design", number=64)[0].content["message"]
+    other = begun("yamashita-1")()
+    assert "give one to `equipoise serve`" in ask(other, "study")[0].content["message"]
+    with pytest.raises(UsageError):
+        begun(str(tmp_path))
+
+
+def test_of_many_designs_some_are_drawn_and_the_best_among_them(path, monkeypatch) -> None:
+    monkeypatch.setattr(stores, "MOST", 20)
+    told = ask(begun(path)(), "ready")[1]
+    drawn = column(told, "number")
+    assert 20 <= len(drawn) <= 64 and told.content["drawn"] == len(drawn)
+    assert {*told.content["best"]} <= {*drawn.astype(int).tolist()}
