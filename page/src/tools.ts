@@ -179,8 +179,9 @@ export class Tools {
 
   private readonly key = (event: KeyboardEvent): void => {
     if (event.ctrlKey || event.metaKey || !this.onSheet(event)) return;
-    const told = TOOLS.find(({ key }) => key.toLowerCase() === event.key.toLowerCase());
-    if (event.key === "Delete" && this.tool === "select" && this.chosen) {
+    const pressed = event.key === "Backspace" ? "delete" : event.key.toLowerCase();
+    const told = TOOLS.find(({ key }) => key.toLowerCase() === pressed);
+    if (pressed === "delete" && this.tool === "select" && this.chosen) {
       this.ask({ do: "delete", ...this.chosen });
     } else if (told && !event.altKey) this.take(told.tool, true);
     else if (this.tool === "select") return;

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from equipoise.balancing.compared import PRICE, WORTH, too_dear
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.workshop import sentences
-from equipoise.i18n import said, say, to_say
+from equipoise.i18n import said, say, spoken, to_say
 from equipoise.mechanism.balance import CUT, Balance, Objective, Weight, material_of
 from equipoise.mechanism.outputs import GROUPS
 from equipoise.quantities import PER_RPM, brief, change, percent, told
@@ -42,8 +42,8 @@ def listed(parts: Iterable[str]) -> str:
 
 
 def capital(text: str) -> str:
-    """A text that begins a sentence."""
-    return text[:1].upper() + text[1:]
+    """A text that begins a sentence; in other languages names of the file do, as they are."""
+    return text[:1].upper() + text[1:] if spoken() == "en" else text
 
 
 # -- what got worse --------------------------------------------------------------------------------

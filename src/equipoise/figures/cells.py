@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.figures.sheet import width_of
+from equipoise.figures.style import NORMAL
 from equipoise.figures.view import DECADES, ends_of
 from equipoise.i18n import say
 from equipoise.results.charts import Panel
@@ -165,3 +167,28 @@ def _stretch(cell: Cell, columns: int) -> None:
         part = min(max((high - low) / cell.least_span, SHALLOW), 1.0)
     cell.height *= part
     cell.y_ends = (low, low + part * cell.least_span)
+
+
+NUMBERS = 15.0
+"""Points above the highest bar that its number takes."""
+
+
+def make_room(cell: Cell, over: float) -> None:
+    """Higher axes of the same scale, where numbers at bars or a word of their name need that.
+
+    over : points by which a name may be longer than its axis.
+    """
+    panel, factor = cell.panel, cell.panel.y.unit.factor
+    fixed = panel.y.ticks is not None or panel.y.high is not None or panel.y.scale == "log"
+    if panel.equal or panel.bare or fixed:
+        return
+    low, high = cell.y_ends
+    rate = (high - low) / cell.height
+    told = [bars for bars in panel.bars if bars.told and bars.across == "x"]
+    top = factor * max((float(np.max(bars.size, initial=0.0)) for bars in told), default=0.0)
+    above = max(NUMBERS - (high - top) / rate, 0.0) if told else 0.0
+    longest = max((width_of(word, NORMAL) for word in panel.y.text.split()), default=0.0)
+    more = max(longest - over - cell.height - above, 0.0)
+    below = 0.0 if panel.bars else more / 2
+    cell.height += above + more
+    cell.y_ends = (low - below * rate, high + (above + more - below) * rate)

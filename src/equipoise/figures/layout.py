@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from equipoise.figures.cells import Cell, cell_of, share
+from equipoise.figures.cells import Cell, cell_of, make_room, share
 from equipoise.figures.legend import APART, KEY, Key, draw_legend, keys_of, kind_of, rows_of
 from equipoise.figures.panel import LEAD, draw, flag_height, frame
 from equipoise.figures.sheet import Sheet, Words, lines_of, width_of
@@ -79,6 +79,8 @@ def _panels(sheet: Sheet, chart: Chart, top: float) -> float:
     highest = usual if sheet.width == HALF else np.inf
     cells = [cell_of(panel, min(panel.height or usual, highest)) for panel in chart.panels]
     share(cells, columns)
+    for cell in cells:
+        make_room(cell, OVER)
     inner = (sheet.width - 2 * EDGE - (columns - 1) * GAP) / columns
     for number, cell in enumerate(cells):
         later = cells[number + columns :: columns]

@@ -14,6 +14,8 @@ SOIL, EARTH = (LIGHT[name] for name in ("soil", "earth"))
 """As symbols have them."""
 GRID, STUBBLE = "#e6e6e6", "#dccbb0"
 """Of charts alone: behind their curves, and the hatching below the surface."""
+QUIET, LOUD, STRETCH = "#ededed", "#d3d3d3", "#e9b79b"
+"""Of bands of speeds to keep away from, and of stretches in which a limit is broken."""
 
 SMALL, NORMAL, LARGE = 7.5, 8.5, 10.5
 """Sizes of type, points."""
@@ -103,8 +105,8 @@ LOOKS: dict[str, Look] = {
     "soil": Look("", fill=SOIL, order=0.1),
     "off": Look("", fill=PALE, order=0.1),
     "forbidden": Look("", fill=PALE, opacity=0.55, order=0.1),
-    "quiet band": Look("", fill="#ededed", order=0.1),
-    "loud band": Look("", fill="#d3d3d3", order=0.2),
+    "quiet band": Look("", fill=QUIET, order=0.1),
+    "loud band": Look("", fill=LOUD, order=0.2),
     "loud": Look(LINES, 0.8, MEDIUM, order=1.5),
     "quiet": Look(FAINT, 0.5, (1.5, 2), order=1.4),
     "natural": Look(FAINT, 0.8, (1.5, 2), order=1.5),
@@ -157,7 +159,7 @@ LOOKS: dict[str, Look] = {
     "day": Look(INK, 1.6, sign="D", size=5, order=6),
     "broken": Look(STRESS, 3.0, sign="x", size=8, order=6),
     "warned": Look(EARTH, 1.6, sign="^", size=7, order=6),
-    "broken stretch": Look("#e9b79b", 6.0, order=2.5),
+    "broken stretch": Look(STRETCH, 6.0, order=2.5),
     "unweighted": Look(FAINT, 1.0, fill=FAINT, opacity=0.5),
     "weighted": Look(MAIN, 1.0, fill=MAIN, opacity=0.5, order=3.1),
     "dial": Look(FAINT, 0.8, order=1),

@@ -17,7 +17,7 @@ from equipoise.handheld.blocks import UNITS
 from equipoise.handheld.exposed import WORKING, grips
 from equipoise.handheld.hand_blocks import figure_named, varied_named
 from equipoise.handheld.response import respond_tool
-from equipoise.i18n import say, spoken, to_say
+from equipoise.i18n import say, to_say
 from equipoise.present.findings import ToolFindings
 from equipoise.present.pages import Answer, Tile
 from equipoise.present.tool_headlines import worst_at_work
@@ -177,8 +177,7 @@ def _helps(design: ToolDesign) -> Iterator[str]:
             name = varied_named(one.name)
             yield say(
                 "{name}: {before} → {after} {unit}.",
-                # in other languages a name of the file begins the sentence, as it is
-                name=capital(name) if spoken() == "en" else name,
+                name=capital(name),
                 before=before,
                 after=after,
                 unit=unit.name,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
@@ -11,6 +11,7 @@ from equipoise.mechanism.model import FRAME
 from equipoise.web.adding import with_drive, with_gears, with_link, with_point, with_slider
 from equipoise.web.messages import Message
 from equipoise.web.remaking import (
+    TABLES,
     freed,
     grounded,
     pinned,
@@ -22,6 +23,7 @@ from equipoise.web.remaking import (
 )
 from equipoise.web.sketch import Sketch
 
+LISTS = ("loads", "springs")
 Operation = Callable[[Sketch, Message], Sketch]
 
 
@@ -94,6 +96,16 @@ OPERATIONS: Mapping[str, tuple[str, Operation]] = {
     "rename": (to_say("rename"), _rename),
 }
 """What a page may ask for, with what the step is called."""
+
+
+def lost(before: Sketch, after: Sketch) -> Iterator[str]:
+    """A sentence of tables that have gone with what they named."""
+    lists = {"sliders": (before.sliders, after.sliders), "gears": (before.gears, after.gears)}
+    lists |= {key: (before.rest.get(key, ()), after.rest.get(key, ())) for key in LISTS}
+    tables = [f"[[{key}]]" for key, (old, new) in lists.items() if len(new) < len(old)]
+    tables += [f"[{key}]" for key in TABLES if before.rest.get(key) and not after.rest.get(key)]
+    if tables:
+        yield say("gone with it, because they named it: {tables}", tables=", ".join(tables))
 
 
 def made(sketch: Sketch, asked: Message) -> tuple[Sketch, str]:

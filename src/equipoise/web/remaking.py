@@ -5,13 +5,11 @@ Each function takes a sketch to another one, or refuses in a `UsageError`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.bodies import Body
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.model import FRAME
 from equipoise.web.adding import (
@@ -24,14 +22,11 @@ from equipoise.web.adding import (
 )
 from equipoise.web.messages import Spot
 from equipoise.web.moving import straight
+from equipoise.web.naming import What, named_in, renamed_in
 from equipoise.web.sketch import Sketch
 
-NAMING: Mapping[str, tuple[str, ...]] = {
-    "point": ("point", "to", "through"),
-    "link": ("link", "on", "driver", "driven", "carrier"),
-}
-"""Fields of sliders, gears, loads and springs that name points and links."""
-OF_PLANTING = ("tip", "finger_from")
+TABLES = ("planting", "balance")
+"""Tables of which there is one, and which go with a point or link that they name."""
 
 
 # -- pins ------------------------------------------------------------------------------------------
@@ -137,11 +132,16 @@ def without_entry(sketch: Sketch, key: str, number: int) -> Sketch:
 def _tidied(sketch: Sketch) -> Sketch:
     """Without what names points or links that are gone."""
     kept = [(key, one) for key, one in sketch.entries() if _held(key, one, sketch.bodies)]
-    drive, planting = sketch.drive, sketch.rest.get("planting")
-    if drive is not None and drive.link not in sketch.links:
+    if sketch.drive is not None and sketch.drive.link not in sketch.links:
         sketch = replace(sketch, drive=None)
-    if planting is not None and planting.tip not in sketch.places:
-        sketch = replace(sketch, rest={**sketch.rest, "planting": None})
+    gone = {
+        key: None
+        for key in TABLES
+        for value in [sketch.rest.get(key)]
+        if not (named_in(value, "point") <= sketch.places.keys()
+                and named_in(value, "link") <= sketch.links.keys())
+    }  # fmt: skip
+    sketch = replace(sketch, rest={**sketch.rest, **gone})
     return sketch.with_entries(kept)
 
 
@@ -181,8 +181,8 @@ def renamed_point(sketch: Sketch, old: str, new: str) -> Sketch:
     for body in sketch.holders(old):
         points = {new if one == old else one: at for one, at in sketch.bodies[body].items()}
         if body != FRAME and sketch.links[body].bodies:
-            made = [_respotted(one, old, new) for one in sketch.links[body].bodies]
-            link = sketch.links[body].altered(points=points, bodies=tuple(made))
+            made = renamed_in(sketch.links[body].bodies, "point", old, new)
+            link = sketch.links[body].altered(points=points, bodies=made)
             sketch = replace(sketch, links={**sketch.links, body: link})
         elif body != FRAME and sketch.links[body].length is not None:  # which goes on to hold
             names: Any = (*points,)
@@ -190,41 +190,23 @@ def renamed_point(sketch: Sketch, old: str, new: str) -> Sketch:
             sketch = replace(sketch, links={**sketch.links, body: link})
         else:
             sketch = sketch.with_points(body, points)
-    sketch = sketch.with_entries([*_renamed(sketch, "point", old, new)])
-    planting = sketch.rest.get("planting")
-    changes = {key: new for key in OF_PLANTING if getattr(planting, key, None) == old}
-    if changes and planting is not None:
-        sketch = replace(sketch, rest={**sketch.rest, "planting": replace(planting, **changes)})
-    return sketch
-
-
-def _respotted(body: Body, old: str, new: str) -> Body:
-    """A body of a link whose places name a point by another name."""
-
-    def spot(one: Any) -> Any:
-        return new if one == old else one
-
-    holes = tuple(replace(hole, at=spot(hole.at)) for hole in body.holes)
-    ends: dict[str, Any] = {
-        key: tuple(map(spot, getattr(body, key))) for key in ("between", "corners")
-    }
-    return replace(body, at=spot(body.at), holes=holes, **ends)
+    return _retold(sketch, "point", old, new)
 
 
 def _renamed_link(sketch: Sketch, old: str, new: str) -> Sketch:
     """A link with another name, wherever it is named."""
-    sketch = sketch.with_entries([*_renamed(sketch, "link", old, new)])
     found: dict[str, Any] = {
         key: {new if one == old else one: value for one, value in getattr(sketch, key).items()}
         for key in ("links", "poses", "counterweights")
     }
-    drive = sketch.drive
-    if drive is not None and drive.link == old:
-        drive = replace(drive, link=new)
-    return replace(sketch, drive=drive, **found)
+    return _retold(replace(sketch, **found), "link", old, new)
 
 
-def _renamed(sketch: Sketch, what: str, old: str, new: str) -> Iterator[tuple[str, Any]]:
-    for key, one in sketch.entries():
-        given = {field: new for field in NAMING[what] if getattr(one, field, None) == old}
-        yield key, replace(one, **given) if given else one
+def _retold(sketch: Sketch, what: What, old: str, new: str) -> Sketch:
+    """The tables of a sketch, which name a point or link by its new name."""
+    rest = {key: renamed_in(value, what, old, new) for key, value in sketch.rest.items()}
+    found: dict[str, Any] = {
+        key: renamed_in(getattr(sketch, key), what, old, new)
+        for key in ("drive", "sliders", "gears")
+    }
+    return replace(sketch, rest=rest, **found)

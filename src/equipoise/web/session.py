@@ -33,7 +33,7 @@ from equipoise.web.drawn import (
 from equipoise.web.edits import Solved, settled, solved
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.history import History, Step
-from equipoise.web.making import made
+from equipoise.web.making import lost, made
 from equipoise.web.messages import MOST_LANGUAGES, Message
 from equipoise.web.openings import opened_example, opened_text, titles, tool_titles
 from equipoise.web.replies import Reply, refused
@@ -133,11 +133,13 @@ class Session:
 
     def _make(self, message: Message) -> Iterator[Reply]:
         with self.lock, self.telling():
-            sketch, label = made(sketch_of(self.base(), message.whole("at", 0)), message)
+            base = sketch_of(self.base(), message.whole("at", 0))
+            sketch, label = made(base, message)
             found = drawn(sketch)
             self._go(self._past.then(found.design, label), found)
             self._measure(found, False)
-        yield from self.told(message.seq)
+            notes = [*lost(base, sketch)] if message.text("do") == "delete" else []
+        yield from self.told(message.seq, *notes)
 
     def _undo(self, message: Message) -> Iterator[Reply]:
         with self.lock:

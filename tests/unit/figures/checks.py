@@ -37,7 +37,7 @@ class Laid:
     panels: tuple[tuple[View, tuple[Item, ...]], ...]
 
     @classmethod
-    def of(cls, chart: Chart) -> Laid:
+    def of(cls, chart: Chart, wide: float = layout.WIDE) -> Laid:
         found: list[tuple[View, tuple[Item, ...]]] = []
         draw = layout.draw
 
@@ -48,7 +48,7 @@ class Laid:
 
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(layout, "draw", seen)
-            sheet = lay_out(chart)
+            sheet = lay_out(chart, wide)
         return cls(chart, sheet, tuple(found))
 
     @property

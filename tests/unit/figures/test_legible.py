@@ -13,11 +13,12 @@ import pytest
 import equipoise as eq
 from equipoise.figures.analysis import joint_polars, joints
 from equipoise.figures.forces import force, spectrum, torque
-from equipoise.figures.layout import lay_out
+from equipoise.figures.layout import HALF, lay_out
 from equipoise.figures.points import main_kinematics
+from equipoise.figures.sheet import Words, box_of
 from equipoise.figures.view import View
 from equipoise.results.charts import Axis, Chart, Curve, Panel
-from unit.figures.checks import views
+from unit.figures.checks import Laid, views
 
 LINKAGES = tuple(eq.examples("linkage"))
 LARGER = re.compile(r"drawn (\S+) times as large")
@@ -78,6 +79,17 @@ def test_peaks_tell_their_crank_angle(name: str) -> None:
         if chart.name in {"force", "joints", "torque"}:
             texts = [mark.text for view in found for mark in view.panel.marks]
             assert all(text.endswith("°") for text in texts), (chart.name, texts)
+
+
+@pytest.mark.parametrize("name", ["yamashita-rig", "stephenson-six-bar"])
+def test_numbers_at_bars_stay_below_titles_where_pictures_are_narrow(name: str) -> None:
+    """And no word beside an axis is broken."""
+    laid = Laid.of(spectrum(eq.analyze(eq.load(name))), HALF)
+    for view, items in laid.panels:
+        numbers = [one for one in items if isinstance(one, Words) and not one.turned]
+        assert numbers and all(box_of(one)[1] >= view.box[1] for one in numbers)
+    written = " ".join(words.text for words in laid.sheet.words if words.turned)
+    assert {*written.replace(",", "").split()} <= {"amplitude", "N", "m"}
 
 
 def test_a_small_signal_is_drawn_larger_and_tells_it() -> None:

@@ -53,7 +53,7 @@ def test_the_spectrum_before_and_after_weighting() -> None:
     for area, wanted in zip(chart.panels[0].areas, (found.band_a_h, found.band_a_hw), strict=True):
         total = np.sqrt(np.sum(wanted**2, axis=0))
         np.testing.assert_allclose(area.high[::2], np.maximum(total, area.low[0]))
-    assert f"weighted, a_hv = {found.a_hv:.4g} m/s²" in words(chart)
+    assert f"weighted, total value a_hv = {found.a_hv:.4g} m/s²" in words(chart)
     assert len(measured.spectrum(weighted(weighted=True), "x").panels[0].areas) == 1
     names = measured.exposure_charts([("a", found), ("b", found)], tools(WORK), WORK)
     assert list(names) == ["spectrum", "spectrum-2", "exposure"]

@@ -10,12 +10,15 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError, UsageError
+from equipoise.figures.style import LOOKS
 from equipoise.present import pages as pdf_module
+from equipoise.present.colors import colored, colors
 from equipoise.present.composition import build
 from equipoise.present.findings import ToolFindings, find
 from equipoise.present.pages import page, pdf
 from equipoise.present.pictures import pictures
 from support.found import found as found_of
+from unit.figures.checks import lightness
 
 
 class Page(HTMLParser):
@@ -97,6 +100,21 @@ def test_a_tool_has_its_report():
     worst = max(grip.a_hv[0] for grip in shorter.exposure.named["working"].values())
     assert f"a_hv of {worst:.2f}" in told.replace("\xa0", " ")
     assert {section.name for section in document.sections} >= {"model", "tool", "settings"}
+
+
+def test_nothing_in_a_picture_stays_bright_on_a_dark_page():
+    """Pale areas and lines of all roles have a colour of their own there, and a darker one."""
+    dark = dict(one.split(":") for one in colors(dark=True).removeprefix("--").split(";--"))
+    pale = {
+        color
+        for look in LOOKS.values()
+        for color in (look.fill, look.color)
+        if color and lightness(color) > 70
+    }
+    assert pale
+    for color in pale:
+        name = colored(color).removeprefix("var(--").partition(",")[0]
+        assert lightness(dark[name]) < 60, color
 
 
 EVIL = 'A <script>alert("x")</script> & #image("/etc/passwd") \\ {{ 1 }} $x$ `'

@@ -92,3 +92,54 @@ def test_random_edits(name: str, data: st.DataObject) -> None:
         replies = answered(session, json.dumps(edit))
         assert replies[0]["type"] in {"state", "refused"}
         shown = next((one for one in replies if one["type"] == "state"), shown)
+
+
+MAKING: dict[str, tuple[str, ...]] = {
+    "point": ("spot", "on"),
+    "link": ("from", "to"),
+    "slider": ("from", "to"),
+    "gears": ("driver", "driven"),
+    "drive": ("link",),
+    "pin": ("point", "to"),
+    "separate": ("point",),
+    "ground": ("point",),
+    "free": ("point",),
+    "delete": ("what",),
+}
+"""What a page does, with what it needs."""
+
+
+def operation(scene: dict[str, Any], draw: Any) -> dict[str, Any]:
+    """Something that is done to what is shown, with parts that there mostly are."""
+    points = [*scene["frame"], *(one for body in scene["bodies"] for one in body["points"]), "Z"]
+    links = [*(body["name"] for body in scene["bodies"]), "nothing"]
+    do = draw(st.sampled_from([*MAKING]))
+    spots = [{"point": draw(st.sampled_from(points))}]
+    place = [draw(st.sampled_from(NUMBERS)), draw(st.sampled_from(NUMBERS))]
+    spots += [{"place": place}, {"place": place, "on": draw(st.sampled_from([*links, "frame"]))}]
+    asked: dict[str, Any] = {"type": "make", "do": do, "teeth": 20, "driven_teeth": 40, "number": 1}
+    for key in MAKING[do]:
+        if key in {"spot", "from"} or (key == "to" and do != "pin"):
+            asked[key] = draw(st.sampled_from(spots))
+        elif key == "what":
+            what = draw(st.sampled_from(("point", "link", "slider", "gear")))
+            asked |= {"what": what, "name": draw(st.sampled_from(points + links))}
+        else:
+            asked[key] = draw(st.sampled_from(points if key in {"point", "to"} else links))
+    return asked
+
+
+@given(st.sampled_from((*MACHINES, "")), st.data())
+@fuzz
+def test_random_making(name: str, data: st.DataObject) -> None:
+    session = Session()
+    if name:
+        session.open(OPENED[name])
+        (_, shown) = answered(session, '{"type": "ready"}')
+    else:
+        (shown,) = answered(session, '{"type": "open", "new": true}')
+    for _ in range(data.draw(st.integers(1, 8))):
+        replies = answered(session, json.dumps(operation(shown["scene"], data.draw)))
+        assert replies[0]["type"] in {"state", "refused"}
+        shown = replies[0] if replies[0]["type"] == "state" else shown
+        assert isinstance(shown["status"]["mobility"], int) and shown["status"]["text"]

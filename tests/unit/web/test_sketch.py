@@ -311,3 +311,33 @@ def test_a_new_machine_takes_the_place_of_a_tool() -> None:
     (told,) = desk.receive(message_of({"type": "open", "seq": 2, "new": True}))
     assert not told.content["status"]["finished"]
     assert desk.tool is None
+
+
+@pytest.mark.parametrize(
+    "name", ["transplanter", "balance-spring", "balance-geared-a", "brush-cutter-engine",
+             "spring-balanced-crank", "planetary-planting-arm", "riding-transplanter"]
+)  # fmt: skip
+def test_whatever_names_a_point_or_a_link_gets_its_new_name(name: str) -> None:
+    """A machine with all names changed and changed back is the same."""
+    session, _ = opened(name)
+    page, like = Maker(session), session.shown.design.own
+    points = dict.fromkeys(point for of in like.bodies.values() for point in of)
+    for what, names in (("point", [*points]), ("link", [*like.links])):
+        for old in names:
+            page.do("rename", what=what, name=old, to=f"{old} new", at=0)
+            assert page.seen.content["status"]["finished"], page.seen.content["status"]["text"]
+        told = eq.dumps(session.shown.design.own)
+        for old in names:
+            assert f'"{old}"' not in told.replace(f"{what} {old}", "")
+            page.do("rename", what=what, name=f"{old} new", to=old, at=0)
+    back = session.shown.design.own
+    assert replace(back, assembly=like.assembly, position=like.position) == like
+
+
+def test_what_goes_with_a_point_is_told() -> None:
+    session, _ = opened("spring-balanced-crank")
+    page = Maker(session)
+    spring = session.shown.design.own.springs[0]
+    page.do("delete", what="point", name=spring.point, at=0)
+    told = "gone with it, because they named it: [[springs]]"
+    assert page.seen.content["notes"][0].startswith(told)

@@ -1,0 +1,79 @@
+"""Names of points and links in the tables of a machine's file: what they name, renamed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any, Literal
+
+from equipoise.keys import Frozen, Kind, Point, Text, innermost, keys_of
+from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.parts import Gear
+
+What = Literal["point", "link"]
+NAMING = {"point": {"point"}, "link": {"link", "body"}}
+"""What a text has to be the name of, as its key declares it."""
+JOINT = "joints."
+"""Before the point of a joint in the name of an output."""
+SLIDING = " on "
+"""In the name of a sliding joint."""
+MESHING = ("driver", "driven")
+"""Of a pair of gears, whose file has both in one list."""
+
+
+def named_in(value: Any, what: What) -> set[str]:
+    """Every point or link that a table, or a list of them, names; the frame is no link."""
+    return {name for _, name in _names(value, None, what)} - {FRAME}
+
+
+def _names(value: Any, kind: Kind | None, what: What) -> Iterator[tuple[str, str]]:
+    if isinstance(value, Frozen):
+        for field, inner in _fields(value):
+            yield from _names(getattr(value, field), inner, what)
+    elif isinstance(value, tuple):
+        for one in value:
+            yield from _names(one, kind, what)
+    elif isinstance(value, Mapping):
+        for one in value.values():
+            yield from _names(one, kind, what)
+    elif isinstance(value, str) and _is_name(kind, what):
+        yield what, value
+    elif isinstance(value, str) and value.startswith(JOINT) and what == "point":
+        name = value.removeprefix(JOINT).partition("/")[0]
+        yield from [] if SLIDING in name else [(what, name)]
+
+
+def renamed_in(value: Any, what: What, old: str, new: str) -> Any:
+    """The same with a point or link by another name."""
+    return _renamed(value, None, what, (old, new))
+
+
+def _renamed(value: Any, kind: Kind | None, what: What, names: tuple[str, str]) -> Any:
+    if isinstance(value, Frozen):
+        found = {f: _renamed(getattr(value, f), inner, what, names) for f, inner in _fields(value)}
+        changes = {field: one for field, one in found.items() if one != getattr(value, field)}
+        return replace(value, **changes) if changes else value
+    if isinstance(value, tuple):
+        return tuple(_renamed(one, kind, what, names) for one in value)
+    if isinstance(value, Mapping):
+        return {key: _renamed(one, kind, what, names) for key, one in value.items()}
+    if isinstance(value, str) and value.startswith(JOINT) and what == "point":
+        point, bar, link = value.removeprefix(JOINT).partition("/")
+        return f"{JOINT}{names[1]}{bar}{link}" if point == names[0] else value
+    return names[1] if value == names[0] and _is_name(kind, what) else value
+
+
+def _fields(value: Frozen) -> Iterator[tuple[str, Kind]]:
+    """Fields of a table, with the kinds of their values."""
+    for key in keys_of(type(value)).values():
+        if hasattr(value, key.field):
+            yield key.field, key.kind
+    if isinstance(value, Gear):
+        yield from ((field, Text(of="link")) for field in MESHING)
+
+
+def _is_name(kind: Kind | None, what: What) -> bool:
+    kind = None if kind is None else innermost(kind)
+    if isinstance(kind, Text):
+        return kind.of in NAMING[what]
+    return isinstance(kind, Point) and kind.named and what == "point"
