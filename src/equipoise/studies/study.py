@@ -120,9 +120,6 @@ class Study:
         }
 
 
-# -- as plain values -------------------------------------------------------------------------------
-
-
 def to_plain(study: Study) -> dict[str, Any]:
     """All but the model and the file as plain values, such as JSON takes; numbers in SI units."""
     plain = {one.name: getattr(study, one.name) for one in fields(study)}
@@ -132,10 +129,8 @@ def to_plain(study: Study) -> dict[str, Any]:
         {**asdict(one), "spread": {"kind": KEYS[type(one.spread)], **asdict(one.spread)}}
         for one in study.vary
     ]
-    plain |= {
-        "title": getattr(study.title, "texts", study.title),
-        "sampling": asdict(study.sampling),
-    }
+    title = getattr(study.title, "texts", study.title)
+    plain |= {"title": title, "sampling": asdict(study.sampling)}
     return {name: value for name, value in plain.items() if name not in ("model", "file")}
 
 
