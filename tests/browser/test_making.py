@@ -117,6 +117,10 @@ def test_a_four_bar_is_made_by_mouse(sheet: Sheet) -> None:
         sheet.says("1 free motion")
     sheet.live.button("Undo").click()
     sheet.says("no drive: choose the crank, crank or rocker")
+    sheet.live.page.reload()
+    sheet.says("no drive: choose the crank, crank or rocker")
+    sheet.live.button("Redo").click()
+    sheet.says(TURNS)
 
 
 def test_a_slider_crank_is_made_by_finger(new_page: Callable[..., Page], address: str) -> None:
