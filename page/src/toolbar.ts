@@ -41,6 +41,7 @@ export class Toolbar {
   constructor(commands: Commands) {
     this.examples = h("select", {
       "aria-label": say("Example"),
+      "data-machines": true,
       onchange: () => commands.example(this.examples.value),
     });
     const open = button(say("Open"), "open", () => commands.gallery());

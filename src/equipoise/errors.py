@@ -52,10 +52,9 @@ class EquipoiseError(Exception):
     given: Given | None = None
 
     @property
-    def note(self) -> Note | str:
+    def note(self) -> Note:
         """The sentence, to be said in any language."""
-        sentence: Note | str = self.args[0] if self.args else ""
-        return sentence
+        return noted(self.args[0] if self.args else "")
 
     def told(self, language: str = "") -> str:
         """The sentence in a language, that which is spoken where none is given.
@@ -99,9 +98,9 @@ class ModelError(EquipoiseError):
         return ": ".join(part for part in (self.source, self.where, self.what) if part)
 
     @property
-    def note(self) -> Note | str:
+    def note(self) -> Note:
         place = ": ".join(part for part in (self.source, self.where) if part)
-        return at_place(place, self.what) if place else self.what
+        return at_place(place, self.what) if place else noted(self.what)
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -125,7 +124,12 @@ class ModelError(EquipoiseError):
 
 def at_place(place: Note | str, what: Note | str) -> Note:
     """A sentence behind the place, file or option that it is about."""
-    return Note("{place}: {what}", place=place, what=what)
+    return Note("{place}: {what}", place=place, what=noted(what))
+
+
+def noted(sentence: Note | str) -> Note:
+    """A sentence that may be plain English, which no other language has then."""
+    return sentence if isinstance(sentence, Note) else Note(str(sentence))
 
 
 class MobilityError(EquipoiseError):

@@ -17,7 +17,7 @@ from equipoise.balancing.told import (
     worse_told,
 )
 from equipoise.balancing.workshop import sentences
-from equipoise.i18n import say, to_say
+from equipoise.i18n import said, say, to_say
 from equipoise.quantities import Dimension, display, number
 from equipoise.results.blocks import (
     Block,
@@ -151,7 +151,7 @@ def _prices(found: Balanced) -> Table:
         over = broken_if(price.used > price.at_most * (1 + 1e-6))
         used = replace(quantity(price.used, unit), emphasis=over)
         most = quantity(price.at_most, unit)
-        rows.append((named.get(name, name), most, used, _saved(found, price, unit)))
+        rows.append((named.get(name, said(name)), most, used, _saved(found, price, unit)))
     labels = ("", say("at most"), say("used"), say("more of it saves"))
     return Table(say("Limits"), tuple(map(Column, labels)), tuple(rows))
 

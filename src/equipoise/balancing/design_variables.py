@@ -179,7 +179,7 @@ class MovedCenter(DesignVariables):
 
     @property
     def _room(self) -> str:
-        return f"room of {self.link}'s centre of mass"
+        return Note("room of {link}'s centre of mass", link=self.link)
 
     def bounds(self, numbers: Array) -> list[Bound]:
         if self.move.center is None or self.move.radius is None:
@@ -235,7 +235,7 @@ class FreeSpring(DesignVariables):
 
     @property
     def _name(self) -> str:
-        return f"stiffness on {self.link}"
+        return Note("stiffness on {link}", link=self.link)
 
     def bounds(self, numbers: Array) -> list[Bound]:
         most = self.choice.stiffness

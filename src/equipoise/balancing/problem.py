@@ -32,7 +32,7 @@ ROUNDING = 1e-11
 """Over the effect of a unit of a number: an objective that is nothing but rounding."""
 HIGHEST = 100
 """Order that is told; what 720 angles in a turn tell well."""
-ADDED = "added mass"
+ADDED = Note("added mass")
 
 
 @dataclass(frozen=True, eq=False)
@@ -343,4 +343,5 @@ def _name_apart(parts: list[DesignVariables]) -> None:
     for part in weights:
         same = [other for other in weights if other.link == part.link]
         if len(same) > 1:
-            part.name = f"mass on {part.link} ({same.index(part) + 1})"
+            number = same.index(part) + 1
+            part.name = Note("mass on {link} ({number})", link=part.link, number=number)

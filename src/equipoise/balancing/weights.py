@@ -22,7 +22,7 @@ from equipoise.balancing.branch_and_bound import Square
 from equipoise.balancing.design_variables import Bound, DesignVariables
 from equipoise.balancing.program import Affine, Block, Program, stacked
 from equipoise.balancing.workshop import SPREAD, Change, pieces_of
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import Weight, largest_mass
 from equipoise.mechanism.model import Machine, Vector, size_of
 from equipoise.mechanism.steps import size_of_bodies
@@ -46,6 +46,12 @@ NOTHING = 1e-6
 MISSED = 3e-9
 """Of a sector's moment, scaled, that is taken for rounding."""
 
+RADII = {
+    to_say("mass on {link}"): to_say("radius on {link}"),
+    to_say("mass on {link} ({number})"): to_say("radius on {link} ({number})"),
+}
+"""What the mass of a weight is called -> what its radius is."""
+
 
 class AddedWeight(DesignVariables):
     """A weight about a point of a link."""
@@ -63,7 +69,7 @@ class AddedWeight(DesignVariables):
         self.mass_unit = min(self.most, machine.mass or 1.0)
         self.reach = weight.radius if isfinite(weight.radius) else size_of(body.points)
         self.reach = self.reach or float(size_of_bodies(machine))
-        self.name = f"mass on {link}"
+        self.name = Note("mass on {link}", link=link)
 
     def lightened(self, numbers: Array, matters: Array) -> Array:
         if self.weight.mass is not None or matters[0] or not isfinite(self.weight.radius):
@@ -115,7 +121,7 @@ class AddedWeight(DesignVariables):
 
     @property
     def _radius_name(self) -> str:
-        return self.name.replace("mass", "radius", 1)
+        return Note(RADII[self.name.template], **self.name.values)
 
     def bounds(self, numbers: Array) -> list[Bound]:
         found, mass = [], float(numbers[0]) * self.mass_unit

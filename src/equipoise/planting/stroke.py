@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError
+from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.family import column
 from equipoise.mechanism.tip import TipCurve, crossings, roots
@@ -126,18 +127,31 @@ def _check_reach(curve: TipCurve, level: float) -> None:
     if level <= lowest + touch:
         raise ModelError(
             "planting.surface",
-            f"got {_mm(level)}; the tip {tip} never reaches the soil, its lowest point is at "
-            f"{_mm(lowest)}; give a surface above that",
+            Note(
+                "got {place}; the tip {tip} never reaches the soil, its lowest point is at "
+                "{lowest}; give a surface above that",
+                place=_mm(level),
+                tip=tip,
+                lowest=_mm(lowest),
+            ),
         )
     if level >= highest - touch:
         key, value = ("surface", level) if given is None else ("depth", given)
         right = (
-            f"it is at {_mm(highest)} at most; give a surface below that"
+            Note("it is at {place} at most; give a surface below that", place=_mm(highest))
             if given is None
-            else f"its path is {_mm(highest - lowest)} high; give a depth below that"
+            else Note(
+                "its path is {height} high; give a depth below that", height=_mm(highest - lowest)
+            )
         )
         raise ModelError(
-            f"planting.{key}", f"got {_mm(value)}; the tip {tip} never leaves the soil, {right}"
+            f"planting.{key}",
+            Note(
+                "got {place}; the tip {tip} never leaves the soil, {right}",
+                place=_mm(value),
+                tip=tip,
+                right=right,
+            ),
         )
 
 

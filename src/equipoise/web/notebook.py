@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import anywidget
 import traitlets
 
-from equipoise.errors import EquipoiseError
 from equipoise.mechanism.model import Machine
+from equipoise.web.answers import answers
 from equipoise.web.assets import assets
-from equipoise.web.messages import message_of
-from equipoise.web.replies import Reply, refused
 from equipoise.web.session import Session
 
 
@@ -33,16 +29,5 @@ class View(anywidget.AnyWidget):
         return self._session.shown.design.machine
 
     def _answer(self, _: object, content: object, buffers: object) -> None:
-        for reply in _replies(self._session, content):
+        for reply in answers(self._session, content):
             self.send(reply.content, [reply.buffer] if reply.buffer else [])
-
-
-def _replies(session: Session, content: object) -> Iterator[Reply]:
-    try:
-        message = message_of(content)
-    except EquipoiseError as error:
-        yield refused(None, error)
-        return
-    yield from session.receive(message)
-    if not message.preview and session.has_more:
-        yield from session.tell_more()

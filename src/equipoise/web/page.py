@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
-import struct
 import sys
 import traceback
 from collections import deque
@@ -19,7 +17,7 @@ from equipoise.errors import UsageError
 from equipoise.web.desk import Desk
 from equipoise.web.lanes import MOMENT, Lanes, Work
 from equipoise.web.messages import SLOW, Message, read
-from equipoise.web.replies import Reply, refused
+from equipoise.web.replies import Reply, packed, refused
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
@@ -154,16 +152,6 @@ async def turn_away(socket: WebSocket, why: str) -> None:
     await socket.accept()
     await socket.send_bytes(packed(refused(None, UsageError(why))))
     await socket.close(TRY_LATER, why)
-
-
-def packed(reply: Reply) -> bytes:
-    """A reply as one message: length of the header, header in JSON, then the block.
-
-    Zeros fill the header up, so that the block begins at a multiple of four bytes.
-    """
-    header = json.dumps(reply.content, ensure_ascii=False, allow_nan=False).encode()
-    filling = bytes(-len(header) % 4)
-    return b"".join([struct.pack("<I", len(header)), header, filling, reply.buffer])
 
 
 def _message(text: str | None) -> Message | UsageError:

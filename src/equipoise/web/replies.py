@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import struct
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,6 +29,16 @@ def refused(seq: int | None, error: EquipoiseError, language: str = "en") -> Rep
         what = EquipoiseError(error.what).told(language)
         content |= {"path": error.where, "what": _shortened(what)}
     return Reply(content)
+
+
+def packed(reply: Reply) -> bytes:
+    """A reply as one message: length of the header, header in JSON, then the block.
+
+    Zeros fill the header up, so that the block begins at a multiple of four bytes.
+    """
+    header = json.dumps(reply.content, ensure_ascii=False, allow_nan=False).encode()
+    filling = bytes(-len(header) % 4)
+    return b"".join([struct.pack("<I", len(header)), header, filling, reply.buffer])
 
 
 def _shortened(text: str) -> str:

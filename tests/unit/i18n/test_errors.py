@@ -71,6 +71,9 @@ def test_what_no_catalogue_has_is_told_in_english_and_says_so():
     error = MotionError("it does not turn")
     assert error.told("en") == "it does not turn"
     assert error.told("ja") == "英語のまま：it does not turn"
+    placed = ModelError("drive", "it does {not} turn", "a.toml")
+    assert placed.told("ja") == "英語のまま：a.toml: drive: it does {not} turn"
+    assert UsageError(at_place("--set", placed.note)).told("ko").startswith("영어 원문: --set: a.t")
     part = UsageError(Note("give {what}", what=Note("a wheel that nobody has")))
     assert part.told("ko") == "영어 원문: give a wheel that nobody has"
 

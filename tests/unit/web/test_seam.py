@@ -1,0 +1,115 @@
+"""The seam between a page and what computes: messages, whoever carries them.
+
+A server is one transport, a notebook and a file that plays are others; here a page and its
+counterpart are in one process, as they would be in Python that runs in the browser.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.web.answers import Counterpart, answers
+from equipoise.web.desk import begun
+from equipoise.web.replies import packed
+from equipoise.web.session import Session
+from unit.web.pages import State, unpacked
+
+
+@dataclass
+class Line:
+    """A transport without a socket: text goes in, as a page sends it, and bytes come out."""
+
+    to: Counterpart
+    heard: list[bytes] = field(default_factory=list)
+
+    def send(self, text: str) -> list[State]:
+        """What is answered."""
+        self.heard = [packed(reply) for reply in answers(self.to, json.loads(text))]
+        parts = map(unpacked, self.heard)
+        return [State(told, np.frombuffer(data, "<f4")) for told, data in parts]
+
+    def ask(self, kind: str, **values: Any) -> list[State]:
+        return self.send(json.dumps({"type": kind, "seq": 7, **values}))
+
+
+@pytest.fixture
+def line() -> Line:
+    return Line(begun(None)())
+
+
+def test_a_page_is_served_within_its_own_process(line: Line) -> None:
+    (hello,) = line.ask("ready")
+    assert hello.content["machine"] is False
+    first = line.ask("open", example="yamashita-1")[0]
+    assert first.content["seq"] == 7
+    change = {"set": "links.crank.mass", "text": "300 g"}
+    changed, *more = line.ask("edit", label="mass", edits=[change])
+    machine = eq.load("yamashita-1").with_link("crank", mass=0.3)
+    forces = eq.analyze(machine, 720).forces
+    np.testing.assert_allclose(
+        changed.vector("shaking_force"), forces.shaking_force.value, rtol=1e-5
+    )
+    assert [one.content["type"] for one in more if one.content["type"] == "strokes"]
+    kinds = [one.content["type"] for one in line.ask("balance")]
+    assert kinds[:3] == ["busy", "balanced", "state"]
+    assert line.ask("undo")[0].content["undo"] == "mass"
+
+
+def test_an_edit_that_is_tried_is_told_no_more_than_it_needs(line: Line) -> None:
+    line.ask("open", example="transplanter")
+    change = {"set": "drive.speed", "text": "150 rpm"}
+    tried = line.ask("edit", commit=False, label="speed", edits=[change])
+    assert {one.content["type"] for one in tried} <= {"state", "response", "ghost", "variants"}
+    kept = line.ask("edit", label="speed", edits=[change])
+    assert "planting" in {one.content["type"] for one in kept}
+
+
+def test_nonsense_gets_a_sentence(line: Line) -> None:
+    assert line.send("[]")[0].content["type"] == "refused"
+    assert "no machine is open" in line.ask("undo")[0].content["message"]
+
+
+ALONE = """
+import sys
+before = set(sys.modules)  # what an installation loads by itself
+from equipoise.web.answers import answers
+from equipoise.web.desk import begun
+desk = begun(None)()
+asked = [
+    {"type": "open", "example": "yamashita-rig"},
+    {"type": "edit", "label": "speed", "edits": [{"set": "drive.speed", "text": "150 rpm"}]},
+    {"type": "balance"},
+    {"type": "gallery"},
+]
+kinds = [reply.content["type"] for one in asked for reply in answers(desk, one)]
+assert "balanced" in kinds and "refused" not in kinds, kinds
+new = set(sys.modules) - before
+packages = {name.partition(".")[0] for name in new} - set(sys.stdlib_module_names)
+print(*sorted(name for name in packages if not name.startswith("_")))
+"""
+PUBLISHED = {"numpy", "scipy", "clarabel", "equipoise", "lazy_loader", "tomli_w", "cython_runtime"}
+"""Packages that are published for Python in WebAssembly, or are plain Python."""
+
+
+def test_opening_changing_and_balancing_need_no_server() -> None:
+    """What docs/architecture.md says of Python in the browser: nothing else is imported."""
+    done = subprocess.run([sys.executable, "-c", ALONE], capture_output=True, text=True, check=True)
+    assert set(done.stdout.split()) <= PUBLISHED
+
+
+def test_a_session_knows_no_transport() -> None:
+    assert isinstance(begun(None)().session, Session)
+    names = {"starlette", "uvicorn", "websockets", "anywidget"}
+    loaded = "import sys, equipoise.web.desk; print(*sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", loaded], capture_output=True, text=True, check=True
+    )
+    assert not names & set(done.stdout.split())
