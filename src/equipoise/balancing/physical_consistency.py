@@ -318,10 +318,8 @@ def _answer(machine: Machine, what: str) -> Answer:
     if found is not None:
         row, least = found
         read = reading(machine, row, signed=True)
-        proof, told = (
-            Proof(row * read.factor, read.text, least * read.factor, read.unit),
-            read.words,
-        )
+        told = read.words
+        proof = Proof(row * read.factor, read.text, least * read.factor, read.unit)
     return Answer(what, False, None, points, _impossible(what, proof, told, points), proof)
 
 

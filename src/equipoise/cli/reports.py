@@ -143,11 +143,10 @@ def _check_support(
 def _swinging(found: Analysis, factor: float | None) -> Scene:
     """What moves at speed, its support too, as far as that can be computed."""
     from equipoise.figures.swing import swinging
-    from equipoise.symbols.rows import with_rows
     from equipoise.symbols.scene import Scene
     from equipoise.vibration.forced import respond
 
-    scene = with_rows(Scene.of(found.motion), found.motion)
+    scene = Scene.of(found.motion).with_rows(found.motion)
     if found.machine.support is None or factor == 0:
         return scene
     try:

@@ -18,7 +18,6 @@ from equipoise.mechanism.poles import instant_center, pairs, pinned
 from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, shown
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.pieces import GROUND, pieces, placed
-from equipoise.symbols.rows import with_rows
 from equipoise.symbols.scene import Scene
 
 if TYPE_CHECKING:
@@ -49,13 +48,13 @@ def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
     UsageError : there are none of them, or too many.
     """
     motion = analysis.motion
-    scene, count = with_rows(Scene.of(motion), motion), len(motion.crank_angle)
+    scene, count = Scene.of(motion).with_rows(motion), len(motion.crank_angle)
     if at is None:
         which = [clear_angle(scene)]
     else:  # after those of the cycle, so that blocks have the whole way that they run
         every = [*motion.crank_angle, *at]
         moved = move(analysis.machine, every, motion.speed, motion.acceleration)
-        scene = with_rows(Scene.of(moved), moved)
+        scene = Scene.of(moved).with_rows(moved)
         which = [*range(count, len(every))]
     angles = scene.crank_angle[which]
     if not 1 <= len(angles) <= MOST:

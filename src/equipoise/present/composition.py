@@ -216,11 +216,10 @@ def _animation(found: Findings) -> str:
     from equipoise.figures.animation import animated_svg
     from equipoise.figures.points import followed
     from equipoise.figures.stage import Arrow
-    from equipoise.symbols.rows import with_rows
     from equipoise.symbols.scene import Scene
 
     analysis = found.analysis
-    scene = with_rows(Scene.of(analysis.motion), analysis.motion)
+    scene = Scene.of(analysis.motion).with_rows(analysis.motion)
     if found.response is not None:
         from equipoise.figures.swing import swinging
 

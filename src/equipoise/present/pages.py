@@ -19,14 +19,14 @@ from markupsafe import Markup
 
 import equipoise
 from equipoise.errors import EquipoiseError, UsageError
-from equipoise.figures.style import DIM, GRID, LOUD, POINTS, QUIET, STRETCH, STUBBLE
 from equipoise.i18n import LANGUAGES, said, say, speaking, spoken
 from equipoise.present.cells import Grid, Head, Text, grid, noted, printed, sign_of
+from equipoise.present.colors import colored, colors
 from equipoise.present.layout import Looks
 from equipoise.quantities import Units, showing
 from equipoise.results.blocks import Block, Drawn, Emphasis, Section, Table
 from equipoise.results.result import Result
-from equipoise.symbols.looks import DARK, LIGHT
+from equipoise.symbols.looks import LIGHT
 
 if TYPE_CHECKING:
     import typst
@@ -96,28 +96,6 @@ class Document:
             yield
 
 
-NAMES = {color: name for name, color in LIGHT.items()} | {
-    GRID: "grid",
-    STUBBLE: "stubble",
-    QUIET: "quiet",
-    LOUD: "loud",
-    STRETCH: "stretch",
-    POINTS: "points",
-    DIM: "dim",
-}
-"""Colour of a picture -> name of the page's property that takes its place."""
-DARK_ONLY = {
-    "grid": "#2b3138",
-    "soil": "#332c20",
-    "stubble": "#57492f",
-    "earth": "#c9a774",
-    "quiet": "#22272d",
-    "loud": "#343b43",
-    "stretch": "#6e4631",
-    "points": "#4f86b5",
-    "dim": "#525a63",
-}
-
 _COLOR = re.compile("#[0-9a-f]{6}(?=[;\"' ])")
 _USED = re.compile(r'(?:url\(#|href="#)([^)"]+)')
 _NAME = re.compile(r' id="([^"]*)"')
@@ -138,23 +116,13 @@ def inlined(svg: str, name: str, title: str) -> str:
     used = set(_USED.findall(body))
     body = _NAME.sub(lambda found: f' id="{name}-{found[1]}"' if found[1] in used else "", body)
     body = body.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
-    body = _COLOR.sub(lambda found: _colored(found[0]), body)
+    body = _COLOR.sub(lambda found: colored(found[0]), body)
     width, height = re.findall(r'viewBox="0 0 ([0-9.]+) ([0-9.]+)"', head)[0]
     opening = (
         f'<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{escape(title)}" '
         f'viewBox="0 0 {width} {height}" style="--wide:{float(width):.0f}pt">'
     )
     return _SPACE.sub(" ", f"{opening}{body}").strip()
-
-
-def _colored(color: str) -> str:
-    return f"var(--linkage-{NAMES[color]},{color})" if color in NAMES else color
-
-
-def colors(dark: bool) -> str:
-    """The properties of a page, as a style sheet has them."""
-    chosen = {**DARK, **DARK_ONLY} if dark else {**LIGHT, **{v: k for k, v in NAMES.items()}}
-    return ";".join(f"--linkage-{name}:{color}" for name, color in chosen.items())
 
 
 def html_of(result: Result) -> str:

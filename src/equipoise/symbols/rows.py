@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +13,6 @@ from equipoise.symbols.shapes import Array
 
 if TYPE_CHECKING:
     from equipoise.mechanism.motion import Motion
-    from equipoise.symbols.scene import Scene
 
 CLOSE = 1e-9
 """rad and m within which rows cover each other."""
@@ -53,27 +52,26 @@ ONE = Rows()
 """Of a machine that has no rows, or whose rows are not to be seen."""
 
 
-def with_rows(scene: Scene, motion: Motion) -> Scene:
-    """A scene of a motion with all rows of its machine; the same where it has one."""
+def rows_of(motion: Motion, size: float) -> Rows:
+    """All rows of a machine in motion, whose linkage has a size, m."""
     rows = motion.machine.rows
     if len(rows) < 2:
-        return scene
+        return ONE
     alike: dict[tuple[int, ...], list[int]] = {}
     for number, row in enumerate(rows, 1):
         turned = round(float(np.angle(np.exp(1j * row.phase)) / CLOSE))
         place = (round(part / CLOSE) for part in row.offset)
         alike.setdefault((turned, *place), []).append(number)
     drawn = tuple(alike.pop((0, 0, 0), ()))
-    low, high = scene.linkage_box
     others = []
     for numbers in alike.values():
         row = rows[numbers[0] - 1]
         offset, phase = complex(*row.offset), float(np.angle(np.exp(1j * row.phase)))
-        if abs(offset) > FAR * abs(high - low):
+        if abs(offset) > FAR * size:
             others.append(Ghost(tuple(numbers), phase, {}, {}))
             continue
         there = move(motion.machine, motion.crank_angle + phase, motion.speed, motion.acceleration)
         places = {name: point.place + offset for name, point in there.points.items()}
         angles = {name: link.angle for name, link in there.links.items()}
         others.append(Ghost(tuple(numbers), phase, places, angles))
-    return replace(scene, rows=Rows(drawn, tuple(others)))
+    return Rows(drawn, tuple(others))

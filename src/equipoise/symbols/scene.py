@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -18,7 +18,7 @@ from equipoise.mechanism.model import FRAME, Link
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.tip import surface_of
 from equipoise.symbols.carrier import MOUNT, Carrier, Swing
-from equipoise.symbols.rows import ONE, Rows
+from equipoise.symbols.rows import ONE, Rows, rows_of
 from equipoise.symbols.shapes import Array, hull
 
 
@@ -161,6 +161,12 @@ class Scene:
             _field(motion),
             Carrier.of(machine),
         )
+
+    def with_rows(self, motion: Motion) -> Scene:
+        """The scene of a motion with all rows of its machine; the same where it has one."""
+        low, high = self.linkage_box
+        rows = rows_of(motion, abs(high - low))
+        return self if rows is ONE else replace(self, rows=rows)
 
     @property
     def standing(self) -> tuple[str, ...]:

@@ -108,11 +108,10 @@ def film_of(found: Solved) -> bytes:
 def _swinging(analysis: Any) -> Any:
     """What moves at speed; the support stands still where it has no steady state."""
     from equipoise.figures.swing import swinging
-    from equipoise.symbols.rows import with_rows
     from equipoise.symbols.scene import Scene
     from equipoise.vibration.forced import respond
 
-    scene = with_rows(Scene.of(analysis.motion), analysis.motion)
+    scene = Scene.of(analysis.motion).with_rows(analysis.motion)
     if analysis.machine.support is None:
         return scene
     try:

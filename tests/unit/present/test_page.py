@@ -12,9 +12,10 @@ import equipoise as eq
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.figures.style import LOOKS
 from equipoise.present import pages as pdf_module
+from equipoise.present.colors import colored, colors
 from equipoise.present.composition import build
 from equipoise.present.findings import ToolFindings, find
-from equipoise.present.pages import _colored, colors, page, pdf
+from equipoise.present.pages import page, pdf
 from equipoise.present.pictures import pictures
 from support.found import found as found_of
 from unit.figures.checks import lightness
@@ -112,7 +113,7 @@ def test_nothing_in_a_picture_stays_bright_on_a_dark_page():
     }
     assert pale
     for color in pale:
-        name = _colored(color).removeprefix("var(--").partition(",")[0]
+        name = colored(color).removeprefix("var(--").partition(",")[0]
         assert lightness(dark[name]) < 60, color
 
 

@@ -14,7 +14,6 @@ from equipoise.figures.linkage import linkage
 from equipoise.figures.stage import rows_told
 from equipoise.mechanism.support import Row
 from equipoise.symbols.pieces import pieces, placed
-from equipoise.symbols.rows import with_rows
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape
 
@@ -22,7 +21,7 @@ from equipoise.symbols.shapes import Shape
 def scene_of(*rows: Row) -> tuple[Scene, Any]:
     machine = replace(eq.load("four-row-transplanter").with_balance(None), rows=rows)
     motion = eq.analyze(machine, 72).motion
-    return with_rows(Scene.of(motion), motion), motion
+    return Scene.of(motion).with_rows(motion), motion
 
 
 def pale(scene: Scene, k: int) -> list[Shape]:
@@ -60,8 +59,8 @@ def test_pictures_and_animations_tell_rows() -> None:
     chart = linkage(analysis)
     assert "rows 1, 3: as drawn; rows 2, 4: pale, 180° ahead" in chart.words
     assert "rows 2, 4" in {mark.text for mark in chart.panels[0].marks}
-    scene = with_rows(Scene.of(analysis.motion), analysis.motion)
+    scene = Scene.of(analysis.motion).with_rows(analysis.motion)
     assert 'class="row"' in animated_svg(scene, title="rows", frames=12)
     alone = eq.analyze(eq.load("yamashita-1"), 72).motion
     scene = Scene.of(alone)
-    assert with_rows(scene, alone) is scene
+    assert scene.with_rows(alone) is scene
