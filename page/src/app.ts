@@ -438,7 +438,9 @@ export class App {
     if (this.bench.take(file)) return;
     const problem = tooLarge(file, this.hello?.largest ?? Infinity);
     if (problem) return this.board.say(problem, true);
-    void this.open({ type: "open", name: file.name, text: await file.text() }, file.name);
+    const [{ name }, text] = [file, await file.text()];
+    if (/\.csv$/i.test(name)) this.command({ type: "record", name, text });
+    else void this.open({ type: "open", name, text }, name);
   }
 
   private command(asked: Asked): void {

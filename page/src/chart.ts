@@ -3,7 +3,7 @@
 import { type Chooser, chooser } from "./chooser";
 import type { ChartData, Choice, Numbers, State, Unit } from "./protocol";
 import { turning } from "./scale";
-import { Abscissa, type Columns, column } from "./signals";
+import { Abscissa, type Columns, column, measured } from "./signals";
 import { Strip } from "./strip";
 import type { Role, Theme } from "./theme";
 import type { Curve } from "./uplot_options";
@@ -108,7 +108,11 @@ export class Chart {
       const found = column(source, one.array, one.stride, one.part, this.data.x === "angle");
       if (!found) return [];
       const role = source.role ?? ROLES[i] ?? "third";
-      return [{ label: one.label, role, ...this.kept(scaled(found, choice), source.state) }];
+      const model = { label: one.label, role, ...this.kept(scaled(found, choice), source.state) };
+      const { array, stride, part } = one;
+      const over = this.data.x === "angle" ? source.state.numbers : null;
+      const seen = over && measured(over, array, stride, part, found.values.length);
+      return seen ? besides(model, times(seen, choice)) : [model];
     });
   }
 
@@ -130,6 +134,12 @@ export class Chart {
 function drawn({ orders, turns }: State, i: number): boolean {
   const order = orders[i] ?? 0;
   return order > 0 && order <= (turns > 1 ? HIGHEST / 2 : HIGHEST);
+}
+
+/** A curve, and what was measured of the same. */
+export function besides(model: Curve, values: Float64Array): Curve[] {
+  const label = [model.label, say("measured")].filter(Boolean).join(" ");
+  return [{ ...model, label: model.label || say("model") }, { label, role: "quiet", values }];
 }
 
 /** Values in SI units in those of something else. */

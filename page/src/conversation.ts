@@ -46,7 +46,7 @@ const SLOW = new Set(["balance", "download", "gallery"]);
 const PATIENCE = 100;
 
 /** What leaves the machine on the server as it was; all else is said again after a broken line. */
-const IDLE = new Set(["ready", "speak", "save", "download", "tables", "study"]);
+const IDLE = new Set(["ready", "speak", "save", "download", "tables", "study", "record"]);
 
 /** Who asks these says himself why not. */
 const ASIDE = new Set(["entry", "tables"]);

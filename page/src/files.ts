@@ -8,7 +8,7 @@ export function dropZone(root: HTMLElement, dropped: (file: File) => void): HTML
   const veil = h(
     "div",
     { class: "veil", hidden: true },
-    h("span", {}, say("Drop a model file (.toml), or a picture or DXF drawing to trace over")),
+    h("span", {}, say("Drop a model file (.toml), a record (.csv), or a picture or DXF drawing to trace over")),
   );
   for (const name of ["dragenter", "dragover", "dragleave", "drop"] as const) {
     root.addEventListener(name, (event) => {
@@ -28,7 +28,7 @@ export function picker(picked: (file: File) => void): HTMLInputElement {
   const input = h("input", {
     type: "file",
     hidden: true,
-    accept: ".toml",
+    accept: ".toml,.csv",
     "aria-label": say("Model file"),
     tabindex: -1,
   });

@@ -1,12 +1,12 @@
 /** Charts of outputs that were looked for: each over the crank angle, until it is closed. */
 
-import { scaled } from "./chart";
+import { besides, scaled, times } from "./chart";
 import { h, icon } from "./dom";
 import { Finder } from "./finder";
 import type { Output, State } from "./protocol";
 import { capital } from "./readings";
 import { turning, wide } from "./scale";
-import { Abscissa, column } from "./signals";
+import { Abscissa, column, measured } from "./signals";
 import { Strip } from "./strip";
 import type { Role, Theme } from "./theme";
 import { say } from "./words";
@@ -74,7 +74,9 @@ export class Outputs {
     const { strip, button } = this.drawn.get(output.name) ?? this.make(output.name);
     const title = capital(output.label);
     button.setAttribute("aria-label", say("Close chart of {output}", { output: output.label }));
-    const curves = [{ label: "", role: THIRD, ...scaled(found, output) }];
+    const model = { label: "", role: THIRD, ...scaled(found, output) };
+    const seen = measured(state.numbers, output.name, 1, 0, found.values.length);
+    const curves = seen ? besides(model, times(seen, output)) : [model];
     const x = this.x.of(state.angles, state.turns);
     strip.show({ title, x, unit: output.unit, curves, log: wide(found.values) });
   }

@@ -51,6 +51,7 @@ export type Asked =
   | { type: "variant"; do: "rename"; name: string; to: string }
   | { type: "variant"; do: "go" | "drop"; name: string }
   | { type: "variant"; do: "against"; to: string }
+  | { type: "record"; name: string; text: string }
   | { type: "study" }
   | { type: "design"; number: number };
 
@@ -253,6 +254,8 @@ export interface StateMessage {
   /** Points that arrows can be at, the one at which they are, and what there is to draw there. */
   points: string[];
   arrows_at: string | null;
+  /** What was measured, and how it compares; its signals are `measured.` and an output. */
+  record: { name: string; told: string[]; left_out: string[] } | null;
   arrows: ArrowOf[];
   planting?: { tip: string; surface: number } | null;
 }

@@ -2,6 +2,7 @@
 
 import { Arrows } from "./arrows";
 import { h } from "./dom";
+import { unbroken } from "./format";
 import { Ghost } from "./ghost";
 import { type ArrowOf, type Asked, Numbers, type ResponseMessage, type State } from "./protocol";
 import type { Stage } from "./stage";
@@ -17,9 +18,11 @@ export class Seeing {
   private readonly support = new Support(() => this.again());
   private readonly at: HTMLSelectElement;
   private readonly kinds: HTMLElement;
+  private readonly record = h("p", { class: "quiet", role: "status", hidden: true });
   private readonly told = h("p", { class: "quiet", role: "status" });
   private state: State | null = null;
   private offered = "";
+  private recorded = "";
 
   constructor(
     private readonly stage: Stage,
@@ -56,6 +59,7 @@ export class Seeing {
       this.variants.choice,
       this.arrows.legend,
       this.told,
+      this.record,
     );
     stage.overlay(this.ghost, "paths");
     stage.overlay(this.arrows, "ghost");
@@ -68,6 +72,23 @@ export class Seeing {
     this.kinds.hidden = !state.arrows_at;
     this.offer(state);
     this.tell();
+    this.beside(state.record);
+  }
+
+  /** What was measured, and a button that takes it away. */
+  private beside(record: State["record"]): void {
+    const left = record?.left_out.join(", ") ?? "";
+    const parts = record ? [say("Record {name}", { name: record.name }), ...record.told] : [];
+    if (left) parts.push(say("no outputs of this machine: {names}", { names: left }));
+    const text = unbroken(parts.join("; "));
+    if (this.recorded === text) return;
+    this.recorded = text;
+    this.record.hidden = !text;
+    const remove = () => this.ask({ type: "record", name: "", text: "" });
+    this.record.replaceChildren(
+      `${text} `,
+      h("button", { type: "button", onclick: remove }, say("Remove the record")),
+    );
   }
 
   answered(message: ResponseMessage, numbers: Numbers): void {

@@ -48,3 +48,18 @@ export function column(
     ? { values, before: taken(was, stride, part, periodic) }
     : { values };
 }
+
+/** What was measured of what a chart's array shows, over the same crank angles; null where nothing was. */
+export function measured(
+  numbers: Numbers,
+  array: string,
+  stride: number,
+  part: number,
+  count: number,
+): Float64Array | null {
+  const renamed = array.replace(/^joint\./, "joints.").replace(/^response\./, "gauges.");
+  const name = renamed.replace(/^output\./, "") + (stride > 1 ? [".x", ".y"][part] : "");
+  const found = numbers.get(`measured.${name}`);
+  if (!found || found.length + 1 !== count) return null;
+  return taken(found, 1, 0, true);
+}

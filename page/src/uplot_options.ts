@@ -101,7 +101,12 @@ function series(curve: Curve, look: Look, theme: Theme, i: number, count: number
   const base: uPlot.Series = { stroke, width: 1.6, points: { show: false } };
   if (!look.bars) {
     const before: uPlot.Series = { ...base, width: 1.2, dash: [1.5, 2.5], alpha: 0.65 };
-    const now = i ? { ...base, dash: [8, 4] } : base;
+    const now =
+      curve.role === "quiet" // what was measured: broad, behind nothing
+        ? { ...base, width: 3, alpha: 0.7 }
+        : i
+          ? { ...base, dash: [8, 4] }
+          : base;
     return curve.before ? [before, now] : [now];
   }
   const align = count === 1 ? 0 : i ? 1 : -1;

@@ -108,3 +108,21 @@ def test_a_support_moves_at_work_and_in_its_modes(live: Live) -> None:
     assert np.hypot(one[0] - other[0], one[1] - other[1]) > 2
     middle = (np.array(one) + np.array(other)) / 2
     assert middle == pytest.approx(at_rest, abs=2)
+
+
+def test_a_record_is_drawn_beside_the_model(live: Live) -> None:
+    angle = np.arange(0.0, 360.0, 5.0)
+    whole = eq.analyze(eq.load("yamashita-1"), 720)
+    torque = 1.2 * whole.forces.drive_torque[::10]
+    rows = [f"{a},{t:.6f}" for a, t in zip(angle, torque, strict=True)]
+    live.drop("run.csv", "\n".join(["crank_angle [deg],drive torque [N m]", *rows]))
+    page = live.page
+    expect(page.get_by_text("Record run.csv; drive torque: RMS measured")).to_be_visible()
+    chart = page.get_by_role(
+        "figure", name=re.compile("^Drive torque: model from .*; measured from")
+    )
+    expect(chart).to_be_visible()
+    live.drop("bad.csv", "place [m],drive torque [N m]\n1,2\n")
+    expect(live.told("bad.csv, line 1: got 'place [m]'")).to_be_visible()
+    live.button("Remove the record").click()
+    expect(chart).to_be_hidden()

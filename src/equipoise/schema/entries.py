@@ -106,6 +106,7 @@ class Document:
         ------
         ModelError : there is none.
         """
+        kind_at(self.of, place)
         content = deepcopy(self.content)
         above = _above(self.of, content, place) if place else {}
         if not place or not _held(above, place[-1]):
@@ -116,15 +117,6 @@ class Document:
         if not above and len(place) > 1:
             del _above(self.of, content, place[:-1])[place[-2]]
         return self._with(content)
-
-    def at(self, place: Place) -> Any:
-        """What stands at a place; None where nothing does."""
-        here: Any = self.content
-        for step in place:
-            if not _held(here, step):
-                return None
-            here = here[step]
-        return here
 
     def _with(self, content: Content) -> Document:
         return Document(self.of, content, self.beside)

@@ -268,6 +268,7 @@ def state_of_sketch(found: Drawn, scale: Scale) -> tuple[Values, bytes]:
         "before": False,
         "compared": False,
         "points": [],
+        "record": None,
         "arrows_at": None,
         "arrows": [],
         "status": status_of_sketch(found),

@@ -28,6 +28,7 @@ KINDS = (
     "save",
     "arrows",
     "variant",
+    "record",
     "study",
     "design",
     "download",

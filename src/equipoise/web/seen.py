@@ -14,7 +14,9 @@ from equipoise.web.arrows import points_of
 from equipoise.web.block import Block
 from equipoise.web.drawing import moves_of, stage_of
 from equipoise.web.edits import Solved
-from equipoise.web.messages import Message
+from equipoise.web.measured import charted, gauges_of
+from equipoise.web.messages import MOST_OUTPUTS, Message
+from equipoise.web.recorded import Record, compared_with, record_of_text
 from equipoise.web.replies import Reply
 from equipoise.web.variants import NOTHING, OPENED, STEP, VARIANT, Variants
 
@@ -25,6 +27,7 @@ class Seen:
 
     arrows_at : a point.  variants : that are kept.
     last : the design before the last change.  opened : the first one.
+    record : signals that were measured, drawn beside the machine's own.
     ghost, table : the pale drawing, and the table of variants, as the page has them.
     """
 
@@ -32,6 +35,7 @@ class Seen:
     variants: Variants = field(default_factory=Variants)
     last: Solved | None = None
     opened: Solved | None = None
+    record: Record | None = None
     ghost: Solved | None = None
     table: dict[str, Any] | None = None
 
@@ -90,6 +94,7 @@ class Session(Protocol):
 
     seen: Seen
     lock: Lock
+    wanted: tuple[str, ...]
 
     @property
     def shown(self) -> Solved:
@@ -148,6 +153,19 @@ def _against(session: Session, message: Message) -> None:
     session.seen.variants = session.seen.variants.told_against(message.text("to"))
 
 
+def _record(session: Session, message: Message) -> Iterator[Reply]:
+    """Draw a record beside the machine's own signals, or none where it has no text."""
+    text, record = message.text("text", ""), None
+    if text:
+        analysis = session.shown.analysis
+        record = record_of_text(message.text("name", "record.csv"), text)
+        found = compared_with(record, analysis, gauges_of(session.shown))
+        beside = [name for name in found.signals if name in analysis.outputs and not charted(name)]
+        session.wanted = tuple(dict.fromkeys((*session.wanted, *beside)))[-MOST_OUTPUTS:]
+    session.seen.record = record
+    yield from session.told(message.seq)
+
+
 NO_STORE = "no store of a study is open; give one to `equipoise serve`"
 
 
@@ -166,6 +184,7 @@ DOING: dict[str, Callable[[Session, Message], None]] = {
 ASKED: dict[str, Callable[[Session, Message], Iterator[Reply]]] = {
     "arrows": _arrows,
     "variant": _variant,
+    "record": _record,
     "study": _stored,
     "design": _stored,
 }

@@ -336,6 +336,7 @@ class Session:
             self.wanted,
             against=seen.against(held if isinstance(held, Solved) else None),
             arrows_at=seen.arrows_at,
+            record=seen.record,
         )
 
 

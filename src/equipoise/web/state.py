@@ -22,6 +22,8 @@ from equipoise.web.block import Array, Block, Values
 from equipoise.web.drawing import moves_of, stage_of
 from equipoise.web.edits import Solved, extent_of, movable
 from equipoise.web.figures import charts_of, figures_of, least_of, signals_of
+from equipoise.web.measured import measured_told
+from equipoise.web.recorded import Record
 
 MOST_ORDER = 20
 """Highest order of the spectra."""
@@ -33,6 +35,7 @@ def state_of(
     wanted: Sequence[str] = (),
     against: Solved | None = None,
     arrows_at: str | None = None,
+    record: Record | None = None,
 ) -> tuple[Values, bytes]:
     """Everything that a page draws of a machine.
 
@@ -40,6 +43,7 @@ def state_of(
     wanted : names of further outputs that it draws, as far as there are such.
     against : whose figures are told beside its own, if any's; `before` where it is not given.
     arrows_at : a point of which velocity, acceleration and forces are drawn.
+    record : that is drawn beside its own signals.
     """
     analysis, block = found.analysis, Block()
     machine, motion = analysis.machine, analysis.motion
@@ -89,6 +93,7 @@ def state_of(
         "status": status_of(found),
         "compared": against is not None,
         "points": points_of(analysis),
+        "record": measured_told(record, found, block),
         "arrows_at": arrows_at,
         "arrows": arrows_of(analysis, arrows_at, block) if arrows_at else [],
         **_ground(found, scene, block),

@@ -220,6 +220,7 @@ def test_the_whole_and_its_lists_keep_what_is_not_in_their_form() -> None:
         (["support", "mounts", "m"], {}, "support.mounts.m", "there is no support; add that"),
         (["links", "crank", "bodies", 0], {"shape": "bar"}, "links.crank.bodies[1].between",
          "missing"),
+        (["loads", "links", 0], None, "loads.links[1]", "give the number of the entry too"),
         (["drive"], None, "drive", "missing; add the table [drive]"),
         (["gears", 0], None, "gears[1]", "there is no such entry"),
     ],
@@ -251,6 +252,19 @@ def test_what_is_wrong_is_told_at_its_key(
 def test_nonsense_is_refused_in_a_sentence(asked: Content) -> None:
     session, _ = opened("yamashita-1")
     assert refusal(ask(session, "entry", seq=1, **asked)).startswith("entry: ")
+
+
+@pytest.mark.parametrize(
+    "junk", ["", -1, 10**400, True, [], {}, [{}], {"": ""}, ["1 mm", "A"], "1e400 mm", "\0"]
+)
+def test_every_value_may_be_nonsense(junk: Any) -> None:
+    """One after the other; what is refused leaves the machine, what is taken can be shown."""
+    session, _ = opened("yamashita-rig")
+    for one in tables(session)["groups"]:
+        for entry in one["entries"]:
+            for key in entry["values"]:
+                enter(session, entry["place"], {**entry["values"], key: junk})
+                assert session.shown.design.own == eq.loads(eq.dumps(session.shown.design.own))
 
 
 def test_what_cannot_turn_is_told_and_nothing_changes() -> None:
