@@ -304,6 +304,7 @@ export class App {
   private take(state: State): void {
     const other = state.name !== this.state?.name || this.opened !== "";
     this.opened = "";
+    const begins = this.state?.status.finished === false && state.status.finished;
     const angle = this.state ? this.player.angle : 0;
     this.state = state;
     this.views.machine();
@@ -316,6 +317,7 @@ export class App {
       this.player.playing =
         state.speed !== 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches;
     } else this.player.angle = state.status.stand ?? angle;
+    if (begins) this.player.suit();
     if (other) this.heading.forget();
     if (other) this.bench.forget();
     if (other || !state.planting) this.planted.hide();

@@ -59,6 +59,7 @@ export class Tools {
     page.board.addEventListener("pointerdown", this.press, true);
     page.board.addEventListener("pointermove", this.hover);
     page.board.addEventListener("keydown", this.key, true);
+    for (const name of ["keyup", "wheel", "click"] as const) page.board.addEventListener(name, this.place);
     // A finger draws with a tool, and must not scroll meanwhile.
     const still = (event: Event) => this.tool !== "select" && this.onSheet(event) && event.preventDefault();
     page.board.addEventListener("touchstart", still, { passive: false, capture: true });
@@ -209,12 +210,17 @@ export class Tools {
     this.draw(this.at(this.page.stage.view.px(...this.cross)));
   }
 
-  /** Put the crosshair where it is, and say where. */
-  private aim(): void {
+  /** Put the crosshair where it is: the sheet may have been moved below it. */
+  private readonly place = (): void => {
     const [px, py] = this.page.stage.view.px(...this.cross);
+    set(this.crosshair, { transform: `translate(${px},${py})` });
+  };
+
+  /** The same, and say where. */
+  private aim(): void {
+    this.place();
     const [x, y] = [length(this.cross[0]), length(this.cross[1])];
     set(this.crosshair, {
-      transform: `translate(${px},${py})`,
       "aria-valuenow": (this.cross[0] * lengths().factor).toFixed(2),
       "aria-valuetext": `x ${x} ${lengths().unit}, y ${y} ${lengths().unit}`,
     });

@@ -95,11 +95,11 @@ def test_a_four_bar_is_made_by_mouse(sheet: Sheet) -> None:
     expect(sheet.live.joint("B")).to_be_visible()
     sheet.take("Link")
     sheet.click((0, 0), (33, 0))
-    sheet.says("no drive: choose the crank, crank")
+    sheet.says("no drive: choose the driven link (crank)")
     sheet.click((33, 0), (83, -52))
     sheet.says("free motions too many: 1; coupler hangs free: pin D to something")
     sheet.click((11, -87), (83, -52))
-    sheet.says("no drive: choose the crank, crank or rocker")
+    sheet.says("no drive: choose the driven link (crank or rocker)")
     sheet.take("Drive")
     sheet.click((15, 0))
     sheet.says(TURNS)
@@ -116,7 +116,11 @@ def test_a_four_bar_is_made_by_mouse(sheet: Sheet) -> None:
         sheet.live.button("Undo").click()
         sheet.says("1 free motion")
     sheet.live.button("Undo").click()
-    sheet.says("no drive: choose the crank, crank or rocker")
+    sheet.says("no drive: choose the driven link (crank or rocker)")
+    sheet.live.page.reload()
+    sheet.says("no drive: choose the driven link (crank or rocker)")
+    sheet.live.button("Redo").click()
+    sheet.says(TURNS)
 
 
 def test_a_slider_crank_is_made_by_finger(new_page: Callable[..., Page], address: str) -> None:

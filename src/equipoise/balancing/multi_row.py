@@ -20,7 +20,6 @@ import numpy as np
 
 from equipoise.balancing.objectives import arm_of, moment_of_row, read_rows
 from equipoise.errors import UsageError
-from equipoise.i18n import Note
 from equipoise.mechanism.balance import Measure, Objective
 from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.model import Machine
@@ -113,11 +112,8 @@ class Rows:
         output = objective.output
         if output.startswith(JOINTS):
             raise UsageError(
-                Note(
-                    "{output} acts within one row, so that no phase changes it; choose an "
-                    "output of all rows",
-                    output=output,
-                )
+                f"{output} acts within one row, so that no phase changes it; choose an output of "
+                "all rows"
             )
         if output.startswith(GAUGES):
             found = self._gauge(output.removeprefix(GAUGES), objective.speeds)

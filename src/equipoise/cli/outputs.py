@@ -205,12 +205,17 @@ def write_pictures(figures: Mapping[str, Picture], folder: str, kind: Kind) -> N
     from equipoise.schema.files import write_all
 
     write_all(folder, {f"{name}.{kind}": render(figure, kind) for name, figure in figures.items()})
-    lost = {} if kind == "svg" else dict.fromkeys("".join(map(unwritten, figures.values())))
-    if lost:
-        signs = "".join(lost)[:20]
-        hint = "install one such as Noto Sans CJK, or give --format svg"
-        tell(f"note: no font has {signs}, for which boxes are drawn; {hint}", sys.stderr)
+    if kind != "svg":
+        tell_boxes("".join(map(unwritten, figures.values())), "give --format svg")
     tell_pictures(len(figures), folder)
+
+
+def tell_boxes(signs: str, otherwise: str) -> None:
+    """Say which signs no font of this computer has, if there are any, and what to do."""
+    if signs:
+        shown = "".join(dict.fromkeys(signs))[:20]
+        hint = f"install one such as Noto Sans CJK, or {otherwise}"
+        tell(f"note: no font has {shown}, for which boxes are drawn; {hint}", sys.stderr)
 
 
 def tell_pictures(number: int, folder: str) -> None:

@@ -22,7 +22,15 @@ from equipoise.cli.options import (
     quantity,
     wants,
 )
-from equipoise.cli.outputs import Shown, check_result_file, default_name, sources_of, tell, wrote
+from equipoise.cli.outputs import (
+    Shown,
+    check_result_file,
+    default_name,
+    sources_of,
+    tell,
+    tell_boxes,
+    wrote,
+)
 from equipoise.cli.progress import counted
 from equipoise.errors import EquipoiseError, UsageError
 
@@ -223,8 +231,9 @@ def report(
     """
     paths = _paths(file, out, pdf)
     rate = None if speed is None else quantity("--speed", speed, "angular speed")
-    from equipoise.present.composition import build, check, write_document
+    from equipoise.present.composition import build, check, kind_of, write_document
     from equipoise.present.findings import find
+    from equipoise.present.pages import boxed_in_pdf
 
     check(paths, language)
 
@@ -234,6 +243,8 @@ def report(
     write_document(document, paths)
     for path in paths:
         wrote(path)
+        if kind_of(path) == "pdf":
+            tell_boxes(boxed_in_pdf(document), "read the report as .html")
 
 
 def _paths(file: str, out: str | None, pdf: bool) -> list[str]:

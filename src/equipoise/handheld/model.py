@@ -11,13 +11,9 @@ from dataclasses import replace
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
-from equipoise.handheld.design_plan import (
-    SPEEDS,
-    DesignPlan,
-    unknown_station,
-    wrong_design,
-)
-from equipoise.handheld.shaft import Shaft, wrong_shaft
+from equipoise.handheld.design_plan import SPEEDS, DesignPlan, unknown_station, wrong_design
+from equipoise.handheld.shaft import Shaft
+from equipoise.handheld.shaft_checks import wrong_shaft
 from equipoise.handheld.station import (
     NOTHING,
     Absorber,
@@ -318,13 +314,12 @@ def _wrong_names(named: Mapping[str, Sequence[Any]]) -> Iterator[ModelError]:
         seen: set[str] = set()
         for where, item in numbered(part, items):
             name = item.name
-            yield from wrong_text(f"{where}.name", name)
+            at = f"{where}.name"
+            yield from wrong_text(at, name)
             if not name.strip():
-                yield ModelError(f"{where}.name", Note("is empty; give a name"))
+                yield ModelError(at, Note("is empty; give a name"))
             if name in seen:
-                yield ModelError(
-                    f"{where}.name", Note("{name!r} is given twice; give another name", name=name)
-                )
+                yield ModelError(at, Note("{name!r} is given twice; give another name", name=name))
             seen.add(name)
 
 
@@ -335,9 +330,8 @@ def _wrong_excitation(where: str, excitation: Excitation, tool: Tool) -> Iterato
     if excitation.direction != "vertical" and excitation.force is None:
         yield ModelError(f"{where}.direction", Note("goes with a force; leave it out"))
     if excitation.ratio == 0:
-        yield ModelError(
-            f"{where}.ratio", Note("got 0; what does not turn shakes nothing, give another")
-        )
+        nothing = Note("got 0; what does not turn shakes nothing, give another")
+        yield ModelError(f"{where}.ratio", nothing)
 
 
 def _wrong_day(tool: Tool) -> Iterator[ModelError]:
@@ -350,6 +344,5 @@ def _wrong_day(tool: Tool) -> Iterator[ModelError]:
             yield ModelError("operation.racing", Note("is not above idling; give a higher speed"))
     total = sum(work.duration for work in tool.work)
     if total > DAY * (1 + 1e-9):
-        yield ModelError(
-            "work", Note("takes {total:.4g} h together; a day has 24 h", total=total / 3600)
-        )
+        hours = Note("takes {total:.4g} h together; a day has 24 h", total=total / 3600)
+        yield ModelError("work", hours)

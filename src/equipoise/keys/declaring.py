@@ -272,20 +272,17 @@ def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
             yield ModelError(place, Note("got {leaf}; give a finite number", leaf=leaf))
         elif abs(leaf) > HUGE or 0 < abs(leaf) < TINY:
             text = f"{leaf:g} in SI units"
-            yield ModelError(place, Note("got {text}, which no machine can have", text=text)).about(
-                leaf, text
-            )
+            told = Note("got {text}, which no machine can have", text=text)
+            yield ModelError(place, told).about(leaf, text)
     for place, leaf, one in leaves:
         names = () if one is None else getattr(innermost(one.kind), "names", ())
         if names and leaf not in names:
-            yield ModelError(
-                place, Note("got {leaf!r}; give {choice}", leaf=leaf, choice=choice(names))
-            )
+            told = Note("got {leaf!r}; give {choice}", leaf=leaf, choice=choice(names))
+            yield ModelError(place, told)
         elif one is not None and not isinstance(leaf, str) and not one.allows(leaf):
             text = f"{leaf:g}{one.unit}"
-            yield ModelError(
-                place, Note("got {text}; {right}", text=text, right=one.right(leaf))
-            ).about(leaf, text)
+            told = Note("got {text}; {right}", text=text, right=one.right(leaf))
+            yield ModelError(place, told).about(leaf, text)
 
 
 def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, Key | None]]:

@@ -18,8 +18,9 @@ from equipoise.mechanism.shown_units import units_of
 from equipoise.planting.blocks import planting_blocks
 from equipoise.present.drawing import drawings
 from equipoise.present.findings import Findings, ToolFindings, find
+from equipoise.present.fonts import check_pdf
 from equipoise.present.headlines import seen_in
-from equipoise.present.pages import Document, check_pdf, page, pdf
+from equipoise.present.pages import Document, page, pdf
 from equipoise.present.sources import sources
 from equipoise.present.summary import answers, check_whole_cycle, tiles
 from equipoise.present.tool_headlines import judged

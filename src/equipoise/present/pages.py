@@ -12,24 +12,22 @@ from functools import cache
 from html import escape
 from importlib import resources
 from itertools import groupby
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import jinja2
 from markupsafe import Markup
 
 import equipoise
-from equipoise.errors import EquipoiseError, UsageError
-from equipoise.i18n import LANGUAGES, said, say, speaking, spoken
+from equipoise.errors import EquipoiseError
+from equipoise.i18n import said, say, speaking, spoken
 from equipoise.present.cells import Grid, Head, Text, grid, noted, printed, sign_of
 from equipoise.present.colors import colored, colors
+from equipoise.present.fonts import boxes, check_pdf, families, installed
 from equipoise.present.layout import Looks
 from equipoise.quantities import Units, showing
 from equipoise.results.blocks import Block, Drawn, Emphasis, Section, Table
 from equipoise.results.result import Result
 from equipoise.symbols.looks import LIGHT
-
-if TYPE_CHECKING:
-    import typst
 
 
 @dataclass(frozen=True)
@@ -244,69 +242,37 @@ def text_of(name: str) -> str:
     return (resources.files("equipoise.present") / name).read_text(encoding="utf-8")
 
 
-LATIN = ("Noto Sans", "Liberation Sans", "Arial", "Helvetica Neue", "DejaVu Sans")
-"""Fonts of Western letters, the first that is there; the last comes with Matplotlib."""
-EASTERN = {
-    "ja": ("Noto Sans CJK JP", "Noto Sans JP", "Hiragino Sans", "Yu Gothic", "Source Han Sans"),
-    "ko": ("Noto Sans CJK KR", "Noto Sans KR", "Apple SD Gothic Neo", "Malgun Gothic"),
-}
-MORE_EASTERN = {
-    "ja": ("Meiryo", "MS Gothic", "IPAexGothic", "IPAGothic", "TakaoGothic", "VL Gothic"),
-    "ko": ("NanumGothic", "Nanum Gothic", "UnDotum", "Baekmuk Dotum", "Source Han Sans K"),
-}
 SHRUNK, PAGE, HALF = 0.8, 504.0, 338.0
 """Width of a picture over how it is drawn; points between the margins; height that fits twice."""
 LEAST = 0.7
 """Scale below which its letters would be too small to read."""
-NO_TYPST = 'a PDF needs Typst; install it by: pip install "equipoise[report]"'
 
 
-def check_pdf(language: str) -> None:
-    """Tell what is missing before anything is computed."""
-    _families(language)
+def _source(document: Document) -> str:
+    """A document as Typst reads it."""
+    with document.spoken():
+        of = {"labels": _labels(), "families": families(document.language)}
+        return _template().render(document=document, **of)
+
+
+def boxed_in_pdf(document: Document) -> str:
+    """Letters of a document for which its PDF has boxes, as no font of this computer has them."""
+    return boxes(_source(document))
 
 
 def pdf(document: Document) -> bytes:
     """A document as PDF."""
+    check_pdf(document.language)
     import typst
 
-    families = _families(document.language)
-    with document.spoken():
-        source = _template().render(document=document, labels=_labels(), families=families)
     try:
-        made = typst.compile(source.encode(), font_paths=_fonts(), format="pdf", timestamp=0)
+        made = typst.compile(
+            _source(document).encode(), font_paths=installed(), format="pdf", timestamp=0
+        )
     except typst.TypstError as error:
         raise EquipoiseError(f"the PDF could not be set ({error})") from error
     assert isinstance(made, bytes)
     return made
-
-
-@cache
-def _fonts() -> typst.Fonts:
-    """All that this computer has, and those of Matplotlib."""
-    try:
-        import typst
-    except ImportError as error:
-        raise EquipoiseError(NO_TYPST) from error
-    from equipoise.figures.paint import font_folder
-
-    return typst.Fonts(font_paths=[font_folder()])
-
-
-def _families(language: str) -> list[str]:
-    """Fonts that are there for a language, the best first."""
-    there = set(_fonts().families())
-    wanted = {code: (*EASTERN[code], *MORE_EASTERN[code]) for code in EASTERN}
-    eastern = {code: [name for name in names if name in there] for code, names in wanted.items()}
-    if language in eastern and not eastern[language]:
-        raise UsageError(
-            f"this computer has no font with {LANGUAGES[language]} letters, so that a PDF would "
-            f"show boxes; install one, such as {EASTERN[language][0]} (fonts-noto-cjk), or write "
-            "the report as .html"
-        )
-    order = sorted(eastern, key=lambda code: code != language)
-    latin = next(name for name in LATIN if name in there)
-    return [latin, *(name for code in order for name in eastern[code]), "DejaVu Sans"]
 
 
 @cache

@@ -1,6 +1,4 @@
-"""A study as a value: what varies of which model, how it is sampled, and what is computed; and its
-checks: what contradicts itself, and what cannot be computed.
-"""
+"""A study as a value: what varies of which model, how, and what is computed; and its checks."""
 
 from __future__ import annotations
 
@@ -13,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.i18n import Worded, worded
+from equipoise.i18n import worded
 from equipoise.mechanism.checks import unknown, wrong_text
 from equipoise.studies.design_space import (
     COMMANDS,
@@ -122,21 +120,17 @@ class Study:
         }
 
 
-# -- as plain values -------------------------------------------------------------------------------
-
-
 def to_plain(study: Study) -> dict[str, Any]:
     """All but the model and the file as plain values, such as JSON takes; numbers in SI units."""
     plain = {one.name: getattr(study, one.name) for one in fields(study)}
-    if isinstance(study.title, Worded):
-        plain["title"] = study.title.texts
     for name in ("outputs", "correlations"):
         plain[name] = [asdict(one) for one in plain[name]]
     plain["vary"] = [
         {**asdict(one), "spread": {"kind": KEYS[type(one.spread)], **asdict(one.spread)}}
         for one in study.vary
     ]
-    plain["sampling"] = asdict(study.sampling)
+    title = getattr(study.title, "texts", study.title)
+    plain |= {"title": title, "sampling": asdict(study.sampling)}
     return {name: value for name, value in plain.items() if name not in ("model", "file")}
 
 

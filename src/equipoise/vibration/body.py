@@ -207,12 +207,32 @@ def _shared(body: Body, load: Array) -> dict[str, float]:
 
 def _uncarried(body: Body, over: Array) -> Note:
     is_loose = np.abs(over) > 0.05 * np.max(np.abs(over))
-    names = zip(body.support.coordinates, is_loose, strict=True)
-    loose = all_of([Note(name) for name, loose in names if loose])
     return Note(
         "they do not carry the weight in {loose}; add a mount there, or give the mounts a preload",
-        loose=loose,
+        loose=_named(body, is_loose),
     )
+
+
+def driven_away(body: Body, is_loose: Array) -> Note:
+    """Say in which of its coordinates (D,) nothing holds the support against a constant force."""
+    return Note(
+        "a constant force drives the support away in {loose}; add a mount there",
+        loose=_named(body, is_loose),
+    )
+
+
+def unbounded_at(speed: float) -> Note:
+    """Say that a vibration has no bound at a speed, rad/s."""
+    return Note(
+        "resonance without damping at {speed:g} rad/s; give the mounts a damping, or take "
+        "another speed",
+        speed=speed,
+    )
+
+
+def _named(body: Body, chosen: Array) -> Note | str:
+    names = zip(body.support.coordinates, chosen, strict=True)
+    return all_of([Note(name) for name, is_chosen in names if is_chosen])
 
 
 SURGE, HEAVE, PITCH = 0, 1, 2

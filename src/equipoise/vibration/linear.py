@@ -18,14 +18,21 @@ from typing import Literal
 import numpy as np
 
 from equipoise.errors import ModelError, ResponseError
-from equipoise.i18n import Note, all_of
 from equipoise.mechanism.dynamics import Forces, forces
 from equipoise.mechanism.kernels import cross
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.support import AXES, FREEDOMS, Gauge, Row
 from equipoise.signals import Array, Periodic, highest_at
-from equipoise.vibration.body import Body, Rest, at_rest, moved, rigid_mass
+from equipoise.vibration.body import (
+    Body,
+    Rest,
+    at_rest,
+    driven_away,
+    moved,
+    rigid_mass,
+    unbounded_at,
+)
 from equipoise.vibration.linkages import rows_of, spread
 from equipoise.vibration.response import Mode
 
@@ -295,13 +302,7 @@ class Linear:
         mean = self._mean(loads[0].real)
         loads[0], impedance[0] = mean, np.eye(len(mean))
         if self._resonant(impedance, frequency):
-            raise ResponseError(
-                Note(
-                    "resonance without damping at {speed:g} rad/s; give the mounts a damping, "
-                    "or take another speed",
-                    speed=speed,
-                )
-            )
+            raise ResponseError(unbounded_at(speed))
         moved = np.linalg.solve(impedance, loads[..., None])[..., 0]
         return Periodic(moved.T, wrench.turns)
 
@@ -324,15 +325,7 @@ class Linear:
         mean = np.linalg.lstsq(self.stiffness, load, rcond=1e-12)[0]
         over = np.abs(self.stiffness @ mean - load) > 1e-9 * scale
         if np.any(over):
-            names = zip(self.body.support.coordinates, over, strict=True)
-            loose = all_of([Note(name) for name, is_over in names if is_over])
-            raise ModelError(
-                "support.mounts",
-                Note(
-                    "a constant force drives the support away in {loose}; add a mount there",
-                    loose=loose,
-                ),
-            )
+            raise ModelError("support.mounts", driven_away(self.body, over))
         return mean
 
     def seen_by(self, row: Array, moved: Periodic) -> Periodic:

@@ -35,7 +35,7 @@ def lacking(sketch: Sketch) -> str:
 def _without_drive(cranks: Sequence[str]) -> str:
     if not cranks:
         return say("no drive: pin a link to the frame at one point, for the crank")
-    return say("no drive: choose the crank, {links}", links=_listed(cranks, OR))
+    return say("no drive: choose the driven link ({links})", links=_listed(cranks, OR))
 
 
 def _loose(sketch: Sketch, joints: Structure) -> str:

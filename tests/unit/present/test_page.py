@@ -10,14 +10,16 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError, UsageError
+from equipoise.figures import paint
 from equipoise.figures.style import LOOKS
-from equipoise.present import pages as pdf_module
+from equipoise.present import fonts
 from equipoise.present.colors import colored, colors
 from equipoise.present.composition import build
 from equipoise.present.findings import ToolFindings, find
-from equipoise.present.pages import page, pdf
+from equipoise.present.pages import boxed_in_pdf, page, pdf
 from equipoise.present.pictures import pictures
 from support.found import found as found_of
+from surface.running import equipoise
 from unit.figures.checks import lightness
 
 
@@ -138,15 +140,26 @@ def test_missing_fonts_and_a_missing_extra_are_told(monkeypatch, tmp_path):
         def families(self):
             return ["DejaVu Sans"]
 
-    monkeypatch.setattr(pdf_module, "_fonts", Latin)
+    monkeypatch.setattr(fonts, "installed", Latin)
     with pytest.raises(UsageError, match="no font with 한국어 letters, so that a PDF would"):
         eq.report("scotch-yoke", tmp_path / "report.pdf", language="ko")
     monkeypatch.undo()
-    pdf_module._fonts.cache_clear()
+    fonts.installed.cache_clear()
     monkeypatch.setitem(sys.modules, "typst", None)
     with pytest.raises(EquipoiseError, match=r'pip install "equipoise\[report\]"'):
         eq.report("scotch-yoke", tmp_path / "report.pdf")
     assert not list(tmp_path.iterdir())
+
+
+def test_letters_that_no_font_has_are_told_of_a_pdf(document, monkeypatch, tmp_path):
+    """An English report has Japanese and Korean in its sources and in the file that it tells."""
+    monkeypatch.setattr(paint, "fonts_for", lambda signs: ((), "".join(sorted(signs))))
+    assert set("山下市川") <= set(boxed_in_pdf(document))
+    assert not set("shaking é°²") & set(boxed_in_pdf(document))
+    told = equipoise("report", "scotch-yoke", "--out", tmp_path / "report.html", "--pdf").err
+    assert told.count("note: no font has ") == 1 and "or read the report as .html" in told
+    monkeypatch.setattr(paint, "fonts_for", lambda signs: ((), ""))
+    assert boxed_in_pdf(document) == ""
 
 
 def test_other_names_and_languages_are_refused(tmp_path):

@@ -99,7 +99,7 @@ def test_four_bar_from_nothing_has_the_figures_of_its_file() -> None:
     page = four_bar()
     status = page.seen.content["status"]
     assert status["mobility"] == 1 and not status["finished"]
-    assert status["text"] == "no drive: choose the crank, crank or rocker"
+    assert status["text"] == "no drive: choose the driven link (crank or rocker)"
     assert page.seen.content["angles"] == 1 and page.seen.content["charts"] == []
     assert page.do("drive", link="crank") == "1 free motion; crank turns fully"
     page.do("point", spot=at(drawn("yamashita-1")["P"]), on="coupler")
@@ -264,7 +264,8 @@ def test_what_cannot_be_made_is_refused_in_a_sentence() -> None:
     assert page.refused("explode").startswith("no operation is called 'explode'")
     assert page.refused("link", **{"from": "A", "to": 3}).startswith("make: from: got")
     sentence = refusal(ask(page.session, "download", kind="csv"))
-    assert sentence == "the machine is not finished: no drive: choose the crank, crank or rocker"
+    wanted = "no drive: choose the driven link (crank or rocker)"
+    assert sentence == f"the machine is not finished: {wanted}"
 
 
 def test_numbers_of_what_is_unfinished_are_typed() -> None:

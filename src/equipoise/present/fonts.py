@@ -1,0 +1,67 @@
+"""Fonts of a PDF: which there are on this computer for a language, and what none of them has."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+from equipoise.errors import EquipoiseError, UsageError
+from equipoise.i18n import LANGUAGES
+
+if TYPE_CHECKING:
+    import typst
+
+LATIN = ("Noto Sans", "Liberation Sans", "Arial", "Helvetica Neue", "DejaVu Sans")
+"""Fonts of Western letters, the first that is there; the last comes with Matplotlib."""
+EASTERN = {
+    "ja": ("Noto Sans CJK JP", "Noto Sans JP", "Hiragino Sans", "Yu Gothic", "Source Han Sans"),
+    "ko": ("Noto Sans CJK KR", "Noto Sans KR", "Apple SD Gothic Neo", "Malgun Gothic"),
+}
+MORE_EASTERN = {
+    "ja": ("Meiryo", "MS Gothic", "IPAexGothic", "IPAGothic", "TakaoGothic", "VL Gothic"),
+    "ko": ("NanumGothic", "Nanum Gothic", "UnDotum", "Baekmuk Dotum", "Source Han Sans K"),
+}
+NO_TYPST = 'a PDF needs Typst; install it by: pip install "equipoise[report]"'
+LAST_WESTERN = "\u2e7f"
+"""Signs after it are letters of East Asia, which not every computer has."""
+
+
+def check_pdf(language: str) -> None:
+    """Tell what is missing before anything is computed."""
+    families(language)
+
+
+@cache
+def installed() -> typst.Fonts:
+    """All that this computer has, and those of Matplotlib."""
+    try:
+        import typst
+    except ImportError as error:
+        raise EquipoiseError(NO_TYPST) from error
+    from equipoise.figures.paint import font_folder
+
+    return typst.Fonts(font_paths=[font_folder()])
+
+
+def families(language: str) -> list[str]:
+    """Fonts that are there for a language, the best first."""
+    there = set(installed().families())
+    wanted = {code: (*EASTERN[code], *MORE_EASTERN[code]) for code in EASTERN}
+    eastern = {code: [name for name in names if name in there] for code, names in wanted.items()}
+    if language in eastern and not eastern[language]:
+        raise UsageError(
+            f"this computer has no font with {LANGUAGES[language]} letters, so that a PDF would "
+            f"show boxes; install one, such as {EASTERN[language][0]} (fonts-noto-cjk), or write "
+            "the report as .html"
+        )
+    order = sorted(eastern, key=lambda code: code != language)
+    latin = next(name for name in LATIN if name in there)
+    return [latin, *(name for code in order for name in eastern[code]), "DejaVu Sans"]
+
+
+def boxes(text: str) -> str:
+    """Letters of East Asia in a text that no font of this computer has, each once."""
+    from equipoise.figures.paint import fonts_for
+
+    signs = frozenset(sign for sign in text if sign > LAST_WESTERN)
+    return fonts_for(signs)[1] if signs else ""
