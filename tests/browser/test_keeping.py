@@ -13,7 +13,6 @@ from browser.live import Live
 from support.chromium import serving
 from surface.running import example_text
 
-
 LEAVES = "window.dispatchEvent(new Event('beforeunload', { cancelable: true }))"
 """Whether the page can be left unasked."""
 
