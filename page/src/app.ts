@@ -180,6 +180,10 @@ export class App {
     this.balance = new BalancePanel(
       () => this.keep(),
       () => this.takeBack(),
+      () => {
+        this.takeBack();
+        this.command({ type: "balance", hold: true });
+      },
     );
     this.transport = new TransportBar(
       this.player,

@@ -39,7 +39,8 @@ export type Asked =
   | { type: "open"; name: string; text: string; file?: true }
   | { type: "edit"; commit: boolean; label: string; edits: Edit[] }
   | ({ type: "make"; at: number } & Made)
-  | { type: "undo" | "redo" | "balance" | "save" | "gallery" }
+  | { type: "undo" | "redo" | "save" | "gallery" }
+  | { type: "balance"; hold?: boolean }
   | { type: "compare"; on: false }
   | { type: "tables" }
   | EntryAsked
@@ -414,6 +415,8 @@ export interface Balanced {
   figures: Change[];
   /** What got worse, a sentence for each kind of figure. */
   worse: string[];
+  /** Whether a gauge reads more; then balancing can be asked for that holds them. */
+  gauges_worse: boolean;
   proof: string;
   notes: string[];
 }

@@ -124,6 +124,7 @@ export class BalancePanel {
   constructor(
     private readonly keep: () => void,
     private readonly takeBack: () => void,
+    private readonly hold: () => void,
   ) {}
 
   show(found: Balanced): void {
@@ -142,6 +143,12 @@ export class BalancePanel {
         { class: "buttons" },
         h("button", { type: "button", class: "strong", onclick: () => this.keep() }, say("Keep")),
         h("button", { type: "button", onclick: () => this.takeBack() }, say("Take back")),
+        found.gauges_worse &&
+          h(
+            "button",
+            { type: "button", onclick: () => this.hold() },
+            say("Balance so that no gauge reads more"),
+          ),
       ),
       comparison(main),
       ...(others.length

@@ -24,7 +24,7 @@ from equipoise.balancing.told import (
 )
 from equipoise.balancing.workshop import SPREAD, sentences
 from equipoise.i18n import said
-from equipoise.mechanism.balance import Balance, Objective
+from equipoise.mechanism.balance import Balance, Limit, Objective
 from equipoise.mechanism.model import Link, Machine
 from equipoise.mechanism.outputs import declared
 from equipoise.quantities import display, told
@@ -41,14 +41,17 @@ GAIN = 1e-3
 """Share of the aim below which less of it is nothing that anybody would build."""
 
 
-def balanced(base: Design) -> Balanced:
+def balanced(base: Design, hold: bool = False) -> Balanced:
     """By the plan that was used last, or as `advise` does it; with the errors of `balance`.
+
+    hold : whether no gauge may read more than it does, whatever the plan says.
 
     A counterweight of which a plan is free to choose another is replaced: the plan begins without
     it, and what was before is nevertheless the machine as it is shown.
     """
 
     def solve(_: Machine, plan: Balance) -> Balanced:
+        plan = _held(base.machine, plan) if hold else plan
         free = _replaced(base, plan)
         found = balance(base.without(free).machine, plan)
         if not free:
@@ -59,6 +62,14 @@ def balanced(base: Design) -> Balanced:
         return replace(found, original=shown, objectives=aims)
 
     return advise(base.machine, solve) if base.plan is None else solve(base.machine, base.plan)
+
+
+def _held(machine: Machine, plan: Balance) -> Balance:
+    """A plan by which no gauge reads more, RMS about the mean at the machine's own speed."""
+    if machine.support is None or plan.phases is not None:
+        return plan
+    gauges = (Objective(f"gauges.{name}", "ripple") for name in machine.support.gauges)
+    return replace(plan, limits=(*plan.limits, *(Limit(one, ratio=1.0) for one in gauges)))
 
 
 def _replaced(base: Design, plan: Balance) -> list[str]:
@@ -169,6 +180,7 @@ def balanced_told(base: Solved, after: Solved, found: Balanced) -> Values:
         "aims": [_aim(found, one, figures) for one in found.aims],
         "figures": [_figure(found, name, *figures[name]) for name in names],
         "worse": list(worse_told(found)),
+        "gauges_worse": any(one.group == "gauges" for one in found.worse),
         "proof": proof_told(found),
         "notes": list(map(said, found.notes)),
     }

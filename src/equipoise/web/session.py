@@ -169,7 +169,7 @@ class Session:
         with self.telling():
             what = say("balancing")
         yield Reply({"type": "busy", "seq": message.seq, "what": what})
-        found = balanced(base.design)
+        found = balanced(base.design, message.flag("hold", False))
         with self.telling():
             nothing = nothing_gained(found)
         if nothing is not None:

@@ -149,3 +149,16 @@ def test_a_support_is_told_how_it_moves(name) -> None:
     assert held and all(abs(complex(*one["ground"])) == pytest.approx(50) for one in held)
     assert any(one["still"] for one in scene["signs"])
     assert np.all(np.isfinite(block))
+
+
+def test_balancing_can_be_held_to_what_gauges_read() -> None:
+    session, _ = opened("sieve")
+    free = told(ask(session, "balance"), "balanced")[0]
+    stand = {one["label"]: one for one in free["figures"]}["reading at stand, RMS about the mean"]
+    assert free["gauges_worse"] and stand["way"] == "worse"
+    assert any("gauges: reading at stand" in sentence for sentence in free["worse"])
+    ask(session, "undo")
+    held = told(ask(session, "balance", hold=True), "balanced")[0]
+    stand = {one["label"]: one for one in held["figures"]}["reading at stand, RMS about the mean"]
+    assert not held["gauges_worse"] and stand["way"] != "worse"
+    assert held["aims"][0]["way"] == "better"
