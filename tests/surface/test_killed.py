@@ -1,6 +1,6 @@
 """Studies that are killed at random moments: in the end the same bytes, and nothing left behind.
 
-Set EQUIPOISE_KILLS to kill more often than eight times.
+Set EQUIPOISE_KILLS to kill more often than twenty times.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from support.studies import contents
 from surface.running import command, equipoise, succeeded
 from surface.studies import LENGTHS
 
-KILLS = int(os.environ.get("EQUIPOISE_KILLS", "8"))
+KILLS = int(os.environ.get("EQUIPOISE_KILLS", "20"))
 STORE, STUDY = Path("study.zarr"), Path("study.toml")
 DESIGNS = 100_000
 
