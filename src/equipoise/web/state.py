@@ -74,17 +74,7 @@ def state_of(
         "traced": traced(motion),
         "first": first_of(machine)[0],
         "figures": figures_of(signals, compared, machine),
-        "outputs": [
-            {
-                "name": one.name,
-                "label": one.label(),
-                "group": say(GROUPS[one.group]),
-                "unit": shown.name,
-                "factor": shown.factor,
-            }
-            for one in analysis.outputs
-            for shown in [display(one.dimension)]
-        ],
+        "outputs": [*_offered(analysis)],
         "charts": charts_of(analysis, signals),
         "least": least_of(signals),
         "orders": _orders(analysis),
@@ -100,6 +90,19 @@ def state_of(
     }
     content["arrays"] = block.told
     return content, block.data
+
+
+def _offered(analysis: Analysis) -> Iterator[Values]:
+    """What can be drawn, once it is asked for."""
+    for one in analysis.outputs:
+        shown = display(one.dimension)
+        yield {
+            "name": one.name,
+            "label": one.label(),
+            "group": say(GROUPS[one.group]),
+            "unit": shown.name,
+            "factor": shown.factor,
+        }
 
 
 def status_of(found: Solved) -> Values:
