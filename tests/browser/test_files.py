@@ -20,7 +20,6 @@ BAD = {
         example_text("yamashita-1").replace('"199 g"', '"199 mm"'),
         "links.crank.mass",
     ),
-    "tool": ("saw.toml", example_text("pole-saw"), "equipoise report"),
     "huge": ("huge.toml", "# " * 100, "MB"),
 }
 

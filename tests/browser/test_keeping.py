@@ -13,6 +13,9 @@ from browser.live import Live
 from support.chromium import serving
 from surface.running import example_text
 
+LEAVES = "window.dispatchEvent(new Event('beforeunload', { cancelable: true }))"
+"""Whether the page can be left unasked."""
+
 
 def free_port() -> str:
     with socket.create_server(("127.0.0.1", 0)) as held:
@@ -28,6 +31,7 @@ def test_a_file_is_saved_and_its_steps_outlive_the_server(free_page: Page, tmp_p
         assert live.button("Save").is_disabled()
         live.type(live.field("crank mass"), "300 g")
         expect(live.button("Save")).to_be_enabled()
+        assert page.evaluate(LEAVES) is False  # the browser asks first
         live.type(live.field("drive speed"), "150 rpm")
         live.page.keyboard.press("Control+s")
         asked = page.get_by_role("dialog", name="Question")
@@ -35,6 +39,7 @@ def test_a_file_is_saved_and_its_steps_outlive_the_server(free_page: Page, tmp_p
         asked.get_by_role("button", name="Save").click()
         expect(live.told("is saved")).to_be_visible()
         assert eq.load(path).links["crank"].mass == 0.3
+        assert page.evaluate(LEAVES) is True
         live.button("Undo").click()
         expect(live.button("Save")).to_be_enabled()
         path.write_text(path.read_text(encoding="utf-8") + "\n", encoding="utf-8")

@@ -36,7 +36,7 @@ SHOW = """async ([script, style]) => {
     document.adoptedStyleSheets = [sheet];
     document.body.append(cell);
 }"""
-BLUE = """() => [...document.querySelectorAll("canvas")].map((canvas) => {
+BLUE = """() => [...document.querySelectorAll(".uplot canvas")].map((canvas) => {
     const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
     let found = 0;
     for (let i = 0; i < data.length; i += 4) {

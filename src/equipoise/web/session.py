@@ -196,18 +196,18 @@ class Session:
             {
                 "type": "hello",
                 "version": __version__,
-                "examples": [
-                    {"name": name, "title": said(title)} for name, title in titles().items()
-                ],
-                "tools": [
-                    {"name": name, "title": said(title)} for name, title in tool_titles().items()
-                ],
+                "examples": self._titled(titles()),
+                "tools": self._titled(tool_titles()),
                 "largest": LARGEST,
                 "numbers": display_rules(),
                 "machine": self.found is not None,
                 "base": "" if self.disk is None else self.disk.base,
             }
         )
+
+    def _titled(self, found: dict[str, str]) -> list[Values]:
+        with speaking(self.language):
+            return [{"name": name, "title": said(title)} for name, title in found.items()]
 
     def open(self, design: Design | Sketch, found: Solved | None = None) -> None:
         """Begin with a design, or with a sketch; what was done before is forgotten.

@@ -74,7 +74,7 @@ def state_of(
         "traced": traced(motion),
         "first": first_of(machine)[0],
         "figures": figures_of(signals, compared, machine),
-        "outputs": [*_offered(analysis)],
+        "outputs": outputs_of(analysis),
         "charts": charts_of(analysis, signals),
         "least": least_of(signals),
         "orders": _orders(analysis),
@@ -92,17 +92,19 @@ def state_of(
     return content, block.data
 
 
-def _offered(analysis: Analysis) -> Iterator[Values]:
-    """What can be drawn, once it is asked for."""
-    for one in analysis.outputs:
-        shown = display(one.dimension)
-        yield {
+def outputs_of(analysis: Analysis) -> list[Values]:
+    """What can be drawn over the crank angle."""
+    return [
+        {
             "name": one.name,
             "label": one.label(),
             "group": say(GROUPS[one.group]),
             "unit": shown.name,
             "factor": shown.factor,
         }
+        for one in analysis.outputs
+        for shown in [display(one.dimension)]
+    ]
 
 
 def status_of(found: Solved) -> Values:

@@ -19,6 +19,8 @@ from equipoise.present.pages import page
 from equipoise.schema.documents import dumps, loads
 from equipoise.schema.opening import Opened, bundled, toml_content
 from equipoise.schema.studies import restore, study_in
+from equipoise.web.messages import message_of
+from equipoise.web.session import Session
 from unit.schema.samples import FOUR_BAR
 
 NAMED = 'title.ja = "四節リンク"\ntitle.en = "Four-bar"'
@@ -94,3 +96,17 @@ def test_a_report_begins_with_the_title_in_its_language(name, language):
     assert f"<title>{texts[language]}" in told
     assert texts["en"] not in told.partition("</header>")[0]
     assert found.owner.description.texts[language].split("\n")[0] in told
+
+
+def test_a_page_is_told_titles_and_descriptions_in_its_language():
+    session = Session()
+    (spoken,) = session.receive(message_of({"type": "speak", "seq": 1, "languages": ["ko-KR"]}))
+    assert spoken.content["language"] == "ko"
+    hello = next(session.receive(message_of({"type": "ready", "seq": 2})))
+    drag = eq.load("drag-link")
+    told = {one["name"]: one["title"] for one in hello.content["examples"]}
+    assert told["drag-link"] == drag.title.texts["ko"]
+    opened = [*session.receive(message_of({"type": "open", "seq": 3, "example": "drag-link"}))]
+    state = next(one.content for one in opened if one.content["type"] == "state")
+    assert state["title"] == drag.title.texts["ko"]
+    assert state["description"] == drag.description.texts["ko"]
