@@ -1,8 +1,11 @@
 """How long a user of the live page waits: from a key or a drag to the painted frame.
 
-A Chromium without a window shows 720 crank angles and four charts.  The page marks when an input
-came and when the frame that shows its answer was painted; an input whose place a newer one took is
-answered by the frame of the newer one.
+    python benchmarks/live_page.py [NAME ...]
+
+A Chromium without a window shows 720 crank angles and all charts of bundled linkages: of those that
+are named, else of a four-bar, of one on its rig, and of the one that takes longest.  The page marks
+when an input came and when the frame that shows its answer was painted; an input whose place a
+newer one took is answered by the frame of the newer one.
 """
 
 from __future__ import annotations
@@ -14,11 +17,12 @@ from statistics import median, quantiles
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
-from playwright.sync_api import Page
+from playwright.sync_api import Browser, Page
 
 from browser.live import Live
 from support.chromium import chromium, serving
 
+NAMES = "yamashita-1", "yamashita-rig", "class-three"
 INPUTS = 150
 PAUSE = 30  # ms between inputs: a held key, and half as many moves as a mouse can make
 LIMITS = {"median": 50, "95th percentile": 100}  # ms
@@ -66,20 +70,28 @@ def report(what: str, found: list[float]) -> bool:
     return all(value <= LIMITS[name] for name, value in values.items())
 
 
-def main() -> bool:
-    with serving("yamashita-1") as address, chromium() as browser:
+def timed(browser: Browser, name: str) -> bool:
+    """Measure one linkage; tell whether the page is within the limits."""
+    with serving(name) as address:
         page = browser.new_page(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
         sizes: list[int] = []
         page.on("response", lambda answer: sizes.append(len(answer.body())))
         live = Live.open(page, address)
         page.wait_for_timeout(1000)
-        print(f"page: {sum(sizes) / 1000:.1f} kB (limit {LARGEST / 1000:.0f} kB)")
+        print(f"{name}: page {sum(sizes) / 1000:.1f} kB (limit {LARGEST / 1000:.0f} kB)")
         within = [sum(sizes) <= LARGEST]
         for what, act in {"arrow keys": keys, "drag": drags}.items():
             waits(page)
             act(live)
             page.wait_for_timeout(500)
-            within.append(report(what, waits(page)))
+            within.append(report(f"{name}, {what}", waits(page)))
+        page.close()
+    return all(within)
+
+
+def main() -> bool:
+    with chromium() as browser:
+        within = [timed(browser, name) for name in sys.argv[1:] or NAMES]
     return all(within)
 
 
