@@ -64,6 +64,8 @@ def test_nothing_but_the_opened_file_is_written(path: Path) -> None:
     shown = state(ask(session, "open", example="drag-link")[0]).content
     assert shown["file"] is None
     assert "not opened from a file" in refusal(ask(session, "save"))
+    begun = session_of(path)
+    assert state(ask(begun, "open", new=True)[0]).content["file"] is None
     example = session_of("yamashita-1")
     assert "not opened from a file" in refusal(ask(example, "save"))
     again = session_of(path)
