@@ -34,7 +34,7 @@ import { language, say } from "./words";
 const FIRST = "yamashita-1";
 
 /** How often numbers and words follow a drag, ms. */
-const SELDOM = 90;
+const SELDOM = 180;
 
 export class App {
   private readonly root = h("div", { class: "equipoise", lang: language() });

@@ -176,8 +176,11 @@ export class Row {
     const { min, max, value } = this.field;
     const [low, high] = [min ?? 0, max ?? 1];
     const part = high > low ? (value - low) / (high - low) : 0;
-    slider.value = String(Math.round(part * STEPS));
-    slider.style.setProperty("--part", part.toFixed(3));
+    const [step, shown] = [String(Math.round(part * STEPS)), part.toFixed(3)];
+    // Most numbers stay while one is dragged, and what is written is laid out again.
+    if (slider.value !== step) slider.value = step;
+    if (slider.style.getPropertyValue("--part") !== shown)
+      slider.style.setProperty("--part", shown);
     set(slider, { "aria-valuetext": this.field.shown });
   }
 

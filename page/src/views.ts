@@ -16,6 +16,7 @@ export class Views {
   private readonly tool: ToolView;
   private readonly study: StudyView;
   private store: string | null = null;
+  private at: HTMLElement | null | undefined;
 
   constructor(talk: Conversation, theme: Theme, ask: (asked: Asked) => void) {
     this.tool = new ToolView(talk, theme);
@@ -39,6 +40,7 @@ export class Views {
   /** The store that the server was started with, if any. */
   stored(name: string | null | undefined): void {
     this.store = name ?? null;
+    this.offer();
   }
 
   /** What is shown in place of a machine: its steps can be undone. */
@@ -72,9 +74,15 @@ export class Views {
   }
 
   private turn(to: HTMLElement | null): void {
+    if (to === this.at) return; // as at every move of a drag
+    this.at = to;
     this.body.hidden = to !== null;
     if (to !== this.tool.root) this.tool.hide();
     if (to !== this.study.root) this.study.hide();
-    this.back.hidden = !this.store || to === this.study.root;
+    this.offer();
+  }
+
+  private offer(): void {
+    this.back.hidden = !this.store || this.at === this.study.root;
   }
 }
