@@ -39,7 +39,7 @@ def checked_tool(text: str) -> list[str]:
 @pytest.mark.parametrize("name", TOOLS)
 def test_check_of_an_example(name: str) -> None:
     lines = succeeded(equipoise("check", name)).splitlines()
-    assert lines[0] == example(name)["title"]
+    assert lines[0] == example(name)["title"]["en"]
     assert lines[-1] == f"ready: equipoise tool {name}"
     assert f"shaft: {float(example(name)['shaft']['length'].split()[0]) * 1e3:.0f} mm" in lines[2]
     for station in example(name)["shaft"]["stations"]:

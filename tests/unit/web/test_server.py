@@ -18,7 +18,6 @@ from websockets.sync.client import ClientConnection, connect
 
 from equipoise.balancing.balanced import Balanced
 from equipoise.errors import UsageError
-from equipoise.mechanism.model import Machine
 from equipoise.web import server as served_module
 from equipoise.web import session as session_module
 from equipoise.web.balanced import balanced
@@ -191,9 +190,9 @@ def test_dragging_goes_on_while_something_takes_long(
 ) -> None:
     dragged = threading.Event()
 
-    def slowly(machine: Machine) -> Balanced:
+    def slowly(design: Design, hold: bool) -> Balanced:
         assert dragged.wait(20)
-        return balanced(machine)
+        return balanced(design, hold)
 
     monkeypatch.setattr(session_module, "balanced", slowly)
     with here.page() as page:
@@ -250,7 +249,7 @@ def test_work_ends_with_its_page_and_leaves_no_word(
 ) -> None:
     begun, ended = threading.Event(), threading.Event()
 
-    def without_end(machine: Machine) -> Balanced:
+    def without_end(design: Design, hold: bool) -> Balanced:
         begun.set()
         try:
             while True:
