@@ -231,7 +231,8 @@ export class App {
     // A file that plays shows numbers, and takes none.
     const disabled = this.played;
     const parts = [...this.bench.roots, this.inspector.root];
-    this.aside.append(this.balance.root, h("fieldset", { class: "bare", disabled }, ...parts));
+    const held = disabled ? h("fieldset", { class: "bare", disabled }, ...parts) : h("div", {}, ...parts);
+    this.aside.append(this.balance.root, held);
     if (disabled) this.aside.tabIndex = 0; // to be scrolled by keys
     this.views.body.append(stage, this.side, this.aside);
     this.root.append(
