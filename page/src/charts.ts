@@ -2,7 +2,7 @@
 
 import { Chart, type Source } from "./chart";
 import { chooser } from "./chooser";
-import { h } from "./dom";
+import { h, show } from "./dom";
 import { type Ask, explain } from "./explain";
 import { lengths } from "./format";
 import { Plane, type Trace } from "./plane";
@@ -102,10 +102,10 @@ export class Charts {
     this.state = state;
     if (other) this.heard = null;
     const forces = state.numbers.has("shaking_force");
-    this.polar.root.hidden = !forces;
+    show(this.polar.root, forces);
     this.squares.classList.toggle("alone", !forces);
     // Rows that stand still have no forces together.
-    this.whoseRow.hidden = !state.numbers.has(`${ROWS}shaking_force`);
+    show(this.whoseRow, state.numbers.has(`${ROWS}shaking_force`));
     if (other) this.arrange(state.first);
     if (other) this.offer(state);
     this.again(other);

@@ -49,6 +49,11 @@ export function write(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }
 
+/** Show or hide only what is otherwise: an attribute that is written again is looked at again. */
+export function show(element: HTMLElement, on: boolean): void {
+  if (element.hidden === on) element.hidden = !on;
+}
+
 /** A small drawing for a button, 16 by 16, in the colour of the text. */
 export function icon(path: string): SVGSVGElement {
   return s(

@@ -1,6 +1,6 @@
 /** Figures of what shakes, and what balancing made of them. */
 
-import { h, write } from "./dom";
+import { h, show, write } from "./dom";
 import { unbroken } from "./format";
 import type { Balanced, Change, Figure, Planted, State } from "./protocol";
 import { say } from "./words";
@@ -93,7 +93,7 @@ export class FigureTable {
   }
 
   hide(): void {
-    this.root.hidden = true;
+    show(this.root, false);
   }
 }
 
@@ -163,7 +163,7 @@ export class BalancePanel {
   }
 
   hide(): void {
-    this.root.hidden = true;
+    show(this.root, false);
   }
 }
 

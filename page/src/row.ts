@@ -1,7 +1,7 @@
 /** One number of the machine: typed, stepped by keys, or moved by its slider. */
 
 import type { Conversation } from "./conversation";
-import { fresh, h, set, write } from "./dom";
+import { fresh, h, set, show, write } from "./dom";
 import { Gesture } from "./gesture";
 import type { Field } from "./protocol";
 import { breakable } from "./format";
@@ -185,7 +185,7 @@ export class Row {
   }
 
   private complain(message: string | null): void {
-    this.error.hidden = message === null;
+    show(this.error, message !== null);
     write(this.error, message ?? "");
     set(this.input, {
       "aria-invalid": message !== null && "true",

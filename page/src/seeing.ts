@@ -1,7 +1,7 @@
 /** What is seen besides the machine: arrows at a point, a pale design, a support that moves. */
 
 import { Arrows } from "./arrows";
-import { h } from "./dom";
+import { h, show } from "./dom";
 import { unbroken } from "./format";
 import { Ghost } from "./ghost";
 import { type ArrowOf, type Asked, Numbers, type ResponseMessage, type State } from "./protocol";
@@ -69,7 +69,7 @@ export class Seeing {
   show(state: State, other: boolean): void {
     this.state = state;
     this.support.show(state, other);
-    this.kinds.hidden = !state.arrows_at;
+    show(this.kinds, !!state.arrows_at);
     this.offer(state);
     this.tell();
     this.beside(state.record);
@@ -93,7 +93,9 @@ export class Seeing {
 
   answered(message: ResponseMessage, numbers: Numbers): void {
     this.support.take(message, numbers);
-    this.again();
+    // While something is held the support stands still, and nothing is to be drawn anew.
+    if (this.support.held) this.tell();
+    else this.again();
   }
 
   /** Take the drawing of a pale design. */
@@ -130,8 +132,8 @@ export class Seeing {
     const lines = this.support.told;
     const text = lines.join("; ");
     if (this.told.textContent !== text) this.told.textContent = text;
-    this.told.hidden = !text;
-    this.arrows.legend.hidden = !this.state?.arrows_at;
+    show(this.told, !!text);
+    show(this.arrows.legend, !!this.state?.arrows_at);
   }
 
   private offer(state: State): void {

@@ -1,6 +1,6 @@
 /** How the support is seen: at rest, as it moves at work, or in one of its modes. */
 
-import { h, set } from "./dom";
+import { h, set, show } from "./dom";
 import type { Swing } from "./overlay";
 import type { Numbers, Pair, ResponseMessage, State } from "./protocol";
 import { say } from "./words";
@@ -50,7 +50,7 @@ export class Support {
       ...named,
     ];
     this.offer(options);
-    this.root.hidden = !this.reference || options.length < 2;
+    show(this.root, !!this.reference && options.length > 1);
   }
 
   private offer(options: [string, string][]): void {
