@@ -12,6 +12,7 @@ interface Reasons {
 export class Frames {
   private frame = 0;
   private later = 0;
+  private due = Infinity;
   /** Number of the state that is drawn and waits for its frame. */
   private drawn: number | null = null;
   /** A message that is posted in a frame arrives after that frame has been painted. */
@@ -34,10 +35,14 @@ export class Frames {
     this.wake();
   }
 
-  /** Call `settled` once, after some time, ms. */
+  /** Call `settled` once, after some time, ms; the shortest counts. */
   settle(wait: number): void {
-    this.later ||= window.setTimeout(() => {
-      this.later = 0;
+    const due = performance.now() + wait;
+    if (due >= this.due) return;
+    clearTimeout(this.later);
+    this.due = due;
+    this.later = window.setTimeout(() => {
+      this.due = Infinity;
       this.reasons.settled();
     }, wait);
   }

@@ -105,7 +105,7 @@ def test_a_four_bar_is_made_by_mouse(sheet: Sheet) -> None:
     sheet.says(TURNS)
     sheet.take("Point")
     sheet.click((60, -28))
-    expect(sheet.live.joint("E")).to_be_visible()
+    expect(sheet.live.field("coupler E, x")).to_be_visible()
     numbers = {"frame A to B": "88 mm", "frame A to B, direction": "-83 deg"}
     numbers |= {"crank A to C": "33.5 mm", "coupler C to D": "71.5 mm", "rocker B to D": "80 mm"}
     sheet.type(**numbers, **{"coupler E, x": "-160 mm", "coupler E, y": "-40 mm"})
@@ -130,7 +130,9 @@ def test_a_slider_crank_is_made_by_finger(new_page: Callable[..., Page], address
     sheet.take("Point")
     sheet.click((0, 0))
     sheet.take("Link")
-    sheet.click((0, 0), (25, 0), (25, 0), (0, 86))
+    sheet.click((0, 0), (25, 0))
+    expect(live.joint("B")).to_be_visible()  # so that the next link begins there
+    sheet.click((25, 0), (0, 86))
     sheet.says("coupler hangs free: pin C to something")
     sheet.take("Slider")
     sheet.click((0, 86), (0, 0))
@@ -148,8 +150,13 @@ def test_a_geared_five_bar_is_made_by_keys(sheet: Sheet) -> None:
     sheet.steer(0, 0)
     sheet.steer(100, 0)
     keys.press("l")
-    for place in ((0, 0), (30, 0), (30, 0), (91, 79), (100, 0), (88, 22), (88, 22), (91, 79)):
-        sheet.steer(*place)
+    links = {"C": ((0, 0), (30, 0)), "D": ((30, 0), (91, 79)), "E": ((100, 0), (88, 22))}
+    for joint, ends in links.items():
+        for place in ends:
+            sheet.steer(*place)
+        expect(sheet.live.joint(joint)).to_be_visible()  # so that the next link begins there
+    sheet.steer(88, 22)
+    sheet.steer(91, 79)
     sheet.says("free motions too many: 1")
     keys.press("d")
     sheet.steer(15, 0)

@@ -52,7 +52,7 @@ def test_balancing_and_taking_it_back(live: Live) -> None:
     expect(panel).to_be_hidden()
     assert live.machine() == eq.load("yamashita-1")
     live.button("Balance").click()
-    live.button("Keep").click()
+    panel.get_by_role("button", name="Keep", exact=True).click()
     expect(panel).to_be_hidden()
     assert live.machine() != eq.load("yamashita-1")
 
