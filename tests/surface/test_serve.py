@@ -11,7 +11,7 @@ import pytest
 
 from equipoise.errors import UsageError
 from equipoise.web.server import assets
-from surface.running import changed, command, refuses
+from surface.running import changed, command, equipoise, refused, refuses
 
 
 def test_a_machine_that_cannot_turn_is_told_before_a_page_opens() -> None:
@@ -37,3 +37,8 @@ def test_a_page_is_served_until_it_is_interrupted() -> None:
         run.send_signal(signal.SIGINT)
         assert run.wait(20) == 0
         assert run.stderr.read() == "press Ctrl+C to end\n"
+
+
+@pytest.mark.parametrize("name", ["none.toml", "none.zarr"])
+def test_a_file_that_is_not_there_is_named_once(name: str) -> None:
+    assert refused(equipoise("serve", name, "--no-browser")).count(name) == 1

@@ -227,6 +227,8 @@ def naming(file: str) -> Iterator[None]:
     try:
         yield
     except (ModelError, MobilityError, MotionError, MassError, ResponseError) as error:
+        if isinstance(error, ModelError) and error.source:
+            raise  # it names the file itself
         from equipoise.schema.files import printable
 
         raise EquipoiseError(f"{printable(file)}: {error}") from error

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import shlex
 import sys
-from math import ceil
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from equipoise.cli.options import (
@@ -32,7 +31,7 @@ from equipoise.cli.outputs import (
     wrote,
 )
 from equipoise.cli.progress import counted
-from equipoise.errors import EquipoiseError, UsageError
+from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
@@ -42,8 +41,6 @@ if TYPE_CHECKING:
 FILMS = ("svg", "gif", "mp4")
 SVG_FRAMES = 60
 """In a turn; from one to the next, parts go evenly."""
-LEAST_ANGLES = 720
-"""In a turn, for smooth paths."""
 MOST_LARGER = 1e9
 """Times that the movement of a support may be drawn larger than true."""
 
@@ -150,20 +147,14 @@ def _check_support(
 
 def _swinging(found: Analysis, factor: float | None) -> Scene:
     """What moves at speed, its support too, as far as that can be computed."""
-    from equipoise.figures.swing import swinging
-    from equipoise.symbols.scene import Scene
-    from equipoise.vibration.forced import respond
+    from equipoise.figures.swing import moving
 
-    scene = Scene.of(found.motion).with_rows(found.motion)
-    if found.machine.support is None or factor == 0:
-        return scene
-    try:
-        return swinging(scene, respond(found.machine), factor)
-    except EquipoiseError as error:
-        if factor is not None:
-            raise
-        tell(f"the support is drawn standing still: {error}", sys.stderr)
-        return scene
+    scene, problem = moving(found, factor)
+    if problem is not None and factor is not None:
+        raise problem
+    if problem is not None:
+        tell(f"the support is drawn standing still: {problem}", sys.stderr)
+    return scene
 
 
 def _in_mode(machine: Machine, number: int, count: int) -> Scene:
@@ -183,11 +174,10 @@ def _kind(out: str) -> str:
 
 
 def _angles_of(kind: str, seconds: float) -> int:
-    """Crank angles in a turn: so many for each frame that paths are smooth."""
-    from equipoise.figures.stage import in_a_turn
+    """Crank angles in a turn."""
+    from equipoise.figures.stage import in_a_turn, smooth
 
-    frames = SVG_FRAMES if kind == "svg" else in_a_turn(kind, seconds)
-    return frames * ceil(LEAST_ANGLES / frames)
+    return smooth(SVG_FRAMES if kind == "svg" else in_a_turn(kind, seconds))
 
 
 def _animated(scene: Scene, title: str, kind: str, options: dict[str, Any]) -> str | bytes:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from math import ceil
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
@@ -300,6 +301,10 @@ def width_of(text: str, size: float) -> float:
     return size * sum(1.1 if ord(sign) > 0x2E7F else 0.6 for sign in text)
 
 
+LEAST_ANGLES = 720
+"""In a turn, for smooth paths."""
+
+
 def in_a_turn(kind: str, seconds: float) -> int:
     """Frames of a film in a turn of the crank that takes some seconds."""
     return max(1, round(seconds * RATES[kind]))
@@ -318,3 +323,8 @@ def check_width(width: int) -> None:
     low, high = WIDTHS
     if not low <= width <= high:
         raise UsageError(f"got a width of {width} pixels; give {low} to {high}")
+
+
+def smooth(frames: int) -> int:
+    """Crank angles in a turn of so many frames: as many for each that paths are smooth."""
+    return frames * ceil(LEAST_ANGLES / frames)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.errors import UsageError
+from equipoise.errors import EquipoiseError, UsageError
 from equipoise.figures.modes import described
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.motion import move
@@ -21,6 +21,7 @@ from equipoise.symbols.scene import Drive, Scene
 from equipoise.symbols.shapes import Array
 
 if TYPE_CHECKING:
+    from equipoise.results.analysis import Analysis
     from equipoise.vibration.free import FreeVibration
     from equipoise.vibration.response import Mode, Response
 
@@ -54,6 +55,22 @@ def swinging(scene: Scene, response: Response, factor: float | None = None) -> S
     if sizes:
         told.append(say("across the drawing, not shown: {sizes}", sizes=", ".join(sizes)))
     return _with(scene, factor * values, told)
+
+
+def moving(analysis: Analysis, factor: float | None = None) -> tuple[Scene, EquipoiseError | None]:
+    """All rows as they move at speed, and their support, larger by a factor as of `swinging`.
+
+    With why the support stands still, where its movement cannot be computed.
+    """
+    from equipoise.vibration.forced import respond
+
+    scene = Scene.of(analysis.motion).with_rows(analysis.motion)
+    if analysis.machine.support is None or factor == 0:
+        return scene, None
+    try:
+        return swinging(scene, respond(analysis.machine), factor), None
+    except EquipoiseError as error:
+        return scene, error
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,6 @@ from equipoise.web.remaking import (
     pinned,
     renamed,
     separated,
-    without_entry,
     without_link,
     without_point,
 )
@@ -60,10 +59,7 @@ def _delete(sketch: Sketch, asked: Message) -> Sketch:
         return without_point(sketch, asked.text("name"))
     if what == "link":
         return without_link(sketch, asked.text("name"))
-    if what not in {"slider", "gear"}:
-        kinds = ("point", "link", "slider", "gear")
-        raise UsageError(unknown(what, kinds, "part that can be deleted"))
-    return without_entry(sketch, f"{what}s", asked.whole("number"))
+    raise UsageError(unknown(what, ("point", "link"), "part that can be deleted"))
 
 
 def _rename(sketch: Sketch, asked: Message) -> Sketch:

@@ -8,13 +8,12 @@ from typing import Any, Literal
 
 from equipoise.keys import Frozen, Kind, Point, Text, innermost, keys_of
 from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.objectives import JOINTS
 from equipoise.mechanism.parts import Gear
 
 What = Literal["point", "link"]
 NAMING = {"point": {"point"}, "link": {"link", "body"}}
 """What a text has to be the name of, as its key declares it."""
-JOINT = "joints."
-"""Before the point of a joint in the name of an output."""
 SLIDING = " on "
 """In the name of a sliding joint."""
 MESHING = ("driver", "driven")
@@ -38,8 +37,8 @@ def _names(value: Any, kind: Kind | None, what: What) -> Iterator[tuple[str, str
             yield from _names(one, kind, what)
     elif isinstance(value, str) and _is_name(kind, what):
         yield what, value
-    elif isinstance(value, str) and value.startswith(JOINT) and what == "point":
-        name = value.removeprefix(JOINT).partition("/")[0]
+    elif isinstance(value, str) and value.startswith(JOINTS) and what == "point":
+        name = value.removeprefix(JOINTS).partition("/")[0]
         yield from [] if SLIDING in name else [(what, name)]
 
 
@@ -57,9 +56,9 @@ def _renamed(value: Any, kind: Kind | None, what: What, names: tuple[str, str]) 
         return tuple(_renamed(one, kind, what, names) for one in value)
     if isinstance(value, Mapping):
         return {key: _renamed(one, kind, what, names) for key, one in value.items()}
-    if isinstance(value, str) and value.startswith(JOINT) and what == "point":
-        point, bar, link = value.removeprefix(JOINT).partition("/")
-        return f"{JOINT}{names[1]}{bar}{link}" if point == names[0] else value
+    if isinstance(value, str) and value.startswith(JOINTS) and what == "point":
+        point, bar, link = value.removeprefix(JOINTS).partition("/")
+        return f"{JOINTS}{names[1]}{bar}{link}" if point == names[0] else value
     return names[1] if value == names[0] and _is_name(kind, what) else value
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from threading import Lock
-from typing import Any
 
-from equipoise.errors import EquipoiseError, UsageError
+from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
 from equipoise.results.charts import Chart
 from equipoise.web.edits import Solved
+from equipoise.web.shaken import responded
 
 SAME = {
     "polar": "polar",
@@ -41,9 +41,8 @@ def chart_of(found: Solved, name: str, choice: str) -> Chart:
     machine, analysis = found.design.machine, found.analysis
     if name == "response":
         from equipoise.figures.vibration import response_charts
-        from equipoise.vibration.forced import respond
 
-        return _named(response_charts(respond(machine)), f"gauge-{choice}")
+        return _named(response_charts(responded(found)), f"gauge-{choice}")
     if name == "sweep":
         from equipoise.figures.sweep import sweep_charts
         from equipoise.vibration.resonance import around
@@ -96,25 +95,11 @@ def film_of(found: Solved) -> bytes:
     """The whole cycle as a GIF, the support too where it moves."""
     from equipoise.figures.film import gif
     from equipoise.figures.points import followed
-    from equipoise.figures.stage import in_a_turn
+    from equipoise.figures.stage import in_a_turn, smooth
+    from equipoise.figures.swing import moving
     from equipoise.results.analysis import analyze
 
-    frames = in_a_turn("gif", SECONDS)
-    analysis = analyze(found.design.machine, frames * -(-720 // frames))
+    analysis = analyze(found.design.machine, smooth(in_a_turn("gif", SECONDS)))
     with drawing:
-        return gif(_swinging(analysis), traced=followed(analysis.motion), seconds=SECONDS)
-
-
-def _swinging(analysis: Any) -> Any:
-    """What moves at speed; the support stands still where it has no steady state."""
-    from equipoise.figures.swing import swinging
-    from equipoise.symbols.scene import Scene
-    from equipoise.vibration.forced import respond
-
-    scene = Scene.of(analysis.motion).with_rows(analysis.motion)
-    if analysis.machine.support is None:
-        return scene
-    try:
-        return swinging(scene, respond(analysis.machine), None)
-    except EquipoiseError:
-        return scene
+        scene, _ = moving(analysis)
+        return gif(scene, traced=followed(analysis.motion), seconds=SECONDS)

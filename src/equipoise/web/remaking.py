@@ -112,23 +112,6 @@ def without_link(sketch: Sketch, link: str) -> Sketch:
     return _tidied(replace(sketch, links=links, poses=poses))
 
 
-def without_entry(sketch: Sketch, key: str, number: int) -> Sketch:
-    """One slider or pair of gears less, numbered from 1."""
-    entries = [*getattr(sketch, key)]
-    if not 0 < number <= len(entries):
-        raise UsageError(
-            Note(
-                "{key}: got number {number}; there are {entries}",
-                key=key,
-                number=number,
-                entries=len(entries),
-            )
-        )
-    del entries[number - 1]
-    one: dict[str, Any] = {key: tuple(entries)}
-    return replace(sketch, **one)
-
-
 def _tidied(sketch: Sketch) -> Sketch:
     """Without what names points or links that are gone."""
     kept = [(key, one) for key, one in sketch.entries() if _held(key, one, sketch.bodies)]
