@@ -74,7 +74,7 @@ OF_LINKAGES: Refusals = {
     "key of the frame": ("[frame]", "[frame]\nx = 1", "frame.x", "no key is called 'x'; there are"),
     "no version": ("schema = 1", "", "schema", "missing"),
     "newer version": ("schema = 1", "schema = 2", "schema",
-                      "got the number 2; this program reads schema = 1, and the file is for a newer"),
+                      "got the number 2; this program reads schema = 1, and the file is for a"),
     "no such version": ("schema = 1", "schema = 0", "schema",
                         "got the number 0; this program reads schema = 1"),
     "true version": ("schema = 1", "schema = true", "schema", "got true; this program reads"),
