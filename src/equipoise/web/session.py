@@ -244,7 +244,10 @@ class Session:
 
     def tell_more(self) -> Iterator[Reply]:
         """What takes too long to be told at every move of a drag; ends when the design changes."""
-        found = self.more_told = self.shown
+        found = self.view
+        if not isinstance(found, Solved):  # what was asked for before it became unfinished
+            return
+        self.more_told = found
         told = more(found, lambda: self.view is not found)
         while True:
             with self.telling():  # left where this waits: whoever goes on may be another thread

@@ -76,6 +76,14 @@ def test_figures_of_sliders_and_rockers_are_told_in_the_units_of_tables() -> Non
     assert "block on lever: least mechanical advantage" not in told
 
 
+def test_no_more_is_told_of_what_is_unfinished_by_then() -> None:
+    session, _ = opened("slider-crank-engine")
+    assert session.has_more
+    more = session.tell_more()
+    ask(session, "make", do="delete", what="link", name="crank")
+    assert not [*more]
+
+
 def test_what_is_infinite_is_drawn_with_gaps() -> None:
     name = "sliders.piston on frame.advantage"
     session, _ = opened("slider-crank-engine")
