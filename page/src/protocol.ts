@@ -390,7 +390,9 @@ export interface VariantsMessage {
 /** Figures of a planting finger, or of sliders and rockers; null where they are not finite. */
 export interface Planted {
   type: "planting" | "strokes";
-  figures: { name: string; label: string; unit: string; value: number | null; text: string }[];
+  figures: (Pick<Figure, "name" | "label" | "unit" | "value" | "text" | "was">)[];
+  /** Whether figures of another design are told beside them. */
+  compared: boolean;
   notes: string[];
 }
 
