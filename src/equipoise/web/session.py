@@ -136,7 +136,8 @@ class Session:
             found = drawn(sketch)
             self._go(self._past.then(found.design, label), found)
             self._measure(found, False)
-            notes = [*lost(base, sketch)] if message.text("do") == "delete" else []
+            named = message.text("do") == "delete" and message.text("what") in ("point", "link")
+            notes = [*lost(base, sketch)] if named else []
         yield from self.told(message.seq, *notes)
 
     def _undo(self, message: Message) -> Iterator[Reply]:
