@@ -33,6 +33,8 @@ SETTLED = 1e-11
 """Last step of Newton's method, in sizes of the machine and radians, that counts as arrived."""
 STRIDES = (radians(30), radians(6))
 """Between crank angles at which a branch is followed first; the next where it cannot be so."""
+SAME = 1e-8
+"""Difference of unknowns, in sizes of the machine and radians, at which solutions are the same."""
 JUMP = 0.02
 """Step, in sizes of the linkage and radians, that the branch's slope does not explain."""
 QUINTIC = np.array([
@@ -82,7 +84,8 @@ class LoopGroup:
         guess = state.get(f"reference({self.reference})")
         with np.errstate(all="ignore"):
             if guess is None:
-                levels = self.follow(self.start, known, theta)
+                near = state.get(f"near({self.reference})")
+                levels = self.follow(self.start, known, theta, near)
             else:
                 q = self.solve(guess, known, theta)
                 levels = (q, *self.derivatives(q, known))
@@ -166,12 +169,20 @@ class LoopGroup:
         q2 = -divide(matrix, self.stacked(self.poses(known, q, q1), 2, q.shape[1:]))
         return q1, q2
 
-    def follow(self, start: Array, known: Poses, theta: Array) -> tuple[Array, Array, Array]:
+    def follow(
+        self, start: Array, known: Poses, theta: Array, near: Array | None = None
+    ) -> tuple[Array, Array, Array]:
         """Follow the branch along crank angles, from the solution `start` at the first.
 
-        Wide steps first, with all angles between them solved together; where those do not fit
-        together, every angle from the one before.  Returns the unknowns with two derivatives.
+        From unknowns `near` it (n, N) all angles together, if there are such.  Else wide steps
+        first, with all angles between them solved together; where those do not fit together, every
+        angle from the one before.  Returns the unknowns with two derivatives.
         """
+        if near is not None and near.shape == (len(start), len(theta)):
+            with suppress(MotionError):
+                levels = self.joined(near, known, theta)
+                if np.all(self.sizes(levels[0][:, 0] - start) <= SAME):
+                    return levels
         for stride in STRIDES if len(theta) > 1 else ():
             each = int(stride / abs(theta[1] - theta[0] or 1.0))
             if 1 < each < len(theta):
@@ -187,7 +198,11 @@ class LoopGroup:
         levels = self.follow_each(
             start, {body: pose.pick((..., posts)) for body, pose in known.items()}, theta[posts]
         )
-        q = self.solve(between(theta, posts, *levels), known, theta)
+        return self.joined(between(theta, posts, *levels), known, theta)
+
+    def joined(self, guess: Array, known: Poses, theta: Array) -> tuple[Array, Array, Array]:
+        """All crank angles (N,) solved together, where that gives one branch."""
+        q = self.solve(guess, known, theta)
         q1, q2 = self.derivatives(q, known)
         bent = np.diff(q) - 0.5 * (q1[:, 1:] + q1[:, :-1]) * np.diff(theta)
         self.check(np.all(self.sizes(bent) <= JUMP), theta)
