@@ -39,7 +39,7 @@ app = App(
 MODULES = {
     "balance:app": ["balance"],
     "designs": ["best", "export", "search"],
-    "files": ["check", "examples", "new", "schema", "serve"],
+    "files": ["check", "completion", "examples", "new", "schema", "serve"],
     "handheld:app": ["tool"],
     "linkage": ["analyze", "modes", "respond", "simulate"],
     "linkage:planting": ["plant"],
