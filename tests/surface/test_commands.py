@@ -164,7 +164,7 @@ OPTIONS = {
     "completion": ["SHELL"],
     "decay": ["CSV", "--stiffness", "--arm", "--spring-arm", "--confidence", *DRAWN],
     "examples": [],
-    "export": ["STORE", "--out", "--kept"],
+    "export": ["FILE", "--out", "--format", "--at", "--balanced", "--kept"],
     "exposure": [
         *["INPUT", "--duration", "--idle", "--racing", "--bands", "--weighted", "--single-axis"],
         *["--periodic", *DRAWN],

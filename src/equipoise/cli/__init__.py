@@ -38,7 +38,8 @@ app = App(
 
 MODULES = {
     "balance:app": ["balance"],
-    "designs": ["best", "export", "search"],
+    "designs": ["best", "search"],
+    "exchange": ["export"],
     "files": ["check", "completion", "examples", "new", "schema", "serve"],
     "handheld:app": ["tool"],
     "linkage": ["analyze", "modes", "respond", "simulate"],
