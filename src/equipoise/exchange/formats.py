@@ -1,0 +1,64 @@
+"""What a machine can be written as, a declaration each; all that lists them follows from these."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from equipoise.balancing.workshop import Change
+    from equipoise.mechanism.model import Machine
+
+
+@dataclass(frozen=True)
+class Format:
+    """One kind of file.
+
+    name : as `format` takes it; its module here has that name too, but for tables of stores.
+    ending : of its files, with the dot.  holds : what is in it.  needs : a library of the extra
+    `exchange`.  of_store : whether it is of the designs of a study, not of a machine.
+    """
+
+    name: str
+    ending: str
+    title: str
+    holds: str
+    needs: str = ""
+    of_store: bool = False
+
+
+FORMATS: Mapping[str, Format] = {
+    one.name: one
+    for one in (
+        Format(
+            "mjcf",
+            ".xml",
+            "MuJoCo (MJCF)",
+            "bodies, pins, sliders, gears, springs, constant loads, rows, the support on its "
+            "mounts, the drive at constant speed",
+        ),
+        Format("csv", ".csv", "CSV", "all designs of a store", of_store=True),
+        Format("parquet", ".parquet", "Parquet", "all designs of a store", of_store=True),
+    )
+}
+"""By name."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """What is to be written.
+
+    crank_angle : at which it is drawn, rad.  changes : that balancing made of it.
+    left_out : what the format does not hold, as it goes on.
+    """
+
+    machine: Machine
+    crank_angle: float = 0.0
+    changes: tuple[Change, ...] = ()
+    left_out: list[str] = field(default_factory=list)
+
+    def leave_out(self, what: str) -> None:
+        """Tell, once, what the file does not hold."""
+        if what not in self.left_out:
+            self.left_out.append(what)
