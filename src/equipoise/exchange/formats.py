@@ -38,6 +38,20 @@ FORMATS: Mapping[str, Format] = {
             "bodies, pins, sliders, gears, springs, constant loads, rows, the support on its "
             "mounts, the drive at constant speed",
         ),
+        Format(
+            "dxf",
+            ".dxf",
+            "drawing (DXF)",
+            "the linkage at a crank angle, paths of its points, pitch circles of gears, parts to "
+            "be cut: outlines and holes of links made of bodies, and of counterweights; in mm",
+            needs="ezdxf",
+        ),
+        Format(
+            "svg",
+            ".svg",
+            "parts (SVG)",
+            "the same parts to be cut, at 1:1",
+        ),
         Format("csv", ".csv", "CSV", "all designs of a store", of_store=True),
         Format("parquet", ".parquet", "Parquet", "all designs of a store", of_store=True),
     )
