@@ -47,6 +47,8 @@ QUINTIC = np.array([
 ])  # fmt: skip
 """Between 0 and 1, by powers: what value, slope and curvature at 0, then at 1, contribute."""
 
+Levels = tuple[Array, Array, Array]  # the unknowns, and their two derivatives
+
 
 @dataclass(frozen=True)
 class LoopGroup:
@@ -169,14 +171,12 @@ class LoopGroup:
         q2 = -divide(matrix, self.stacked(self.poses(known, q, q1), 2, q.shape[1:]))
         return q1, q2
 
-    def follow(
-        self, start: Array, known: Poses, theta: Array, near: Array | None = None
-    ) -> tuple[Array, Array, Array]:
+    def follow(self, start: Array, known: Poses, theta: Array, near: Any = None) -> Levels:
         """Follow the branch along crank angles, from the solution `start` at the first.
 
         From unknowns `near` it (n, N) all angles together, if there are such.  Else wide steps
         first, with all angles between them solved together; where those do not fit together, every
-        angle from the one before.  Returns the unknowns with two derivatives.
+        angle from the one before.
         """
         if near is not None and near.shape == (len(start), len(theta)):
             with suppress(MotionError):
@@ -190,17 +190,14 @@ class LoopGroup:
                     return self.follow_wide(start, known, theta, each)
         return self.follow_each(start, known, theta)
 
-    def follow_wide(
-        self, start: Array, known: Poses, theta: Array, each: int
-    ) -> tuple[Array, Array, Array]:
+    def follow_wide(self, start: Array, known: Poses, theta: Array, each: int) -> Levels:
         count = ceil((len(theta) - 1) / each)
         posts = np.linspace(0, len(theta) - 1, count + 1).astype(int)
-        levels = self.follow_each(
-            start, {body: pose.pick((..., posts)) for body, pose in known.items()}, theta[posts]
-        )
+        some = {body: pose.pick((..., posts)) for body, pose in known.items()}
+        levels = self.follow_each(start, some, theta[posts])
         return self.joined(between(theta, posts, *levels), known, theta)
 
-    def joined(self, guess: Array, known: Poses, theta: Array) -> tuple[Array, Array, Array]:
+    def joined(self, guess: Array, known: Poses, theta: Array) -> Levels:
         """All crank angles (N,) solved together, where that gives one branch."""
         q = self.solve(guess, known, theta)
         q1, q2 = self.derivatives(q, known)
@@ -208,7 +205,7 @@ class LoopGroup:
         self.check(np.all(self.sizes(bent) <= JUMP), theta)
         return q, q1, q2
 
-    def follow_each(self, start: Array, known: Poses, theta: Array) -> tuple[Array, Array, Array]:
+    def follow_each(self, start: Array, known: Poses, theta: Array) -> Levels:
         here = start
         found = []
         for k, angle in enumerate(theta):
