@@ -52,6 +52,20 @@ FORMATS: Mapping[str, Format] = {
             "parts (SVG)",
             "the same parts to be cut, at 1:1",
         ),
+        Format(
+            "xlsx",
+            ".xlsx",
+            "Excel",
+            "links and points, figures of every output, all signals over crank angle with their "
+            "units, charts of them, and what to change where it was balanced",
+            needs="xlsxwriter",
+        ),
+        Format(
+            "mat",
+            ".mat",
+            "MATLAB",
+            "a struct of links and points, figures of every output, and all signals with units",
+        ),
         Format("csv", ".csv", "CSV", "all designs of a store", of_store=True),
         Format("parquet", ".parquet", "Parquet", "all designs of a store", of_store=True),
     )
