@@ -174,9 +174,8 @@ class LoopGroup:
     def follow(self, start: Array, known: Poses, theta: Array, near: Any = None) -> Levels:
         """Follow the branch along crank angles, from the solution `start` at the first.
 
-        From unknowns `near` it (n, N) all angles together, if there are such.  Else wide steps
-        first, with all angles between them solved together; where those do not fit together, every
-        angle from the one before.
+        From unknowns `near` it (n, N) all together, if there are such.  Else wide steps first, with
+        all angles between them together; where those do not fit, every angle from the one before.
         """
         if near is not None and near.shape == (len(start), len(theta)):
             with suppress(MotionError):
