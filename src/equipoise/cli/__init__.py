@@ -40,7 +40,7 @@ MODULES = {
     "balance:app": ["balance"],
     "designs": ["best", "search"],
     "exchange": ["export"],
-    "files": ["check", "examples", "new", "schema", "serve"],
+    "files": ["check", "completion", "examples", "new", "schema", "serve"],
     "handheld:app": ["tool"],
     "linkage": ["analyze", "modes", "respond", "simulate"],
     "linkage:planting": ["plant"],
