@@ -2,9 +2,9 @@
 
 The peer is the example geneticOptimizationSliderCrank.py of Exudyn (J. Gerstmayr), on the same
 machine built anew in `tests/support/exudyn_model.py`.  A torque of 0.1 N m runs the crank up from
-rest for 3 s; its residual is the frame's largest displacement along x plus that along y.  It shall become small
-by the centres of mass of crank and rod, in `RANGES`.  Exudyn's `GeneticOptimization` looks for them
-with the example's settings: 30 generations of 50, each of which is a simulation.
+rest for 3 s; its residual is the frame's largest displacement along x plus that along y.  It shall
+become small by the centres of mass of crank and rod, in `RANGES`.  Exudyn's `GeneticOptimization`
+looks for them with the example's settings: 30 generations of 50, each of which is a simulation.
 
 Equipoise does not simulate the run-up.  In the same ranges it makes the frame's steady vibration at
 the drive's speed smallest, or the shaking force.  Those are other functions, but all three have one

@@ -17,15 +17,14 @@ from support.conformance import compared
 from support.six_stations import ENGINE, HANDLE, POWERS, TOOLS, UNBALANCE, mesh
 from support.sources import ROSS
 
-pytest.importorskip("ross")
-
-from support import ross_shaft
-
 SPEEDS = np.linspace(1000.0, 9000.0, 9) * np.pi / 30
 
 
 def difference(theory: str) -> float:
     """Largest difference of the handle's displacement, over the largest displacement."""
+    pytest.importorskip("ross")
+    from support import ross_shaft
+
     tool, found = TOOLS[theory], []
     for count in (12, 24, 48):
         lengths, nodes = mesh(count)
