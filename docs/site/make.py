@@ -19,7 +19,7 @@ HERE = Path(__file__).parent
 DOCS = HERE.parent
 ROOT = DOCS.parent
 SOURCE, BUILT = ROOT / "build" / "docs-source", ROOT / "build" / "docs"
-AROUND = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
+AROUND = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")
 """Pages of the repository that the site has too."""
 MADE = {"examples": "scripts.md"}
 """Folders of the repository that have a page here."""

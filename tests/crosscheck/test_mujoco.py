@@ -30,10 +30,7 @@ def action(subject: Subject, link: str, at: Array, force: Array, couple: Array |
 
 
 def acting_on_links(subject: Subject) -> dict[str, Array]:
-    """Add up all that joints, gears, loads and drive do to each link.
-
-    What MuJoCo asks for is less the springs that it has itself.
-    """
+    """Add up all that joints, gears, loads, springs and drive do to each link."""
     machine, poses, forces = subject.machine, subject.poses, subject.forces
     total = {name: np.zeros((poses.crank_angle.size, 3)) for name in machine.links}
     sliders = {slider.name: (slider.link, slider.point) for slider in machine.sliders}
@@ -49,8 +46,9 @@ def acting_on_links(subject: Subject) -> dict[str, Array]:
         for body, sign in ((part.on, 1.0), (part.by, -1.0)):
             if body != FRAME:
                 total[body] += action(subject, body, at, sign * vector(part), sign * couple)
-    others = springs_on_links(mujoco_engine.springless(machine), poses)
-    for link, at, force, torque in chain(on_links(machine, poses), others):
+    for link, at, force, torque in chain(
+        on_links(machine, poses), springs_on_links(machine, poses)
+    ):
         total[link] += action(subject, link, at, force, torque)
     total[machine.drive.link][:, 2] += forces.drive_torque
     return total

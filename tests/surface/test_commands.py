@@ -8,6 +8,7 @@ import json
 import math
 import os
 import re
+import runpy
 import subprocess
 import sys
 import threading
@@ -48,8 +49,19 @@ from surface.running import (
 
 ROOT = Path(__file__).parents[2]
 COMMANDS = (
-    *["analyze", "animate", "balance", "best", "check", "decay", "examples", "export"],
-    *["exposure", "modes", "new", "plant", "plot", "report", "respond", "resume", "schema"],
+    *["analyze", "animate", "balance", "best", "check", "completion", "decay", "examples"],
+    *[
+        "export",
+        "exposure",
+        "modes",
+        "new",
+        "plant",
+        "plot",
+        "report",
+        "respond",
+        "resume",
+        "schema",
+    ],
     *["search", "serve", "simulate", "sweep", "tolerance", "tool"],
 )
 LINK_KEYS = ["angle", "angular_velocity", "angular_acceleration"]
@@ -149,9 +161,10 @@ OPTIONS = {
     ],
     "best": ["STORE", "--by", "--largest", "--count", "--out", "--design", *OUTPUTS],
     "check": ["FILE", "--units"],
+    "completion": ["SHELL"],
     "decay": ["CSV", "--stiffness", "--arm", "--spring-arm", "--confidence", *DRAWN],
     "examples": [],
-    "export": ["STORE", "--out", "--kept"],
+    "export": ["FILE", "--out", "--format", "--at", "--balanced", "--kept"],
     "exposure": [
         *["INPUT", "--duration", "--idle", "--racing", "--bands", "--weighted", "--single-axis"],
         *["--periodic", *DRAWN],
@@ -220,6 +233,28 @@ def test_no_page_shows_a_command_that_does_not_exist(page: str) -> None:
     text = (ROOT / page).read_text(encoding="utf-8")
     shown = set(re.findall(r"^(?:\$ )?equipoise ([a-z]+)", text, re.MULTILINE))
     assert shown and shown <= {*COMMANDS}
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish", "powershell"])
+def test_a_shell_completes_commands_options_and_values(shell: str) -> None:
+    text = succeeded(equipoise("completion", shell))
+    assert {*COMMANDS, "trade-off"} <= {*re.findall(r"[a-z][a-z-]+", text)}
+    assert "crank-zero" in text and re.search(r"svg\W+png\W+pdf", text)
+
+
+def test_the_man_page_tells_every_option(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", ["equipoise"])  # by which the program is called
+    page = runpy.run_path(str(ROOT / "docs" / "man.py"))["page"]().decode().replace("\\-", "-")
+    told = re.split(r"(?m)^equipoise ((?!-)[a-z -]+?)(?: [A-Z\[].*)?$", page)[1:]
+    parts = dict(zip(told[::2], told[1::2], strict=True))
+    assert parts.keys() == OPTIONS.keys()
+    for name, options in OPTIONS.items():
+        heads = re.findall(r"(?m)^\.B \\fB(.*)\\fP$", parts[name])
+        assert [
+            one
+            for one in options
+            if not any(one in head.replace(",", "").split() for head in heads)
+        ] == [], name
 
 
 # -- examples, check -------------------------------------------------------------------------------

@@ -38,8 +38,9 @@ app = App(
 
 MODULES = {
     "balance:app": ["balance"],
-    "designs": ["best", "export", "search"],
-    "files": ["check", "examples", "new", "schema", "serve"],
+    "designs": ["best", "search"],
+    "exchange": ["export"],
+    "files": ["check", "completion", "examples", "new", "schema", "serve"],
     "handheld:app": ["tool"],
     "linkage": ["analyze", "modes", "respond", "simulate"],
     "linkage:planting": ["plant"],

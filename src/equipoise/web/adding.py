@@ -15,9 +15,10 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import FRAME, Drive, Gear, Link, Slider
-from equipoise.web.design import clean
+from equipoise.mechanism.outline import Pose, length_between, pose_between
+from equipoise.quantities import clean
 from equipoise.web.messages import Spot
-from equipoise.web.sketch import Pose, Sketch, length_between, pose_between
+from equipoise.web.sketch import Sketch
 
 USUAL_SPEED = 2 * pi
 """rad/s, of a drive that is chosen."""

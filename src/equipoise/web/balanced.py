@@ -27,9 +27,9 @@ from equipoise.i18n import said
 from equipoise.mechanism.balance import Balance, Limit, Objective
 from equipoise.mechanism.model import Link, Machine
 from equipoise.mechanism.outputs import declared
-from equipoise.quantities import display, told
+from equipoise.quantities import clean, display, told
 from equipoise.results.outputs import objective_named, shown_in
-from equipoise.web.design import Counterweight, Design, clean, joined, pin_of, place_of_pin
+from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
 from equipoise.web.edits import Solved
 from equipoise.web.figures import compared, figures_of, signals_of
 

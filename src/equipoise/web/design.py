@@ -6,7 +6,7 @@ from cmath import phase
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import cos, floor, isfinite, log10, pi, sin
+from math import cos, pi, sin
 from types import MappingProxyType
 from typing import Any
 
@@ -15,43 +15,13 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.links import MASS_FIELDS
-from equipoise.mechanism.model import Link, Machine, Vector
+from equipoise.mechanism.model import Link, Machine
 from equipoise.mechanism.shown_units import ShownUnits
-from equipoise.quantities import SI, chosen_unit, parse, rounded
-from equipoise.quantities.units import HUGE, TINY, Dimension
+from equipoise.quantities import clean, clean_place
 
-DIGITS, SHORT = 12, 9
-"""Significant ones that are kept, and those of a number that somebody may have meant in SI."""
-MEANT, NEAR = 6, 1e-8
-"""Digits of a number that is meant where another differs by no more than this share from it: what a
-program finds at a limit of 100 mm is 99.999999637 mm."""
 DRAGGED = 7
 """Those of a place to which something is dragged, over the size of the machine: a page knows places
 as 32-bit floats, and what it shows as 100 mm is to be that in a file, not 99.999999637 mm."""
-OTHER: dict[Dimension, str] = {"angle": "deg", "angular speed": "rpm"}
-"""Units of files that are no power of ten of the SI unit."""
-
-
-def clean(value: float, dimension: Dimension | None = None) -> float:
-    """A value (SI units, radians) of 12 digits, in the unit in which a file has it."""
-    plain = float(f"{value:.{DIGITS}g}")
-    if dimension is None or not TINY < abs(value) < HUGE:
-        return plain
-    unit = chosen_unit(dimension) or OTHER.get(dimension, SI[dimension])
-    meant = parse(rounded(value, unit, MEANT), dimension)
-    if abs(meant - value) <= NEAR * abs(value):
-        return meant
-    short = plain == float(f"{value:.{SHORT}g}")
-    return plain if short else parse(rounded(value, unit, DIGITS), dimension)
-
-
-def clean_place(place: complex, size: float = 0.0, digits: int = DIGITS) -> Vector:
-    """Coordinates (m) whose last digit is such a one of the longer of them, or of a size."""
-    longest = max(abs(place.real), abs(place.imag), size)
-    if not longest or not isfinite(longest):
-        return place.real, place.imag
-    last = digits - 1 - floor(log10(longest))
-    return round(place.real, last) + 0.0, round(place.imag, last) + 0.0
 
 
 @dataclass(frozen=True)

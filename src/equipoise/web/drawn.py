@@ -12,10 +12,10 @@ from equipoise.errors import EquipoiseError, MobilityError, UsageError, to_paste
 from equipoise.i18n import Note
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import FRAME, Machine
-from equipoise.quantities import display
+from equipoise.quantities import DIGITS, display
 from equipoise.symbols.scene import Drive, Guide, Scene, Wheel, bodies_of, wheels_of
 from equipoise.web.block import Block, Values
-from equipoise.web.design import DIGITS, Design
+from equipoise.web.design import Design
 from equipoise.web.drawing import moves_of, stage_of
 from equipoise.web.edits import Solved, edited, settled, solved
 from equipoise.web.fields import Field, Scale

@@ -18,9 +18,10 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, Position, Vector
 from equipoise.mechanism.motion import Motion
+from equipoise.quantities import clean, clean_place
 from equipoise.results.analysis import LEAST_ANGLES, Analysis, analyze
 from equipoise.symbols.scene import Scene
-from equipoise.web.design import DRAGGED, Design, clean, clean_place
+from equipoise.web.design import DRAGGED, Design
 from equipoise.web.fields import fields_of
 from equipoise.web.measures import held
 from equipoise.web.messages import Change, Drag, Setting

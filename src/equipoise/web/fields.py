@@ -17,6 +17,8 @@ from equipoise.mechanism.mounts import OF_AXIS, OF_POINT
 from equipoise.quantities import (
     Display,
     chosen_unit,
+    clean,
+    clean_place,
     format_exact,
     in_unit,
     parse,
@@ -24,7 +26,7 @@ from equipoise.quantities import (
     typeset,
 )
 from equipoise.quantities.units import KINDS, Dimension
-from equipoise.web.design import Design, clean, clean_place, pin_of
+from equipoise.web.design import Design, pin_of
 from equipoise.web.measures import Measure, measures_of
 
 Put = Callable[[Any, float], Any]

@@ -11,9 +11,11 @@ from typing import Any
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.model import FRAME, Slider
+from equipoise.mechanism.outline import Pose, length_between, pose_between
+from equipoise.quantities import DIGITS, clean, clean_place
 from equipoise.web.adding import TOGETHER, check_point
-from equipoise.web.design import DIGITS, DRAGGED, clean, clean_place
-from equipoise.web.sketch import Pose, Sketch, length_between, pose_between
+from equipoise.web.design import DRAGGED
+from equipoise.web.sketch import Sketch
 
 
 def moved(sketch: Sketch, point: str, to: complex, digits: int = DRAGGED) -> Sketch:

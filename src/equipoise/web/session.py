@@ -13,6 +13,7 @@ from threading import Lock
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
 from equipoise.i18n import Note, said, say, speaking
+from equipoise.mechanism.outline import USUAL_SIZE
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
 from equipoise.schema.files import LARGEST
@@ -39,7 +40,7 @@ from equipoise.web.openings import opened_example, opened_text, titles, tool_tit
 from equipoise.web.replies import Reply, refused
 from equipoise.web.seen import ASKED, Seen
 from equipoise.web.shaken import more, response_of
-from equipoise.web.sketch import USUAL_SIZE, Sketch
+from equipoise.web.sketch import Sketch
 from equipoise.web.state import first_of, state_of
 from equipoise.web.words import language_of, spoken_in
 

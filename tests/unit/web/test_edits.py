@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.quantities import format_exact, showing
-from equipoise.web.design import clean
+from equipoise.quantities import clean, format_exact, showing
 from equipoise.web.edits import edited, movable
 from equipoise.web.messages import Drag
 from unit.web.pages import ask, counterweight, edit, move, opened, refusal
