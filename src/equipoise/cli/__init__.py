@@ -148,8 +148,14 @@ def _one_line(text: str) -> str:
     return "".join(map(printable, text))
 
 
+ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+"""What libraries of linear algebra read when NumPy is imported: how many threads they may take."""
+
+
 def main() -> None:
     """Entry point of the command `equipoise`."""
+    for name in ONE_THREAD:  # for matrices as small as ours more threads only wait for each other
+        os.environ.setdefault(name, "1")
     gc.disable()  # collecting garbage between imports takes a twentieth of a short command's time
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a title may have letters the terminal lacks

@@ -38,6 +38,34 @@ FORMATS: Mapping[str, Format] = {
             "bodies, pins, sliders, gears, springs, constant loads, rows, the support on its "
             "mounts, the drive at constant speed",
         ),
+        Format(
+            "dxf",
+            ".dxf",
+            "drawing (DXF)",
+            "the linkage at a crank angle, paths of its points, pitch circles of gears, parts to "
+            "be cut: outlines and holes of links made of bodies, and of counterweights; in mm",
+            needs="ezdxf",
+        ),
+        Format(
+            "svg",
+            ".svg",
+            "parts (SVG)",
+            "the same parts to be cut, at 1:1",
+        ),
+        Format(
+            "xlsx",
+            ".xlsx",
+            "Excel",
+            "links and points, figures of every output, all signals over crank angle with their "
+            "units, charts of them, and what to change where it was balanced",
+            needs="xlsxwriter",
+        ),
+        Format(
+            "mat",
+            ".mat",
+            "MATLAB",
+            "a struct of links and points, figures of every output, and all signals with units",
+        ),
         Format("csv", ".csv", "CSV", "all designs of a store", of_store=True),
         Format("parquet", ".parquet", "Parquet", "all designs of a store", of_store=True),
     )
