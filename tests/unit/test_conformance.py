@@ -6,7 +6,7 @@ Write it anew with ``PYTHONPATH=tests python tests/unit/test_conformance.py``.
 from __future__ import annotations
 
 import importlib
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -39,10 +39,10 @@ NUMBERS = (
     "| case | quantity | where | printed | computed | deviation | why |\n"
     "|---|---|---|---|---|---|---|"
 )
-EQUATIONS = (
-    "| equations | what they give | difference at most, of the largest value |\n|---|---|---|"
-)
-PROGRAMS = "| case | compared | difference at most, of the largest value |\n|---|---|---|"
+AT_MOST = "difference at most, of the largest value"
+EQUATIONS = f"| equations | what they give | {AT_MOST} |\n|---|---|---|"
+PROGRAMS = f"| case | compared | {AT_MOST} |\n|---|---|---|"
+MACHINES = f"| case | {AT_MOST} |\n|---|---|"
 SLIPS = "| source | where | slip in print, and what holds |\n|---|---|---|"
 
 
@@ -90,23 +90,32 @@ def counts(rows: Rows) -> dict[str, int]:
 def sections(rows: Sequence[Printed | Agreement]) -> Iterator[str]:
     """The tables of a source."""
     tables: dict[str, list[str]] = defaultdict(list)
+    often = Counter(row.what for row in rows)
     for row in rows:
         if isinstance(row, Printed):
             tables[NUMBERS].append(number_line(row))
         elif row.place:
-            tables[EQUATIONS].append(f"| {row.place} | {row.what} | {row.within:.0e} |")
+            tables[EQUATIONS].append(f"| {row.place} | {row.what} | {power(row.within)} |")
+        elif often[row.what] == 1:
+            tables[PROGRAMS].append(f"| {row.case} | {row.what} | {power(row.within)} |")
         else:
-            tables[PROGRAMS].append(f"| {row.case} | {row.what} | {row.within:.0e} |")
-    for head in (NUMBERS, EQUATIONS, PROGRAMS):
-        if tables[head]:
-            yield "\n".join([head, *tables[head]]) + "\n"
+            head = f"Compared: {row.what}.\n\n{MACHINES}"
+            tables[head].append(f"| {row.case} | {power(row.within)} |")
+    for head, lines in tables.items():
+        yield "\n".join([head, *lines]) + "\n"
+
+
+def power(within: float) -> str:
+    """A small number, such as 2e-8."""
+    return f"{within:.0e}".replace("e-0", "e-")
 
 
 def number_line(row: Printed) -> str:
     """A printed number as a line of its table."""
     what = f"{row.what}, {row.unit}" if row.unit else row.what
     why = f"slip: {row.why}" if row.slip else row.why if row.differs else ""
-    cells = (row.case, what, row.place, row.printed or "drawn", row.told, deviation(row), why)
+    told = row.told if row.computed or not row.within else f"± {power(row.within)}"
+    cells = (row.case, what, row.place, row.printed or "drawn", told, deviation(row), why)
     return f"| {' | '.join(cells)} |"
 
 
@@ -141,8 +150,7 @@ def anchor(name: str) -> str:
 
 
 def test_page_is_what_the_tests_declare() -> None:
-    """Write it anew as told above."""
-    assert PAGE.read_text(encoding="utf-8") == page(declared())
+    assert PAGE.read_text(encoding="utf-8") == page(declared()), __doc__
 
 
 def row(printed: str, computed: str = "", **more: Any) -> Printed:
