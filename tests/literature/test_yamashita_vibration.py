@@ -301,7 +301,8 @@ HALF_SWING = "they take half of the measured swing for a sine; orders above add 
 @published(
     YAMASHITA,
     *(
-        Printed("yamashita-rig", f"{what} of the tilt", "section 4-3, reason 4", printed, computed, unit, within,
+        Printed("yamashita-rig", f"{what} of the tilt", "section 4-3, reason 4",
+                printed, computed, unit, within,
             HALF_SWING, of=what)
         for what, printed, computed, unit, within in (
             ("displacement", "0.004", "0.0042", "rad", 3e-4),
