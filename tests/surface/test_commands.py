@@ -52,19 +52,8 @@ from surface.running import (
 ROOT = Path(__file__).parents[2]
 COMMANDS = (
     *["analyze", "animate", "balance", "best", "check", "completion", "decay", "examples"],
-    *[
-        "export",
-        "exposure",
-        "modes",
-        "new",
-        "plant",
-        "plot",
-        "report",
-        "respond",
-        "resume",
-        "schema",
-    ],
-    *["search", "serve", "simulate", "sweep", "tolerance", "tool"],
+    *["export", "exposure", "mcp", "modes", "new", "plant", "plot", "report", "respond"],
+    *["resume", "schema", "search", "serve", "simulate", "sweep", "tolerance", "tool"],
 )
 LINK_KEYS = ["angle", "angular_velocity", "angular_acceleration"]
 POINT_KEYS = ["x", "y", "vx", "vy", "ax", "ay"]
@@ -171,6 +160,7 @@ OPTIONS = {
         *["INPUT", "--duration", "--idle", "--racing", "--bands", "--weighted", "--single-axis"],
         *["--periodic", *DRAWN],
     ],
+    "mcp": ["--folder"],
     "modes": ["FILE", "--model", *DRAWN],
     "new": ["FILE", "--tool", "--study"],
     "plant": ["FILE", "--speed", "--crank-zero", "--angles", *OUTPUTS],

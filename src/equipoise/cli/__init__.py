@@ -46,6 +46,7 @@ MODULES = {
     "linkage:planting": ["plant"],
     "measured": ["decay", "exposure"],
     "pictures:app": ["plot"],
+    "protocol": ["mcp"],
     "reports": ["animate", "report"],
     "sweep": ["resume", "sweep", "tolerance"],
 }
@@ -106,7 +107,7 @@ SIGN = 5.0
 def _signs_of_life(given: Sequence[str]) -> Iterator[None]:
     """Tell in a line now and then that a command still computes, where nothing else tells it."""
     silent = os.environ.get("EQUIPOISE_PROGRESS") == "off" or sys.stderr is None
-    if silent or given[:1] == ["serve"]:  # which waits for its pages
+    if silent or given[:1] in (["serve"], ["mcp"]):  # which wait
         yield
         return
     ended, begun = Event(), monotonic()
