@@ -133,6 +133,7 @@ export class App {
       saved: (name) => this.keeping.saved(name),
       line: (up) => this.line(up),
       waiting: (on) => set(this.root, { "data-waiting": on }),
+      calm: (on) => (on ? this.frames.settle(0) : this.settled(false)),
     };
     this.talk = new Conversation(wire, events, shelf);
     el.append(this.root);
@@ -381,8 +382,16 @@ export class App {
 
   /** Bring numbers and words up to date: after painting, and more seldom during a drag. */
   private spell(): void {
-    const { state } = this;
-    if (!state) return;
+    if (this.state) this.write(this.state);
+    this.settled(this.talk.calm);
+  }
+
+  /** Whether the page shows all that there is to what was done last. */
+  private settled(on: boolean): void {
+    if (on !== this.root.hasAttribute("data-settled")) set(this.root, { "data-settled": on });
+  }
+
+  private write(state: State): void {
     this.name();
     this.readings.show(state);
     this.inspector.show(state);

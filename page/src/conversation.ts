@@ -27,6 +27,8 @@ export interface Events {
   line(up: boolean): void;
   /** An answer takes longer than a reader waits without a sign. */
   waiting(on: boolean): void;
+  /** Something was asked, or all that was asked is answered. */
+  calm(on: boolean): void;
 }
 
 /** Hears that something was done, or why not. */
@@ -61,6 +63,8 @@ export class Conversation {
   private waiting: Question | null = null;
   private readonly aside = new Map<number, Question>();
   private readonly story: Story;
+  /** The last question of which all is told. */
+  private whole = 0;
   private late = 0;
   private repeating = false;
 
@@ -86,6 +90,11 @@ export class Conversation {
   /** Whether a question waits for its answer. */
   get busy(): boolean {
     return !!this.flight || this.queue.length > 0;
+  }
+
+  /** Whether everything that was asked has all its answers. */
+  get calm(): boolean {
+    return !this.busy && !this.waiting && !this.aside.size && this.whole >= this.seq;
   }
 
   /** Ask; every question gets its answer, in this order. */
@@ -116,6 +125,7 @@ export class Conversation {
     // What follows a balance in a story was done to its result.
     if (SLOW.has(question.asked.type) && !this.repeating) this.aside.set(question.seq, question);
     else this.flight = question;
+    this.events.calm(false);
     if (this.flight) this.late ||= window.setTimeout(() => this.events.waiting(true), PATIENCE);
     this.wire.send({ ...question.asked, seq: question.seq });
     this.next();
@@ -169,6 +179,9 @@ export class Conversation {
       case "file":
         this.file(told, buffers[0]);
         return this.end(told.seq, null);
+      case "told":
+        this.whole = Math.max(this.whole, told.seq);
+        return this.events.calm(this.calm);
       case "lost":
       case "back":
         return this.line(told.type === "back");
@@ -212,8 +225,11 @@ export class Conversation {
   }
 
   private state(state: State): void {
+    // What was tried since is computed while this is drawn.
+    const ahead = this.waiting !== null && this.flight?.seq === state.seq && !this.queue.length;
+    if (ahead) this.heard(state);
     this.events.state(state);
-    this.heard(state);
+    if (!ahead) this.heard(state);
   }
 
   /** A question was answered by what is open now. */
