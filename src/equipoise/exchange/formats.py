@@ -46,6 +46,12 @@ FORMATS: Mapping[str, Format] = {
             "rows, the support on its mounts in the plane, the drive at constant speed",
         ),
         Format(
+            "urdf",
+            ".urdf",
+            "robots (URDF)",
+            "the tree: links with masses, hinges, slides, gears of two joints; loops are cut",
+        ),
+        Format(
             "dxf",
             ".dxf",
             "drawing (DXF)",
