@@ -201,7 +201,7 @@ def _listed(names: list[str]) -> str:
     return Note("{names} and {more} more", names=shown, more=more) if more > 0 else shown
 
 
-EXTRAS = {"distributed": "cluster", "av": "video"}
+EXTRAS = {"distributed": "cluster", "av": "video", "ezdxf": "exchange", "svgelements": "exchange"}
 """Libraries that come with another extra than ``studies``."""
 
 

@@ -41,6 +41,7 @@ MODULES = {
     "designs": ["best", "export", "search"],
     "files": ["check", "examples", "new", "schema", "serve"],
     "handheld:app": ["tool"],
+    "importing:import_file": ["import"],
     "linkage": ["analyze", "modes", "respond", "simulate"],
     "linkage:planting": ["plant"],
     "measured": ["decay", "exposure"],

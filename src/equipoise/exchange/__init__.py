@@ -1,0 +1,1 @@
+"""Machines as files of other programs."""
