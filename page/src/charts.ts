@@ -37,6 +37,8 @@ export class Charts {
   private state: State | null = null;
   /** An unfinished machine has nothing to draw. */
   private asleep = false;
+  /** Of a design that is drawn pale. */
+  private ghost: Numbers | null = null;
   private heard: [ResponseMessage, Numbers] | null = null;
   private at = 0;
   private width = 0;
@@ -116,6 +118,12 @@ export class Charts {
     const first = !this.heard;
     this.heard = [message, numbers];
     this.answer(first);
+  }
+
+  /** Draw the path of a pale design behind that of the machine. */
+  pale(numbers: Numbers): void {
+    this.ghost = numbers;
+    if (this.state && !this.asleep) this.drawPath(this.state);
   }
 
   /** The joint whose force is shown, and the point whose path is, where there is one of that name. */
@@ -232,11 +240,14 @@ export class Charts {
     const name = this.pathOf.value;
     // Without speed nothing goes over the ground: then the path is that on the machine.
     const over = name.startsWith("ground.") && state.numbers.has(name);
-    const points = state.numbers.get(over ? name : `place.${name.replace("ground.", "")}`);
+    const array = over ? name : `place.${name.replace("ground.", "")}`;
+    const points = state.numbers.get(array);
     if (!points) return;
     const every = state.angles / (24 * state.turns);
     const level = over ? state.planting?.surface : undefined;
     const traces: Trace[] = [{ points, kind: "now", closed: !over }];
+    const was = this.ghost?.get(array);
+    if (was) traces.unshift({ points: was, kind: "before", closed: !over });
     this.path.show({ title: say("Path"), ...lengths(), traces, every, level, least: 1e-6 });
   }
 }

@@ -26,6 +26,8 @@ export interface Events {
   line(up: boolean): void;
   /** An answer takes longer than a reader waits without a sign. */
   waiting(on: boolean): void;
+  /** Something was asked, or all that was asked is answered. */
+  calm(on: boolean): void;
 }
 
 /** Hears that something was done, or why not. */
@@ -60,6 +62,8 @@ export class Conversation {
   private waiting: Question | null = null;
   private readonly aside = new Map<number, Question>();
   private readonly story: Story;
+  /** The last question of which all is told. */
+  private whole = 0;
   private late = 0;
   private repeating = false;
 
@@ -85,6 +89,11 @@ export class Conversation {
   /** Whether a question waits for its answer. */
   get busy(): boolean {
     return !!this.flight || this.queue.length > 0;
+  }
+
+  /** Whether everything that was asked has all its answers. */
+  get calm(): boolean {
+    return !this.busy && !this.waiting && !this.aside.size && this.whole >= this.seq;
   }
 
   /** Ask; every question gets its answer, in this order. */
@@ -115,6 +124,7 @@ export class Conversation {
     // What follows a balance in a story was done to its result.
     if (SLOW.has(question.asked.type) && !this.repeating) this.aside.set(question.seq, question);
     else this.flight = question;
+    this.events.calm(false);
     if (this.flight) this.late ||= window.setTimeout(() => this.events.waiting(true), PATIENCE);
     this.wire.send({ ...question.asked, seq: question.seq });
     this.next();
@@ -165,6 +175,9 @@ export class Conversation {
       case "file":
         this.file(told, buffers[0]);
         return this.end(told.seq, null);
+      case "told":
+        this.whole = Math.max(this.whole, told.seq);
+        return this.events.calm(this.calm);
       case "lost":
       case "back":
         return this.line(told.type === "back");

@@ -2,10 +2,11 @@
 
 import type { Conversation } from "./conversation";
 import { h } from "./dom";
-import type { Asked, Hello, State } from "./protocol";
+import type { Asked, Hello } from "./protocol";
 import { question } from "./question";
 import { fragment, LONGEST, read } from "./share";
 import type { Told } from "./story";
+import type { Opened } from "./toolbar";
 import { say } from "./words";
 
 interface Page {
@@ -13,7 +14,7 @@ interface Page {
   talk: Conversation;
   /** Whether the page is all there is in its window. */
   full: boolean;
-  state(): State | null;
+  shown(): Opened | null;
   say(text: string, bad: boolean): void;
   open(asked: Asked, name: string): void;
 }
@@ -41,7 +42,7 @@ export class Keeping {
 
   /** Whether there is a file that does not hold what is shown. */
   private get unsaved(): boolean {
-    return this.page.state()?.file?.saved === false;
+    return this.page.shown()?.file?.saved === false;
   }
 
   /** A page begins: by what its address holds, or by what was done here; tells whether it has. */
@@ -56,7 +57,7 @@ export class Keeping {
 
   /** Whether another machine may take the place of this one. */
   async mayLeave(name: string): Promise<boolean> {
-    const state = this.page.state();
+    const state = this.page.shown();
     if (!state?.undo || this.asking) return !this.asking;
     this.asking = true;
     const text = this.unsaved
@@ -76,7 +77,7 @@ export class Keeping {
   /** Write the file; where there is none, the model is downloaded. */
   async save(): Promise<void> {
     const { page } = this;
-    const file = page.state()?.file;
+    const file = page.shown()?.file;
     page.talk.release();
     if (!file) return page.talk.ask({ type: "download", kind: "model" });
     if (file.saved) return page.say(say("{name} is saved", { name: file.name }), false);

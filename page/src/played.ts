@@ -34,6 +34,11 @@ export class Played implements Wire {
 
   private answer(asked: Asked, seq: number): void {
     if (asked.type === "outputs") this.wanted = asked.names;
+    this.reply(asked, seq);
+    this.say({ type: "told", seq }, []);
+  }
+
+  private reply(asked: Asked, seq: number): void {
     if (asked.type === "speak") this.tell(["spoken"], seq);
     else if (asked.type === "outputs") this.tell(["state"], seq);
     else if (asked.type === "ready")

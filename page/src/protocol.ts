@@ -551,6 +551,8 @@ export type Told =
   | { type: "saved"; seq: number; name: string; base: string; text: string }
   | { type: "busy"; seq?: number; what: string }
   | { type: "file"; seq: number; name: string; mime: string }
+  /** All answers to a question have come, those too that take longer. */
+  | { type: "told"; seq: number }
   /** Said by the page's own transport, never by a server. */
   | { type: "lost" | "back" };
 

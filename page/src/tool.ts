@@ -55,11 +55,6 @@ export class ToolView {
     this.watcher.observe(this.charts);
   }
 
-  /** The tool that is shown, if one is. */
-  get shown(): ToolMessage | null {
-    return this.tool;
-  }
-
   /** A sentence about what cannot be; it goes with the next change. */
   say(message: string): void {
     write(this.wrong, message);

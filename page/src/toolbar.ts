@@ -14,6 +14,9 @@ const ICONS = {
   open: "M2 12.5v-9h4l1.5 2H14v7z",
 };
 
+/** What is told of whatever is open. */
+export type Opened = Pick<State, "name" | "undo" | "redo" | "has_forces" | "file">;
+
 export interface Commands {
   example(name: string): void;
   gallery(): void;
@@ -74,7 +77,7 @@ export class Toolbar {
     this.examples.replaceChildren(...options(examples), group);
   }
 
-  show(state: Pick<State, "name" | "undo" | "redo" | "has_forces" | "file">): void {
+  show(state: Opened): void {
     const known = [...this.examples.options].some(
       (option) => option !== this.own && option.value === state.name,
     );

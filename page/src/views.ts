@@ -43,12 +43,6 @@ export class Views {
     this.offer();
   }
 
-  /** What is shown in place of a machine: its steps can be undone. */
-  get other(): Pick<ToolMessage, "undo" | "redo"> | null {
-    if (!this.study.root.hidden) return { undo: null, redo: null };
-    return this.tool.shown;
-  }
-
   machine(): void {
     this.turn(null);
   }

@@ -16,7 +16,7 @@ import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, expect
 
 from browser.live import ROOT, SCREENSHOTS, Live
-from support.chromium import chromium, path_of_chromium, serving
+from support.chromium import chromium, path_of_chromium, served
 
 SECONDS = 15
 """The longest that anything may take on a busy machine."""
@@ -30,12 +30,18 @@ def unavailable(reason: str) -> None:
 
 
 @pytest.fixture(scope="session")
-def address() -> Iterator[str]:
-    """The address of a server with a machine."""
+def server() -> Iterator[tuple[str, int]]:
+    """A server with a machine: its address, and the number of its process."""
     if not runpy.run_path(str(ROOT / "page" / "bundle.py"))["is_fresh"]():
         unavailable("there is no bundle of the live page, or an old one: make page")
-    with serving("yamashita-1") as address:
-        yield address
+    with served("yamashita-1") as found:
+        yield found
+
+
+@pytest.fixture(scope="session")
+def address(server: tuple[str, int]) -> str:
+    """The address of a server with a machine."""
+    return server[0]
 
 
 @pytest.fixture(scope="module")  # longer, and Playwright's event loop would disturb other tests

@@ -33,8 +33,13 @@ class Live:
         live = cls(page)
         joint = page.locator("[data-kind=point][data-name=B]")  # whatever its language calls it
         expect(joint).to_have_attribute("aria-valuetext", re.compile("mm"))
+        live.settled()
         page.evaluate("new Promise(done => setTimeout(() => requestAnimationFrame(done), 50))")
         return live
+
+    def settled(self) -> None:
+        """Wait until the page shows all that there is to what was done last."""
+        expect(self.page.locator(".equipoise")).to_have_attribute("data-settled", "")
 
     # -- parts of it -------------------------------------------------------------------------------
 
@@ -58,25 +63,25 @@ class Live:
 
     def place(self, handle: Locator) -> tuple[float, float]:
         """Return where the page says that a handle is, mm."""
+        self.settled()
         x, y = NUMBER.findall((handle.get_attribute("aria-valuetext") or "").replace("−", "-"))
         return float(x), float(y)
 
     def comes_to(self, handle: Locator, place: tuple[float, float], within: float) -> None:
-        """Wait until the page says that a handle is at a place, mm; an answer may be on its way."""
-        for _ in range(250):
-            if self.place(handle) == pytest.approx(place, abs=within):
-                return
-            self.page.wait_for_timeout(20)
+        """The page says that a handle is at a place, mm."""
         assert self.place(handle) == pytest.approx(place, abs=within)
 
     def spot(self, handle: Locator) -> tuple[float, float]:
         """Return where a handle is on the screen, pixels."""
+        self.settled()
         box = handle.bounding_box()
         assert box is not None
         return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
     def findings(self) -> list[str]:
-        """Return the serious and critical findings of axe."""
+        """Return the serious and critical findings of axe, of a report too."""
+        if self.page.locator(".equipoise").count():
+            self.settled()
         self.page.evaluate(AXE.read_text(encoding="utf-8"))
         found = self.page.evaluate("axe.run(document, {resultTypes: ['violations']})")
         return [
@@ -87,6 +92,7 @@ class Live:
 
     def download(self, name: str) -> tuple[str, str]:
         """Choose one of the downloads, and return its file's name and text."""
+        self.settled()
         self.page.get_by_text("Download", exact=True).click()
         with self.page.expect_download() as coming:
             self.button(name).click()
@@ -101,6 +107,7 @@ class Live:
     def type(self, field: Locator, text: str) -> None:
         field.fill(text)
         field.press("Enter")
+        self.settled()
 
     def drag(self, handle: Locator, *ways: tuple[float, float]) -> None:
         """Drag a handle with the mouse by each of the ways from where it was, and let it go."""
@@ -112,6 +119,7 @@ class Live:
             mouse.move(x + dx, y + dy, steps=10)
             self.page.wait_for_timeout(100)
         mouse.up()
+        self.settled()
 
     def drop(self, name: str, text: str, times: int = 1) -> None:
         """Drop a file on the page, of a text that is repeated."""

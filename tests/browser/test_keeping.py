@@ -91,6 +91,7 @@ def test_a_link_holds_the_model(live: Live, new_page: Callable[..., Page]) -> No
     expect(there.field("crank mass")).to_have_value("300 g")
     assert there.machine() == eq.load("yamashita-1").with_link("crank", mass=0.3)
     figures = ".readings .value"
+    live.settled()
     expect(there.page.locator(figures)).to_have_text(live.page.locator(figures).all_inner_texts())
     assert "#" not in there.page.url  # a reload goes on with what is done from here
     there.page.goto(link[:-30])

@@ -40,6 +40,7 @@ def test_the_page(new_page: Callable[..., Page], address: str, width: int) -> No
     live = Live.open(new_page(viewport={"width": width, "height": 900}), address)
     live.button("Balance").click()
     expect(live.button("Take back")).to_be_visible()
+    live.settled()
     for scheme in SCHEMES:
         live.page.emulate_media(color_scheme=scheme)
         live.page.screenshot(path=SCREENSHOTS / f"page-{width}-{scheme}.png", full_page=True)

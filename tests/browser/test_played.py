@@ -52,6 +52,7 @@ def test_a_file_plays_without_a_server(
 ) -> None:
     live.type(live.field("crank mass"), "300 g")
     expect(live.button("Undo")).to_be_enabled()
+    live.settled()
     figures = live.page.locator(".readings .value").all_inner_texts()
     path = tmp_path / "played.html"
     path.write_bytes(menu(live, "Page that plays without a server")[1])

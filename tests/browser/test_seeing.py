@@ -65,6 +65,12 @@ def test_variants_are_drawn_pale_and_compared(live: Live) -> None:
     pale = page.locator(".linkage .pale .body").first.bounding_box()
     now = page.locator(".linkage .signs .body").first.bounding_box()
     assert pale and now and pale["width"] != pytest.approx(now["width"], abs=0.5)
+    chart = page.get_by_role("figure", name="Path", exact=True)
+    drawn = [
+        page.locator(f".linkage .{one} .path").first.bounding_box() for one in ("pale", "paths")
+    ]
+    drawn += [chart.locator(f".{one}").bounding_box() for one in ("before", "now")]
+    assert all(drawn) and len({round(one["width"], 1) for one in drawn if one}) == len(drawn)
     expect(page.locator(".readings .was").first).not_to_be_empty()
     name = table.get_by_role("textbox", name="Name of variant A")
     name.fill("as built")

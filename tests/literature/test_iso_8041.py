@@ -1,14 +1,5 @@
 """ISO 8041-1: the design goal of Wh and the tolerances about it, at many sampling rates.
 
-Source: ISO 8041-1:2017, "Human response to vibration - Measuring instrumentation - Part 1: General
-purpose vibration meters": Table 1 (reference frequency and nominal range), Table 3 (parameters),
-Tables 4 and 5 (tolerances), Table B.6 (design goal of Wh).
-
-The standard itself is not at hand.  Table 3 is read in the reference manual of the Larson Davis
-HVM200, Table 3.1 (of the edition of 2005); Tables 1, 4, 5 and B.6 in the test data of phonometry
-(github.com/jmrplens/phonometry, tests/reference_data), transcribed from the standard.  Both agree
-with each other and with Table A.2 of ISO 5349-1.
-
 Tolerances: the factors to the last of four printed digits.  Signals: those of Table 5, which is the
 point.  Two claims of `equipoise.exposure.spectra` are measured besides: a steady sine is read to
 1 % from one second, and to 0.1 % from eight.
@@ -23,17 +14,22 @@ import pytest
 
 from equipoise.exposure.spectra import LEAST_DURATION, LEAST_RATE, WHOLE_RATE, weigh_signal
 from equipoise.exposure.weighting import factor, weighting
+from support.conformance import Printed, published
+from support.sources import ISO_8041
 
 DESIGN_GOAL = {
-    -1: 0.01586, 0: 0.02514, 1: 0.03985, 2: 0.06314, 3: 0.09992, 4: 0.1576, 5: 0.2461, 6: 0.3754,
-    7: 0.545, 8: 0.7272, 9: 0.8731, 10: 0.9514, 11: 0.9576, 12: 0.8958, 13: 0.782, 14: 0.6471,
-    15: 0.5192, 16: 0.4111, 17: 0.3244, 18: 0.256, 19: 0.2024, 20: 0.1602, 21: 0.127, 22: 0.1007,
-    23: 0.07988, 24: 0.06338, 25: 0.05026, 26: 0.0398, 27: 0.03137, 28: 0.02447, 29: 0.01862,
-    30: 0.01346, 31: 0.00894, 32: 0.005359, 33: 0.00295, 34: 0.001544, 35: 0.0007878, 36: 0.0003978,
+    -1: "0.01586", 0: "0.02514", 1: "0.03985", 2: "0.06314", 3: "0.09992",
+    4: "0.1576", 5: "0.2461", 6: "0.3754", 7: "0.5450", 8: "0.7272",
+    9: "0.8731", 10: "0.9514", 11: "0.9576", 12: "0.8958", 13: "0.7820",
+    14: "0.6471", 15: "0.5192", 16: "0.4111", 17: "0.3244", 18: "0.2560",
+    19: "0.2024", 20: "0.1602", 21: "0.1270", 22: "0.1007", 23: "0.07988",
+    24: "0.06338", 25: "0.05026", 26: "0.03980", 27: "0.03137", 28: "0.02447",
+    29: "0.01862", 30: "0.01346", 31: "0.008940", 32: "0.005359", 33: "0.002950",
+    34: "0.001544", 35: "0.0007878", 36: "0.0003978",
 }  # fmt: skip
 """Table B.6: n of the band with its middle at 10^(n/10) Hz, factor."""
 TRANSITIONS = (10**0.6, 10**1.0, 10**2.9, 10**3.3)
-"""Hz, Table 4, row Wh: 3.981, 10, 794.3, 1995."""
+"""Hz, Table 4, row Wh."""
 OUTSIDE, SKIRT, MIDDLE = (-1.0, 0.26), (-0.21, 0.26), (-0.11, 0.12)
 """Table 5: below the first and above the last transition; next to them; between the inner two."""
 PHASES = np.array([0.1, 1.2, 2.3])
@@ -57,18 +53,29 @@ def read(frequency: float, rate: float, duration: float) -> np.ndarray:
     return weigh_signal(time, sines).a_hw
 
 
-def test_design_goal() -> None:
-    for n, printed in DESIGN_GOAL.items():
-        assert float(f"{float(factor(10 ** (n / 10))):.4g}") == printed, n
+@published(
+    ISO_8041,
+    *(
+        Printed("Wh", f"factor of band n = {n}", "Table B.6", printed, of=10 ** (n / 10))
+        for n, printed in DESIGN_GOAL.items()
+    ),
+    Printed("Wh", "factor at 500 rad/s", "Table 1", "0.2020", of=500 / (2 * pi)),
+)
+def test_design_goal(row: Printed) -> float:
+    return float(factor(row.of))
 
 
-def test_reference_frequency_of_table_1() -> None:
-    """500 rad/s, 0.2020; of 10 m/s2 a meter shows 2.020 m/s2."""
-    assert round(10 * float(factor(500 / (2 * pi))), 3) == 2.020
-
-
-def test_transitions_as_printed() -> None:
-    assert [f"{edge:.4g}" for edge in TRANSITIONS] == ["3.981", "10", "794.3", "1995"]
+@published(
+    ISO_8041,
+    *(
+        Printed("Wh", f"transition {which}", "Table 4", printed, unit="Hz", of=edge)
+        for which, printed, edge in zip(
+            range(1, 5), ("3.981", "10", "794.3", "1995"), TRANSITIONS, strict=True
+        )
+    ),
+)
+def test_transitions_as_printed(row: Printed) -> float:
+    return row.of
 
 
 @pytest.mark.parametrize("rate", RATES)
@@ -78,7 +85,7 @@ def test_a_signal_is_weighted_within_the_tolerances_at_any_sampling_rate(rate: f
         frequency = 10 ** (n / 10)
         if 5.6 < frequency < 0.5 * rate - 2:
             low, high = tolerance(frequency)
-            off = read(frequency, rate, 2.0) / goal - 1
+            off = read(frequency, rate, 2.0) / float(goal) - 1
             assert np.all((off >= low) & (off <= high)), (n, off)
             assert np.all(np.abs(off) < 0.005), (n, off)
 

@@ -1,8 +1,6 @@
 """Lee and Kim: shaking moment of three planting mechanisms, and a geared counterweight against it.
 
-Source: J. K. Lee, K. U. Kim, "Dynamic balancing of crank-type transplanting mechanism of rice
-transplanter" (in Korean), Seoul National University, about 1990.  Numbers in parentheses are its
-equations.
+Numbers in parentheses are its equations; `support.sources` has the citation.
 
 Data: its Table 2, mechanisms A, B and C, as in the examples ``lee-kim-a`` to ``-c``; speeds of its
 Table 3; counterweights of its Table 4.  The example ``geared-counterweight`` is mechanism B with
@@ -18,24 +16,16 @@ With the counterweight: gear 4 on the rocker meets gear 5 on the counterweight's
 on the line of pivots beyond O4.  n is the counterweight's speed over the rocker's, and r_g5 =
 r_g4 / n.  r_g4 is not printed; 50 mm gives the energy of mechanism B.
 
-Tolerances.  Equations are met to 1e-10 of the largest value.  Energies are met to the recomputed
-figure's last digit; the paper's differ by 3 % for A and 0.4 % for B and C.  Peaks are printed in
-whole N m, and the assembly of the linkage is not: read from a figure, they are met to 5 %.  The
-equivalent speeds are printed to 10 rpm.
-
-Slips in print, each shown here by the equation that holds: (26) lacks a plus sign, n I_e +
-(1/n^3 - 1) I_g4.  In (30) the subscripts x and y are exchanged.  T_5 below (33) is I_g4 alpha_4 /
-n^3, as (26) has it, not / n^2.  In (36) the tooth force turns the rocker the other way.  F_14x1 in
-(37) must be solved with the load torque; it is not the reaction without counterweight.
-For mechanism A with counterweight Table 3 prints 15.41 J and 26.4 % less, which would be 16.58 J;
-recomputed 16.4 J.
-The peak with counterweight, 4 N m for B, is not met: 5.48 N m comes with the very energy that the
-paper prints.  The gears' inertia, part of (26), is not printed and would lower it.
+Tolerances.  Equations are met to 1e-10 of the largest value.  Peaks are printed in whole N m, and
+the assembly of the linkage is not: it is read from a figure.  Equivalent speeds are printed to
+10 rpm.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from math import cos, pi, radians, sin, tan
 from typing import Any
 
@@ -43,6 +33,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from support.conformance import Printed, equation, published
+from support.sources import LEE_KIM
 
 Array = np.ndarray[Any, Any]
 
@@ -309,6 +301,7 @@ def test_example_holds_table_2(name: str) -> None:
     assert machine.drive.speed == pytest.approx(RPM[name] * pi / 30)
 
 
+@equation(LEE_KIM, "(1) to (12)", "motion of all links", EXACT)
 @DIRECTIONS
 @MECHANISMS
 def test_motion_follows_equations_1_to_12(name: str, phi: float) -> None:
@@ -320,6 +313,7 @@ def test_motion_follows_equations_1_to_12(name: str, phi: float) -> None:
         close(found.angular_acceleration, turning.a)
 
 
+@equation(LEE_KIM, "(17)", "shaking moment", EXACT)
 @DIRECTIONS
 @MECHANISMS
 def test_shaking_moment_follows_equation_17(name: str, phi: float) -> None:
@@ -327,6 +321,7 @@ def test_shaking_moment_follows_equation_17(name: str, phi: float) -> None:
     close(found.shaking_moment, shaking_moment_17(found.motion, name, phi))
 
 
+@equation(LEE_KIM, "Table 1", "forces in all joints and drive torque by the nine equations", EXACT)
 @DIRECTIONS
 @MECHANISMS
 def test_joint_forces_follow_the_nine_equations(name: str, phi: float) -> None:
@@ -339,6 +334,7 @@ def test_joint_forces_follow_the_nine_equations(name: str, phi: float) -> None:
     close(found.drive_torque, wanted.torque)
 
 
+@equation(LEE_KIM, "(23)", "shaking moment from forces", EXACT)
 @DIRECTIONS
 @MECHANISMS
 def test_shaking_moment_from_forces_by_equation_23(name: str, phi: float) -> None:
@@ -349,34 +345,96 @@ def test_shaking_moment_from_forces_by_equation_23(name: str, phi: float) -> Non
     close(found.frame_moment, across - found.drive_torque)
 
 
-@pytest.mark.parametrize(
-    ("built", "name", "printed", "exact", "within", "rel"),
-    [
-        (mechanism, "a", 22.53, 23.2, 0.05, 0.031),
-        (mechanism, "b", 14.35, 14.31, 0.006, 0.004),
-        (mechanism, "c", 22.04, 21.98, 0.006, 0.004),
-        (geared, "a", 16.58, 16.4, 0.05, 0.015),  # from the printed 26.4 %
-        (geared, "b", 11.05, 11.05, 0.006, 0.001),
-        (geared, "c", 20.14, 20.64, 0.006, 0.03),
-    ],
-)
-def test_shaking_energy(
-    built: Any, name: str, printed: float, exact: float, within: float, rel: float
-) -> None:
-    """Table 3, J, without and with counterweight."""
-    found = shaking_energy(built(name))
-    assert found == pytest.approx(exact, abs=within)
-    assert found == pytest.approx(printed, rel=rel)
+def percent_less(name: str) -> float:
+    return 100 * (1 - shaking_energy(geared(name)) / shaking_energy(mechanism(name)))
 
 
-@pytest.mark.parametrize(
-    ("name", "printed", "exact"), [("a", 12, 12.2), ("b", 7, 7.3), ("c", 8, 7.9)]
-)
-def test_largest_shaking_moment(name: str, printed: float, exact: float) -> None:
-    """Section 5 and Fig. 13, N m."""
-    found = peak(mechanism(name))
-    assert found == pytest.approx(exact, abs=0.05)
-    assert found == pytest.approx(printed, rel=0.05)
+def equivalent_speed(name: str, measure: Callable[[eq.Machine], float]) -> float:
+    """The speed at which a measure is that at 300 rpm without counterweight, rpm."""
+    return 300 * (measure(mechanism(name)) / measure(geared(name))) ** 0.5
+
+
+def best_start(name: str) -> float:
+    """theta_e0 in 5 deg steps, deg; theirs is at most 2 % worse."""
+    starts = np.arange(0.0, 360.0, 5.0)
+    energies = [shaking_energy(geared(name, start=start), 720) for start in starts]
+    theirs = energies[int(TABLE_4[name].start % 360) // 5]
+    assert theirs <= 1.02 * min(energies)
+    return float(starts[np.argmin(energies)])
+
+
+FREE, GEARED = "without counterweight", "with their counterweight"
+DATA = "their own data give this"
+GEARS = "the gears' inertia, part of (26), is not printed"
+FLAT = "the minimum is flat: theirs is at most 2 % worse"
+TO_TEN = "rounded to 10 rpm"
+
+
+CASES = {name: f"lee-kim-{name}" for name in TABLE_2}
+
+
+def rows_of_table_3() -> Iterator[Printed]:
+    energies: list[tuple[str, Callable[[str], eq.Machine], str, str, str, float, str]] = [
+        ("a", mechanism, FREE, "22.53", "23.20", 0.7, DATA),
+        ("b", mechanism, FREE, "14.35", "14.31", 0.05, DATA),
+        ("c", mechanism, FREE, "22.04", "21.98", 0.07, DATA),
+        ("b", geared, GEARED, "11.05", "", 0.0, ""),
+        ("c", geared, GEARED, "20.14", "20.64", 0.6, DATA),
+    ]
+    for name, built, which, printed, computed, within, why in energies:
+        of = partial(lambda built, name: shaking_energy(built(name)), built, name)
+        what = f"shaking energy {which}"
+        yield Printed(CASES[name], what, "Table 3", printed, computed, "J", within, why, of=of)
+    yield Printed(
+        CASES["a"], f"shaking energy {GEARED}", "Table 3", "15.41", "16.42", "J", slip=True,
+        why="the printed 26.4 % would be 16.58 J", of=lambda: shaking_energy(geared("a")),
+    )  # fmt: skip
+    own = "by the printed energies it is 8.6 %"
+    for name, printed, computed, within, why in (
+        ("a", "26.4", "29.2", 3.0, DATA), ("b", "22.6", "22.7", 0.2, DATA),
+        ("c", "9.0", "6.1", 3.0, own),
+    ):  # fmt: skip
+        of = partial(percent_less, name)
+        what = "shaking energy less by"
+        yield Printed(CASES[name], what, "Table 3", printed, computed, "%", within, why, of=of)
+
+
+def rows_of_the_text() -> Iterator[Printed]:
+    peaks: list[tuple[str, Callable[[str], eq.Machine], str, str, str, float, str]] = [
+        ("a", mechanism, FREE, "12", "12.22", 0.0, ""),
+        ("b", mechanism, FREE, "7", "7.26", 0.0, ""),
+        ("c", mechanism, FREE, "8", "7.94", 0.0, ""),
+        ("a", geared, GEARED, "7", "7.52", 0.6, GEARS),
+        ("b", geared, GEARED, "4", "5.48", 1.5, GEARS),
+        ("c", geared, GEARED, "6", "6.81", 0.9, GEARS),
+    ]
+    for name, built, which, printed, computed, within, why in peaks:
+        of = partial(lambda built, name: peak(built(name)), built, name)
+        what = f"largest shaking moment {which}"
+        yield Printed(
+            name, what, "section 5, Fig. 13", printed, computed, "N m", within, why, of=of
+        )
+    for name, printed, computed in (("a", "360", "335"), ("b", "350", "355"), ("c", "280", "285")):
+        of, what = partial(best_start, name), "best start angle of the counterweight"
+        yield Printed(CASES[name], what, "Table 4", printed, computed, "deg", 25, FLAT, of=of)
+    for name, printed, computed, by_peak, peaks_told in (
+        ("a", "350", "356.7", "380", "382.3"), ("b", "350", "341.3", "400", "345.5"),
+        ("c", "310", "309.6", "340", "323.9"),
+    ):  # fmt: skip
+        of, what = partial(equivalent_speed, name), "speed of equal"
+        yield Printed(
+            CASES[name], f"{what} energy", "conclusions", printed, computed, "rpm", 10, TO_TEN,
+            of=partial(of, shaking_energy),
+        )  # fmt: skip
+        yield Printed(
+            CASES[name], f"{what} largest moment", "conclusions", by_peak, peaks_told, "rpm", 55,
+            GEARS, of=partial(of, peak),
+        )  # fmt: skip
+
+
+@published(LEE_KIM, *rows_of_table_3(), *rows_of_the_text())
+def test_printed_figures(row: Printed) -> float:
+    return row.of()
 
 
 @MECHANISMS
@@ -408,31 +466,12 @@ def test_geared_example_is_mechanism_b_with_table_4() -> None:
     assert example.frame["E"] == pytest.approx(built.frame["E"], abs=1e-6)
 
 
-def test_shaking_energy_of_the_geared_example() -> None:
-    """Table 3: 11.05 J for B, 22.6 % less than without."""
-    found = shaking_energy(eq.load("geared-counterweight"))
-    assert found == pytest.approx(11.05, abs=0.006)
-    assert 1 - found / shaking_energy(mechanism("b")) == pytest.approx(0.226, abs=0.003)
-
-
-@pytest.mark.parametrize(
-    ("name", "printed", "least", "most"),
-    [("a", 360, 335, 350), ("b", 350, 355, 355), ("c", 280, 285, 285)],
+@published(
+    LEE_KIM,
+    Printed("geared-counterweight", f"shaking energy {GEARED}", "Table 3", "11.05", unit="J"),
 )
-def test_best_start_angle(name: str, printed: float, least: float, most: float) -> None:
-    """Table 4, theta_e0 in 5 deg steps; the minimum is flat, theirs is within 25 deg."""
-    starts = np.arange(0.0, 360.0, 5.0)
-    energies = [shaking_energy(geared(name, start=start), 720) for start in starts]
-    best = float(starts[np.argmin(energies)])
-    assert least <= best <= most
-    assert abs((best - printed + 180) % 360 - 180) <= 25
-    theirs = energies[int(printed % 360) // 5]
-    assert theirs <= 1.02 * min(energies)
-
-
-def test_largest_shaking_moment_with_counterweight_of_b() -> None:
-    """Section 5 has 7 down to 4 N m; with gears of no mass it is 5.48 N m, 25 % less."""
-    assert peak(geared("b")) == pytest.approx(5.48, abs=0.006)
+def test_shaking_energy_of_the_geared_example() -> float:
+    return shaking_energy(eq.load("geared-counterweight"))
 
 
 def test_inertia_of_the_gears_brings_the_peak_of_b_nearer(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -443,16 +482,14 @@ def test_inertia_of_the_gears_brings_the_peak_of_b_nearer(monkeypatch: pytest.Mo
     assert peak(machine) == pytest.approx(4.70, abs=0.02)
 
 
-@pytest.mark.parametrize(("name", "printed"), [("a", 350), ("b", 350), ("c", 310)])
-def test_equivalent_speed(name: str, printed: float) -> None:
-    """Conclusions: the speed at which the energy is that at 300 rpm without counterweight."""
-    found = 300 * (shaking_energy(mechanism(name)) / shaking_energy(geared(name))) ** 0.5
-    assert found == pytest.approx(printed, abs=10)
-    machine = geared(name).with_drive(speed=found * pi / 30)
+@MECHANISMS
+def test_at_the_equivalent_speed_the_energy_is_that_at_300_rpm(name: str) -> None:
+    machine = geared(name).with_drive(speed=equivalent_speed(name, shaking_energy) * pi / 30)
     wanted = shaking_energy(mechanism(name).with_drive(speed=10 * pi))
     assert shaking_energy(machine) == pytest.approx(wanted, rel=1e-9)
 
 
+@equation(LEE_KIM, "(17), (26)", "shaking moment with the counterweight", EXACT)
 @DIRECTIONS
 @MECHANISMS
 def test_shaking_moment_follows_equations_17_and_26(name: str, phi: float) -> None:
@@ -483,6 +520,13 @@ def with_gears(name: str, phi: float, gear_inertia: float) -> eq.Machine:
     return machine
 
 
+@equation(
+    LEE_KIM,
+    "(26)",
+    "shaking moment with heavy gears",
+    EXACT,
+    "a plus sign is missing: n I_e + (1/n^3 - 1) I_g4",
+)
 @MECHANISMS
 def test_inertia_of_the_gears_in_equation_26(name: str) -> None:
     gear_inertia, phi = 3e-4, 35.0
@@ -524,6 +568,13 @@ def device(
 GEAR_INERTIAS = pytest.mark.parametrize("gear_inertia", [0.0, 3e-4])
 
 
+@equation(
+    LEE_KIM,
+    "(28) to (34)",
+    "force between the teeth",
+    EXACT,
+    "in (30) the subscripts x and y are exchanged; T_5 below (33) is I_g4 alpha_4 / n^3, not / n^2",
+)
 @GEAR_INERTIAS
 @DIRECTIONS
 @MECHANISMS
@@ -549,6 +600,14 @@ def test_teeth_follow_equation_31(name: str, phi: float, gear_inertia: float) ->
     close(mesh.radial, np.abs(mesh.tangential) * tan(pressure))
 
 
+@equation(
+    LEE_KIM,
+    "(28) to (40)",
+    "forces in all bearings and drive torque",
+    EXACT,
+    "in (36) the tooth force turns the rocker the other way; F_14x1 in (37) must be solved with "
+    "the load torque, it is not the reaction without counterweight",
+)
 @GEAR_INERTIAS
 @DIRECTIONS
 @MECHANISMS
@@ -570,6 +629,7 @@ def test_bearings_follow_equations_28_to_40(name: str, phi: float, gear_inertia:
     close(found.drive_torque, nine.torque)
 
 
+@equation(LEE_KIM, "(41)", "shaking moment from bearing forces", EXACT)
 @pytest.mark.parametrize("flank", ["Equipoise", "paper"])
 @DIRECTIONS
 @MECHANISMS

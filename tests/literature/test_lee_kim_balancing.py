@@ -12,8 +12,7 @@ inertia about the shaft, J = I_e + m_e r_ge^2; with J <= m_e R_e^2 and |first mo
 Differential evolution over n, J and first moment finds the least energy of all, and is polished.
 
 Tolerances.  The scan stops at 1e-7 of the energy, at a flat bottom.  Energies of Tables 3 and 4 are
-met as `test_lee_kim` tells.  Equivalent speeds are printed to 10 rpm; theirs follow from the
-printed energies, those of the best device lie above.
+met as `test_lee_kim` tells.
 """
 
 from __future__ import annotations
@@ -235,20 +234,14 @@ def test_a_wide_range_of_ratios_does_as_well(name: str, low: float, high: float)
     assert np.sum(rises) == pytest.approx(found.after["shaking_moment.area"], rel=0.01)
 
 
-@pytest.mark.parametrize(
-    ("name", "printed", "theirs", "best"),
-    [("a", 350, 356.8, 358.3), ("b", 350, 341.4, 360.1), ("c", 310, 309.6, 313.9)],
-)
-def test_equivalent_speeds(name: str, printed: float, theirs: float, best: float) -> None:
+@pytest.mark.parametrize(("name", "best"), [("a", 358.3), ("b", 360.1), ("c", 313.9)])
+def test_equivalent_speeds(name: str, best: float) -> None:
     """Conclusions: rpm at which the energy is that at 300 rpm without a counterweight.
 
-    300 rpm times the root of before over after.
+    300 rpm times the root of before over after; above those of their devices.
     """
     _, ratio = scanned(name)
     found = eq.balance(eq.load(f"balance-geared-{name}"), geared(name, ratio, ratio))
     speed = found.equivalent_speeds["shaking_moment.area"] / found.original.drive.speed * 300
     assert speed == pytest.approx(best, abs=0.05)
-    with_theirs = 300 * (mechanism(name).before / THEIRS[name][0]) ** 0.5
-    assert with_theirs == pytest.approx(theirs, abs=0.6)
-    assert with_theirs == pytest.approx(printed, abs=10)
-    assert speed > with_theirs
+    assert speed > 300 * (mechanism(name).before / THEIRS[name][0]) ** 0.5

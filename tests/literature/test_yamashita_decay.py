@@ -1,8 +1,6 @@
 """Yamashita, Ichikawa and Mori: free decay of their test rig, (60) to (62).
 
-Source: M. Yamashita, M. Ichikawa, K. Mori, "Studies on control of vibrations originating in rice
-transplanting mechanism consisting of the four bar linkage" (in Japanese), about 1982, section 4-2
-and Table 2.
+Section 4-2 and Table 2; `support.sources` has the citation.
 
 Data: K = 182.0 kgf/m, L_E = 1.35 m from the pivot to the spring, a gauge at 1.5 m; found by them
 I0 = 2.152 kgf m s2, Cr = 0.333 kgf m s, Tf = 0, beta = 12.4 rad/s.  The recorded decay itself is
@@ -11,9 +9,8 @@ not printed, so the rig is simulated with their constants and identified again.
 Mapping: theta is the angle; heights theta_i go from a peak to the next valley, theta_(i+1) from
 there to the next peak.  Kf = K L_E^2.
 
-Slip in print: the sentence before (60) to (62) calls the line theta_(i+1) = m theta_i + n; in the
-equations n is the slope and m the intercept.  Only so does (62) give Tf = 0 for m = 0, and (61) a
-positive Cr for n below 1, which the first test shows on the exact motion.
+In the equations n is the slope of the line and m its intercept: only so does (62) give Tf = 0 for
+m = 0, and (61) a positive Cr for n below 1, which the first test shows on the exact motion.
 
 Tolerances.  Without noise the fit of the whole record is exact to rounding, 1e-9; the line to 2e-3
 of Cr, as its turning points are those of polynomials.  With a gauge that has 0.02 mm of noise, a
@@ -29,6 +26,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from support.conformance import Printed, equation, published
+from support.sources import YAMASHITA
 
 KGF = 9.80665
 K, L_E, GAUGE = 182.0 * KGF, 1.35, 1.5
@@ -55,11 +54,7 @@ def rig(friction: float = 0.0, noise: float = 0.0) -> eq.measured.Record:
     return read
 
 
-def test_beta_follows_from_the_data() -> None:
-    """Printed 12.4; 12.415 rad/s from K, L_E, I0 and Cr."""
-    assert OMEGA * sqrt(1 - RATIO**2) == pytest.approx(12.415, abs=5e-4)
-
-
+@equation(YAMASHITA, "(60) to (62)", "I0, Cr and Tf from exact turning points", 1e-10)
 @pytest.mark.parametrize("friction", [0.0, T_F])
 def test_equations_60_to_62_with_n_as_the_slope(friction: float) -> None:
     """Exact turning points, a half-period apart, put into the equations."""
@@ -91,6 +86,24 @@ def test_the_rig_without_noise(friction: float) -> None:
         assert method["viscous_damping"].value == pytest.approx(C_R, rel=tolerance)
         assert method["coulomb_torque"].value == pytest.approx(friction, abs=tolerance)
         assert method["damped_angular_frequency"].value == pytest.approx(12.415, abs=5e-4)
+
+
+@published(
+    YAMASHITA,
+    *(
+        Printed("yamashita-rig", f"{what} from a free decay", "Table 2", printed, told, unit, of=of)
+        for what, printed, told, unit, of in (
+            ("I0", "2.152", "2.152", "kgf m s2", ("inertia", KGF)),
+            ("Cr", "0.333", "0.333", "kgf m s", ("viscous_damping", KGF)),
+            ("Tf", "0", "0.000", "kgf m", ("coulomb_torque", KGF)),
+            ("beta", "12.4", "12.415", "rad/s", ("damped_angular_frequency", 1.0)),
+        )
+    ),
+)
+def test_constants_of_the_rig_come_back(row: Printed) -> list[float]:
+    """By the whole record and by the line of its turning points."""
+    found, (name, unit) = identified(rig()), row.of
+    return [method[name].value / unit for method in (found.by_record, found.by_line)]
 
 
 @pytest.mark.parametrize("friction", [0.0, T_F], ids=["as printed", "with friction"])

@@ -1,8 +1,6 @@
 """Yamashita, Ichikawa and Mori: forces of two rice transplanting four-bars.
 
-Source: M. Yamashita, M. Ichikawa, K. Mori, "Studies on control of vibrations originating in rice
-transplanting mechanism consisting of the four bar linkage" (in Japanese), about 1982.  Numbers in
-parentheses are its equations.
+Numbers in parentheses are its equations; `support.sources` has the citation.
 
 Data: its Table 3, types I and II, as in the examples ``yamashita-1`` and ``yamashita-2``.  Moments
 of inertia are not printed; they are assumed, and matter here only for torque and joint forces,
@@ -17,13 +15,6 @@ Their harmonics and the rig are in `test_yamashita_vibration`, conditions of bal
 found by balancing in `test_yamashita_balancing`, rows in `test_yamashita_phases`.
 
 Tolerances.  Equations are met to 1e-9 of the largest value: both sides are exact.
-
-Slips in print or scan, each shown here by the equation that holds:
-(12) has cos(theta_a - theta_b) and denominator c sin(theta_a - theta_c); in (13) only the last
-term is multiplied by cos(theta_a - theta_c).  Table 1: for L = 1 the rocker is at psi_a - phi.
-F(c) holds the acceleration of G_c, F(d) the lever DG_d.  In (35) the coupler's term has
-sin(theta_A - theta_B) and the rocker's factor is b c.  In (36) the last lever's factor is b c, and
-the last term is b c G(d) sin(theta_C - theta_B).  In (81) R S contains g_d1.
 """
 
 from __future__ import annotations
@@ -36,7 +27,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from literature.yamashita import FINGERS, TYPE_1, TYPE_2, Finger, close
+from literature.yamashita import EXACT, FINGERS, TYPE_1, TYPE_2, Finger, close
+from support.conformance import equation
+from support.sources import YAMASHITA
 
 Array = np.ndarray[Any, Any]
 
@@ -214,6 +207,15 @@ def test_example_holds_table_3(finger: Finger) -> None:
     assert complex(*machine.frame["D"]) - complex(*machine.frame["A"]) == pytest.approx(a)
 
 
+@equation(
+    YAMASHITA,
+    "(3), (4), (10) to (13)",
+    "angles, angular velocities and accelerations",
+    EXACT,
+    "(12) has cos(theta_a - theta_b) and denominator c sin(theta_a - theta_c); in (13) only the "
+    "last term is multiplied by cos(theta_a - theta_c) (scan). Table 1: for L = 1 the rocker is at"
+    " psi_a - phi. In (3), (4) E_c = a^2 + b^2 + c^2 - d^2 - 2 a b cos(theta_b)",
+)
 @FINGERS
 def test_angles_follow_equations_3_4_and_10_to_13(finger: Finger) -> None:
     solved, s = both(finger)
@@ -227,6 +229,7 @@ def test_angles_follow_equations_3_4_and_10_to_13(finger: Finger) -> None:
         close(link.angular_acceleration, second)
 
 
+@equation(YAMASHITA, "(1), (2)", "closure of the loop", EXACT)
 @FINGERS
 def test_loop_closes_by_equations_1_and_2(finger: Finger) -> None:
     links = moved(finger, THETA_B).links
@@ -284,6 +287,7 @@ def with_lengths(lengths: tuple[float, float, float, float]) -> eq.Machine:
 # -- shaking force ---------------------------------------------------------------------------------
 
 
+@equation(YAMASHITA, "(17), (18)", "shaking force", EXACT)
 @FINGERS
 def test_shaking_force_follows_equations_17_and_18(finger: Finger) -> None:
     """The fluctuating load on the frame is opposite to (17), (18)."""
@@ -294,6 +298,13 @@ def test_shaking_force_follows_equations_17_and_18(finger: Finger) -> None:
 # -- a common centre of mass on a circle -----------------------------------------------------------
 
 
+@equation(
+    YAMASHITA,
+    "(81), (82)",
+    "circle of the common centre of mass",
+    EXACT,
+    "in (81) R S contains g_d1",
+)
 @FINGERS
 def test_circle_of_equations_81_and_82(finger: Finger) -> None:
     """Under (80) the common centre of mass moves on a circle of radius |RS + i RT| / M."""
@@ -311,6 +322,13 @@ def test_circle_of_equations_81_and_82(finger: Finger) -> None:
 # -- joint forces and torque -----------------------------------------------------------------------
 
 
+@equation(
+    YAMASHITA,
+    "(25) to (32)",
+    "forces in all joints",
+    EXACT,
+    "F(c) holds the acceleration of G_c, F(d) the lever DG_d",
+)
 @FINGERS
 def test_joint_forces_follow_equations_25_to_32(finger: Finger) -> None:
     """F_A, F_D act on crank and rocker by the frame, F_bc on the coupler, F_cd on the rocker."""
@@ -326,6 +344,7 @@ def test_joint_forces_follow_equations_25_to_32(finger: Finger) -> None:
         close(solved.joints[name].value, force)
 
 
+@equation(YAMASHITA, "(47)", "force on the frame", EXACT)
 @FINGERS
 def test_frame_force_follows_equation_47(finger: Finger) -> None:
     """With the pivot A at rest, F_A + F_D = M r_G'' + M g j; the frame gets the opposite."""
@@ -336,12 +355,21 @@ def test_frame_force_follows_equation_47(finger: Finger) -> None:
     close(joints["A"].value + joints["D"].value, sum(mass_acceleration(finger, s)) + weight)
 
 
+@equation(
+    YAMASHITA,
+    "(33) to (36)",
+    "drive torque",
+    EXACT,
+    "in (35) the coupler's term has sin(theta_A - theta_B) and the rocker's factor is b c; in (36)"
+    " the last lever's factor is b c, and the last term is b c G(d) sin(theta_C - theta_B)",
+)
 @FINGERS
 def test_drive_torque_follows_equation_33(finger: Finger) -> None:
     solved, s = both(finger)
     close(solved.drive_torque, sum(torque_parts(finger, s).values()))
 
 
+@equation(YAMASHITA, "(34) to (36)", "parts of the drive torque by parameter", EXACT)
 @FINGERS
 def test_parts_of_the_torque_are_columns_of_the_regressor(finger: Finger) -> None:
     """(34): coupler's first moments; (35): inertias and m_c b^2 theta_B''; (36): weight.
@@ -372,6 +400,7 @@ def regressor_parts(motion: eq.mechanism.Motion) -> dict[tuple[str, str], Array]
     return dict(zip(found.parameters, rows, strict=True))
 
 
+@equation(YAMASHITA, "(90)", "drive torque of turning alone", EXACT)
 @FINGERS
 def test_torque_of_equation_90(finger: Finger) -> None:
     """Under (74) and (76) only T_tm is left: no weight and no T_ac in the drive torque."""

@@ -1,8 +1,7 @@
 """Yamashita, Ichikawa and Mori: phases between planting mechanisms, and how claws are arranged.
 
-Source: M. Yamashita, M. Ichikawa, K. Mori, "Studies on control of vibrations originating in rice
-transplanting mechanism consisting of the four bar linkage" (in Japanese), about 1982; sections 5-5
-and 5-6, equations (70) to (72), figures 16 and 17, Table 5.
+Sections 5-5 and 5-6, equations (70) to (72), figures 16 and 17, Table 5; `support.sources` has the
+citation.
 
 Data: type II of its Table 3, the example ``yamashita-2``.  The acceleration of the common centre of
 mass is minus the shaking force over the mass of the links.  Its X is the angle by which the second
@@ -10,10 +9,7 @@ crank is ahead, `Row.phase`; U is the standard deviation of the sum of both acce
 turn.  Neither depends on where crank angles count from.  The claws of Table 5 are rows side by side
 at equal distances; "twist" (nejire) is a moment about the axes along or across the machine.
 
-Tolerances.  U is smallest at 180 deg by symmetry, to rounding.  Figures marked "recomputed" are met
-to their last digit; those in print come from samples, 77 % and 60 % against 74.0 % and 52.5 %.
-
-Slips in print: (72) lacks the factor of 2 of its sum, which its mean has.
+U is smallest at 180 deg by symmetry, to rounding.
 """
 
 from __future__ import annotations
@@ -29,6 +25,8 @@ from equipoise.balancing.phasing import choose_phases
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.support import Row
 from equipoise.signals import Periodic
+from support.conformance import Printed, equation, published
+from support.sources import YAMASHITA
 
 MACHINE = eq.load("yamashita-2")
 U = Objective("shaking_force.y", "ripple")
@@ -51,11 +49,14 @@ def rows(*phases: float) -> eq.Machine:
 # -- two claws -------------------------------------------------------------------------------------
 
 
-def test_two_claws_are_best_half_a_turn_apart() -> None:
-    """Section 5-5: X = 180 deg."""
+@published(
+    YAMASHITA, Printed("two of yamashita-2", "best phase X", "section 5-5", "180", unit="deg")
+)
+def test_two_claws_are_best_half_a_turn_apart() -> float:
     found = choose_phases(rows(0.0, 0.0), [U])
     assert found.phases == (0.0, pi)
     assert found.after[U.name] == pytest.approx(np.std(sums(pi)) * links_mass(), rel=1e-9)
+    return float(np.degrees(found.phases[1]))
 
 
 def links_mass() -> float:
@@ -75,20 +76,32 @@ def test_deviation_against_phase_is_symmetric_with_one_minimum() -> None:
     assert np.all(np.diff(deviations[:37]) < 0)
 
 
-@pytest.mark.parametrize(
-    ("axis", "sign", "recomputed", "printed"),
-    [("y", 1, 74.0, 77.0), ("y", -1, 52.5, 60.0), ("x", 1, 64.8, None), ("x", -1, 65.4, None)],
-)
-def test_reduction_of_the_largest_and_smallest_acceleration(
-    axis: str, sign: int, recomputed: float, printed: float | None
-) -> None:
-    """Section 5-5; horizontally "about the same", without figures."""
+def less_at_180(axis: str, sign: int) -> float:
+    """By how much the largest or smallest acceleration is less than in phase, %."""
     high, low = (np.max(sign * sums(phase, axis)) for phase in (0.0, pi))
-    assert 100 * (1 - low / high) == pytest.approx(recomputed, abs=0.05)
-    if printed is not None:
-        assert 100 * (1 - low / high) == pytest.approx(printed, abs=8.0)
+    return 100 * float(1 - low / high)
 
 
+@published(
+    YAMASHITA,
+    Printed("two of yamashita-2", "largest Y_G'' less by", "section 5-5", "77", "74.0", "%", 3.5,
+            "theirs come from samples", of=1),
+    Printed("two of yamashita-2", "smallest Y_G'' less by", "section 5-5", "60", "52.5", "%", 8,
+            "theirs come from samples", of=-1),
+)  # fmt: skip
+def test_reduction_of_the_largest_and_smallest_acceleration(row: Printed) -> float:
+    return less_at_180("y", row.of)
+
+
+def test_horizontally_about_the_same() -> None:
+    """Section 5-5, without figures."""
+    assert [less_at_180("x", sign) for sign in (1, -1)] == pytest.approx([64.8, 65.4], abs=0.05)
+
+
+@equation(
+    YAMASHITA, "(70) to (72)", "even orders are left at twice their size", 1e-12,
+    "(72) lacks the factor of 2 of its sum, which its mean has",
+)  # fmt: skip
 def test_even_orders_are_left_at_twice_their_size() -> None:
     """(71), (72), and figure 17: the sum repeats after half a turn."""
     one = acceleration()
@@ -137,6 +150,7 @@ def test_table_5(name: str) -> None:
     assert pattern.twists is twists
 
 
+@equation(YAMASHITA, "Table 5", "orders and twist that each arrangement leaves", 1e-11)
 @pytest.mark.parametrize("name", TABLE_5)
 def test_table_5_on_type_ii(name: str) -> None:
     """The same found on the sum of six or four accelerations, and on its twist."""

@@ -41,6 +41,13 @@ def chromium(*more: str) -> Iterator[Browser]:
 @contextmanager
 def serving(*arguments: str) -> Iterator[str]:
     """Run `equipoise serve`, and give the address that it prints."""
+    with served(*arguments) as (address, _):
+        yield address
+
+
+@contextmanager
+def served(*arguments: str) -> Iterator[tuple[str, int]]:
+    """The same, and the number of its process."""
     words = command("serve", *arguments, "--no-browser")
     with subprocess.Popen(words, stdout=subprocess.PIPE, encoding="utf-8") as server:
         assert server.stdout is not None
@@ -48,6 +55,6 @@ def serving(*arguments: str) -> Iterator[str]:
         address = next(filter(None, found), None)
         try:
             assert address is not None, "the server ended"
-            yield address[0]
+            yield address[0], server.pid
         finally:
             server.terminate()

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+import gc
 import io
 import json
 import math
 import os
 import re
+import runpy
 import subprocess
 import sys
 import threading
@@ -16,13 +18,14 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import jsonschema
 import numpy as np
 import pytest
 
 import equipoise as package
-from equipoise.cli import run
+from equipoise.cli import ONE_THREAD, main, run
 from equipoise.errors import UsageError
 from equipoise.schema.files import json_text
 from surface.running import (
@@ -48,9 +51,9 @@ from surface.running import (
 
 ROOT = Path(__file__).parents[2]
 COMMANDS = (
-    *["analyze", "animate", "balance", "best", "check", "decay", "examples", "export"],
-    *["exposure", "modes", "new", "plant", "plot", "report", "respond", "resume", "schema"],
-    *["search", "serve", "simulate", "sweep", "tolerance", "tool"],
+    *["analyze", "animate", "balance", "best", "check", "completion", "decay", "examples"],
+    *["export", "exposure", "import", "mcp", "modes", "new", "plant", "plot", "report", "respond"],
+    *["resume", "schema", "search", "serve", "simulate", "sweep", "tolerance", "tool"],
 )
 LINK_KEYS = ["angle", "angular_velocity", "angular_acceleration"]
 POINT_KEYS = ["x", "y", "vx", "vy", "ax", "ay"]
@@ -96,7 +99,7 @@ def test_outputs_and_dwells_that_cannot_be_told(options: tuple[str, ...], told: 
 
 HELPS = """
 import sys
-from equipoise.cli import run
+from equipoise.cli import ONE_THREAD, main, run
 for name in sys.argv[1].split(","):
     run(name.split())
     print("=====")
@@ -149,13 +152,19 @@ OPTIONS = {
     ],
     "best": ["STORE", "--by", "--largest", "--count", "--out", "--design", *OUTPUTS],
     "check": ["FILE", "--units"],
+    "completion": ["SHELL"],
     "decay": ["CSV", "--stiffness", "--arm", "--spring-arm", "--confidence", *DRAWN],
     "examples": [],
-    "export": ["STORE", "--out", "--kept"],
+    "export": ["FILE", "--out", "--format", "--at", "--balanced", "--kept"],
     "exposure": [
         *["INPUT", "--duration", "--idle", "--racing", "--bands", "--weighted", "--single-axis"],
         *["--periodic", *DRAWN],
     ],
+    "import": [
+        *["FILE", "--out", "--crank", "--speed", "--frame", "--guide", "--link", "--unit", "--pin"],
+        *["--tolerance", "--units"],
+    ],
+    "mcp": ["--folder"],
     "modes": ["FILE", "--model", *DRAWN],
     "new": ["FILE", "--tool", "--study"],
     "plant": ["FILE", "--speed", "--crank-zero", "--angles", *OUTPUTS],
@@ -220,6 +229,28 @@ def test_no_page_shows_a_command_that_does_not_exist(page: str) -> None:
     text = (ROOT / page).read_text(encoding="utf-8")
     shown = set(re.findall(r"^(?:\$ )?equipoise ([a-z]+)", text, re.MULTILINE))
     assert shown and shown <= {*COMMANDS}
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish", "powershell"])
+def test_a_shell_completes_commands_options_and_values(shell: str) -> None:
+    text = succeeded(equipoise("completion", shell))
+    assert {*COMMANDS, "trade-off"} <= {*re.findall(r"[a-z][a-z-]+", text)}
+    assert "crank-zero" in text and re.search(r"svg\W+png\W+pdf", text)
+
+
+def test_the_man_page_tells_every_option(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", ["equipoise"])  # by which the program is called
+    page = runpy.run_path(str(ROOT / "docs" / "man.py"))["page"]().decode().replace("\\-", "-")
+    told = re.split(r"(?m)^equipoise ((?!-)[a-z -]+?)(?: [A-Z\[].*)?$", page)[1:]
+    parts = dict(zip(told[::2], told[1::2], strict=True))
+    assert parts.keys() == OPTIONS.keys()
+    for name, options in OPTIONS.items():
+        heads = re.findall(r"(?m)^\.B \\fB(.*)\\fP$", parts[name])
+        assert [
+            one
+            for one in options
+            if not any(one in head.replace(",", "").split() for head in heads)
+        ] == [], name
 
 
 # -- examples, check -------------------------------------------------------------------------------
@@ -685,3 +716,15 @@ def test_a_command_that_takes_long_says_so(monkeypatch: pytest.MonkeyPatch) -> N
     with pytest.raises(AttributeError):  # there is nothing to show
         run(["respond", "yamashita-rig"])
     assert re.match(r"still computing, \d+ s\n", heard.getvalue())
+
+
+def test_linear_algebra_takes_no_thread_beside_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gc, "disable", lambda: None)
+    monkeypatch.setattr(sys, "stdout", io.StringIO())
+    told = []
+    monkeypatch.setattr("equipoise.cli.run", lambda: told.extend(map(os.getenv, ONE_THREAD)))
+    kept = {name: value for name, value in os.environ.items() if name not in ONE_THREAD}
+    there = mock.patch.dict(os.environ, {**kept, ONE_THREAD[0]: "3"}, clear=True)
+    with there, pytest.raises(SystemExit):
+        main()
+    assert told == ["3", "1", "1"]

@@ -255,7 +255,7 @@ REFUSED = {
         ),
     },
     "export": {
-        "lengths.zarr": "--out: missing; give the name of a file that ends i",
+        "lengths.zarr": "--out: missing; give the name of a file",
         "lengths.zarr -o x.txt": "--out: got 'x.txt'; give the name of a",
         "lengths.zarr -o no/x.csv": "--out: no/x.csv: there is no su",
         "x -o x.csv": "x: there is no such store; make it by: eq",

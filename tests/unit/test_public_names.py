@@ -85,6 +85,8 @@ def test_version() -> None:
     from importlib.metadata import version
 
     assert eq.__version__ == version("equipoise")
+    cited = (PAGE.parents[1] / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"\nversion: {eq.__version__}\n" in cited
 
 
 def test_unknown_names() -> None:

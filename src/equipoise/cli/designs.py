@@ -1,22 +1,19 @@
-"""The commands `best`, `export` and `search`: designs of a study, the best first."""
+"""The commands `best` and `search`: designs of a study, the best first."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
-from equipoise.cli.options import Names, Out, StorePath, StudyFile, count, naming
+from equipoise.cli.options import Names, StorePath, StudyFile, count, naming
 from equipoise.cli.outputs import (
     Chosen,
     Columns,
     Outputs,
     check_new,
-    check_result_file,
     write_model,
-    wrote,
 )
 from equipoise.cli.progress import Watched, swept
-from equipoise.errors import UsageError
 from equipoise.i18n import Note
 
 if TYPE_CHECKING:
@@ -27,7 +24,6 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, Any]
 
 MOST_TOLD, MOST_SEED = 100_000, 2**32 - 1
-ENDINGS = (".csv", ".parquet")
 
 
 def best(
@@ -82,34 +78,6 @@ def best(
         )
     if model is not None and chosen.out is not None:
         _save(model, chosen.out, first, f'the study "{title}"')
-
-
-def export(
-    store: StorePath,
-    /,
-    *,
-    out: Out = None,
-    kept: bool = False,
-) -> None:
-    """Write all designs of a store as one table, Parquet or CSV, in SI units.
-
-    Parameters
-    ----------
-    out
-        The file, which ends in .parquet or .csv.
-    kept
-        Only designs that keep every limit.
-    """
-    from equipoise.studies import selection as of_stores
-    from equipoise.studies.store import open_store
-
-    opened = open_store(store)
-    if out is None or not out.lower().endswith(ENDINGS):
-        got = "missing" if out is None else f"got {out!r}"
-        raise UsageError(f"--out: {got}; give the name of a file that ends in .parquet or .csv")
-    check_result_file("--out", out, [])
-    rows = of_stores.export(opened, out, kept=kept)
-    wrote(f"{rows} designs to {out}")
 
 
 def search(

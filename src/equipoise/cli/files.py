@@ -1,4 +1,4 @@
-"""Commands about files: `examples`, `check`, `schema`, `new`; and `serve`, a file on a page."""
+"""Commands about files: `examples`, `check`, `schema`, `new`; `serve`; `completion` for shells."""
 
 from __future__ import annotations
 
@@ -74,6 +74,22 @@ def schema(*, tool: bool = False, study: bool = False) -> None:
     from equipoise.schema.schemas import json_schema
 
     print(json.dumps(json_schema(_kind(tool, study)), indent=2))
+
+
+def completion(
+    shell: Annotated[Literal["bash", "zsh", "fish", "powershell"], Parameter(name="SHELL")], /
+) -> None:
+    """Print what lets a shell complete commands, options and their values.
+
+    Parameters
+    ----------
+    shell
+        Whose; bash reads it from ~/.local/share/bash-completion/completions/equipoise, fish from
+        ~/.config/fish/completions/equipoise.fish, zsh as _equipoise from a folder of its fpath.
+    """
+    from equipoise.cli import app
+
+    print(app.generate_completion(shell=shell))
 
 
 def new(

@@ -34,7 +34,6 @@ from equipoise.keys.declaring import inside as inside
 from equipoise.keys.declaring import key as key
 from equipoise.keys.declaring import keys_of as keys_of
 from equipoise.keys.declaring import quantities_of as quantities_of
-from equipoise.keys.declaring import wrong_values as wrong_values
 from equipoise.keys.kinds import MOST_WHOLE as MOST_WHOLE
 from equipoise.keys.kinds import NO_INERTIA as NO_INERTIA
 from equipoise.keys.kinds import PLANES as PLANES
@@ -58,3 +57,4 @@ from equipoise.keys.kinds import Wording as Wording
 from equipoise.keys.kinds import choice as choice
 from equipoise.keys.kinds import innermost as innermost
 from equipoise.keys.kinds import items_of as items_of
+from equipoise.keys.values import wrong_values as wrong_values

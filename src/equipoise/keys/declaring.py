@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
-from math import inf, isfinite
 from types import MappingProxyType
 from typing import Any, ClassVar, Self, TypeVar, dataclass_transform
 
@@ -14,18 +13,14 @@ from equipoise.guarding import keyworded
 from equipoise.i18n import Note
 from equipoise.keys.base import Kind, Record
 from equipoise.keys.kinds import (
-    PLANES,
     Listing,
     Number,
-    OneOr,
-    Planes,
     Quantity,
     Table,
     Whole,
-    choice,
     innermost,
 )
-from equipoise.quantities import HUGE, SI, TINY
+from equipoise.quantities import SI
 
 Class = TypeVar("Class", bound=type)
 Result = TypeVar("Result")
@@ -255,58 +250,6 @@ def declarations(cls: type[Frozen]) -> tuple[Key, ...]:
         replace(one, field=field, name=one.name or ("" if one.inside else field))
         for field, one in found
     )
-
-
-# -- values ----------------------------------------------------------------------------------------
-
-
-def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
-    """Complain of every number below a value that is not finite, of no usual size, or beyond its
-    limits, and of every text that is none of those that there are.
-    """
-    leaves = list(_leaves(where, value, None))
-    for place, leaf, _ in leaves:
-        if isinstance(leaf, str):
-            continue
-        if not isfinite(leaf):
-            yield ModelError(place, Note("got {leaf}; give a finite number", leaf=leaf))
-        elif abs(leaf) > HUGE or 0 < abs(leaf) < TINY:
-            text = f"{leaf:g} in SI units"
-            told = Note("got {text}, which no machine can have", text=text)
-            yield ModelError(place, told).about(leaf, text)
-    for place, leaf, one in leaves:
-        names = () if one is None else getattr(innermost(one.kind), "names", ())
-        if names and leaf not in names:
-            told = Note("got {leaf!r}; give {choice}", leaf=leaf, choice=choice(names))
-            yield ModelError(place, told)
-        elif one is not None and not isinstance(leaf, str) and not one.allows(leaf):
-            text = f"{leaf:g}{one.unit}"
-            told = Note("got {text}; {right}", text=text, right=one.right(leaf))
-            yield ModelError(place, told).about(leaf, text)
-
-
-def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, Key | None]]:
-    """Numbers and texts below a value, each with its place and its declaration."""
-    if isinstance(value, bool) or value is None:
-        return
-    if isinstance(value, int | float | str):
-        if of is None or not of.endless or value != inf:
-            yield where, value, of
-    elif isinstance(value, Mapping):
-        for name, item in value.items():
-            yield from _leaves(f"{where}.{name}".lstrip("."), item, of)
-    elif isinstance(value, tuple | list):
-        several = of is not None and isinstance(of.kind, OneOr | Planes)
-        alike = several and all(item == value[0] for item in value)
-        planes = of is not None and isinstance(of.kind, Planes) and len(value) == len(PLANES)
-        for number, item in enumerate(value, 1):
-            part = f".{PLANES[number - 1]}" if planes else f"[{number}]"
-            yield from _leaves(where if alike else where + part, item, of)
-    else:
-        for one in declarations(type(value)):
-            flat = isinstance(one.kind, Table) and one.kind.flat
-            place = where if flat else f"{where}.{one.name or one.field}".lstrip(".")
-            yield from _leaves(place, getattr(value, one.field), one)
 
 
 # -- by path ---------------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from importlib.resources import files
 from importlib.resources.abc import Traversable
@@ -32,6 +32,9 @@ OTHERS: dict[FileKind, str] = {
     "study": "a study, with tables [[vary]] and [[outputs]]; use `equipoise sweep FILE`",
 }
 """What is said of a file where one of another kind is wanted."""
+
+MIGRATIONS: dict[int, Callable[[dict[str, Any]], dict[str, Any]]] = {}
+"""Version of a file -> what makes of its content that of the next version; see docs/releases.md."""
 
 # tomllib takes a time that grows with the square of the number of parts of a dotted key: half a
 # minute for forty thousand.  No key of a model file has more than five.
@@ -175,11 +178,11 @@ def model_content(text: str) -> dict[str, Any]:
 
 
 def toml_content(text: str) -> dict[str, Any]:
-    """Content of a file that begins with the version of its schema.
+    """Content of a file that begins with the version of its schema, as one of the newest version.
 
     Raises
     ------
-    ModelError : it is no TOML, or of another version.
+    ModelError : it is no TOML, or of a version that is not known.
     """
     content = _toml(text)
     if "schema" not in content:
@@ -187,11 +190,14 @@ def toml_content(text: str) -> dict[str, Any]:
             "schema", f"missing; begin the file with schema = {SCHEMA_VERSION} (all tables after)"
         )
     given = content["schema"]
+    while type(given) is int and given in MIGRATIONS:
+        content, given = MIGRATIONS[given](content), given + 1
     if type(given) is not int or given != SCHEMA_VERSION:
-        raise ModelError(
-            "schema", f"got {described(given)}; this program reads schema = {SCHEMA_VERSION}"
-        )
-    return content
+        what = f"got {described(given)}; this program reads schema = {SCHEMA_VERSION}"
+        if type(given) is int and given > SCHEMA_VERSION:
+            what += ", and the file is for a newer one; run pip install --upgrade equipoise"
+        raise ModelError("schema", what)
+    return {**content, "schema": given}
 
 
 def _toml(text: str) -> dict[str, Any]:

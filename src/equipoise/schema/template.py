@@ -275,7 +275,7 @@ def named_parts(model: Machine | Tool) -> tuple[dict[str, str], Known]:
 
 def _text_of(value: Any) -> str:
     """A table or a linkage as JSON."""
-    return json.dumps(value.texts() if isinstance(value, Template) else vars(value))
+    return json.dumps(value.texts() if isinstance(value, Template) else value.__getstate__())
 
 
 def _without_names(tool: Machine | Tool, names: set[str]) -> Tool:

@@ -13,7 +13,6 @@ from .search import Searched as Searched
 from .search import search_designs as search_designs
 from .selection import Best as Best
 from .selection import best as best
-from .selection import export as export
 from .store import Store as Store
 from .store import open_store as open_store
 from .study import Study as Study

@@ -288,7 +288,7 @@ class Tally:
 
 # -- how long a run takes --------------------------------------------------------------------------
 
-MORE, LONGEST = 8, 4.0
+MORE, LONGEST = 8, 1.0
 """So many times as many designs are computed next, unless that would take longer than this, s."""
 
 

@@ -232,7 +232,7 @@ Write = Callable[[Any], None]
 """Takes a table of some rows."""
 
 
-def export(store: Store, path: str | os.PathLike[str], *, kept: bool = False) -> int:
+def write_designs(store: Store, path: str | os.PathLike[str], *, kept: bool = False) -> int:
     """Write every design that is stored into a file, one a row; returns how many those are.
 
     Columns are `design`, its number from 0, all varied numbers and outputs in SI units, and

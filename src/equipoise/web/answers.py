@@ -7,7 +7,7 @@ from typing import Protocol
 
 from equipoise.errors import EquipoiseError
 from equipoise.web.messages import Message, message_of
-from equipoise.web.replies import Reply, refused
+from equipoise.web.replies import Reply, refused, told
 
 
 class Counterpart(Protocol):
@@ -36,5 +36,8 @@ def answers(to: Counterpart, content: object) -> Iterator[Reply]:
         yield refused(None, error)
         return
     yield from to.receive(message)
-    if not message.preview and to.has_more:
+    if message.preview:
+        return
+    if to.has_more:
         yield from to.tell_more()
+    yield told(message.seq)

@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.mechanism.tip import surface_of
 from equipoise.symbols.carrier import MOUNT
 from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.pieces import Piece, pieces
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape
 from equipoise.web.block import Block, Values
+from equipoise.web.edits import Solved
 
 UNIT = 1.25
 """Pixels: size of a unit of signs on a page."""
@@ -99,3 +101,14 @@ def moves_of(scene: Scene, block: Block) -> None:
         block.add(f"angle.{name}", angle)
     for guide in scene.guides:
         block.add(f"guide.{guide.name}", guide.way)
+
+
+def ground_of(found: Solved, block: Block) -> Values:
+    """Path of a planting tip over ground, for the block, and the soil that it goes into."""
+    planting, speed = found.analysis.machine.planting, found.motion.speed
+    if planting is None or speed == 0:
+        return {}
+    scene = found.scene
+    way = planting.forward(speed) / speed * scene.crank_angle
+    block.add(f"ground.{planting.tip}", scene.places[planting.tip] + way)
+    return {"planting": {"tip": planting.tip, "surface": surface_of(found.analysis.machine)}}

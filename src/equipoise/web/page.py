@@ -17,7 +17,7 @@ from equipoise.errors import UsageError
 from equipoise.web.desk import Desk
 from equipoise.web.lanes import MOMENT, Lanes, Work
 from equipoise.web.messages import SLOW, Message, read
-from equipoise.web.replies import Reply, packed, refused
+from equipoise.web.replies import Reply, packed, refused, told
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
@@ -44,6 +44,7 @@ class Page:
         self.come = asyncio.Event()
         self.closed = False
         self.last: Message | None = None
+        self.answered = self.told = 0
         self.questions: asyncio.Queue[Message] = asyncio.Queue(MOST_QUESTIONS)
         self.more: asyncio.Task[None] | None = None
 
@@ -102,8 +103,7 @@ class Page:
             known = message.kind != "open" and self.work.spent < MOMENT
             lane = self.lanes.quick if known else self.lanes.heavy
             await self._answer(self.desk.receive(message), message.seq, lane, self.work.timed)
-            if _done(self.more):
-                self.more = asyncio.create_task(self._tell_more())
+            self._go_on(message)
         elif self.questions.full():
             await self._send(refused(message.seq, UsageError(BUSY)))
         else:
@@ -114,14 +114,26 @@ class Page:
         while True:
             message = await self.questions.get()
             await self._answer(self.desk.receive(message), message.seq, self.lanes.long)
+            self._go_on(message)
+
+    def _go_on(self, message: Message) -> None:
+        self.answered = max(self.answered, message.seq or 0)
+        if _done(self.more):
+            self.more = asyncio.create_task(self._tell_more())
 
     async def _tell_more(self) -> None:
-        """What takes too long to be told at every move of a drag."""
-        while not self.closed and self.desk.has_more:
+        """What takes too long to be told at every move of a drag; then, that all is told."""
+        while not self.closed:
             last = self.last
-            await asyncio.sleep(PAUSE)
-            if not self.waiting and self.last is last:
-                await self._answer(self.desk.tell_more(), None, self.lanes.long)
+            if self.desk.has_more:
+                await asyncio.sleep(PAUSE)
+                if not self.waiting and self.last is last:
+                    await self._answer(self.desk.tell_more(), None, self.lanes.long)
+            elif self.told < self.answered:
+                self.told = self.answered
+                await self._send(told(self.told))
+            else:
+                break
 
     async def _answer(
         self, replies: Iterator[Reply], seq: int | None, lane: Executor, do: Do | None = None

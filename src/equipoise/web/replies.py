@@ -31,6 +31,11 @@ def refused(seq: int | None, error: EquipoiseError, language: str = "en") -> Rep
     return Reply(content)
 
 
+def told(seq: int | None) -> Reply:
+    """Say that a question has all its answers, also those that take longer."""
+    return Reply({"type": "told", "seq": seq})
+
+
 def packed(reply: Reply) -> bytes:
     """A reply as one message: length of the header, header in JSON, then the block.
 

@@ -12,7 +12,7 @@ from equipoise.i18n import say
 from equipoise.mechanism.checks import unknown
 from equipoise.web.arrows import points_of
 from equipoise.web.block import Block
-from equipoise.web.drawing import moves_of, stage_of
+from equipoise.web.drawing import ground_of, moves_of, stage_of
 from equipoise.web.edits import Solved
 from equipoise.web.measured import charted, gauges_of
 from equipoise.web.messages import MOST_OUTPUTS, Message
@@ -82,6 +82,7 @@ def _ghost(pale: Solved | None) -> Reply:
     if pale is None:
         return Reply({"type": "ghost", "seq": None, "scene": None, "arrays": {}})
     moves_of(pale.scene, block)
+    ground_of(pale, block)
     scene = stage_of(pale.scene, ())
     return Reply({"type": "ghost", "seq": None, "scene": scene, "arrays": block.told}, block.data)
 

@@ -12,14 +12,12 @@ from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import GROUPS
 from equipoise.mechanism.poles import guided, pinned
-from equipoise.mechanism.tip import surface_of
 from equipoise.quantities import display
 from equipoise.results.analysis import Analysis
 from equipoise.signals import Periodic
-from equipoise.symbols.scene import Scene
 from equipoise.web.arrows import arrows_of, points_of
 from equipoise.web.block import Array, Block, Values
-from equipoise.web.drawing import moves_of, stage_of
+from equipoise.web.drawing import ground_of, moves_of, stage_of
 from equipoise.web.edits import Solved, extent_of, movable
 from equipoise.web.figures import charts_of, figures_of, least_of, signals_of
 from equipoise.web.measured import measured_told
@@ -86,7 +84,7 @@ def state_of(
         "record": measured_told(record, found, block),
         "arrows_at": arrows_at,
         "arrows": arrows_of(analysis, arrows_at, block) if arrows_at else [],
-        **_ground(found, scene, block),
+        **ground_of(found, block),
     }
     content["arrays"] = block.told
     return content, block.data
@@ -173,17 +171,6 @@ def _orders(analysis: Analysis) -> list[float]:
         return []
     turns = analysis.motion.turns
     return [number / turns for number in range(MOST_ORDER * turns + 1)]
-
-
-def _ground(found: Solved, scene: Scene, block: Block) -> Values:
-    """Path of a planting tip over ground, and the soil that it goes into."""
-    machine = found.analysis.machine
-    planting, speed = machine.planting, found.motion.speed
-    if planting is None or speed == 0:
-        return {}
-    way = planting.forward(speed) / speed * scene.crank_angle
-    block.add(f"ground.{planting.tip}", scene.places[planting.tip] + way)
-    return {"planting": {"tip": planting.tip, "surface": surface_of(machine)}}
 
 
 # -- what comes first ------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ import os
 import time
 from math import cos, radians, sin
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -13,7 +14,7 @@ from hypothesis import strategies as st
 
 from equipoise.errors import EquipoiseError, ModelError
 from equipoise.mechanism.model import STANDARD_GRAVITY, Gear
-from equipoise.schema import examples, load, loads
+from equipoise.schema import examples, load, loads, opening
 from unit.schema.samples import EVERYTHING, FOUR_BAR
 
 
@@ -39,6 +40,29 @@ def test_everything_is_read() -> None:
     assert machine.loads[0].force == (1.0, -19.6133)
     assert machine.position is not None
     assert machine.position.points == {"B": (0.001, 0.002)}
+
+
+def test_a_file_of_an_older_version_is_brought_up_to_date(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Step by step, each from a version to the next: here a link's mass was called otherwise."""
+
+    def links(content: dict[str, Any]) -> dict[str, Any]:
+        return {"links": content.pop("bars"), **content}
+
+    def masses(content: dict[str, Any]) -> dict[str, Any]:
+        named = {"weight": "mass"}
+        return {
+            **content,
+            "links": {
+                name: {named.get(key, key): value for key, value in link.items()}
+                for name, link in content["links"].items()
+            },
+        }
+
+    monkeypatch.setattr(opening, "MIGRATIONS", {-1: links, 0: masses})
+    older = FOUR_BAR.replace("\nmass =", "\nweight =").replace("[links.", "[bars.")
+    assert loads(older.replace("schema = 1", "schema = -1")) == loads(FOUR_BAR)
+    with pytest.raises(ModelError, match="no key is called"):
+        loads(older)
 
 
 def test_right_angles_are_exact() -> None:

@@ -12,10 +12,10 @@ from equipoise.studies.outcomes import Estimate, estimated
     ("each", "chunk", "processors", "computed", "seconds"),
     [
         (1e-5, 256, 2, 256, 1000 * 1e-5 / 2),  # a whole chunk
-        (0.01, 256, 4, 256, 1000 * 0.01 / 4),
-        (0.25, 256, 4, 8, 1000 * 0.25 / 4),  # more of it would take 16 s
+        (0.002, 256, 4, 256, 1000 * 0.002 / 4),
+        (0.1, 256, 4, 8, 1000 * 0.1 / 4),  # more of it would take 6 s
         (9.0, 256, 4, 1, 1000 * 9.0 / 4),
-        (0.2, 10, 1, 10, 1000 * 0.2),
+        (0.05, 10, 1, 10, 1000 * 0.05),
         (0.1, 1000, 8, 8, 1000 * 0.1),  # one chunk keeps one processor busy
     ],
 )

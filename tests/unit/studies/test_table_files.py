@@ -17,7 +17,7 @@ from equipoise.errors import UsageError
 from equipoise.studies.design_space import Output
 from equipoise.studies.run import create_store
 from equipoise.studies.sampling import samples
-from equipoise.studies.selection import export
+from equipoise.studies.selection import write_designs
 from support.studies import LENGTH, MASS, SPEED, Formulas, filled, short_study
 
 STUDY = short_study(250)
@@ -46,7 +46,7 @@ def csv_of(path: Path) -> tuple[list[str], pandas.DataFrame]:
 
 def test_parquet_has_every_design_and_the_units(tmp_path: Path) -> None:
     target = tmp_path / "designs.parquet"
-    assert export(filled(tmp_path / "s", STUDY), target) == 250
+    assert write_designs(filled(tmp_path / "s", STUDY), target) == 250
     table = pandas.read_parquet(target)
     assert list(table) == COLUMNS
     check(table, np.arange(250))
@@ -59,7 +59,7 @@ def test_parquet_has_every_design_and_the_units(tmp_path: Path) -> None:
 
 def test_csv_has_every_design_with_units_in_its_header(tmp_path: Path) -> None:
     target = tmp_path / "designs.CSV"
-    assert export(filled(tmp_path / "s", STUDY), target) == 250
+    assert write_designs(filled(tmp_path / "s", STUDY), target) == 250
     header, table = csv_of(target)
     units = ["", " [m]", " [kg]", " [rad/s]", "", " [N]", " [J]", ""]
     assert header == [name + unit for name, unit in zip(COLUMNS, units, strict=True)]
@@ -70,7 +70,7 @@ def test_csv_has_every_design_with_units_in_its_header(tmp_path: Path) -> None:
 def test_what_is_not_stored_yet_is_left_out(tmp_path: Path, ending: str) -> None:
     target = tmp_path / f"designs.{ending}"
     target.write_text("of before")
-    assert export(filled(tmp_path / "s", STUDY, (0, 2)), target) == 150
+    assert write_designs(filled(tmp_path / "s", STUDY, (0, 2)), target) == 150
     read = pandas.read_csv if ending == "csv" else pandas.read_parquet
     rows = np.concatenate([np.arange(100), np.arange(200, 250)])
     np.testing.assert_array_equal(read(target)["design"], rows)
@@ -80,7 +80,9 @@ def test_what_is_not_stored_yet_is_left_out(tmp_path: Path, ending: str) -> None
 def test_only_designs_that_keep_every_limit(tmp_path: Path) -> None:
     outcome = Formulas()(samples(STUDY, 0, 250))
     rows = np.flatnonzero((outcome.reason == 0) & (outcome.figures[:, 0] >= 0.0045))
-    assert export(filled(tmp_path / "s", STUDY), tmp_path / "d.parquet", kept=True) == len(rows)
+    assert write_designs(filled(tmp_path / "s", STUDY), tmp_path / "d.parquet", kept=True) == len(
+        rows
+    )
     check(pandas.read_parquet(tmp_path / "d.parquet"), rows)
 
 
@@ -90,7 +92,7 @@ def test_many_designs_are_written_a_block_at_a_time(
 ) -> None:
     monkeypatch.setattr("equipoise.studies.store.BLOCK", 100)
     target = tmp_path / f"designs.{ending}"
-    assert export(filled(tmp_path / "s", STUDY), target) == 250
+    assert write_designs(filled(tmp_path / "s", STUDY), target) == 250
     check(pandas.read_parquet(target) if ending == "parquet" else csv_of(target)[1], np.arange(250))
     if ending == "parquet":
         assert pyarrow.parquet.ParquetFile(target).num_row_groups == 3
@@ -99,7 +101,7 @@ def test_many_designs_are_written_a_block_at_a_time(
 def test_names_with_quotes_and_commas_stand_in_the_header(tmp_path: Path) -> None:
     name = 'joint_forces."A, b".rms'
     study = short_study(5, outputs=(Output(name, dimension="force"),))
-    export(create_store(tmp_path / "s", study, 5, "numba"), tmp_path / "d.csv")
+    write_designs(create_store(tmp_path / "s", study, 5, "numba"), tmp_path / "d.csv")
     assert list(pandas.read_csv(tmp_path / "d.csv"))[4] == f"{name} [N]"
 
 
@@ -117,7 +119,7 @@ def test_what_cannot_be_written_is_told_and_leaves_nothing(
     (tmp_path / "folder.csv").mkdir()
     store = filled(tmp_path / "s", STUDY)
     with pytest.raises(UsageError, match=told):
-        export(store, tmp_path / name)
+        write_designs(store, tmp_path / name)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["folder.csv", "s"]
 
 
@@ -130,7 +132,7 @@ def test_a_disk_that_is_full_leaves_the_file_of_before(tmp_path: Path) -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
     try:
         with pytest.raises(UsageError, match=r"the file cannot be written \(.*file too large"):
-            export(store, target)
+            write_designs(store, target)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert target.read_text() == "of before"
@@ -144,5 +146,5 @@ def test_without_pyarrow_the_sentence_tells_how_to_install_it(
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     told = r'an export needs pyarrow, .* pip install "equipoise\[studies\]"'
     with pytest.raises(UsageError, match=told):
-        export(store, tmp_path / "d.csv")
+        write_designs(store, tmp_path / "d.csv")
     assert not (tmp_path / "d.csv").exists()

@@ -204,6 +204,8 @@ def test_dragging_goes_on_while_something_takes_long(
         late = hear(page)
         assert (late["type"], late["seq"]) == ("refused", 1)
         assert "was changed while" in late["message"]
+        rest = iter(lambda: hear(page), {"type": "told", "seq": 2})  # both are answered by now
+        assert "told" not in {one["type"] for one in rest}
 
 
 def test_a_page_does_not_wait_for_what_others_open(

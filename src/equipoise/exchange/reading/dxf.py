@@ -107,6 +107,12 @@ def _add(drawing: Drawing, entity: Any, scale: float) -> None:
     if kind == "CIRCLE":
         x, y, _ = entity.ocs().to_wcs(entity.dxf.center)
         drawing.rings.append(Ring(_place(x, y, scale), float(entity.dxf.radius) * scale, names))
+    elif kind == "POINT":
+        x, y, _ = entity.dxf.location
+        drawing.rings.append(Ring(_place(x, y, scale), 0.0, names))
+    elif kind == "TEXT" and (word := entity.dxf.text.strip()).isprintable() and word:
+        x, y, _ = entity.dxf.insert
+        drawing.words.append((_place(x, y, scale), word[:100]))
     elif kind == "HATCH":
         drawing.areas += [Stroke(tuple(_corners(path, scale)), names, True)
                           for path in from_hatch(entity) if len(path)]  # fmt: skip

@@ -16,6 +16,8 @@ WATER = "1000"
 """kg/m3, where a shape tells neither mass nor density."""
 SIZES = {"sphere": 1, "ellipsoid": 3, "box": 3, "capsule": 2, "cylinder": 2}
 """How many numbers the size of a shape has: radii and half lengths, m."""
+LEAST = 1e-9
+"""m, below which a size is none."""
 ENDLESS = {"plane", "hfield"}
 """Shapes without a mass."""
 
@@ -31,11 +33,11 @@ def lump(geom: Element, axes: Frame3, note: Callable[[str], None]) -> Lump | Non
         return None
     if kind in ("box", "cylinder", "capsule", "ellipsoid") and geom.get("fromto"):
         axes, half = _between(geom)
-        radius = numbers(geom, "size", "0")[0]
+        radius = (*numbers(geom, "size", "0"), 0.0)[0]
         sizes: tuple[float, ...] = (radius, half) if SIZES[kind] == 2 else (radius, radius, half)
     else:
         sizes = numbers(geom, "size")[: SIZES[kind]]
-    if len(sizes) < SIZES[kind] or min(sizes) <= 0:
+    if len(sizes) < SIZES[kind] or min(sizes) < LEAST:
         raise ModelError(called(geom), f"size: a {kind} needs {SIZES[kind]} numbers above 0")
     volume, squares = _solid(kind, sizes)
     mass = number(geom, "mass") if geom.get("mass") else volume * number(geom, "density", WATER)

@@ -22,6 +22,10 @@ PIVOT = 0.2
 FRAMES = ("frame", "ground", "fixed", "base")
 GUIDES = ("guide", "slider", "rail")
 """Names of what stands still, and of lines on which ends slide, where none are told."""
+BESIDE = ("path", "part", "springs", "gears", "names")
+"""First words of layers of what `export` draws beside the links."""
+LINK = "link "
+"""Before the name of a link in its layer there."""
 
 
 @dataclass(frozen=True)
@@ -60,12 +64,13 @@ class Ring:
 
 @dataclass
 class Drawing:
-    """What is drawn: lines, circles, and areas that are hatched."""
+    """What is drawn: lines, circles and points, areas that are hatched, and words where they are."""
 
     title: str
     strokes: list[Stroke] = field(default_factory=list)
     rings: list[Ring] = field(default_factory=list)
     areas: list[Stroke] = field(default_factory=list)
+    words: list[tuple[complex, str]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
     def note(self, sentence: str) -> None:
@@ -123,8 +128,13 @@ def _distance(place: complex, start: complex, end: complex) -> float:
 
 
 def _named(one: Stroke | Ring, names: Iterable[str]) -> bool:
-    own = {name.casefold() for name in one.names}
+    own = {part for name in one.names for part in (name.casefold(), _first(name))}
     return any(name.casefold() in own for name in names)
+
+
+def _first(name: str) -> str:
+    """The first word of a name."""
+    return name.casefold().partition(" ")[0]
 
 
 class _Skeleton:
@@ -134,12 +144,17 @@ class _Skeleton:
         every: list[Stroke | Ring] = [*drawing.strokes, *drawing.rings]
         self.grounds = [one for one in every if _named(one, frames)]
         self.guides = [one for one in drawing.strokes if _named(one, guides)]
-        lines = [one for one in drawing.strokes if one not in (*self.grounds, *self.guides)]
+        taken = {id(one) for one in (*self.grounds, *self.guides)}
+        beside = [one for one in drawing.strokes if _first((*one.names, "")[0]) in BESIDE]
+        if beside:
+            drawing.note(f"{len(beside)} lines of paths, parts, springs and gears are left out")
+        taken |= {id(one) for one in beside}
+        lines = [one for one in drawing.strokes if id(one) not in taken]
         places = [place for one in drawing.strokes for place in one.places]
         xs, ys = zip(*((place.real, place.imag) for place in places), strict=True)
         self.size = max(max(xs) - min(xs), max(ys) - min(ys))
         self.near = marks.together or TOGETHER * self.size
-        self.pivots = [one for one in drawing.rings if one.radius < PIVOT * self.size]
+        self.pivots = [one for one in drawing.rings if 0 < one.radius < PIVOT * self.size]
         self.joints: list[complex] = [one.center for one in self.pivots]
         self.bodies = [*self._bodies(lines)]
 
@@ -198,14 +213,23 @@ class _Skeleton:
         return found
 
     def _points(self) -> dict[int, str]:
-        """Names of the corners that links have: A to Z, then P1 and so on."""
+        """Names of the corners that links have: the word that stands there, else A to Z, then P1
+        and so on.
+        """
         used = dict.fromkeys(number for _, corners in self.bodies for number in corners)
+        found: dict[int, str] = {}
+        for place, word in self.drawing.words:
+            near = (one for one in used if abs(self.joints[one] - place) <= self.near)
+            if (at := next(near, None)) is not None and word not in found.values():
+                found.setdefault(at, word)
         names = (*ascii_uppercase, *(f"P{number}" for number in range(1, len(used) + 1)))
-        return dict(zip(used, names, strict=False))
+        free_names = (name for name in names if name not in found.values())
+        return {one: found.get(one) or next(free_names) for one in used}
 
     def _names(self, links: Sequence[Sequence[Stroke]]) -> Iterator[str]:
         """The first name that is that of one link alone, or a number."""
-        own = [dict.fromkeys(name for one in strokes for name in one.names) for strokes in links]
+        own = [dict.fromkeys(name.removeprefix(LINK) for one in strokes for name in one.names)
+               for strokes in links]  # fmt: skip
         taken: set[str] = {FRAME}
         for names in own:
             alone = (name for name in names if sum(name in other for other in own) == 1

@@ -1,0 +1,107 @@
+"""DXF: the linkage at a crank angle, paths of its points, and parts to be cut, in mm.
+
+Each link, path and part has a layer, so that a drawing program can show and cut what is wanted.
+Parts lie beside the linkage, below one another, in the axes of their links.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Iterable
+from typing import Any
+
+from equipoise.errors import UsageError, needed
+from equipoise.exchange.formats import Job
+from equipoise.exchange.parts import Part, parts
+from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.motion import move
+from equipoise.symbols.scene import Scene
+
+MM = 1e3
+"""mm in a metre."""
+ANGLES = 360
+"""Points of a path in each turn."""
+FORBIDDEN = re.compile(r'[<>/\\":;?*|=`,]')
+"""Signs that names of layers must not have."""
+
+
+def made(job: Job) -> str:
+    """The file's text."""
+    drawing = needed("ezdxf", "DXF").new("R2010", units=4)
+    space = drawing.modelspace()
+    angles = move(job.machine, ANGLES).crank_angle
+    scene = Scene.of(move(job.machine, [job.crank_angle, *angles]))
+    if job.machine.rows:
+        job.leave_out("rows: one linkage is drawn")
+    _linkage(space, scene)
+    _paths(space, scene)
+    try:
+        _parts(space, parts(job), scene)
+    except UsageError:  # nothing to cut is nothing wrong here
+        job.left_out.append("parts to be cut: the model tells no outline of any")
+    for name in sorted({entity.dxf.layer for entity in space} - {"0"}):
+        drawing.layers.add(name)
+    text = io.StringIO()
+    drawing.write(text)
+    return text.getvalue()
+
+
+def _layer(*words: str) -> dict[str, str]:
+    return {"layer": FORBIDDEN.sub("_", " ".join(words))[:250]}
+
+
+def _points(places: Iterable[complex]) -> list[tuple[float, float]]:
+    return [(MM * place.real, MM * place.imag) for place in places]
+
+
+def _linkage(space: Any, scene: Scene) -> None:
+    """Links as lines between their points, guides, gears and springs as they stand, and names."""
+    at = {name: complex(place[0]) for name, place in scene.places.items()}
+    low, high = scene.linkage_box
+    letter = MM * abs(high - low) / 60
+    for body in scene.bodies:
+        corners = _points(at[name] for name in body.outline)
+        layer = _layer("link", body.name)
+        if len(corners) > 1:
+            space.add_lwpolyline(corners, close=len(corners) > 2, dxfattribs=layer)
+    for guide in scene.guides:
+        way, place = guide.way[0], at[guide.point]
+        ends = _points([place - guide.behind[0] * way, place + guide.ahead[0] * way])
+        space.add_line(*ends, dxfattribs=_layer("guide", guide.name))
+    for one, other in scene.springs:
+        space.add_line(*_points([at[one], at[other]]), dxfattribs=_layer("springs"))
+    for wheel in scene.wheels:
+        (center,) = _points([at[wheel.center]])
+        space.add_circle(center, MM * abs(wheel.radius), dxfattribs=_layer("gears", wheel.link))
+    for name, spot in zip(at, _points(at.values()), strict=True):
+        held = FRAME if name in scene.frame else "points"
+        space.add_point(spot, dxfattribs=_layer(held))
+        space.add_text(name, height=letter, dxfattribs=_layer("names")).set_placement(spot)
+
+
+def _paths(space: Any, scene: Scene) -> None:
+    """Ways of all points that move, over the whole cycle."""
+    for name, places in scene.places.items():
+        if name not in scene.frame:
+            corners = _points(places[1:])
+            space.add_lwpolyline(corners, close=True, dxfattribs=_layer("path", name))
+
+
+def _parts(space: Any, found: list[Part], scene: Scene) -> None:
+    """Parts one below the other, right of the linkage."""
+    low, high = (MM * corner for corner in scene.linkage_box)
+    gap = abs(high - low) / 10
+    corner = high + gap
+    for part in found:
+        lowest, highest = (MM * one for one in part.box)
+        shift = corner - complex(lowest.real, highest.imag)
+        layer = _layer("part", part.name)
+        for edges in part.edges:
+            moved = [(MM * place + shift, bulge) for place, bulge in edges]
+            rows = [(one.real, one.imag, bulge) for one, bulge in moved]
+            space.add_lwpolyline(rows, format="xyb", close=True, dxfattribs=layer)
+        corner -= 1j * ((highest - lowest).imag + gap / 3)
+        text = space.add_text(part.title, height=gap / 6, dxfattribs=_layer("names"))
+        text.set_placement((corner.real, corner.imag))
+        corner -= 1j * gap

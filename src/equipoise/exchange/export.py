@@ -1,0 +1,93 @@
+"""Machines, balanced ones and stores as files of other programs."""
+
+from __future__ import annotations
+
+import os
+from importlib import import_module
+from math import isfinite
+
+from equipoise.balancing.balanced import Balanced
+from equipoise.errors import UsageError, needed, unknown
+from equipoise.exchange.formats import FORMATS, Format, Job
+from equipoise.mechanism.model import Machine
+from equipoise.schema.files import printable, write
+from equipoise.studies.selection import write_designs
+from equipoise.studies.store import Store
+
+
+def export(
+    what: Machine | Balanced | Store,
+    path: str | os.PathLike[str],
+    format: str | None = None,
+    *,
+    crank_angle: float = 0.0,
+    kept: bool = False,
+) -> tuple[str, ...]:
+    """Write a machine, or all designs of a store, as a file of another program.
+
+    Parameters
+    ----------
+    what : of a balanced machine the new counterweights are told too, where the format has a place.
+    path : of the file, which is replaced where it is there.
+    format : a name in ``equipoise.exchange.formats.FORMATS`` such as ``mjcf``; as the file's ending
+        says if None.
+    crank_angle : at which a machine is drawn, rad.
+    kept : of a store only those designs that keep every limit.
+
+    Returns
+    -------
+    What the format does not hold and the file therefore lacks, a sentence each.
+
+    Raises
+    ------
+    UsageError : there is no such format, it cannot hold this, its library is not installed, or the
+        file cannot be written.
+    MassError, MotionError, ModelError : the machine cannot be computed as far as the format needs.
+    """
+    one = format_of(path, format)
+    if one.of_store != isinstance(what, Store):
+        holds = "designs of a store" if one.of_store else "machines"
+        wanted = ", ".join(
+            other.name for other in FORMATS.values() if other.of_store != one.of_store
+        )
+        raise UsageError(f"{one.title} is for {holds}; give one of {wanted}")
+    if not isfinite(crank_angle):
+        raise UsageError(f"crank_angle: got {crank_angle}; give an angle in rad")
+    if isinstance(what, Store):
+        write_designs(what, path, kept=kept)
+        return ()
+    job, data = made(what, one, crank_angle)
+    write(path, data)
+    return tuple(job.left_out)
+
+
+def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job, str | bytes]:
+    """A file's content, and what was left out of it."""
+    if one.needs:
+        needed(one.needs, f"a file of {one.title}")
+    machine, changes = (what.machine, what.changes) if isinstance(what, Balanced) else (what, ())
+    job = Job(machine, crank_angle, changes)
+    data: str | bytes = import_module(f"equipoise.exchange.{one.name}").made(job)
+    return job, data
+
+
+def format_of(path: str | os.PathLike[str], name: str | None = None) -> Format:
+    """The format of a name, or of a file's ending.
+
+    Raises
+    ------
+    UsageError : there is none.
+    """
+    if name is not None:
+        if name not in FORMATS:
+            raise UsageError(unknown(name, FORMATS, "format"))
+        return FORMATS[name]
+    ending = os.path.splitext(path)[1].lower()
+    found = next((one for one in FORMATS.values() if one.ending == ending), None)
+    if found is None:
+        endings = ", ".join(one.ending for one in FORMATS.values())
+        raise UsageError(
+            f"got {printable(path)!r}; give the name of a file that ends in one of {endings}, "
+            "or a format"
+        )
+    return found

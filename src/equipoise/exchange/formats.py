@@ -1,0 +1,92 @@
+"""What a machine can be written as, a declaration each; all that lists them follows from these."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from equipoise.balancing.workshop import Change
+    from equipoise.mechanism.model import Machine
+
+
+@dataclass(frozen=True)
+class Format:
+    """One kind of file.
+
+    name : as `format` takes it; its module here has that name too, but for tables of stores.
+    ending : of its files, with the dot.  holds : what is in it.  needs : a library of the extra
+    `exchange`.  of_store : whether it is of the designs of a study, not of a machine.
+    """
+
+    name: str
+    ending: str
+    title: str
+    holds: str
+    needs: str = ""
+    of_store: bool = False
+
+
+FORMATS: Mapping[str, Format] = {
+    one.name: one
+    for one in (
+        Format(
+            "mjcf",
+            ".xml",
+            "MuJoCo (MJCF)",
+            "bodies, pins, sliders, gears, springs, constant loads, rows, the support on its "
+            "mounts, the drive at constant speed",
+        ),
+        Format(
+            "dxf",
+            ".dxf",
+            "drawing (DXF)",
+            "the linkage at a crank angle, paths of its points, pitch circles of gears, parts to "
+            "be cut: outlines and holes of links made of bodies, and of counterweights; in mm",
+            needs="ezdxf",
+        ),
+        Format(
+            "svg",
+            ".svg",
+            "parts (SVG)",
+            "the same parts to be cut, at 1:1",
+        ),
+        Format(
+            "xlsx",
+            ".xlsx",
+            "Excel",
+            "links and points, figures of every output, all signals over crank angle with their "
+            "units, charts of them, and what to change where it was balanced",
+            needs="xlsxwriter",
+        ),
+        Format(
+            "mat",
+            ".mat",
+            "MATLAB",
+            "a struct of links and points, figures of every output, and all signals with units",
+        ),
+        Format("csv", ".csv", "CSV", "all designs of a store", of_store=True),
+        Format("parquet", ".parquet", "Parquet", "all designs of a store", of_store=True),
+    )
+}
+"""By name."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """What is to be written.
+
+    crank_angle : at which it is drawn, rad.  changes : that balancing made of it.
+    left_out : what the format does not hold, as it goes on.
+    """
+
+    machine: Machine
+    crank_angle: float = 0.0
+    changes: tuple[Change, ...] = ()
+    left_out: list[str] = field(default_factory=list)
+
+    def leave_out(self, what: str) -> None:
+        """Tell, once, what the file does not hold."""
+        if what not in self.left_out:
+            self.left_out.append(what)

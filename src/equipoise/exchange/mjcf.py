@@ -1,0 +1,320 @@
+"""MJCF, the models of MuJoCo: a tree of bodies in the plane x y, whose loops `connect` closes.
+
+Bodies have the axes of their links, so that every number of the file is there again; coordinates of
+joints count from the position that is drawn.  Loops, gears and the drive's speed are held softly,
+as MuJoCo holds everything but its tree.  A mount is an actuator between a site of the support and
+one of the ground: its force keeps its direction, as `support.mounts` has it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import pi
+from xml.etree import ElementTree as ET
+
+import numpy as np
+
+from equipoise.exchange.formats import Job
+from equipoise.exchange.tree import Hung, Tree, mass_of, trees, weighed
+from equipoise.mechanism.dynamics import forces
+from equipoise.mechanism.links import size_of
+from equipoise.mechanism.model import FRAME, Machine, Vector
+from equipoise.mechanism.motion import move
+from equipoise.mechanism.support import FREEDOMS, Support, unit_vector
+from equipoise.vibration.free import modes
+
+STEPS = 2000
+"""Steps of the integration in a turn of the crank."""
+LIGHT = 1e-8
+"""Mass over that of all links, inertia over that times the square of their size: what a link gets
+that has less, since MuJoCo refuses bodies without and computes badly with hardly any."""
+SOFT, SLOW = 4, 2.0
+"""Steps in which an error of a constraint dies out, and its damping over the critical one; with
+less the integration may explode."""
+STIFF = 1e4
+"""Drive torque at its peak over what the speed falls behind by at that torque, over the speed."""
+BASE = "support"
+FAR = 1e30
+"""Of a force: no limit."""
+
+
+def made(job: Job) -> str:
+    """The file's text."""
+    machine = weighed(job.machine)
+    drawn = trees(machine, job.crank_angle)
+    root = ET.Element("mujoco", model=str(machine.title))
+    _options(root, machine)
+    world = ET.SubElement(root, "worldbody")
+    base = world if machine.support is None else _support(world, machine, machine.support)
+    for name, (x, y) in machine.frame.items():
+        for tree in drawn:
+            dx, dy = tree.row.offset
+            _site(base, f"{FRAME} {name}{tree.suffix}", (x + dx, y + dy, tree.row.lateral))
+    for tree in drawn:
+        _links(base, tree, job, machine.drive.flywheel if tree is drawn[0] else 0.0)
+        _held(root, tree)
+        _springs(root, tree)
+        _loads(root, world, tree, job)
+    _shaft(root, drawn)
+    if machine.support is not None:
+        _mounts(root, world, base, machine)
+    _drive(root, drawn[0], job)
+    _start(root, drawn, machine)
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode") + "\n"
+
+
+def _options(root: ET.Element, machine: Machine) -> None:
+    step = 2 * pi / (abs(machine.drive.speed) or 1.0) / STEPS
+    ET.SubElement(root, "compiler", angle="radian", inertiafromgeom="false", balanceinertia="false")
+    option = ET.SubElement(
+        root,
+        "option",
+        gravity=_row((*machine.gravity, 0.0)),
+        timestep=repr(step),
+        integrator="implicitfast",
+        iterations="200",
+        tolerance="1e-14",
+    )
+    ET.SubElement(option, "flag", contact="disable")
+    default = ET.SubElement(root, "default")
+    softness = {"solref": _row((SOFT * step, SLOW)), "solimp": "0.9999 0.9999 0.001 0.5 2"}
+    ET.SubElement(default, "equality", softness)
+    ET.SubElement(default, "geom", contype="0", conaffinity="0", rgba="0.35 0.5 0.65 1")
+
+
+def _row(values: Sequence[float]) -> str:
+    return " ".join(repr(float(value)) for value in values)
+
+
+def _site(body: ET.Element, name: str, place: Sequence[float]) -> None:
+    ET.SubElement(body, "site", name=name, pos=_row((*place, 0.0)[:3]))
+
+
+# -- bodies ----------------------------------------------------------------------------------------
+
+
+def _links(base: ET.Element, tree: Tree, job: Job, flywheel: float) -> None:
+    """Every link inside of the body that carries it.
+
+    flywheel : moment of inertia that turns with the drive's link, whose mass is the support's.
+    """
+    machine, bodies = tree.machine, {FRAME: base}
+    size = _size(machine)
+    least = LIGHT * machine.mass, LIGHT * machine.mass * size**2
+    for link in tree.links:
+        place, turned = tree.beside(link)
+        across = tree.row.lateral if link.parent == FRAME else 0.0
+        name = f"{link.name}{tree.suffix}"
+        pose = {"pos": _row((place.real, place.imag, across)), "euler": _row((0, 0, turned))}
+        body = ET.SubElement(bodies[link.parent], "body", pose, name=name)
+        bodies[link.name] = body
+        _joint(body, name, link)
+        mass, center, inertia = mass_of(machine.links[link.name])
+        if mass < least[0] or inertia < least[1]:
+            job.leave_out(
+                f"that {link.name!r} has no mass or no inertia: MuJoCo wants some, and gets as "
+                "little as it takes"
+            )
+        inertia += flywheel if link.name == machine.drive.link else 0.0
+        _inertial(body, max(mass, least[0]), center, (max(inertia, least[1]),) * 3)
+        _shape(body, name, machine.links[link.name].points, size / 100)
+
+
+def _size(machine: Machine) -> float:
+    """A length of the size of the links, m; for masses and lines that are to be small or thin."""
+    return max(size_of(body) for body in machine.bodies.values())
+
+
+def _joint(body: ET.Element, name: str, link: Hung) -> None:
+    if link.kind == "hinge":
+        ET.SubElement(body, "joint", name=name, type="hinge", axis="0 0 1", pos=_row((*link.at, 0)))
+    else:
+        along = _row((np.cos(link.along), np.sin(link.along), 0.0))
+        ET.SubElement(body, "joint", name=name, type="slide", axis=along)
+
+
+def _inertial(
+    body: ET.Element, mass: float, center: Sequence[float], moments: Sequence[float]
+) -> None:
+    """Mass (kg), its centre, and moments of inertia about it, with products where there are six."""
+    kind = "diaginertia" if len(moments) == 3 else "fullinertia"
+    place = _row((*center, 0.0)[:3])
+    ET.SubElement(body, "inertial", {"pos": place, "mass": repr(mass), kind: _row(moments)})
+
+
+def _shape(body: ET.Element, name: str, points: Mapping[str, Vector], thin: float) -> None:
+    """Sites at the points of a link, and lines from its first one to be seen."""
+    first, *others = points.values()
+    for point, place in points.items():
+        _site(body, f"{name} {point}", place)
+    if not others:
+        ET.SubElement(body, "geom", type="sphere", size=repr(2 * thin), pos=_row((*first, 0)))
+    for place in others:
+        ends = _row((*first, 0, *place, 0))
+        ET.SubElement(body, "geom", type="capsule", size=repr(thin), fromto=ends)
+
+
+def _support(world: ET.Element, machine: Machine, support: Support) -> ET.Element:
+    """The body that carries the linkages, whose axes are the frame's."""
+    base = ET.SubElement(world, "body", name=BASE)
+    for name, direction in zip(FREEDOMS, np.vstack([np.eye(3)] * 2), strict=True):
+        if name in support.coordinates:
+            kind = "slide" if FREEDOMS.index(name) < 3 else "hinge"
+            at = _row(support.reference)
+            ET.SubElement(base, "joint", name=name, type=kind, axis=_row(direction), pos=at)
+    moments = support.inertia or (_about_center(support),)
+    x, y, z = moments if len(moments) == 3 else moments * 3
+    xy, yz, zx = (-one for one in support.products or (0.0, 0.0, 0.0))
+    z -= machine.drive.flywheel  # it turns with the crank, where it is told
+    _inertial(base, support.mass, support.center_of_mass, (x, y, z, xy, zx, yz))
+    for name, gauge in support.gauges.items():
+        if gauge.point is not None:
+            _site(base, f"gauge {name}", gauge.point)
+    return base
+
+
+def _about_center(support: Support) -> float:
+    """Moment of inertia of a support about its centre of mass, from that about its pivot."""
+    assert support.pivot_inertia is not None and support.pivot is not None
+    arm = complex(*support.center_of_mass[:2]) - complex(*support.pivot)
+    return support.pivot_inertia - support.mass * abs(arm) ** 2
+
+
+# -- what holds and drives them --------------------------------------------------------------------
+
+
+def _part(root: ET.Element, name: str) -> ET.Element:
+    """The part of the file for things of a kind, made where it is not there yet."""
+    found = root.find(name)
+    return ET.SubElement(root, name) if found is None else found
+
+
+def _held(root: ET.Element, tree: Tree) -> None:
+    """Pins that close loops, and gears: sums of angles that stay what they are."""
+    for loop in tree.loops:
+        sites = {f"site{n}": _place(tree, b, loop.pin) for n, b in ((1, loop.one), (2, loop.other))}
+        ET.SubElement(_part(root, "equality"), "connect", sites)
+    for gear, factors in tree.gears:
+        _kept(root, f"{gear}{tree.suffix}", {f"{k}{tree.suffix}": v for k, v in factors.items()})
+
+
+def _place(tree: Tree, body: str, point: str) -> str:
+    """Name of a point's site."""
+    if body == FRAME:
+        return f"{FRAME} {point}{tree.suffix}"
+    return f"{body}{tree.suffix} {point}"
+
+
+def _kept(root: ET.Element, name: str, factors: Mapping[str, float]) -> None:
+    """A sum of coordinates of joints that stays what it is."""
+    tendon = ET.SubElement(_part(root, "tendon"), "fixed", name=name)
+    for joint, factor in factors.items():
+        ET.SubElement(tendon, "joint", joint=joint, coef=repr(factor))
+    ET.SubElement(_part(root, "equality"), "tendon", tendon1=name)
+
+
+def _springs(root: ET.Element, tree: Tree) -> None:
+    for spring in tree.machine.springs:
+        rates = {"stiffness": repr(spring.stiffness), "springlength": repr(spring.free_length)}
+        tendon = ET.SubElement(_part(root, "tendon"), "spatial", rates)
+        for body, point in ((spring.link, spring.point), (FRAME, spring.to)):
+            ET.SubElement(tendon, "site", site=_place(tree, body, point))
+
+
+def _loads(root: ET.Element, world: ET.Element, tree: Tree, job: Job) -> None:
+    """Loads that are always the same; others are told to be left out."""
+    planting = tree.machine.planting
+    if planting is not None and planting.soil is not None:
+        job.leave_out("the soil's force")
+    for number, load in enumerate(tree.machine.loads, 1):
+        if load.jumps or load.table is not None:
+            job.leave_out(f"load {number}, which is not the same all the time")
+            continue
+        name = f"load {number}{tree.suffix}"
+        point = load.point or next(iter(tree.machine.links[load.link].points))
+        gear = (*(load.force or (0, 0)), 0, 0, 0, load.torque or 0)
+        _site(world, name, (0, 0, 0))
+        _push(root, name, _place(tree, load.link, point), name, gear, (1.0, 0.0, 0.0))
+
+
+def _push(
+    root: ET.Element,
+    name: str,
+    site: str,
+    against: str,
+    gear: Sequence[float],
+    push: Sequence[float],
+    one_sided: bool = False,
+) -> None:
+    """A force on a site along a direction of another: at the start, less by way and by speed."""
+    limits = {"forcerange": _row((0.0, FAR))} if one_sided else {}
+    ET.SubElement(
+        _part(root, "actuator"),
+        "general",
+        limits,
+        name=name,
+        site=site,
+        refsite=against,
+        gear=_row(gear),
+        gainprm="0",
+        biastype="affine",
+        biasprm=_row(push),
+    )
+
+
+def _drive(root: ET.Element, tree: Tree, job: Job) -> None:
+    """The crank at constant speed, by a servo that no torque of the machine slows down much."""
+    machine, speed = tree.machine, tree.machine.drive.speed
+    if machine.drive.motor is not None:
+        job.leave_out("the motor: the drive turns at constant speed")
+    if machine.drive.acceleration:
+        job.leave_out("the drive's acceleration: the drive turns at constant speed")
+    torque = np.max(np.abs(forces(move(machine, acceleration=0.0)).drive_torque))
+    stiff = STIFF * (float(torque) or 1.0) / (abs(speed) or 1.0)
+    crank = f"{machine.drive.link}{tree.suffix}"
+    ET.SubElement(_part(root, "actuator"), "velocity", name="drive", joint=crank, kv=repr(stiff))
+    ET.SubElement(_part(root, "sensor"), "actuatorfrc", name="drive torque", actuator="drive")
+
+
+def _shaft(root: ET.Element, drawn: Sequence[Tree]) -> None:
+    """Cranks of all rows turn together."""
+    first, *others = (f"{tree.machine.drive.link}{tree.suffix}" for tree in drawn)
+    for crank in others:
+        _kept(root, f"shaft to {crank}", {crank: 1.0, first: -1.0})
+
+
+def _mounts(root: ET.Element, world: ET.Element, base: ET.Element, machine: Machine) -> None:
+    """Springs and dampers under the support, with what they carry at rest."""
+    support, carried = machine.support, modes(machine).preloads
+    assert support is not None
+    for name, mount in support.mounts.items():
+        place = support.reference if mount.point is None else mount.point
+        rates = (carried[name], -mount.spring, -mount.damper)
+        if mount.axis is not None:
+            turning = np.eye(6)[FREEDOMS.index(mount.axis)]
+            gear = turning.tolist()
+        else:
+            gear = [*unit_vector(mount.direction), 0, 0, 0]
+        _site(world, f"ground of {name}", place)
+        _site(base, f"mount {name}", place)
+        _push(root, f"mount {name}", f"mount {name}", f"ground of {name}", gear, rates,
+              mount.one_sided)  # fmt: skip
+
+
+def _start(root: ET.Element, drawn: Sequence[Tree], machine: Machine) -> None:
+    """Speeds of all joints where it is drawn, by the key `start`."""
+    still = [] if machine.support is None else [0.0] * len(machine.support.coordinates)
+    rates = [*still, *(rate for tree in drawn for rate in _in_order(tree))]
+    pushes = [0.0] * (len(root.findall("actuator/general")))
+    control = [*pushes, machine.drive.speed]
+    key = ET.SubElement(root, "keyframe")
+    ET.SubElement(key, "key", name="start", qvel=_row(rates), ctrl=_row(control))
+
+
+def _in_order(tree: Tree, parent: str = FRAME) -> Iterator[float]:
+    """Rates in the order in which MuJoCo counts: a link, all that hangs on it, the next."""
+    for link in tree.links:
+        if link.parent == parent:
+            yield link.rate
+            yield from _in_order(tree, link.name)

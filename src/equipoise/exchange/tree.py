@@ -1,0 +1,223 @@
+"""A machine as a tree: every link hangs on another body by one joint, and pins close the loops.
+
+Programs for multibody systems want it so.  The drive hangs on the frame by its pivot; sliders are
+all in the tree, since most programs close loops at pins only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+
+from equipoise.errors import MassError, UsageError
+from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.model import FRAME, Link, Machine, Slider, Vector
+from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.support import Row
+from equipoise.vibration.linkages import rows_of
+
+Kind = Literal["hinge", "slide"]
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A joint between two bodies: a pin, or a slider."""
+
+    one: str
+    other: str
+    pin: str = ""
+    slider: Slider | None = None
+
+
+@dataclass(frozen=True)
+class Hung:
+    """A link on the body that carries it.
+
+    at : of the joint in the link's axes, m.
+    along : direction of a slide in the link's axes, rad.
+    place, angle : of the link's axes in the frame, m (complex) and rad, where it is drawn.
+    rate : of the joint's coordinate, rad/s or m/s.
+    """
+
+    name: str
+    parent: str
+    kind: Kind
+    at: Vector
+    along: float
+    place: complex
+    angle: float
+    rate: float
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A pin that closes a loop, between two bodies."""
+
+    pin: str
+    one: str
+    other: str
+
+
+@dataclass(frozen=True)
+class Tree:
+    """One linkage of a machine, drawn at a crank angle.
+
+    crank_angle : rad.  links : parents before children.  shift : of its frame beside the file's, m.
+    suffix : behind every name, so that those of rows differ.
+    """
+
+    machine: Machine
+    crank_angle: float
+    links: tuple[Hung, ...]
+    loops: tuple[Loop, ...]
+    row: Row
+    suffix: str
+
+    @cached_property
+    def hung(self) -> Mapping[str, Hung]:
+        return {one.name: one for one in self.links}
+
+    def pose(self, body: str) -> tuple[complex, float]:
+        """Origin (complex, m) and angle of a body's axes in the axes of the frame."""
+        return (0j, 0.0) if body == FRAME else (self.hung[body].place, self.hung[body].angle)
+
+    def beside(self, link: Hung) -> tuple[complex, float]:
+        """Origin and angle of a link's axes in those of its parent; in the frame's of the file."""
+        (place, angle), shift = self.pose(link.parent), 0j
+        if link.parent == FRAME:
+            shift = complex(*self.row.offset)
+        return (link.place - place) * np.exp(-1j * angle) + shift, link.angle - angle
+
+    def turning(self, body: str) -> Iterator[str]:
+        """Links whose hinges add up to the angle of a body: from it down to the frame."""
+        while body != FRAME:
+            link = self.hung[body]
+            if link.kind == "hinge":
+                yield body
+            body = link.parent
+
+    @property
+    def gears(self) -> Iterator[tuple[str, dict[str, float]]]:
+        """Of each pair of gears its name, and link -> factor of its hinge in a sum that is 0."""
+        for gear in self.machine.gears:
+            ratio, factors = gear.speed_ratio, dict[str, float]()
+            shares = ((gear.driven, 1.0), (gear.driver, -ratio), (gear.carrier, ratio - 1))
+            for body, share in shares:
+                for link in self.turning(body):
+                    factors[link] = factors.get(link, 0.0) + share
+            yield gear.name, {link: one for link, one in factors.items() if one}
+
+
+def trees(machine: Machine, crank_angle: float = 0.0) -> tuple[Tree, ...]:
+    """Every linkage of a machine, drawn at a crank angle (rad) of the drive.
+
+    Raises
+    ------
+    MotionError : it cannot be drawn there.
+    UsageError : sliders alone make a loop.
+    """
+    rows = rows_of(machine)
+    return tuple(
+        _tree(machine, crank_angle, row, f" {number}" if len(rows) > 1 else "")
+        for number, row in enumerate(rows, 1)
+    )
+
+
+def weighed(machine: Machine) -> Machine:
+    """The machine, all of whose links have a mass.
+
+    Raises
+    ------
+    MassError : one has none.
+    """
+    if missing := massless(machine):
+        raise MassError(missing)
+    return machine
+
+
+def mass_of(link: Link) -> tuple[float, Vector, float]:
+    """Mass, centre of mass and inertia about it."""
+    assert link.mass is not None and link.center_of_mass is not None and link.inertia is not None
+    return link.mass, link.center_of_mass, link.inertia
+
+
+def _tree(machine: Machine, crank_angle: float, row: Row, suffix: str) -> Tree:
+    motion = move(machine, [crank_angle + row.phase], acceleration=0.0)
+    held, loose = _spanned(machine)
+    links = tuple(_hung(machine, motion, *one) for one in _outwards(held))
+    return Tree(machine, crank_angle, links, loose, row, suffix)
+
+
+def _edges(machine: Machine) -> Iterator[Edge]:
+    """Joints, those first that are to be in the tree."""
+    linkage = assemble(machine)
+    yield Edge(FRAME, machine.drive.link, pin=linkage.pivot)
+    yield from (Edge(one.on, one.link, slider=one) for one in machine.sliders)
+    for pin, (first, *others) in linkage.joints.pins.items():
+        for other in others:
+            if (pin, other) != (linkage.pivot, machine.drive.link):
+                yield Edge(first, other, pin=pin)
+
+
+def _spanned(machine: Machine) -> tuple[list[Edge], tuple[Loop, ...]]:
+    """Joints that hold every link once, and the pins that are left over."""
+    group = {body: body for body in machine.bodies}
+    held, loose = [], []
+    for edge in _edges(machine):
+        one, other = group[edge.one], group[edge.other]
+        if one != other:
+            held.append(edge)
+            group = {body: one if root == other else root for body, root in group.items()}
+        elif edge.slider is None:
+            loose.append(Loop(edge.pin, edge.one, edge.other))
+        else:
+            raise UsageError(
+                f"the slider {edge.slider.name} closes a loop of sliders alone, which only pins "
+                "can do in files of this kind; give another format"
+            )
+    return held, tuple(loose)
+
+
+def _outwards(held: list[Edge]) -> Iterator[tuple[str, str, Edge]]:
+    """Link, parent and joint, from the frame outwards."""
+    left, known = list(held), [FRAME]
+    for parent in known:
+        for edge in [one for one in left if parent in (one.one, one.other)]:
+            left.remove(edge)
+            link = edge.other if edge.one == parent else edge.one
+            known.append(link)
+            yield link, parent, edge
+
+
+def _hung(machine: Machine, motion: Motion, link: str, parent: str, edge: Edge) -> Hung:
+    bodies, at, along = machine.bodies, edge.pin, 0.0
+    rate = _spin(motion, link) - _spin(motion, parent)
+    if edge.slider is not None:
+        slider = edge.slider
+        rate = float(motion.sliders[slider.name].velocity[0])
+        at, along = slider.point, -slider.angle
+        if link == slider.on:
+            at, along, rate = slider.through, slider.direction, -rate
+    angle = float(motion.links[link].angle[0])
+    point, own = next(iter(bodies[link].items()))
+    place = complex(motion.points[point].place[0]) - complex(*own) * np.exp(1j * angle)
+    return Hung(
+        link,
+        parent,
+        "hinge" if edge.slider is None else "slide",
+        bodies[link][at],
+        along,
+        complex(place),
+        angle,
+        rate,
+    )
+
+
+def _spin(motion: Motion, body: str) -> float:
+    found: Any = 0.0 if body == FRAME else motion.links[body].angular_velocity[0]
+    return float(found)

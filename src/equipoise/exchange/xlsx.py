@@ -1,0 +1,121 @@
+"""Excel: the machine, figures of every output, all signals over crank angle, and charts of them.
+
+Everything is in SI units, which stand beside it.  Names and titles are written as text, whatever
+they begin with, so that none of them becomes a formula.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from itertools import groupby
+from math import isfinite
+from typing import Any
+
+from equipoise.balancing.workshop import sentences
+from equipoise.errors import needed
+from equipoise.exchange.formats import Job
+from equipoise.mechanism.model import Machine
+from equipoise.results.analysis import Analysis, analyze
+from equipoise.results.outputs import Output
+
+Cell = str | float | None
+BESIDE, HIGH = 8, 16
+"""Columns and rows that a chart takes."""
+
+
+def made(job: Job) -> bytes:
+    """The file's content."""
+    data = io.BytesIO()
+    book = needed("xlsxwriter", "Excel").Workbook(data, {"in_memory": True})
+    book.set_properties({"title": str(job.machine.title)})
+    analysis = analyze(job.machine)
+    _sheet(book, "Summary", _summary(analysis))
+    _sheet(book, "Links", _links(job.machine))
+    _sheet(book, "Points", _points(job.machine))
+    if job.changes:
+        told = [(sentence,) for change in job.changes for sentence in sentences(change)]
+        _sheet(book, "Changes", [("what to change",), *told])
+    charts = book.add_worksheet("Charts")
+    columns = analysis.outputs.arrays
+    _signals(book, analysis, columns)
+    _charts(book, charts, columns, len(analysis.crank_angle))
+    book.close()
+    return data.getvalue()
+
+
+def _sheet(book: Any, name: str, rows: Sequence[Sequence[Cell]]) -> Any:
+    """A sheet whose first row is its head, and stays in sight."""
+    sheet = book.add_worksheet(name)
+    bold = book.add_format({"bold": True})
+    for number, row in enumerate(rows):
+        for column, cell in enumerate(row):
+            _write(sheet, number, column, cell, *([] if number else [bold]))
+    sheet.freeze_panes(1, 1)
+    sheet.autofit()
+    return sheet
+
+
+def _write(sheet: Any, row: int, column: int, cell: Cell, *form: Any) -> None:
+    if isinstance(cell, str):
+        sheet.write_string(row, column, cell, *form)
+    elif cell is not None and isfinite(cell):
+        sheet.write_number(row, column, cell, *form)
+
+
+def _summary(analysis: Analysis) -> list[Sequence[Cell]]:
+    """A row an output: its words, its unit, its figures."""
+    found = analysis.outputs
+    rows = [
+        (name, found[name].label(), found[name].unit, *asdict(figures).values())
+        for name, figures in analysis.summary.items()
+    ]
+    figures = next((asdict(one) for one in analysis.summary.values()), {})
+    heads = (f"{one} [rad]" if one.endswith("_at") else one for one in figures)
+    return [("output", "what it is", "unit", *heads), *rows]
+
+
+def _links(machine: Machine) -> list[Sequence[Cell]]:
+    head = ("link", "mass [kg]", "centre x [m]", "centre y [m]", "inertia [kg m^2]")
+    rows = [
+        (name, link.mass, *(link.center_of_mass or (None, None)), link.inertia)
+        for name, link in machine.links.items()
+    ]
+    return [head, *rows]
+
+
+def _points(machine: Machine) -> list[Sequence[Cell]]:
+    rows = [(b, name, *at) for b, points in machine.bodies.items() for name, at in points.items()]
+    return [("body", "point", "x [m]", "y [m]"), *rows]
+
+
+def _signals(book: Any, analysis: Analysis, columns: Iterable[Output]) -> None:
+    """Name, unit, and the values over crank angle, below each other."""
+    told = [(one.name, one.unit, one.values) for one in columns]
+    sheet = _sheet(book, "Signals", [["crank_angle", *(name for name, _, _ in told)]])
+    every = [("crank_angle", "rad", analysis.crank_angle), *told]
+    for column, (_, unit, values) in enumerate(every):
+        _write(sheet, 1, column, unit)
+        for row, value in enumerate(values.tolist(), 2):
+            _write(sheet, row, column, value)
+    sheet.freeze_panes(2, 1)
+
+
+def _charts(book: Any, sheet: Any, columns: Sequence[Output], count: int) -> None:
+    """Signals of one group and unit in one chart; they are drawn from the sheet of signals."""
+    numbered = sorted(enumerate(columns, 1), key=lambda one: (one[1].group, one[1].unit))
+    kinds = groupby(numbered, key=lambda one: (one[1].group, one[1].unit))
+    for place, ((group, unit), members) in enumerate(kinds):
+        chart = book.add_chart({"type": "scatter", "subtype": "straight"})
+        for column, _ in members:
+            chart.add_series(
+                {
+                    "name": ["Signals", 0, column],
+                    "categories": ["Signals", 2, 0, count + 1, 0],
+                    "values": ["Signals", 2, column, count + 1, column],
+                }
+            )
+        chart.set_title({"name": f"{group} [{unit}]" if unit else group})
+        chart.set_x_axis({"name": "crank_angle [rad]", "min": 0})
+        sheet.insert_chart(place // 2 * HIGH, place % 2 * BESIDE, chart)

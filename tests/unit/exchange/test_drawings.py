@@ -1,0 +1,148 @@
+"""DXF read back by ezdxf, SVG by its XML: lengths to 1e-9 mm, areas that weigh."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import ezdxf
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.exchange.parts import along
+
+START = 0.4
+SAME = 1e-9
+"""mm."""
+STEEL = 7850.0
+DENSITY = {("balance-shafts", "crank"): 7200.0}
+"""kg/m3; cast iron where the file says so."""
+BALANCED = {name: eq.balancing.advise(eq.load(name)) for name in ("balance-shafts", "yamashita-1")}
+
+
+def drawn(what: object, path: Path) -> ezdxf.document.Drawing:
+    eq.export(what, path, crank_angle=START)  # type: ignore[arg-type]
+    found = ezdxf.readfile(path)
+    assert found.units == ezdxf.units.MM
+    assert found.audit().errors == []
+    return found
+
+
+def on_layer(drawing: ezdxf.document.Drawing, name: str) -> list[ezdxf.entities.DXFEntity]:
+    assert name in drawing.layers
+    return [one for one in drawing.modelspace() if one.dxf.layer == name]
+
+
+def corners(line: ezdxf.entities.DXFEntity) -> list[tuple[complex, float]]:
+    """Corners of a closed outline, mm, and bulges of its edges."""
+    return [(complex(x, y), bulge) for x, y, bulge in line.get_points("xyb")]
+
+
+def area(edges: list[tuple[complex, float]]) -> float:
+    """Of an outline, mm2, from many places along its edges."""
+    ends = zip(edges, (*edges[1:], edges[0]), strict=True)
+    around = np.concatenate([along(a, b, bulge, 2001)[:-1] for (a, bulge), (b, _) in ends])
+    return abs(float(np.sum((around.conjugate() * np.roll(around, -1)).imag)) / 2)
+
+
+@pytest.mark.parametrize("name", ["yamashita-1", "quick-return", "stephenson-six-bar"])
+def test_linkage_and_paths(name: str, tmp_path: Path) -> None:
+    machine = eq.load(name)
+    drawing = drawn(machine, tmp_path / "x.dxf")
+    motion, cycle = eq.move(machine, [START]), eq.move(machine, 360)
+    for body, link in machine.links.items():
+        if len(link.points) == 2:
+            (line,) = on_layer(drawing, f"link {body}")
+            wanted = {complex(1e3 * motion.points[one].place[0]) for one in link.points}
+            found = [place for place, _ in corners(line)]
+            assert all(min(abs(one - place) for one in wanted) < SAME for place in found)
+    for point in {one for link in machine.links.values() for one in link.points} - {*machine.frame}:
+        (line,) = on_layer(drawing, f"path {point}")
+        path = np.array([place for place, _ in corners(line)])
+        assert line.closed
+        np.testing.assert_allclose(path, 1e3 * cycle.points[point].place, rtol=0, atol=SAME)
+    texts = {one.dxf.text for one in on_layer(drawing, "names")}
+    assert {*motion.points} <= texts
+
+
+def test_gears_are_drawn_by_their_pitch_circles(tmp_path: Path) -> None:
+    machine = eq.load("geared-counterweight")
+    drawing = drawn(machine, tmp_path / "x.dxf")
+    (gear,) = machine.gears
+    radii = [on_layer(drawing, f"gears {one}")[0].dxf.radius for one in (gear.driver, gear.driven)]
+    assert radii[0] / radii[1] == pytest.approx(abs(gear.speed_ratio))
+
+
+@pytest.mark.parametrize("name", BALANCED)
+def test_counterweights_weigh_what_they_are_to(name: str, tmp_path: Path) -> None:
+    """Area of the closed outline, read back, times thickness and density; arcs in 2000 chords."""
+    found = BALANCED[name]
+    drawing = drawn(found, tmp_path / "x.dxf")
+    tree = svg(found, tmp_path / "x.svg")
+    seen = 0
+    for change in found.changes:
+        for number, piece in enumerate(change.values.get("pieces", ()), 1):
+            label = f"{change.link}, counterweight {number}"
+            (line,) = on_layer(drawing, f"part {label.replace(',', '_')}")
+            cut = area(corners(line)) * 1e-6 * piece["thickness"]
+            assert cut * DENSITY.get((name, change.link), STEEL) == pytest.approx(
+                piece["mass"], rel=1e-6
+            )
+            same_lengths(tree, label, corners(line))
+            seen += 1
+    assert seen > 1
+
+
+def svg(what: object, path: Path) -> ET.Element:
+    eq.export(what, path)  # type: ignore[arg-type]
+    root = ET.parse(path).getroot()
+    width, height = (float(root.attrib[key].removesuffix("mm")) for key in ("width", "height"))
+    assert [float(one) for one in root.attrib["viewBox"].split()] == [0.0, 0.0, width, height]
+    return root
+
+
+def same_lengths(root: ET.Element, name: str, edges: list[tuple[complex, float]]) -> None:
+    """The corners of a part are as far apart in mm as in the drawing, and its arcs as round."""
+    (path,) = (one.find("{*}path") for one in root if one.get("id") == name)
+    assert path is not None
+    words = re.findall(r"([MLA])([^MLAZ]*)", path.attrib["d"])
+    numbers = [[float(one) for one in rest.split()] for _, rest in words]
+    places = np.array([complex(row[-2], -row[-1]) for row in numbers])[: len(edges)]
+    wanted = np.array([corner for corner, _ in edges])
+    np.testing.assert_allclose(np.diff(places), np.diff(wanted), rtol=0, atol=SAME)
+    for (kind, _), row, before, (corner, _) in zip(
+        words[1:], numbers[1:], edges, (*edges[1:], edges[0]), strict=True
+    ):
+        assert (kind == "A") == bool(before[1])
+        if kind == "A":
+            half = 2 * np.arctan(abs(before[1]))
+            assert row[0] == pytest.approx(abs(corner - before[0]) / 2 / np.sin(half), rel=1e-12)
+            assert row[4] == (before[1] < 0)
+
+
+def test_links_made_of_bodies_and_their_holes(tmp_path: Path) -> None:
+    """What is cut from a sheet weighs what the model says."""
+    disc = eq.mechanism.Body(
+        "disc",
+        at="A",
+        radius=0.06,
+        thickness=0.01,
+        density=STEEL,
+        holes=(eq.mechanism.Hole("B", 0.004), eq.mechanism.Hole((0.0, 0.01), 0.005)),
+    )
+    machine = eq.load("yamashita-1").with_link("crank", bodies=(disc,))
+    drawing = drawn(machine, tmp_path / "x.dxf")
+    outline, *holes = (area(corners(one)) for one in on_layer(drawing, "part crank_ disc 1"))
+    mass = (outline - sum(holes)) * 1e-6 * 0.01 * STEEL
+    assert len(holes) == 2
+    assert mass == pytest.approx(machine.links["crank"].mass, rel=1e-6)
+    assert len(svg(machine, tmp_path / "x.svg").findall("{*}g")) == 1
+
+
+def test_a_model_without_outlines_has_no_parts(tmp_path: Path) -> None:
+    with pytest.raises(eq.EquipoiseError, match="tells no outline of anything; give a link bodies"):
+        eq.export(eq.load("lee-kim-a"), tmp_path / "x.svg")
+    (told,) = eq.export(eq.load("lee-kim-a"), tmp_path / "x.dxf")
+    assert told.startswith("parts to be cut")

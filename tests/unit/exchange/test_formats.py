@@ -1,0 +1,69 @@
+"""The declaration of formats, and what of it stands in docs/exchange.md."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+import equipoise as eq
+from equipoise.exchange.formats import FORMATS
+
+PAGE = Path(__file__).parents[3] / "docs" / "exchange.md"
+BEGIN, END = "<!-- formats -->\n", "<!-- /formats -->"
+MACHINE = eq.load("yamashita-1")
+OWN = [one for one in FORMATS.values() if not one.of_store]
+
+
+def table() -> str:
+    """Every format, a row each."""
+    rows = [
+        "| ending | `--format` | program | what the file holds | needs |",
+        "|---|---|---|---|---|",
+    ]
+    for one in FORMATS.values():
+        needs = "the extra `exchange`" if one.needs else "the extra `studies`" * one.of_store
+        cells = (f"`{one.ending}`", f"`{one.name}`", one.title, one.holds, needs)
+        rows.append(f"| {' | '.join(cells)} |")
+    return "\n".join(rows) + "\n"
+
+
+def test_the_page_lists_every_format() -> None:
+    shown = PAGE.read_text(encoding="utf-8").partition(BEGIN)[2].partition(END)[0]
+    assert shown == table()
+
+
+@pytest.mark.parametrize("name", [one.name for one in OWN if one.needs])
+def test_a_library_that_is_not_installed(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    library = FORMATS[name].needs
+    monkeypatch.setitem(sys.modules, library, None)
+    path = tmp_path / f"x{FORMATS[name].ending}"
+    with pytest.raises(eq.EquipoiseError, match=rf"needs {library}, .*equipoise\[exchange\]"):
+        eq.export(MACHINE, path)
+    assert not path.exists()
+
+
+@pytest.mark.parametrize("name", [one.name for one in OWN])
+def test_each_has_its_module(name: str) -> None:
+    assert callable(import_module(f"equipoise.exchange.{name}").made)
+
+
+def test_what_is_no_format(tmp_path: Path) -> None:
+    with pytest.raises(eq.EquipoiseError, match=r"got .*x\.xmll'; give the name of a file that"):
+        eq.export(MACHINE, tmp_path / "x.xmll")
+    with pytest.raises(eq.EquipoiseError, match="no format is called 'mjfc'; did you mean 'mjcf'"):
+        eq.export(MACHINE, tmp_path / "x.xml", "mjfc")
+    with pytest.raises(eq.EquipoiseError, match="CSV is for designs of a store; give one of mjcf"):
+        eq.export(MACHINE, tmp_path / "x.csv")
+    with pytest.raises(eq.EquipoiseError, match="crank_angle: got nan; give an angle in rad"):
+        eq.export(MACHINE, tmp_path / "x.xml", crank_angle=float("nan"))
+    assert [*tmp_path.iterdir()] == []
+
+
+if __name__ == "__main__":
+    before, begin, rest = PAGE.read_text(encoding="utf-8").partition(BEGIN)
+    PAGE.write_text(f"{before}{begin}{table()}{END}{rest.partition(END)[2]}", encoding="utf-8")

@@ -1,0 +1,111 @@
+"""Excel read back by openpyxl, MATLAB by SciPy: every value as it was, and no formula."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import openpyxl
+import pytest
+from scipy.io import loadmat
+
+import equipoise as eq
+
+MACHINE = eq.load("slider-crank-engine")
+SIGNS = ("=1+1", "+1", "-1", "@sum(1)")
+"""What Excel would take for formulas."""
+
+
+@pytest.fixture(scope="module")
+def analysis() -> Any:
+    return eq.analyze(MACHINE)
+
+
+def opened(what: object, path: Path) -> Any:
+    assert eq.export(what, path) == ()  # type: ignore[arg-type]
+    return openpyxl.load_workbook(path)
+
+
+@pytest.fixture(scope="module")
+def book(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    return opened(MACHINE, tmp_path_factory.mktemp("tables") / "x.xlsx")
+
+
+def test_signals_and_summary(analysis: Any, book: Any) -> None:
+    """Excel's numbers have 16 digits."""
+    assert book.sheetnames == ["Summary", "Links", "Points", "Charts", "Signals"]
+    names, units, *rows = book["Signals"].values
+    values = dict(zip(names, np.array(rows, float).T, strict=True))
+    assert {*names} == {"crank_angle", *(one.name for one in analysis.outputs.arrays)}
+    np.testing.assert_allclose(values["crank_angle"], analysis.crank_angle, rtol=1e-14)
+    for one in analysis.outputs.arrays:
+        assert units[names.index(one.name)] == one.unit
+        np.testing.assert_allclose(values[one.name], one.values, rtol=1e-14, atol=1e-300)
+    head, *figures = book["Summary"].values
+    assert head[:5] == ("output", "what it is", "unit", "mean", "rms")
+    told = {row[0]: dict(zip(head, row, strict=True)) for row in figures}
+    for name, one in analysis.summary.items():
+        assert told[name]["peak_at [rad]"] == pytest.approx(one.peak_at, rel=1e-14)
+    assert [*book["Links"].values][1][:2] == ("crank", 0.9)
+    assert ("rod", "C", 0.09, 0.0) in [*book["Points"].values]
+
+
+def test_charts_show_every_signal(analysis: Any, book: Any) -> None:
+    charts = book["Charts"]._charts
+    drawn = [series.yVal.numRef.f for chart in charts for series in chart.series]
+    columns = len(analysis.outputs.arrays)
+    assert len(set(drawn)) == len(drawn) == columns
+    last = len(analysis.crank_angle) + 2
+    letter = openpyxl.utils.get_column_letter(columns + 1)
+    assert f"Signals!${letter}$3:${letter}${last}" in drawn
+
+
+def test_what_balancing_changes(tmp_path: Path) -> None:
+    found = eq.balance(eq.load("balance-crank"))
+    book = opened(found, tmp_path / "x.xlsx")
+    (_,), (first,), *_ = book["Changes"].values
+    assert first.startswith("crank: add a counterweight of")
+
+
+def test_no_text_becomes_a_formula(tmp_path: Path) -> None:
+    link = eq.Link(points={"A": (0.0, 0.0), **dict.fromkeys(SIGNS, (0.1, 0.0))})
+    machine = eq.Machine(SIGNS[0], eq.Drive(SIGNS[0], 1.0), {"A": (0.0, 0.0)}, {SIGNS[0]: link})
+    book = opened(machine, tmp_path / "x.xlsx")
+    texts = [cell for sheet in book for row in sheet.iter_rows() for cell in row if cell.value]
+    assert {cell.data_type for cell in texts} <= {"s", "n"}
+    assert {*SIGNS} <= {cell.value for cell in texts}
+
+
+def test_a_machine_without_masses_has_its_motion(tmp_path: Path) -> None:
+    links = {k: eq.Link(points=v.points) for k, v in MACHINE.links.items()}
+    machine = eq.Machine(
+        "x", MACHINE.drive, MACHINE.frame, links, MACHINE.assembly, MACHINE.sliders
+    )
+    eq.export(machine, tmp_path / "x.mat")
+    found = loadmat(tmp_path / "x.mat", simplify_cells=True)["equipoise"]
+    assert np.isnan(found["links"]["rod"]["mass"])
+    assert "points_C_x" in found["signals"]
+    assert "shaking_force_x" not in found["signals"]
+
+
+def test_matlab(analysis: Any, tmp_path: Path) -> None:
+    assert eq.export(MACHINE, tmp_path / "x.mat") == ()
+    found = loadmat(tmp_path / "x.mat", simplify_cells=True)["equipoise"]
+    assert found["title"] == str(MACHINE.title)
+    assert found["speed"] == MACHINE.drive.speed
+    signals = {one["name"]: one for one in found["signals"].values()}
+    for one in analysis.outputs.arrays:
+        assert signals[one.name]["unit"] == one.unit
+        np.testing.assert_array_equal(signals[one.name]["values"], one.values)
+    assert found["signals"]["joints_piston_on_frame_normal"]["unit"] == "N"
+    assert found["summary"]["drive_torque"]["rms"] == analysis.summary["drive_torque"].rms
+    np.testing.assert_array_equal(found["links"]["rod"]["points"]["C"], (0.09, 0.0))
+
+
+def test_names_for_matlab_are_each_once(tmp_path: Path) -> None:
+    points = {"A": (0.0, 0.0), "A b": (1.0, 0.0), "A-b": (2.0, 0.0), "1": (3.0, 0.0)}
+    machine = eq.Machine("x", eq.Drive("k", 1.0), {"A": (0.0, 0.0)}, {"k": eq.Link(points=points)})
+    eq.export(machine, tmp_path / "x.mat")
+    found = loadmat(tmp_path / "x.mat", simplify_cells=True)["equipoise"]["links"]["k"]["points"]
+    assert {name: at[0] for name, at in found.items()} == {"A": 0, "A_b": 1, "A_b2": 2, "x1": 3}
