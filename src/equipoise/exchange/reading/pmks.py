@@ -117,9 +117,7 @@ def _slots(
 def _joint(text: str, scale: float) -> _Joint:
     fields = text.split(",")
     if len(fields) != 5 or not fields[0][1:]:
-        raise ModelError(
-            "", f"the joint {text[:40]!r} is not written as those of PMKS+ of 2024 are"
-        )
+        raise ModelError("", f"the joint {text[:40]!r} is not written as by PMKS+ of 2024")
     key, name, x, y, angle = fields
     place = complex(_thousandths(x), _thousandths(y)) * scale
     return _Joint(key[1:], name, _whole(key[0], signed=False), place, _thousandths(angle))
@@ -129,7 +127,7 @@ def _link(text: str) -> tuple[str, list[str]]:
     """Name of a link, and the joints that it has."""
     fields = text.split(",")
     if len(fields) < 8 or text[:2] not in ("YR", "YP", "NR", "NP"):
-        raise ModelError("", f"the link {text[:40]!r} is not written as those of PMKS+ of 2024 are")
+        raise ModelError("", f"the link {text[:40]!r} is not written as by PMKS+ of 2024")
     _, name, _, _, _, _, _, *keys = fields
     end = keys.index("") if "" in keys else len(keys)
     return name or fields[0][2:], keys[:end]

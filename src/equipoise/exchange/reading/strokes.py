@@ -64,7 +64,7 @@ class Ring:
 
 @dataclass
 class Drawing:
-    """What is drawn: lines, circles and points, areas that are hatched, and words where they are."""
+    """What is drawn: lines, circles and points, hatched areas, and words where they are."""
 
     title: str
     strokes: list[Stroke] = field(default_factory=list)

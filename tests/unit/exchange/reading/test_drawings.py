@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from equipoise.errors import EquipoiseError
+from equipoise.exchange.export import export
 from equipoise.exchange.reading.formats import import_machine
 from equipoise.exchange.reading.found import Imported
 from equipoise.mechanism.model import FRAME, Machine
@@ -213,3 +214,17 @@ def test_unfinished_drawings_leave_lines_to_fill_in(tmp_path: Path) -> None:
     whole = text.replace("# [drive]", "[drive]").replace("crank or rod", "crank")
     whole = whole.replace('# link = "', 'link = "').replace("# speed", "speed")
     assert loads_linkage(whole).drive.link == "crank"
+
+
+@pytest.mark.parametrize("name", ["yamashita-1", "watt-six-bar", "slider-crank-engine"])
+def test_a_drawing_that_export_wrote_comes_back(name: str, tmp_path: Path) -> None:
+    """With its names, to 1e-9; a block is a link of its own there, and drawn as none."""
+    machine = load_linkage(name)
+    export(machine, tmp_path / "a.dxf", crank_angle=AT)
+    found = import_machine(tmp_path / "a.dxf", crank=machine.drive.link)
+    assert found.machine is not None, found.missing
+    size = max(map(abs, places(machine).values()))
+    later = places(machine, AT + 0.9)
+    moved = places(found.machine, found.outline.crank_angle + 0.9)
+    for point in later.keys() - machine.frame.keys():
+        assert abs(moved[point] - later[point]) < 1e-9 * size

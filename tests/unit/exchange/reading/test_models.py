@@ -15,12 +15,14 @@ import numpy as np
 import pytest
 
 from equipoise.errors import EquipoiseError
+from equipoise.exchange.export import export
 from equipoise.exchange.reading.formats import import_machine
 from equipoise.exchange.reading.found import Imported
 from equipoise.mechanism.dynamics import forces
+from equipoise.mechanism.links import size_of
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.motion import Motion, move
-from equipoise.schema.models import loads_linkage
+from equipoise.schema.models import load_linkage, loads_linkage
 
 FOUR_BAR = """
 <mujoco model="standing four-bar">
@@ -306,3 +308,36 @@ def test_bodies_can_be_held_still(tmp_path: Path) -> None:
     outline = imported(tmp_path / "a.xml", SLIDER, frame=["crank"]).outline
     assert [*outline.links] == ["rod", "slide carrier"]
     assert outline.mobility == 0
+
+
+@pytest.mark.parametrize(
+    "name", ["watt-six-bar", "class-three", "geared-counterweight", "planetary-planting-arm",
+             "scotch-yoke", "spring-balanced-crank", "balance-geared-a"]
+)  # fmt: skip
+def test_what_export_wrote_for_mujoco_comes_back(name: str, tmp_path: Path) -> None:
+    """All figures to 1e-9, with gears, sliders and springs; axes and names are the file's."""
+    machine = load_linkage(name)
+    export(machine, tmp_path / "a.xml", crank_angle=0.3)
+    found = import_machine(tmp_path / "a.xml").machine
+    assert found is not None
+    assert found.drive.speed == pytest.approx(machine.drive.speed, rel=1e-12)
+    assert found.links.keys() == machine.links.keys()
+    old, new = forces(move(machine)), forces(move(found))
+    least = 10 * machine.mass * size_of(machine.links[machine.drive.link].points)  # some are 0
+    for one, other in (
+        (old.drive_torque, new.drive_torque),
+        (old.shaking_force.x, new.shaking_force.x),
+        (old.shaking_force.y, new.shaking_force.y),
+        (old.shaking_moment, new.shaking_moment),
+    ):
+        assert np.abs(other - one).max() <= 1e-9 * max(np.abs(one).max(), least)
+
+
+def test_a_support_can_be_held_still(tmp_path: Path) -> None:
+    """Rows on one shaft are linkages of one crank then, whose masses add up."""
+    machine = load_linkage("riding-transplanter")
+    export(machine, tmp_path / "a.xml")
+    found = import_machine(tmp_path / "a.xml", frame=["support"]).machine
+    assert found is not None
+    assert len(found.links) == 1 + len(machine.rows) * (len(machine.links) - 1)
+    assert found.mass == pytest.approx(len(machine.rows) * machine.mass, rel=1e-9)
