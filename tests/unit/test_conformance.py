@@ -6,7 +6,8 @@ Write it anew with ``PYTHONPATH=tests python tests/unit/test_conformance.py``.
 from __future__ import annotations
 
 import importlib
-from collections import Counter, defaultdict
+import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -89,7 +90,7 @@ def counts(rows: Rows) -> dict[str, int]:
 
 def sections(rows: Sequence[Printed | Agreement]) -> Iterator[str]:
     """The tables of a source."""
-    tables: dict[str, list[str]] = defaultdict(list)
+    tables: dict[str, list[str]] = {NUMBERS: [], EQUATIONS: []}
     often = Counter(row.what for row in rows)
     for row in rows:
         if isinstance(row, Printed):
@@ -97,12 +98,15 @@ def sections(rows: Sequence[Printed | Agreement]) -> Iterator[str]:
         elif row.place:
             tables[EQUATIONS].append(f"| {row.place} | {row.what} | {power(row.within)} |")
         elif often[row.what] == 1:
-            tables[PROGRAMS].append(f"| {row.case} | {row.what} | {power(row.within)} |")
+            line = f"| {row.case} | {row.what} | {power(row.within)} |"
+            tables.setdefault(PROGRAMS, []).append(line)
         else:
             head = f"Compared: {row.what}.\n\n{MACHINES}"
-            tables[head].append(f"| {row.case} | {power(row.within)} |")
+            tables.setdefault(head, []).append(f"| {row.case} | {power(row.within)} |")
+    tables[EQUATIONS].sort(key=lambda line: [int(one) for one in re.findall(r"\d+", line)])
     for head, lines in tables.items():
-        yield "\n".join([head, *lines]) + "\n"
+        if lines:
+            yield "\n".join([head, *lines]) + "\n"
 
 
 def power(within: float) -> str:
@@ -123,9 +127,11 @@ def deviation(row: Printed) -> str:
     """How far off a number is, in its unit and in parts of what is printed."""
     if row.bound or not row.printed or not (row.differs or row.slip):
         return "–"
-    size = abs(number(row.printed))
-    parts = bool(size) and row.unit not in ("deg", "%")
-    return f"{row.off:+f}" + (f" ({100 * row.off / size:+.1f} %)" if parts else "")
+    size = float(abs(number(row.printed)))
+    if not size or row.unit in ("deg", "%"):
+        return f"{row.off:+f}"
+    share = 100 * float(row.off) / size
+    return f"{row.off:+f} ({share:+.{1 if abs(share) < 10 else 0}f} %)"
 
 
 def slips(rows: Rows) -> Iterator[str]:
