@@ -11,11 +11,10 @@ import tomllib
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+from lessons import TABLE, lessons
 from pictures import command_of
 
 from equipoise.schema.opening import bundled, kind_of
-
-TABLE = re.compile(r"^\|.*\n(?:\|.*\n)+", re.MULTILINE)
 
 
 class Words(NamedTuple):
@@ -37,14 +36,6 @@ WORDS = {
 def plain(text: str) -> str:
     """A text in Markdown where nothing means more than it says."""
     return re.sub(r"[\\`*_\[\]<>]", r"\\\g<0>", text)
-
-
-def lessons(text: str) -> dict[str, list[str]]:
-    """The table of a page: what each example teaches and, in English, a command to try."""
-    table = TABLE.search(text)
-    assert table is not None, "the page has no table"
-    rows = [row.strip("| ").split(" | ") for row in table[0].splitlines()[2:]]
-    return {name: told for names, *told in rows for name in re.findall(r"`([\w-]+)`", names)}
 
 
 def card(language: str, name: str, content: Mapping[str, Any], lesson: str, to_try: str) -> str:

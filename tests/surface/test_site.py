@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = [*sorted(DOCS.rglob("*.md")), *(ROOT / name for name in ("README.md", "CONTRIBUTING.md"))]
 GALLERY = {"en": "examples", "ja": "ja/examples", "ko": "ko/examples"}
-lessons = runpy.run_path(str(DOCS / "site" / "gallery.py"))["lessons"]
+lessons = runpy.run_path(str(DOCS / "site" / "lessons.py"))["lessons"]
 
 
 def test_it_has_every_command_and_every_public_name(site: Path) -> None:
