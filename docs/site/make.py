@@ -80,6 +80,7 @@ def lay_out(source: Path) -> None:
         marked = ANCHOR.sub(r"(\1)=\n", text)
         path.write_text(SITE_ONLY.sub(r"\1", marked), encoding="utf-8")
     shutil.copytree(DOCS / "pictures", source / "pictures")
+    shutil.copy(DOCS / "api.txt", source)
 
 
 def scripts() -> str:
