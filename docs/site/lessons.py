@@ -1,4 +1,4 @@
-"""What each example teaches: the rows of the table in `docs/examples.md`, or in another language."""
+"""What each example teaches: the rows of the table in `docs/examples.md`, in any language."""
 
 from __future__ import annotations
 
