@@ -34,8 +34,9 @@ programs and second routes.
 
 Each digit of a computed number is held. A deviation is what is computed less what is printed; a
 dash says that the printed digits are met. Differences from other programs are parts of the largest
-value, or of a thousandth of all forces where an output vanishes. Names such as `lee-kim-a` are those
-of [bundled machines](examples.md), and such as `curve.height` those of figures that commands tell.
+value, or of a thousandth of all forces where an output vanishes. Names such as `lee-kim-a` are
+those of [bundled machines](examples.md), and such as `curve.height` those of figures that commands
+tell.
 """
 NUMBERS = (
     "| case | quantity | where | printed | computed | deviation | why |\n"
