@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 # Tests start hundreds of processes, and two commands run the same tests: from bytecode that is kept.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo page pictures test narrow coverage lint bench clean
+.PHONY: demo page pictures docs test narrow coverage lint bench clean
 
 $(VENV)/.installed: pyproject.toml hatch_build.py
 	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Equipoise needs Python 3.11 or newer; say which with: make PYTHON=python3.12')"
@@ -26,6 +26,10 @@ page: $(VENV)/.installed
 # The pictures of README, of the product as it is; screenshots need Chromium.
 pictures: $(VENV)/.installed-test page
 	$(BIN)/python docs/pictures/make.py
+
+# The documentation as a site, in build/docs; no network is needed to read it.
+docs: $(VENV)/.installed-test
+	$(BIN)/python docs/site/make.py
 
 demo: $(VENV)/.installed
 	-@$(BIN)/python page/bundle.py

@@ -1,4 +1,4 @@
-"""Runs the snippets of README.md and docs/*.md: one test a page, in a directory of its own.
+"""Runs the snippets of README.md and of docs: one test a page, in a directory of its own.
 
 Python blocks are run as they stand, with ``>>>`` as doctests; in console blocks the output of every
 line that begins with ``$ equipoise`` is compared with what follows.  The snippets of a page
@@ -83,7 +83,7 @@ class Page(pytest.File):
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> Page | None:
     """Collect README.md and the pages of docs."""
     if file_path == ROOT / "README.md" or (
-        file_path.suffix == ".md" and file_path.parent == ROOT / "docs"
+        file_path.suffix == ".md" and ROOT / "docs" in file_path.parents
     ):
         return Page.from_parent(parent, path=file_path)
     return None

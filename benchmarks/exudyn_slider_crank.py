@@ -1,10 +1,10 @@
 """Balancing a slider-crank on a sprung frame, beside a genetic algorithm that simulates it.
 
 The peer is the example geneticOptimizationSliderCrank.py of Exudyn (J. Gerstmayr), on the same
-machine built anew in `exudyn_model.py`.  A torque of 0.1 N m runs the crank up from rest for 3 s;
-its residual is the frame's largest displacement along x plus that along y.  It shall become small
-by the centres of mass of crank and rod, in `RANGES`.  Exudyn's `GeneticOptimization` looks for them
-with the example's settings: 30 generations of 50, each of which is a simulation.
+machine built anew in `tests/support/exudyn_model.py`.  A torque of 0.1 N m runs the crank up from
+rest for 3 s; its residual is the frame's largest displacement along x plus that along y.  It shall
+become small by the centres of mass of crank and rod, in `RANGES`.  Exudyn's `GeneticOptimization`
+looks for them with the example's settings: 30 generations of 50, each of which is a simulation.
 
 Equipoise does not simulate the run-up.  In the same ranges it makes the frame's steady vibration at
 the drive's speed smallest, or the shaking force.  Those are other functions, but all three have one
@@ -14,17 +14,19 @@ of the force is, because each of them moves a frame on springs.  The ranges hold
 ranges that do not, the minima differ: with a crank whose centre of mass may go to -50 mm only, the
 least residual is 8.97 mm; the steady vibration leads to 9.00 mm, the shaking force to 9.93 mm.
 
-All results are judged by the same simulation, which is itself compared with the exact equations of
-Equipoise, from rest and at the drive's speed.
+All results are judged by the same simulation, which `tests/crosscheck/test_exudyn.py` compares with
+the exact equations of Equipoise.
 """
 
 from __future__ import annotations
 
 import os
+import sys
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from statistics import median
 
 import numpy as np
@@ -33,10 +35,12 @@ import equipoise as eq
 from equipoise.mechanism.balance import Balance, Objective
 from timing import in_turn
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+
 try:
     from exudyn.processing import GeneticOptimization
 
-    from exudyn_model import DURATION, MACHINE, SAMPLING, TORQUE, Centers, shake
+    from support.exudyn_model import MACHINE, Centers, shake
 except ModuleNotFoundError as missing:
     if missing.name != "exudyn":
         raise
@@ -64,8 +68,6 @@ TINY = 1e-9
 """Of lengths, m: nothing."""
 REPEATS = 10
 """Of the balancing, before the genetic algorithm and once more after it."""
-FINE = 2.5e-4
-"""Steps of the simulation that is compared with the exact equations, s."""
 
 
 def centers_of(machine: eq.Machine) -> Centers:
@@ -117,41 +119,6 @@ def seconds(task: Callable[[], object]) -> tuple[float, object]:
     return time.perf_counter() - begin, found
 
 
-def exact_motion(speed: float | None) -> Mapping[str, np.ndarray]:
-    """The frame's motion by Equipoise, at the instants of the simulation, m."""
-    constant = eq.mechanism.MotorTable((0.0, 1.0), (TORQUE, TORQUE))
-    motor = eq.mechanism.Motor(table=constant, mean_speed="free")
-    machine = replace(MACHINE, drive=replace(MACHINE.drive, motor=motor))
-    samples = round(DURATION / SAMPLING) + 1
-    return eq.simulate(machine, DURATION, speed, drive=speed is None, samples=samples).gauges
-
-
-def difference(speed: float | None) -> tuple[float, float]:
-    """Largest difference of simulation and exact equations, over the largest displacement.
-
-    With steps of `FINE`; and with the error of these steps, which goes as their square, taken out
-    by means of steps twice as long.
-    """
-    centers = centers_of(MACHINE)
-    fine, coarse = (shake(centers, speed, step=step) for step in (FINE, 2 * FINE))
-    exact = exact_motion(speed)
-    plain, without = [], []
-    for axis, right in exact.items():
-        one, other = getattr(fine, axis), getattr(coarse, axis)
-        largest = np.max(np.abs(right))
-        plain.append(np.max(np.abs(one - right)) / largest)
-        without.append(np.max(np.abs(one + (one - other) / 3 - right)) / largest)
-    return float(max(plain)), float(max(without))
-
-
-def print_agreement() -> None:
-    """Tell how close the simulation comes to the exact equations."""
-    print(f"\nExudyn with steps of {1e3 * FINE:g} ms, beside the exact equations of Equipoise")
-    for case, speed in (("from rest", None), ("at the drive's speed", MACHINE.drive.speed)):
-        plain, without = difference(speed)
-        print(f"  {case:<21} {plain:.1e} of the largest, {without:.1e} with its steps allowed for")
-
-
 def print_line(name: str, centers: Centers, elapsed: str = "") -> None:
     """Print a result and what the simulation says of it."""
     places = f"{1e3 * centers[0]:10.4f}  {1e3 * centers[1]:10.4f}"
@@ -177,11 +144,5 @@ def print_searches() -> None:
         print_line(name, centers_of(machine), told)
 
 
-def main() -> None:
-    """Compare the searches, and then the simulations."""
-    print_searches()
-    print_agreement()
-
-
 if __name__ == "__main__":
-    main()
+    print_searches()

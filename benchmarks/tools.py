@@ -1,9 +1,5 @@
 """A brush cutter with six stations, beside the ways in which it is computed elsewhere.
 
-The tool has length, mass, bending stiffness, masses and springs of Nagamine and Irie (1970), 3.3.
-Its rear grip, its added mass, all dampers and moments of inertia are assumed.  The shaft is a tube
-of 24 mm whose density stands for the drive shaft inside too, because ROSS knows no other way.
-
 Peers divide the shaft into 48 elements.  ROSS factors and inverts the matrix of all 294 degrees of
 freedom, stretching and twisting among them, at each speed, and keeps displacement, velocity and
 acceleration of each under a force on each, 2 GB; it is built beforehand, once for each call because
@@ -19,10 +15,12 @@ What 12 and 24 elements give tells how much it is, and takes it out by Richardso
 from __future__ import annotations
 
 import gc
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import pi
+from pathlib import Path
 from statistics import median
 
 import numpy as np
@@ -34,42 +32,36 @@ from equipoise.handheld.design import design_tool
 from equipoise.handheld.design_plan import DesignLimit, DesignPlan, DesignVariable
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.frequencies import natural_frequencies
-from equipoise.handheld.model import Excitation, Hand, Harness, Station, Tool
+from equipoise.handheld.model import Tool
 from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import respond_tool
-from equipoise.handheld.shaft import Shaft, Tube
 from equipoise.handheld.studies import changed
 from equipoise.handheld.sweep import transmit
 from timing import in_turn, report
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+
+from support.six_stations import (
+    ELEMENTS,
+    ENGINE,
+    HANDLE,
+    LENGTH,
+    MASS,
+    POWERS,
+    STIFFNESS,
+    TOOLS,
+    UNBALANCE,
+    mesh,
+)
+
 try:
-    import ross_shaft
+    from support import ross_shaft
 except ModuleNotFoundError as missing:
     if missing.name != "ross":
         raise
     ross_shaft = None
 
-LENGTH, MASS, STIFFNESS = 1.544, 3.56, 980.665
-"""Of the shaft: m, kg, N m2."""
-OUTER, STEEL = 0.024, 206e9
-INNER = (OUTER**4 - 64 * STIFFNESS / (pi * STEEL)) ** 0.25
-DENSITY = MASS / (LENGTH * pi / 4 * (OUTER**2 - INNER**2))
-UNBALANCE = 1e-4
-"""Of the engine, kg m."""
-STATIONS = (
-    Station("engine", 0.0, mass=2.2 * MASS, inertia=(0.02, 0.02)),
-    Station("rear grip", 0.1, hand=Hand(0.5, (3e4, 2e4), (60.0, 50.0))),
-    Station("belt", 0.166 * LENGTH, harness=Harness((46484.0, 30e3), (80.0, 60.0))),
-    Station("handle", 0.266 * LENGTH, mass=0.481, hand=Hand(0.5, (50e3, 35e3), (110.0, 90.0))),
-    Station("weight", 0.9, mass=0.2),
-    Station("cutter", LENGTH, mass=0.291 * MASS, inertia=(0.002, 0.002)),
-)
-ENGINE, HANDLE = "engine", "handle"
 SPEEDS = np.linspace(1000.0, 9000.0, 500) * pi / 30
-ELEMENTS = 48
-"""Made of 12 by halves."""
-POWERS = {"euler-bernoulli": 4, "timoshenko": 2}
-"""Of an element's length, with which ROSS's error goes to zero; the next is higher by two."""
 ROUGH, AGREE = {"euler-bernoulli": 1e-4, "timoshenko": 3e-3}, 2e-5
 """Of the largest displacement, with 48 elements, and with their error taken out."""
 FREQUENCIES = 3e-5
@@ -85,31 +77,7 @@ DESIGN = DesignPlan(
 )
 
 
-def build(theory: str) -> Tool:
-    """The tool with two hands on its handle."""
-    tube = Tube(OUTER, INNER, STEEL, DENSITY)
-    tool = Tool(
-        "brush cutter",
-        Shaft(LENGTH, tube, theory=theory),
-        STATIONS,
-        (Excitation("engine", ENGINE, unbalance=UNBALANCE, ratio=-1.0, phase=np.pi / 2),),
-    )
-    return tool.with_station(HANDLE, hand=replace(tool.station(HANDLE).hand, hands=2))
-
-
-TOOLS = {theory: build(theory) for theory in POWERS}
 TOOL = TOOLS["euler-bernoulli"]
-
-
-def mesh(count: int) -> tuple[list[float], dict[str, int]]:
-    """Lengths (m) of so many elements, alike between two stations, and the stations' nodes."""
-    places = [station.position for station in STATIONS]
-    coarsest = ELEMENTS // 4
-    ends = [count // coarsest * round(place / LENGTH * coarsest) for place in places]
-    lengths = []
-    for (start, stop), (first, last) in zip(pairwise(places), pairwise(ends), strict=True):
-        lengths += [(stop - start) / (last - first)] * (last - first)
-    return lengths, {station.name: end for station, end in zip(STATIONS, ends, strict=True)}
 
 
 def ours(tool: Tool) -> np.ndarray:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import fcntl
 import gc
 import re
+import subprocess
+import sys
 from collections import defaultdict
 from pathlib import Path
 
@@ -48,6 +51,19 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
     """Make the page of all pictures that tests have kept, once all workers have ended."""
     if not hasattr(session.config, "workerinput"):
         gallery.write_page()
+
+
+@pytest.fixture(scope="session")
+def site() -> Path:
+    """The documentation site, which the first worker makes where it is not up to date."""
+    top = Path(__file__).parents[1]
+    (top / "build").mkdir(exist_ok=True)
+    with (top / "build" / "docs.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        make = [sys.executable, str(top / "docs" / "site" / "make.py")]
+        made = subprocess.run(make, capture_output=True, text=True, check=False)
+    assert (made.returncode, made.stderr) == (0, "")
+    return top / "build" / "docs"
 
 
 def _seed_of(item: pytest.Item) -> tuple[tuple[str, ...], str]:

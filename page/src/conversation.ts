@@ -221,8 +221,11 @@ export class Conversation {
   }
 
   private state(state: State): void {
+    // What was tried since is computed while this is drawn.
+    const ahead = this.waiting !== null && this.flight?.seq === state.seq && !this.queue.length;
+    if (ahead) this.heard(state);
     this.events.state(state);
-    this.heard(state);
+    if (!ahead) this.heard(state);
   }
 
   /** A question was answered by what is open now. */

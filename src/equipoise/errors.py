@@ -201,7 +201,14 @@ def _listed(names: list[str]) -> str:
     return Note("{names} and {more} more", names=shown, more=more) if more > 0 else shown
 
 
-EXTRAS = {"distributed": "cluster", "av": "video", "ezdxf": "exchange", "xlsxwriter": "exchange"}
+EXTRAS = {
+    "distributed": "cluster",
+    "av": "video",
+    "mcp": "mcp",
+    "anyio": "mcp",
+    "ezdxf": "exchange",
+    "xlsxwriter": "exchange",
+}
 """Libraries that come with another extra than ``studies``."""
 
 

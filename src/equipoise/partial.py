@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from equipoise.errors import UsageError
+from equipoise.fence import check_written
 
 ENDING = ".tmp"
 
@@ -83,6 +84,7 @@ def together() -> Iterator[None]:
 @contextmanager
 def replaced(target: Path) -> Iterator[Path]:
     """A free path beside a target, for a file that takes its place once it is whole."""
+    check_written(target)
     whole = _waiting.get()
     if whole is None:
         with beside(target) as begun:

@@ -83,7 +83,8 @@ class Live:
         if self.page.locator(".equipoise").count():
             self.settled()
         self.page.evaluate(AXE.read_text(encoding="utf-8"))
-        found = self.page.evaluate("axe.run(document, {resultTypes: ['violations']})")
+        options = "{resultTypes: ['violations'], preload: false}"
+        found = self.page.evaluate(f"axe.run(document, {options})")
         return [
             f"{one['id']}: {one['help']}: {[node['html'][:200] for node in one['nodes'][:3]]}"
             for one in found["violations"]

@@ -17,10 +17,12 @@ from support.analyses import (
     subject_of,
     vector,
 )
-from support.engines import TOLERANCE, same_totals
+from support.conformance import compared
+from support.engines import TOLERANCE, TOTALS, same_totals
 from support.free_bodies import centre_line
 from support.loads import on_links, springs_on_links
 from support.poses import Array, cross
+from support.sources import MUJOCO
 
 
 def action(subject: Subject, link: str, at: Array, force: Array, couple: Array | float) -> Array:
@@ -54,15 +56,19 @@ def acting_on_links(subject: Subject) -> dict[str, Array]:
     return total
 
 
+@compared(MUJOCO, f"{TOTALS}, force and moment on each link", TOLERANCE)
 @every_subject
-def test_totals_and_what_each_link_carries(name: str) -> None:
+def test_totals_and_what_each_link_carries(name: str) -> float:
     """Each link gets just what MuJoCo asks for it, weight included."""
     subject = subject_of(name)
-    same_totals(subject, mujoco_engine.totals)
+    apart = [same_totals(subject, mujoco_engine.totals)]
     machine, poses = subject.machine, subject.poses
     asked = mujoco_engine.demands(machine, poses, machine.gravity).links
     force, moment = force_size(machine, poses), moment_size(machine, poses)
     for link, got in acting_on_links(subject).items():
         want = asked.get(link, np.zeros_like(got))
-        agree(f"force on {link}", got[:, :2], want[:, :2], TOLERANCE, force)
-        agree(f"moment on {link}", got[:, 2], want[:, 2], TOLERANCE, moment)
+        apart += [
+            agree(f"force on {link}", got[:, :2], want[:, :2], TOLERANCE, force),
+            agree(f"moment on {link}", got[:, 2], want[:, 2], TOLERANCE, moment),
+        ]
+    return max(apart)

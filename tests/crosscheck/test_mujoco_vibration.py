@@ -14,10 +14,13 @@ import pytest
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import respond
 from support import rig_mujoco
+from support.conformance import compared
 from support.rig_reference import Rig
 from support.rigs import RPM, in_package, on_feet, one_row, two_rows
+from support.sources import MUJOCO
 
 SAMPLES = 48
+CLOSE = 1e-8
 
 
 @dataclass(frozen=True)
@@ -28,6 +31,7 @@ class Case:
     speed: float
 
 
+@compared(MUJOCO, "steady vibration: gauge, forces of mounts, drive torque", CLOSE)
 @pytest.mark.parametrize(
     "case",
     [
@@ -35,7 +39,7 @@ class Case:
         Case(two_rows(), 193 * RPM),
         Case(on_feet(), -140 * RPM),
     ],
-    ids=["one row", "two rows", "free, reversed"],
+    ids=["rig of one row", "rig of two rows", "rig on free supports, reversed"],
 )
 def test_steady_motion(case: Case) -> None:
     """Gauge, mounts and drive torque; MuJoCo starts to look where the package's solution is."""
@@ -50,5 +54,5 @@ def test_steady_motion(case: Case) -> None:
     signals += [(found.mounts[str(k)].force, force) for k, force in enumerate(wanted.mounts.T)]
     for signal, values in signals:
         swing = float(np.ptp(values))
-        np.testing.assert_allclose(signal.values(theta), values, rtol=0, atol=1e-8 * swing)
+        np.testing.assert_allclose(signal.values(theta), values, rtol=0, atol=CLOSE * swing)
     assert float(gauge.peak_to_peak) == pytest.approx(wanted.peak_to_peak, rel=1e-7)

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from support import pinocchio_engine
 from support.analyses import every_subject, subject_of
-from support.engines import same_totals
+from support.conformance import compared
+from support.engines import TOLERANCE, TOTALS, same_totals
+from support.sources import PINOCCHIO
 
 
+@compared(PINOCCHIO, TOTALS, TOLERANCE)
 @every_subject
-def test_totals(name: str) -> None:
-    same_totals(subject_of(name), pinocchio_engine.totals)
+def test_totals(name: str) -> float:
+    return same_totals(subject_of(name), pinocchio_engine.totals)

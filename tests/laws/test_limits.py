@@ -10,6 +10,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.mechanism.model import FRAME
+from support.conformance import compared
+from support.sources import CLOSED_FORMS
 
 G = 9.80665
 THETA = 2 * pi * np.arange(48) / 48
@@ -46,6 +48,7 @@ def test_balanced_crank_does_not_shake() -> None:
     near(found.joints["A"].value, 3j * G)
 
 
+@compared(CLOSED_FORMS, "forces, moment and torque: m r w^2, m r E", 1e-12, "unbalanced crank")
 def test_unbalanced_crank() -> None:
     """Centrifugal force m r w^2 outwards, m r E against the acceleration."""
     found = forces(lone_crank(3.0, 0.05))
@@ -83,6 +86,7 @@ def slider_crank(rod: float, piston: float = 2.0, radius: float = 0.03) -> eq.Ma
     )
 
 
+@compared(CLOSED_FORMS, "shaking force: a cosine", 2e-06, "slider-crank, endless rod")
 def test_endless_rod_gives_a_cosine() -> None:
     found = forces(slider_crank(3e4)).at(acceleration=0.0)
     first = 2.0 * 0.03 * SPEED**2
@@ -90,6 +94,12 @@ def test_endless_rod_gives_a_cosine() -> None:
     near(found.shaking_force.y, 0.0)
 
 
+@compared(
+    CLOSED_FORMS,
+    "orders 1 to 6 of the shaking force by their series",
+    0.2**7,
+    "slider-crank, crank over rod 1/5",
+)
 def test_finite_rod_gives_even_harmonics() -> None:
     """Series of the crank mechanism in powers of crank over rod."""
     s = 0.2
@@ -101,6 +111,9 @@ def test_finite_rod_gives_even_harmonics() -> None:
         near(amplitudes[order], series.get(order, 0.0), tolerance=s**7)
 
 
+@compared(
+    CLOSED_FORMS, "place and acceleration at the dead centres: r (1 + r / l)", 1e-12, "slider-crank"
+)
 def test_piston_at_its_dead_centres() -> None:
     r, rod = 0.03, 0.11
     motion = eq.move(slider_crank(rod), [0.0, pi], 1.0)
@@ -109,6 +122,7 @@ def test_piston_at_its_dead_centres() -> None:
     near(motion.points["C"].ax, [-r * (1 + r / rod), r * (1 - r / rod)])
 
 
+@compared(CLOSED_FORMS, "torque and side force of a gas force", 1e-12, "slider-crank")
 def test_gas_force_on_the_crank() -> None:
     """Torque from the piston force by the triangle of crank and rod."""
     r, rod, gas = 0.03, 0.11, -500.0
@@ -125,6 +139,7 @@ def test_gas_force_on_the_crank() -> None:
 # -- sines and straight lines ----------------------------------------------------------------------
 
 
+@compared(CLOSED_FORMS, "shaking force: a sine", 1e-14, "scotch-yoke")
 def test_scotch_yoke_is_an_exact_sine() -> None:
     machine = eq.load("scotch-yoke")
     found = forces(machine).at(acceleration=0.0)
@@ -145,6 +160,7 @@ def carrier_with(planet: eq.Link, *gears: eq.Gear, idler: bool = True) -> eq.Mac
     return eq.Machine("planetary", drive, {"A": ORIGIN}, links, gears=gears)
 
 
+@compared(CLOSED_FORMS, "path, shaking force: circles", 1e-12, "planet that keeps its direction")
 def test_planet_that_keeps_its_direction_moves_in_a_circle() -> None:
     gears = (
         eq.Gear(FRAME, "idler", teeth=(40, 20), carrier="carrier"),
@@ -161,6 +177,7 @@ def test_planet_that_keeps_its_direction_moves_in_a_circle() -> None:
     near(found.shaking_force.value, outwards, 20.0)
 
 
+@compared(CLOSED_FORMS, "path: a straight line, an ellipse", 1e-12, "Cardan circles")
 @pytest.mark.parametrize("start", [0.0, 1.1])
 def test_cardan_circles_draw_a_straight_line(start: float) -> None:
     """A point on the pitch circle of a planet half as large as its ring runs through the centre."""
@@ -174,6 +191,7 @@ def test_cardan_circles_draw_a_straight_line(start: float) -> None:
     near(ellipse, 0.14 * np.cos(THETA - start / 2) + 0.06j * np.sin(THETA - start / 2))
 
 
+@compared(CLOSED_FORMS, "shaking force along one axis: none", 1e-12, "contra-rotating weights")
 @pytest.mark.parametrize(("start", "axis"), [(0.0, "y"), (pi, "x")])
 def test_contra_rotating_weights_cancel_along_one_axis(start: float, axis: str) -> None:
     crank = link(2.0, (0.05, 0.0), 1e-3, A=ORIGIN)
@@ -207,6 +225,7 @@ def four_bar(a: float, b: float, c: float, d: float, side: str = "left") -> eq.M
     )
 
 
+@compared(CLOSED_FORMS, "angles of coupler and rocker", 1e-05, "almost a parallelogram")
 def test_near_a_parallelogram_the_rocker_follows_the_crank() -> None:
     motion = eq.move(four_bar(1.0, 0.3, 1.0, 0.3 + 1e-7), np.linspace(0.2, pi - 0.2, 30))
     near(motion.links["coupler"].angle, 0.0, tolerance=1e-5)
@@ -236,6 +255,7 @@ def force_balanced(machine: eq.Machine, b: float, c: float, d: float) -> eq.Mach
 LENGTHS = (1.0, 0.35, 0.9, 0.8)
 
 
+@compared(CLOSED_FORMS, "shaking force: none", 1e-14, "four-bar under (80) and (83)")
 def test_complete_force_balance() -> None:
     """Conditions (80) and (83): no shaking force at any speed or acceleration."""
     plain = four_bar(*LENGTHS)
@@ -245,6 +265,7 @@ def test_complete_force_balance() -> None:
     assert np.max(np.abs(forces(balanced).shaking_moment)) > 0.01 * size
 
 
+@compared(CLOSED_FORMS, "shaking force: a circle", 1e-13, "four-bar under (80)")
 def test_condition_80_alone_leaves_a_rotating_force() -> None:
     """The common centre of mass runs round a circle, so that a counterweight on the crank helps."""
     machine = force_balanced(four_bar(*LENGTHS), *LENGTHS[1:])
@@ -253,6 +274,7 @@ def test_condition_80_alone_leaves_a_rotating_force() -> None:
     near(shaking.value * np.exp(-1j * THETA), shaking.value[0], shaking.size[0], 1e-13)
 
 
+@compared(CLOSED_FORMS, "drive torque over load torque", 1e-12, "four-bar without masses")
 def test_light_links_transmit_torque_by_power() -> None:
     """Without masses, drive torque over load torque is the rocker's speed over the crank's."""
     machine = four_bar(*LENGTHS)
@@ -262,12 +284,14 @@ def test_light_links_transmit_torque_by_power() -> None:
     near(found.drive_torque, 5.0 * found.motion.links["rocker"].angle_1, 5.0)
 
 
+@compared(CLOSED_FORMS, "swing of the lever: 2 asin(80 / 200)", 1e-05, "quick-return")
 def test_swing_of_a_quick_return_lever() -> None:
     motion = eq.move(eq.load("quick-return"), 3600)
     angle = motion.links["lever"].angle
     assert np.ptp(angle) == pytest.approx(2 * asin(80 / 200), abs=1e-5)
 
 
+@compared(CLOSED_FORMS, "force on the frame and torque of weight", 1e-12, "four-bar at rest")
 def test_slow_machine_bears_only_weight() -> None:
     machine = four_bar(*LENGTHS)
     still = eq.analyze(machine, 48, speed=0.0, acceleration=0.0).forces

@@ -364,7 +364,7 @@ def best_start(name: str) -> float:
 
 
 FREE, GEARED = "without counterweight", "with their counterweight"
-DATA = "their own data give this"
+DATA = "unexplained: their own data give this"
 GEARS = "the gears' inertia, part of (26), is not printed"
 FLAT = "the minimum is flat: theirs is at most 2 % worse"
 TO_TEN = "rounded to 10 rpm"

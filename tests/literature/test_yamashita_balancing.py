@@ -402,7 +402,8 @@ def deviation(machine: eq.Machine) -> float:
     YAMASHITA,
     *(
         Printed("yamashita-1", f"counterweight as heavy as all links: {what}", "section 5-3",
-                printed, computed, unit, within, "their own data give this", of=number)
+                printed, computed, unit, within, "unexplained: their own data give this",
+                of=number)
         for number, (what, printed, computed, unit, within) in enumerate(
             (
                 ("radius", "35.7", "35.70", "mm", 0.0),

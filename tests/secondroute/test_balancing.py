@@ -39,7 +39,9 @@ from support.balancing_reference import (
     plate,
     signals_of,
 )
+from support.conformance import compared
 from support.machines import KINDS, make
+from support.sources import BLIND_SEARCH
 
 BEATEN = 1e-6
 """Over the value before, by which no other machine may be better."""
@@ -291,6 +293,7 @@ def balanced(name: str) -> eq.balancing.Balanced:
 # -- against a blind search ------------------------------------------------------------------------
 
 
+@compared(BLIND_SEARCH, "least cost, over that before; differential evolution", 1e-5)
 @pytest.mark.parametrize("name", CASES)
 def test_no_other_is_better(name: str) -> None:
     machine, plan = case_of(name)
@@ -428,6 +431,7 @@ def convex_case(name: str) -> tuple[eq.balancing.Balanced, Problem]:
     return eq.balance(machine, plan), Problem(machine, plan)
 
 
+@compared(BLIND_SEARCH, "least cost, over that before; convex program", BEATEN)
 @pytest.mark.parametrize("name", CONVEX)
 def test_optimum_of_a_convex_program(name: str) -> None:
     found, problem = convex_case(name)

@@ -17,8 +17,10 @@ from support.analyses import (
     subject_of,
     vector,
 )
+from support.conformance import compared
 from support.free_bodies import FreeBodies, Reaction
 from support.poses import pins
+from support.sources import FREE_BODIES
 
 TOLERANCE = 1e-10
 FLOOR = 1e-3
@@ -88,6 +90,9 @@ def acting_on_the_later(subject: Subject) -> None:
             assert order.index(joint.by) < order.index(joint.on), name
 
 
+@compared(
+    FREE_BODIES, "forces and moments in all joints, drive torque, load on the frame", TOLERANCE
+)
 @every_subject
 def test_forces_in_all_joints(name: str) -> None:
     subject = subject_of(name)

@@ -8,8 +8,10 @@ import pytest
 import equipoise as eq
 from support import newton
 from support.analyses import EXAMPLES, RANDOM, Subject, agree, subject_of
+from support.conformance import compared
 from support.machines import make
 from support.poses import Array, Poses, from_motion
+from support.sources import NEWTON
 
 TOLERANCE = 1e-10
 GEARED = ["geared_coupler", "sun_and_planet", "geared_five_bar", "planetary_arm"]
@@ -55,6 +57,7 @@ def same_point(
               0.01 * size * rate)  # fmt: skip
 
 
+@compared(NEWTON, "motion of all links and points", TOLERANCE)
 @pytest.mark.parametrize("name", RANDOM)
 def test_random_machine(name: str) -> None:
     subject = subject_of(name)
@@ -70,6 +73,7 @@ def test_gears_over_several_turns(kind: str) -> None:
     same_motion(Subject(case.machine, motion, None, case), case.start())
 
 
+@compared(NEWTON, "motion of all links and points", TOLERANCE)
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_example(name: str) -> None:
     """Only the branch at crank angle 0 is taken from the motion itself."""

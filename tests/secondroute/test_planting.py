@@ -34,7 +34,9 @@ from equipoise.mechanism.field import Planting
 from equipoise.planting.ground import Loop
 from equipoise.planting.summary import PlantingFigures, plant
 from support import planting_reference as reference
+from support.conformance import compared
 from support.planting_reference import Case, Series, Trochoid, planter
+from support.sources import SERIES
 
 TURN = 2 * np.pi
 WITHIN = 1e-9
@@ -208,6 +210,7 @@ def dips(case: Case | Trochoid) -> bool:
     return bool(np.any(p.foot(np.linspace(*p.visits[0], 400)).imag < p.surface))
 
 
+@compared(SERIES, "all figures, stays, loops and cusps", WITHIN)
 @every_case
 def test_figures_stays_loops_and_cusps(name: str) -> None:
     want = reference.figures(CASES[name])

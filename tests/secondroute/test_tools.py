@@ -22,6 +22,8 @@ from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import ToolResponse, respond_tool
 from equipoise.handheld.shaft import Theory
 from support.beam_reference import Response
+from support.conformance import compared
+from support.sources import FINITE_ELEMENTS
 from unit.handheld.samples import THEORIES, attached_of, random_tool, reference, still
 
 Array = np.ndarray[Any, Any]
@@ -29,6 +31,9 @@ SPEEDS = np.array([170.0, 455.0, 820.0])
 SUBJECTS = [(theory, seed) for theory in THEORIES for seed in (11, 12)]
 subjects = pytest.mark.parametrize(("theory", "seed"), SUBJECTS)
 planes = pytest.mark.parametrize("plane", [0, 1], ids=["vertical", "lateral"])
+
+
+TOOLS = [f"tool {seed}, {theory}, both planes" for theory, seed in SUBJECTS]
 
 
 @cache
@@ -41,6 +46,7 @@ def answered(theory: Theory, seed: int) -> ToolResponse:
     return respond_tool(made(theory, seed), SPEEDS)
 
 
+@compared(FINITE_ELEMENTS, "ten natural frequencies", 1e-8, *TOOLS)
 @subjects
 @planes
 def test_natural_frequencies(theory: Theory, seed: int, plane: int) -> None:
@@ -49,6 +55,7 @@ def test_natural_frequencies(theory: Theory, seed: int, plane: int) -> None:
     np.testing.assert_allclose(natural_frequencies(tool, 10)[plane], wanted, rtol=1e-8)
 
 
+@compared(FINITE_ELEMENTS, "eight eigenvalues with damping", 2e-9, *TOOLS)
 @subjects
 @planes
 def test_eigenvalues(theory: Theory, seed: int, plane: int) -> None:
@@ -60,6 +67,7 @@ def test_eigenvalues(theory: Theory, seed: int, plane: int) -> None:
     np.testing.assert_allclose(found[:8], wanted, rtol=2e-9)
 
 
+@compared(FINITE_ELEMENTS, "six eigenvalues with heavy damping", 1e-7, *TOOLS[::2])
 @pytest.mark.parametrize("theory", THEORIES)
 def test_eigenvalues_of_heavy_damping(theory: Theory) -> None:
     """Hands and belt ten times as hard to move as any are."""
@@ -102,6 +110,7 @@ def close(found: Array, wanted: Array, tolerance: float = 1e-7) -> None:
     np.testing.assert_allclose(found, wanted, rtol=0, atol=tolerance * np.max(np.abs(wanted)))
 
 
+@compared(FINITE_ELEMENTS, "displacement, slope, bending moment", 1e-7, *TOOLS)
 @subjects
 @planes
 def test_motion_and_moment_anywhere(theory: Theory, seed: int, plane: int) -> None:
@@ -120,6 +129,7 @@ def test_motion_and_moment_anywhere(theory: Theory, seed: int, plane: int) -> No
         close(moved, exact.displacement(ends)[0])
 
 
+@compared(FINITE_ELEMENTS, "forces on ground and body", 1e-7, *TOOLS)
 @subjects
 @planes
 def test_forces_on_the_ground_and_the_body(theory: Theory, seed: int, plane: int) -> None:
@@ -138,6 +148,7 @@ def test_forces_on_the_ground_and_the_body(theory: Theory, seed: int, plane: int
         close(np.array(told), ground)
 
 
+@compared(FINITE_ELEMENTS, "power fed in and lost", 2e-7, *TOOLS)
 @subjects
 def test_power(theory: Theory, seed: int) -> None:
     """What is fed in, what the shaft's material takes, and what each damper takes; both planes."""

@@ -25,8 +25,10 @@ from equipoise.vibration.exact import ExactSolution, solve_exact
 from equipoise.vibration.forced import respond
 from equipoise.vibration.response import Model
 from support import rig_reference
+from support.conformance import compared, equation
 from support.rig_reference import Rig
 from support.rigs import RPM, in_package, on_feet, one_row, rows_apart, tied, two_rows
+from support.sources import IN_TIME, YAMASHITA
 
 Array = NDArray[np.float64]
 
@@ -80,6 +82,9 @@ CASES = {
 }
 
 
+EVERYTHING = "motion, gauge, mounts, drive, joints, work of a turn"
+
+
 @dataclass(frozen=True)
 class Pair:
     """One case by both ways, at the same crank angles."""
@@ -113,6 +118,7 @@ def solved(name: str) -> Pair:
     return Pair(case, wanted, found, states)
 
 
+@compared(IN_TIME, EVERYTHING, 1e-7)
 @pytest.mark.parametrize("name", CASES)
 def test_steady_state(name: str) -> None:
     pair = solved(name)
@@ -224,6 +230,7 @@ def test_multipliers(name: str) -> None:
 STEPS: dict[int, Model] = {59: "linear", 57: "torque", 54: "coupled"}
 
 
+@equation(YAMASHITA, "(54), (57), (59)", "steady vibration of the rig, in time", 1e-9)
 @pytest.mark.parametrize(
     ("rig", "speed"),
     [(one_row(), 193 * RPM), (one_row(), -150 * RPM), (two_rows(), 193 * RPM)],

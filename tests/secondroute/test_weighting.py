@@ -16,6 +16,8 @@ from scipy.signal import freqs, tf2ss
 
 from equipoise.exposure.spectra import weigh_signal
 from equipoise.exposure.weighting import weighting
+from support.conformance import compared
+from support.sources import FILTER
 
 W1, W2, W3 = 2 * np.pi * 10**0.8, 2 * np.pi * 10**3.1, 100.0
 """rad/s."""
@@ -26,6 +28,7 @@ DENOMINATOR = reduce(
 )
 
 
+@compared(FILTER, "weighting from 0.1 Hz to 100 kHz", 1e-10, "polynomials of SciPy")
 def test_against_the_polynomials() -> None:
     frequency = np.geomspace(0.1, 1e5, 300)
     _, response = freqs(NUMERATOR, DENOMINATOR, worN=2 * np.pi * frequency)
@@ -57,6 +60,7 @@ def filtered_rms(waves: tuple[tuple[float, float, float], ...]) -> float:
     return float(np.sqrt(4 * done.y[-1, -1]))
 
 
+@compared(FILTER, "weighted RMS of three sines", 1e-5, "integrated in time")
 def test_against_the_filter_integrated_in_time() -> None:
     time = np.arange(1000) / 4000.0
     values = sum(size * np.sin(2 * np.pi * f * time + phase) for f, size, phase in WAVES)

@@ -91,8 +91,8 @@ def vector(signal: Any) -> Array:
     return np.column_stack([signal.x, signal.y])
 
 
-def agree(what: str, got: Array, want: Array, tolerance: float, least: float = 0.0) -> None:
-    """Compare an output over all crank angles with its second route.
+def agree(what: str, got: Array, want: Array, tolerance: float, least: float = 0.0) -> float:
+    """Compare an output over all crank angles with its second route; tell how far they are apart.
 
     The difference is measured against the output's largest value, or against `least` where the
     output vanishes and rounding alone is left of it.
@@ -103,6 +103,7 @@ def agree(what: str, got: Array, want: Array, tolerance: float, least: float = 0
     apart = float(np.max(np.abs(got - want)))
     assert np.all(np.isfinite(got)), f"{what} is not finite"
     assert apart <= tolerance * scale, f"{what} is {apart:.3g} off, of {scale:.3g}"
+    return apart / scale if scale else 0.0
 
 
 def force_size(machine: Machine, poses: Poses) -> float:

@@ -40,7 +40,8 @@ class Printed:
 
     printed : as printed; "over 90" and "under 1.0" are bounds; none where it is drawn only.
     computed : what comes out here, each digit of it held; none where it is what is printed.
-    within : by how much the two may differ; none where they differ by rounding alone.
+    within : by how much the two may differ; none where they differ by rounding alone.  Without a
+        computed number it is how exactly the printed one is met, if not to its last digit.
     why : they differ.  slip : of the print, which cannot be met.
     of : what the test needs to compute it.
     """
@@ -90,6 +91,11 @@ class Printed:
         """Whether what comes out here does not round to what is printed."""
         return not self.bound and abs(float(self.off)) > HALF * digit(self.printed or self.told)
 
+    @property
+    def allowed(self) -> float:
+        """How exactly a printed number is met that nothing else is told of."""
+        return self.within or HALF * digit(self.printed)
+
     def apart(self, one: Decimal, other: Decimal) -> Decimal:
         """One number less the other; angles are alike after a turn."""
         off = one - other
@@ -98,10 +104,11 @@ class Printed:
     def hold(self, found: Any) -> None:
         """Hold one or more values, each by a way of its own, to the digits told."""
         values = np.ravel(found)
+        allowed = HALF * digit(self.told) if self.computed else self.allowed
         assert values.size
         for value in values.tolist():
             off = abs(float(self.apart(Decimal(value), number(self.told))))
-            assert off <= HALF * digit(self.told), f"{self}: {value!r} is not {self.told}"
+            assert off <= allowed, f"{self}: {value!r} is not {self.told}"
 
 
 @dataclass(frozen=True)
@@ -165,18 +172,21 @@ def equation(
     return told
 
 
-def compared(source: Source, what: str, within: float) -> Callable[[Test], Test]:
-    """Tell of a test that compares machines with another program and returns how far they are off.
+def compared(source: Source, what: str, within: float, *names: str) -> Callable[[Test], Test]:
+    """Tell of a test against another program, which asserts, or returns, how far machines are off.
 
-    The difference is a part of the largest value; machines are those of its outermost parameters.
+    The difference is a part of the largest value.  names : of the machines; those of the test's
+    parameters if none.
     """
 
     def made(measure: Test) -> Test:
-        _declare(source, measure, [Agreement(case, what, "", within) for case in cases(measure)])
+        of = names or cases(measure)
+        _declare(source, measure, [Agreement(case, what, "", within) for case in of])
 
         @wraps(measure)
         def test(**given: Any) -> None:
-            assert measure(**given) <= within
+            off = measure(**given)
+            assert off is None or off <= within
 
         return test
 
@@ -190,8 +200,10 @@ def cases(test: Test) -> list[str]:
     for name in mark.kwargs.get("ids") or mark.args[1]:
         kind, _, seed = name.partition(":")
         names[kind] = names.get(kind, 0) + bool(seed)
-    return [f"{seeds} random of kind {kind}".replace("_", " ") if seeds else kind
-            for kind, seeds in names.items()]  # fmt: skip
+    return [
+        f"{seeds} random machines, {kind.replace('_', ' ')}" if seeds else kind
+        for kind, seeds in names.items()
+    ]
 
 
 def number(text: str) -> Decimal:

@@ -10,17 +10,20 @@ from support.mujoco_engine import Totals
 from support.poses import Poses
 
 TOLERANCE = 1e-9
+TOTALS = "shaking force, shaking moment, drive torque"
 FLOOR = 1e-3
 """Part of the size of all forces below which an output counts as vanishing (balanced machines)."""
 
 Engine = Callable[[Machine, Poses], Totals]
 
 
-def same_totals(subject: Subject, engine: Engine) -> None:
-    """Compare the outputs of a machine with those of an engine."""
+def same_totals(subject: Subject, engine: Engine) -> float:
+    """Compare the outputs of a machine with those of an engine; tell how far they are apart."""
     machine, poses, forces = subject.machine, subject.poses, subject.forces
     told = engine(machine, poses)
     force, moment = FLOOR * force_size(machine, poses), FLOOR * moment_size(machine, poses)
-    agree("shaking force", vector(forces.shaking_force), told.shaking_force, TOLERANCE, force)
-    agree("shaking moment", forces.shaking_moment, told.shaking_moment, TOLERANCE, moment)
-    agree("drive torque", forces.drive_torque, told.drive_torque, TOLERANCE, moment)
+    return max(
+        agree("shaking force", vector(forces.shaking_force), told.shaking_force, TOLERANCE, force),
+        agree("shaking moment", forces.shaking_moment, told.shaking_moment, TOLERANCE, moment),
+        agree("drive torque", forces.drive_torque, told.drive_torque, TOLERANCE, moment),
+    )

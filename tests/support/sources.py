@@ -119,6 +119,11 @@ SERIES = Source(
     "Fourier series",
     "Figures of planting, stays, loops and cusps by angles, cosines and series in long doubles.",
 )
+BLIND_SEARCH = Source(
+    "Other optima",
+    """Plans of balancing by differential evolution over all that they free, polished, and as convex
+    programs in other matrices by CVXPY. Random plans are of random machines.""",
+)
 FILTER = Source(
     "The filter of Wh", "Polynomials of SciPy, and the filter's equations integrated in time."
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import gc
 import io
 import json
 import math
@@ -17,13 +18,14 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import jsonschema
 import numpy as np
 import pytest
 
 import equipoise as package
-from equipoise.cli import run
+from equipoise.cli import ONE_THREAD, main, run
 from equipoise.errors import UsageError
 from equipoise.schema.files import json_text
 from surface.running import (
@@ -50,19 +52,8 @@ from surface.running import (
 ROOT = Path(__file__).parents[2]
 COMMANDS = (
     *["analyze", "animate", "balance", "best", "check", "completion", "decay", "examples"],
-    *[
-        "export",
-        "exposure",
-        "modes",
-        "new",
-        "plant",
-        "plot",
-        "report",
-        "respond",
-        "resume",
-        "schema",
-    ],
-    *["search", "serve", "simulate", "sweep", "tolerance", "tool"],
+    *["export", "exposure", "mcp", "modes", "new", "plant", "plot", "report", "respond"],
+    *["resume", "schema", "search", "serve", "simulate", "sweep", "tolerance", "tool"],
 )
 LINK_KEYS = ["angle", "angular_velocity", "angular_acceleration"]
 POINT_KEYS = ["x", "y", "vx", "vy", "ax", "ay"]
@@ -108,7 +99,7 @@ def test_outputs_and_dwells_that_cannot_be_told(options: tuple[str, ...], told: 
 
 HELPS = """
 import sys
-from equipoise.cli import run
+from equipoise.cli import ONE_THREAD, main, run
 for name in sys.argv[1].split(","):
     run(name.split())
     print("=====")
@@ -169,6 +160,7 @@ OPTIONS = {
         *["INPUT", "--duration", "--idle", "--racing", "--bands", "--weighted", "--single-axis"],
         *["--periodic", *DRAWN],
     ],
+    "mcp": ["--folder"],
     "modes": ["FILE", "--model", *DRAWN],
     "new": ["FILE", "--tool", "--study"],
     "plant": ["FILE", "--speed", "--crank-zero", "--angles", *OUTPUTS],
@@ -720,3 +712,15 @@ def test_a_command_that_takes_long_says_so(monkeypatch: pytest.MonkeyPatch) -> N
     with pytest.raises(AttributeError):  # there is nothing to show
         run(["respond", "yamashita-rig"])
     assert re.match(r"still computing, \d+ s\n", heard.getvalue())
+
+
+def test_linear_algebra_takes_no_thread_beside_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gc, "disable", lambda: None)
+    monkeypatch.setattr(sys, "stdout", io.StringIO())
+    told = []
+    monkeypatch.setattr("equipoise.cli.run", lambda: told.extend(map(os.getenv, ONE_THREAD)))
+    kept = {name: value for name, value in os.environ.items() if name not in ONE_THREAD}
+    there = mock.patch.dict(os.environ, {**kept, ONE_THREAD[0]: "3"}, clear=True)
+    with there, pytest.raises(SystemExit):
+        main()
+    assert told == ["3", "1", "1"]

@@ -34,7 +34,7 @@ REFUSED = {
     # begin of a command line: its end, what is said
     "": {
         "analyse yamashita-1": 'Unknown command "analyse". Did you mean "analyze"?',
-        "qqq": "Available commands: analyze, animate, balance, best, check, decay",
+        "qqq": "Available commands: analyze, animate, balance, best, check, completion",
         "--qqq": "--qqq",
         "analyze": "FILE requires an argument",
         "check": "FILE requires an argument",

@@ -88,7 +88,18 @@ LINES = [
     "tool vary nagamine-irie 'harness position = 0 mm : 400 mm'",
 ]
 """Of every command that prints blocks, quick ones with much to tell."""
-SILENT = {"animate", "completion", "export", "new", "report", "schema", "serve", "plot", "plot map"}
+SILENT = {
+    "animate",
+    "completion",
+    "export",
+    "mcp",
+    "new",
+    "report",
+    "schema",
+    "serve",
+    "plot",
+    "plot map",
+}
 """Commands that print no blocks."""
 STAND_OUT = [
     "balance balance-shafts",

@@ -6,7 +6,8 @@ Write it anew with ``PYTHONPATH=tests python tests/unit/test_conformance.py``.
 from __future__ import annotations
 
 import importlib
-from collections import defaultdict
+import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -39,10 +40,10 @@ NUMBERS = (
     "| case | quantity | where | printed | computed | deviation | why |\n"
     "|---|---|---|---|---|---|---|"
 )
-EQUATIONS = (
-    "| equations | what they give | difference at most, of the largest value |\n|---|---|---|"
-)
-PROGRAMS = "| case | compared | difference at most, of the largest value |\n|---|---|---|"
+AT_MOST = "difference at most, of the largest value"
+EQUATIONS = f"| equations | what they give | {AT_MOST} |\n|---|---|---|"
+PROGRAMS = f"| case | compared | {AT_MOST} |\n|---|---|---|"
+MACHINES = f"| case | {AT_MOST} |\n|---|---|"
 SLIPS = "| source | where | slip in print, and what holds |\n|---|---|---|"
 
 
@@ -89,24 +90,36 @@ def counts(rows: Rows) -> dict[str, int]:
 
 def sections(rows: Sequence[Printed | Agreement]) -> Iterator[str]:
     """The tables of a source."""
-    tables: dict[str, list[str]] = defaultdict(list)
+    tables: dict[str, list[str]] = {NUMBERS: [], EQUATIONS: []}
+    often = Counter(row.what for row in rows)
     for row in rows:
         if isinstance(row, Printed):
             tables[NUMBERS].append(number_line(row))
         elif row.place:
-            tables[EQUATIONS].append(f"| {row.place} | {row.what} | {row.within:.0e} |")
+            tables[EQUATIONS].append(f"| {row.place} | {row.what} | {power(row.within)} |")
+        elif often[row.what] == 1:
+            line = f"| {row.case} | {row.what} | {power(row.within)} |"
+            tables.setdefault(PROGRAMS, []).append(line)
         else:
-            tables[PROGRAMS].append(f"| {row.case} | {row.what} | {row.within:.0e} |")
-    for head in (NUMBERS, EQUATIONS, PROGRAMS):
-        if tables[head]:
-            yield "\n".join([head, *tables[head]]) + "\n"
+            head = f"Compared: {row.what}.\n\n{MACHINES}"
+            tables.setdefault(head, []).append(f"| {row.case} | {power(row.within)} |")
+    tables[EQUATIONS].sort(key=lambda line: [int(one) for one in re.findall(r"\d+", line)])
+    for head, lines in tables.items():
+        if lines:
+            yield "\n".join([head, *lines]) + "\n"
+
+
+def power(within: float) -> str:
+    """A small number, such as 2e-8."""
+    return f"{within:.0e}".replace("e-0", "e-")
 
 
 def number_line(row: Printed) -> str:
     """A printed number as a line of its table."""
     what = f"{row.what}, {row.unit}" if row.unit else row.what
     why = f"slip: {row.why}" if row.slip else row.why if row.differs else ""
-    cells = (row.case, what, row.place, row.printed or "drawn", row.told, deviation(row), why)
+    told = row.told if row.computed or not row.within else f"± {power(row.within)}"
+    cells = (row.case, what, row.place, row.printed or "drawn", told, deviation(row), why)
     return f"| {' | '.join(cells)} |"
 
 
@@ -114,9 +127,11 @@ def deviation(row: Printed) -> str:
     """How far off a number is, in its unit and in parts of what is printed."""
     if row.bound or not row.printed or not (row.differs or row.slip):
         return "–"
-    size = abs(number(row.printed))
-    parts = bool(size) and row.unit not in ("deg", "%")
-    return f"{row.off:+f}" + (f" ({100 * row.off / size:+.1f} %)" if parts else "")
+    size = float(abs(number(row.printed)))
+    if not size or row.unit in ("deg", "%"):
+        return f"{row.off:+f}"
+    share = 100 * float(row.off) / size
+    return f"{row.off:+f} ({share:+.{1 if abs(share) < 10 else 0}f} %)"
 
 
 def slips(rows: Rows) -> Iterator[str]:
@@ -141,8 +156,7 @@ def anchor(name: str) -> str:
 
 
 def test_page_is_what_the_tests_declare() -> None:
-    """Write it anew as told above."""
-    assert PAGE.read_text(encoding="utf-8") == page(declared())
+    assert PAGE.read_text(encoding="utf-8") == page(declared()), __doc__
 
 
 def row(printed: str, computed: str = "", **more: Any) -> Printed:

@@ -46,6 +46,7 @@ MODULES = {
     "linkage:planting": ["plant"],
     "measured": ["decay", "exposure"],
     "pictures:app": ["plot"],
+    "protocol": ["mcp"],
     "reports": ["animate", "report"],
     "sweep": ["resume", "sweep", "tolerance"],
 }
@@ -106,7 +107,7 @@ SIGN = 5.0
 def _signs_of_life(given: Sequence[str]) -> Iterator[None]:
     """Tell in a line now and then that a command still computes, where nothing else tells it."""
     silent = os.environ.get("EQUIPOISE_PROGRESS") == "off" or sys.stderr is None
-    if silent or given[:1] == ["serve"]:  # which waits for its pages
+    if silent or given[:1] in (["serve"], ["mcp"]):  # which wait
         yield
         return
     ended, begun = Event(), monotonic()
@@ -147,8 +148,14 @@ def _one_line(text: str) -> str:
     return "".join(map(printable, text))
 
 
+ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+"""What libraries of linear algebra read when NumPy is imported: how many threads they may take."""
+
+
 def main() -> None:
     """Entry point of the command `equipoise`."""
+    for name in ONE_THREAD:  # for matrices as small as ours more threads only wait for each other
+        os.environ.setdefault(name, "1")
     gc.disable()  # collecting garbage between imports takes a twentieth of a short command's time
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a title may have letters the terminal lacks

@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TextIO
 
@@ -31,6 +32,10 @@ Values = Callable[[], Mapping[str, Any]]
 Blocks = Callable[[], "Iterable[Block | Section]"]
 Drawings = Callable[[], "Mapping[str, Picture]"]
 """Results are made when they are asked for: what is not wanted is not computed."""
+
+
+heard: ContextVar[list[str] | None] = ContextVar("heard", default=None)
+"""Gets the JSON of what is printed in tables, for who wants both."""
 
 
 @Parameter(name="*")
@@ -63,12 +68,16 @@ class Printed(Shown):
 
         of : the machine, tool or study; its title where there is none.
         """
-        if self.json:
-            from equipoise.schema.files import json_text
+        from equipoise.schema.files import json_text
 
+        both = heard.get()
+        if self.json:
             print(json_text(dict(values())))
         else:
             from equipoise.present import show_blocks
+
+            if both is not None:
+                both.append(json_text(dict(values())))
 
             with self.showing(of):
                 show_blocks(of if isinstance(of, str) else of.title, blocks())

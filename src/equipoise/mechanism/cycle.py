@@ -85,8 +85,10 @@ def turns_of_loads(machine: Machine) -> int:
     return lcm(*(load.table.turns for load in machine.loads if load.table is not None))
 
 
-def close(machine: Machine, groups: Iterable[Group]) -> Cycle:
+def close(machine: Machine, groups: Iterable[Group], near: Cycle | None = None) -> Cycle:
     """Find the cycle of a linkage, given the groups in which it is solved.
+
+    near : that of a machine of the same build that differs by little, if one is known.
 
     Raises
     ------
@@ -96,7 +98,7 @@ def close(machine: Machine, groups: Iterable[Group]) -> Cycle:
     base = turns = tried = turns_of_loads(machine)
     while turns <= min(MOST_TURNS, MOST_LOOP_TURNS * base):
         tried = turns
-        grid = _Grid(machine, turns)
+        grid = _Grid(machine, turns, near)
         try:
             for group in groups:
                 grid.add(group)
@@ -124,11 +126,13 @@ class _LongerCycle(Exception):
 class _Grid:
     """A run of the steps, group by group, over a number of turns of the crank."""
 
-    def __init__(self, machine: Machine, turns: int) -> None:
+    def __init__(self, machine: Machine, turns: int, near: Cycle | None) -> None:
         self.machine, self.turns = machine, turns
         points = POINTS_PER_TURN if turns <= MANY_TURNS else FEWER_POINTS
         self.theta = np.linspace(0.0, 2 * pi * turns, points * turns + 1)
         self.state = initial_state(machine, self.theta)
+        for name, table in near.tables.items() if near is not None else ():
+            self.state[f"near({name})"] = table
         self.done: list[Group] = []
         drive = machine.drive.link
         self.windings = {FRAME: 0, drive: turns}

@@ -46,6 +46,7 @@ class Linkage:
     pivot : the drive link's point in the frame.
     anchors : body -> point about which its moments are taken.
     groups : what is solved after the drive, in order.
+    near : motion of a machine that differs by little, from which loops are followed sooner.
     """
 
     machine: Machine
@@ -53,6 +54,7 @@ class Linkage:
     pivot: str
     anchors: Mapping[str, str]
     groups: tuple[Group, ...]
+    near: Cycle | None = None
 
     @cached_property
     def motion(self) -> tuple[Step, ...]:
@@ -87,7 +89,7 @@ class Linkage:
     @cached_property
     def cycle(self) -> Cycle:
         """The closed motion; raises a `MotionError` where the crank cannot turn fully."""
-        return close(self.machine, self.groups)
+        return close(self.machine, self.groups, self.near)
 
     def of(self, machine: Machine) -> Linkage:
         """The same linkage for a machine that differs in nothing but masses, speed or gravity."""
@@ -108,8 +110,10 @@ class Linkage:
         return run(self.motion, state)
 
 
-def assemble(machine: Machine) -> Linkage:
+def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
     """Order the links of a machine into steps.  The result is kept with the machine.
+
+    near : motion of a machine of the same build that differs by little, if one is known.
 
     Raises
     ------
@@ -118,7 +122,7 @@ def assemble(machine: Machine) -> Linkage:
     """
     kept = machine.__dict__.get("_linkage")
     if kept is None:
-        kept = ordered(machine, structure(machine))
+        kept = replace(ordered(machine, structure(machine)), near=near)
         names = [name for name, _ in kept.named_reactions]
         for name in names:
             if names.count(name) > 1:  # outputs go by the names of joints

@@ -33,6 +33,8 @@ SETTLED = 1e-11
 """Last step of Newton's method, in sizes of the machine and radians, that counts as arrived."""
 STRIDES = (radians(30), radians(6))
 """Between crank angles at which a branch is followed first; the next where it cannot be so."""
+SAME = 1e-8
+"""Difference of unknowns, in sizes of the machine and radians, at which solutions are the same."""
 JUMP = 0.02
 """Step, in sizes of the linkage and radians, that the branch's slope does not explain."""
 QUINTIC = np.array([
@@ -44,6 +46,8 @@ QUINTIC = np.array([
     [0, 0, 0, 0.5, -1, 0.5],
 ])  # fmt: skip
 """Between 0 and 1, by powers: what value, slope and curvature at 0, then at 1, contribute."""
+
+Levels = tuple[Array, Array, Array]  # the unknowns, and their two derivatives
 
 
 @dataclass(frozen=True)
@@ -82,7 +86,8 @@ class LoopGroup:
         guess = state.get(f"reference({self.reference})")
         with np.errstate(all="ignore"):
             if guess is None:
-                levels = self.follow(self.start, known, theta)
+                near = state.get(f"near({self.reference})")
+                levels = self.follow(self.start, known, theta, near)
             else:
                 q = self.solve(guess, known, theta)
                 levels = (q, *self.derivatives(q, known))
@@ -166,12 +171,17 @@ class LoopGroup:
         q2 = -divide(matrix, self.stacked(self.poses(known, q, q1), 2, q.shape[1:]))
         return q1, q2
 
-    def follow(self, start: Array, known: Poses, theta: Array) -> tuple[Array, Array, Array]:
+    def follow(self, start: Array, known: Poses, theta: Array, near: Any = None) -> Levels:
         """Follow the branch along crank angles, from the solution `start` at the first.
 
-        Wide steps first, with all angles between them solved together; where those do not fit
-        together, every angle from the one before.  Returns the unknowns with two derivatives.
+        From unknowns `near` it (n, N) all together, if there are such.  Else wide steps first, with
+        all angles between them together; where those do not fit, every angle from the one before.
         """
+        if near is not None and near.shape == (len(start), len(theta)):
+            with suppress(MotionError):
+                levels = self.joined(near, known, theta)
+                if np.all(self.sizes(levels[0][:, 0] - start) <= SAME):
+                    return levels
         for stride in STRIDES if len(theta) > 1 else ():
             each = int(stride / abs(theta[1] - theta[0] or 1.0))
             if 1 < each < len(theta):
@@ -179,21 +189,22 @@ class LoopGroup:
                     return self.follow_wide(start, known, theta, each)
         return self.follow_each(start, known, theta)
 
-    def follow_wide(
-        self, start: Array, known: Poses, theta: Array, each: int
-    ) -> tuple[Array, Array, Array]:
+    def follow_wide(self, start: Array, known: Poses, theta: Array, each: int) -> Levels:
         count = ceil((len(theta) - 1) / each)
         posts = np.linspace(0, len(theta) - 1, count + 1).astype(int)
-        levels = self.follow_each(
-            start, {body: pose.pick((..., posts)) for body, pose in known.items()}, theta[posts]
-        )
-        q = self.solve(between(theta, posts, *levels), known, theta)
+        some = {body: pose.pick((..., posts)) for body, pose in known.items()}
+        levels = self.follow_each(start, some, theta[posts])
+        return self.joined(between(theta, posts, *levels), known, theta)
+
+    def joined(self, guess: Array, known: Poses, theta: Array) -> Levels:
+        """All crank angles (N,) solved together, where that gives one branch."""
+        q = self.solve(guess, known, theta)
         q1, q2 = self.derivatives(q, known)
         bent = np.diff(q) - 0.5 * (q1[:, 1:] + q1[:, :-1]) * np.diff(theta)
         self.check(np.all(self.sizes(bent) <= JUMP), theta)
         return q, q1, q2
 
-    def follow_each(self, start: Array, known: Poses, theta: Array) -> tuple[Array, Array, Array]:
+    def follow_each(self, start: Array, known: Poses, theta: Array) -> Levels:
         here = start
         found = []
         for k, angle in enumerate(theta):

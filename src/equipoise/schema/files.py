@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import UsageError
+from equipoise.fence import may_be_read
 from equipoise.partial import made, replaced
 
 if TYPE_CHECKING:
@@ -56,6 +57,8 @@ def read_text(path: str | os.PathLike[str], largest: int = LARGEST) -> str:
 
 
 def _bytes(path: str | os.PathLike[str], largest: int) -> bytes:
+    if not may_be_read(path):
+        raise FileError("lies outside of the folder that is served; name another")
     # O_NONBLOCK: opening a pipe that nobody writes to would otherwise wait.
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     descriptor = os.open(path, flags)

@@ -92,10 +92,18 @@ def finished(found: Solved | Drawn) -> Solved:
     return found
 
 
-def changed(base: Solved | Drawn, changes: list[Change], commit: bool) -> Solved | Drawn:
-    """What is shown with numbers set and points dragged; commit : whether it is let go."""
+def changed(
+    base: Solved | Drawn,
+    changes: list[Change],
+    commit: bool,
+    near: Solved | Drawn | None = None,
+) -> Solved | Drawn:
+    """What is shown with numbers set and points dragged.
+
+    commit : whether it is let go.  near : what was tried last.
+    """
     if isinstance(base, Solved):
-        return edited(base, changes)
+        return edited(base, changes, near if isinstance(near, Solved) else None)
     sketch = redrawn(base.design, changes)
     return drawn(sketch) if commit else tried(sketch)
 

@@ -57,9 +57,13 @@ class Solved:
         return Scene.of(self.motion)
 
 
-def solved(design: Design) -> Solved:
-    """Compute a design; the errors are those of `analyze`."""
-    turns = assemble(design.machine).cycle.turns
+def solved(design: Design, near: Solved | None = None) -> Solved:
+    """Compute a design; the errors are those of `analyze`.
+
+    near : one of the same build that differs by little, if one is known.
+    """
+    known = near.motion.linkage.cycle if near else None
+    turns = assemble(design.machine, known).cycle.turns
     count = min(ANGLES, max(LEAST_ANGLES, MOST_SAMPLES // turns))
     return Solved(design, analyze(design.machine, count))
 
@@ -73,8 +77,10 @@ def movable(machine: Machine) -> list[str]:
     return list(names)
 
 
-def edited(base: Solved, changes: Iterable[Change]) -> Solved:
+def edited(base: Solved, changes: Iterable[Change], near: Solved | None = None) -> Solved:
     """Change a design and compute it.
+
+    near : a design that differs by less than the base does, if one is known.
 
     Raises
     ------
@@ -89,7 +95,7 @@ def edited(base: Solved, changes: Iterable[Change]) -> Solved:
         else:
             design, place = _moved(base, design, change)
             goals[change.name] = (change.at, place)
-    return _assembled(design, goals)
+    return _assembled(design, goals, near or base)
 
 
 def _set(design: Design, change: Setting) -> Design:
@@ -180,14 +186,14 @@ def settled(found: Solved) -> Solved:
     return Solved(found.design.with_machine(placed), found.analysis)
 
 
-def _assembled(design: Design, goals: Goals) -> Solved:
+def _assembled(design: Design, goals: Goals, near: Solved) -> Solved:
     """Compute a design in which dragged points come to where they were put.
 
     One that is dragged across a line of its dyad needs that dyad on its other side.  One that comes
     there on neither side, such as a block's beside its line, comes as near as it can.
     """
     try:
-        found = solved(design)
+        found = solved(design, near)
     except MotionError:
         other = _turned_over(design, goals)
         if other is None:

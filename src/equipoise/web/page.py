@@ -8,6 +8,7 @@ import traceback
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +27,10 @@ Do = Callable[[Callable[[], Any]], Any]
 MOST_WAITING, MOST_QUESTIONS = 100, 3
 PAUSE = 0.2
 """s without a message, after which what takes longer is told too."""
+NEXT = 0.03
+"""s in which a drag that goes on has its next move here; else what follows a state is told too."""
+SELDOM = 0.2
+"""s after which that is told of a drag that never pauses."""
 BUSY = "questions that take long are still being answered; wait for them"
 MISTAKE = "this went wrong inside the program, and nothing was changed; please report it"
 FLOODED = "too many messages at once; load the page again"
@@ -36,6 +41,7 @@ class Page:
     """A page that is open.
 
     lanes : threads that compute; what takes long has its own, so that dragging goes on.
+    whole : when all that follows from a message was told last, s.
     """
 
     def __init__(self, socket: WebSocket, desk: Desk, lanes: Lanes) -> None:
@@ -45,6 +51,7 @@ class Page:
         self.closed = False
         self.last: Message | None = None
         self.answered = self.told = 0
+        self.whole = 0.0
         self.questions: asyncio.Queue[Message] = asyncio.Queue(MOST_QUESTIONS)
         self.more: asyncio.Task[None] | None = None
 
@@ -102,7 +109,7 @@ class Page:
             self.last = message
             known = message.kind != "open" and self.work.spent < MOMENT
             lane = self.lanes.quick if known else self.lanes.heavy
-            await self._answer(self.desk.receive(message), message.seq, lane, self.work.timed)
+            await self._answer(self.desk.receive(message), message, lane, self.work.timed)
             self._go_on(message)
         elif self.questions.full():
             await self._send(refused(message.seq, UsageError(BUSY)))
@@ -113,7 +120,7 @@ class Page:
         """Answer what takes long, one after the other, beside what does not."""
         while True:
             message = await self.questions.get()
-            await self._answer(self.desk.receive(message), message.seq, self.lanes.long)
+            await self._answer(self.desk.receive(message), message, self.lanes.long)
             self._go_on(message)
 
     def _go_on(self, message: Message) -> None:
@@ -136,7 +143,7 @@ class Page:
                 break
 
     async def _answer(
-        self, replies: Iterator[Reply], seq: int | None, lane: Executor, do: Do | None = None
+        self, replies: Iterator[Reply], to: Message | None, lane: Executor, do: Do | None = None
     ) -> None:
         """Send replies as they are computed; a mistake of the program must not end the page."""
         loop, do = asyncio.get_running_loop(), do or self.work.do
@@ -144,11 +151,25 @@ class Page:
             while True:
                 one = await loop.run_in_executor(lane, do, partial(next, replies, None))
                 if one is None:
+                    self.whole = loop.time()
                     break
                 await self._send(one)
+                if to is not None and to.preview and await self._overtaken(loop.time()):
+                    break
         except Exception as error:  # whatever it is, the last good state is still there
             traceback.print_exception(error, file=sys.stderr)
+            seq = None if to is None else to.seq
             await self._send(refused(seq, UsageError(f"{MISTAKE} ({type(error).__name__})")))
+
+    async def _overtaken(self, now: float) -> bool:
+        """Whether a drag goes on, so that what else there is to tell of this move is left."""
+        if now - self.whole > SELDOM:
+            return False
+        if not self.waiting:
+            self.come.clear()
+            with suppress(TimeoutError):
+                await asyncio.wait_for(self.come.wait(), NEXT)
+        return bool(self.waiting)
 
     async def _send(self, reply: Reply) -> None:
         try:

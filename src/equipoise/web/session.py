@@ -117,7 +117,7 @@ class Session:
         with self.lock, self.telling():
             base, found = self.base(), None
             try:
-                found = changed(base, message.changes(), commit)
+                found = changed(base, message.changes(), commit, self.preview)
             except EquipoiseError as error:
                 problem = error
             if found is None and commit:  # the last place of a drag at which it could be

@@ -18,6 +18,8 @@ from equipoise.handheld.frequencies import (
 from equipoise.handheld.model import Absorber, Hand, Harness, Impedance, Station, Tool
 from equipoise.handheld.modes import rigid_names
 from equipoise.handheld.shaft import Section, Segment, Shaft, Tube
+from support.conformance import Printed, published
+from support.sources import BEAMS
 from unit.handheld.samples import HARD, THEORIES, bare, both, clamp, random_tool, still
 
 Array = np.ndarray[Any, Any]
@@ -75,14 +77,31 @@ PRINTED: dict[str, tuple[list[Station], list[float], float]] = {
         for stiffness in (1e12, HARD, 1e20)
     },
 }
-"""Of a free beam cos x cosh x = 1; its fortieth root is 81 pi / 2 but for 1e-50."""
+EQUATIONS = {
+    "free": "cos x cosh x = 1",
+    "free, fortieth": "81 pi / 2 but for 1e-50",
+    "clamped-free": "cos x cosh x = -1",
+    "clamped-clamped": "cos x cosh x = 1",
+    "clamped-pinned": "tan x = tanh x",
+    "pins": "sin x = 0",
+}
 
 
-@pytest.mark.parametrize(("stations", "wanted", "close"), PRINTED.values(), ids=PRINTED)
-def test_printed_roots(stations: list[Station], wanted: list[float | None], close: float) -> None:
-    found = lambdas(bare(*stations, section=PLAIN), len(wanted))
-    for one, root in zip(found, wanted, strict=True):
-        assert root is None or one == pytest.approx(root, rel=close, abs=0)
+@published(
+    BEAMS,
+    *(
+        Printed(
+            name, f"root {k + 1}", EQUATIONS.get(name.split(" of ")[0], ""), f"{root:.10g}",
+            within=close * root or 1e-12, of=(stations, k),
+        )
+        for name, (stations, wanted, close) in PRINTED.items()
+        for k, root in enumerate(wanted)
+        if root is not None
+    ),
+)  # fmt: skip
+def test_printed_roots(row: Printed) -> float:
+    stations, k = row.of
+    return float(lambdas(bare(*stations, section=PLAIN), k + 1)[k])
 
 
 def test_roots_of_the_free_beam_meet_their_equation() -> None:

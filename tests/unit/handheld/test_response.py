@@ -16,6 +16,8 @@ from equipoise.handheld.model import Absorber, Excitation, Hand, Harness, Statio
 from equipoise.handheld.response import ToolResponse, _check_finite, respond_tool
 from equipoise.handheld.shaft import Section, Shaft
 from equipoise.handheld.sweep import speeds_between, sweep_tool
+from support.conformance import compared
+from support.sources import CLOSED_FORMS
 from unit.handheld.samples import THEORIES, bare, both, random_tool, shaken
 
 RIGID = Section(1e9, 2.0)
@@ -65,6 +67,9 @@ def test_one_mass_on_springs_and_dampers() -> None:
         np.testing.assert_allclose(forces[part][0, 0], stiffness * moved, rtol=1e-4)
 
 
+@compared(
+    CLOSED_FORMS, "displacement, slope, moment under a force at its end", 1e-4, "free rigid shaft"
+)
 def test_a_free_rigid_shaft_under_a_force_at_its_end() -> None:
     """It heaves by F / (m s^2) and turns by F L / 2 / (I s^2), I = m L^2 / 12."""
     tool = bare(Station("end", 0.0), section=RIGID)
@@ -81,6 +86,12 @@ def test_a_free_rigid_shaft_under_a_force_at_its_end() -> None:
     np.testing.assert_allclose(line.shear[:, 0, 0, 0], shear, atol=1e-4)
 
 
+@compared(
+    CLOSED_FORMS,
+    "receptances of Bishop and Johnson at and across its ends",
+    1e-09,
+    "free elastic shaft",
+)
 def test_a_force_at_the_end_of_an_elastic_free_shaft() -> None:
     """Bishop and Johnson's receptances of a free beam: at its end and across it.
 

@@ -28,6 +28,8 @@ from equipoise.mechanism.parameters import parameters_of
 from equipoise.schema import dumps, loads
 from equipoise.web.design import Counterweight, Design
 from equipoise.web.fields import fields_of
+from support.conformance import compared
+from support.sources import BODIES
 from unit.schema.samples import FOUR_BAR, VALIDATOR, survives
 
 POINTS = {"A": (0.0, 0.0), "B": (0.3, 0.0), "C": (0.1, 0.2)}
@@ -57,6 +59,7 @@ def refused(where: str, words: str, make: Callable[[], object]) -> None:
 BAR = {"between": ("A", "B"), "mass": 2.0}
 
 
+@compared(BODIES, "moment of inertia about the centre of mass", CLOSE)
 @pytest.mark.parametrize(
     ("body", "wanted"),
     [
@@ -73,9 +76,12 @@ BAR = {"between": ("A", "B"), "mass": 2.0}
         (Body("plate", corners=((0, 0), (0.2, 0), (0.2, 0.1), (0, 0.1)), mass=2.0), 2 * 0.05 / 12),
         (Body("plate", corners=((0, 0), (0.2, 0), (0, 0.1)), mass=2.0), 2 * 0.05 / 18),
     ],
-)
+    ids=[
+        "slender bar", "rectangular bar", "round bar", "tube", "disc", "ring", "point",
+        "rectangular plate", "triangular plate",
+    ],
+)  # fmt: skip
 def test_moments_of_inertia_of_the_textbook(body: Body, wanted: float) -> None:
-    """Beer and Johnston, Vector Mechanics, inside of the back cover, and polar sums of these."""
     mass, _, inertia = told(body)
     assert mass == 2.0
     assert inertia == pytest.approx(wanted, rel=CLOSE)

@@ -12,6 +12,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError, ModelError, MotionError
+from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.newton import LoopGroup
 from laws.subjects import family_of, is_force, outputs, sizes
 from laws.transforms import shifted, turned
@@ -151,6 +152,25 @@ def test_wide_steps_lead_where_narrow_ones_do(
         for part in ("place", "place_1", "place_2"):
             want = getattr(narrow.points[name], part)
             np.testing.assert_allclose(getattr(point, part), want, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("apart", [0.0, 2 * pi])
+def test_a_machine_near_another_is_solved_at_all_angles_together(
+    apart: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Or step by step, where that leads to another branch: to angles in another turn."""
+    other = replace(TRIAD.links["crank"], points={"A": (0.0, 0.0), "B": (0.0402, 0.0)})
+    anew = replace(TRIAD, links={**TRIAD.links, "crank": other})
+    want = eq.move(replace(anew), 360)
+    cycle = assemble(TRIAD).cycle
+    tables = {name: table + apart for name, table in cycle.tables.items()}
+    steps, each = [], LoopGroup.follow_each
+    monkeypatch.setattr(LoopGroup, "follow_each", lambda *a: steps.append(1) or each(*a))
+    assemble(anew, near=replace(cycle, tables=tables))
+    got = eq.move(anew, 360)
+    assert bool(steps) == bool(apart)
+    for name, point in want.points.items():
+        np.testing.assert_allclose(got.points[name].place, point.place, rtol=0, atol=1e-12)
 
 
 def test_few_crank_angles_are_solved_by_themselves(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,6 +12,8 @@ import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.mechanism.dwell import Path, longest_dwell
 from equipoise.mechanism.strokes import DeadPosition, _turning
+from support.conformance import compared
+from support.sources import CLOSED_FORMS
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
 
 MACHINES = sorted(eq.examples("linkage"))
@@ -28,6 +30,9 @@ def offset_slider_crank(offset: float, speed: float = 10.0) -> eq.Machine:
 # -- strokes and time ratios -----------------------------------------------------------------------
 
 
+@compared(
+    CLOSED_FORMS, "stroke, dead positions and time ratio by triangles", 1e-12, "offset slider-crank"
+)
 @pytest.mark.parametrize("offset", [0.0, 0.2, -0.45])
 @pytest.mark.parametrize("speed", [10.0, -10.0])
 def test_an_offset_slider_crank(offset: float, speed: float) -> None:
@@ -45,6 +50,7 @@ def test_an_offset_slider_crank(offset: float, speed: float) -> None:
     assert found.highest_at == pytest.approx(asin(offset / (rod + crank)) % (2 * pi), abs=1e-12)
 
 
+@compared(CLOSED_FORMS, "strokes and time ratio by triangles", 1e-12, "quick-return")
 def test_the_quick_return_of_a_shaper() -> None:
     """A lever in whose slot the crank pin runs stands at its ends square to the crank."""
     strokes = eq.analyze(eq.load("quick-return"), 8).strokes

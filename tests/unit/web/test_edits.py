@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.mechanism.newton import LoopGroup
 from equipoise.quantities import clean, format_exact, showing
 from equipoise.web.edits import edited, movable
 from equipoise.web.messages import Drag
@@ -39,6 +41,20 @@ def test_only_what_is_dragged_moves(name: str, at: int) -> None:
             if len(body["points"]) > 1:  # one of a single point goes where that goes
                 center = f"mass_center.{body['name']}"
                 assert abs(after.vector(center)[at] - before.vector(center)[at]) < ROUNDED * size
+
+
+def test_a_drag_goes_on_from_the_motion_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Loops that Newton's method solves are followed through all crank angles once only."""
+    session, before = opened("class-three")
+    monkeypatch.setattr(LoopGroup, "follow_each", None)
+    for share in (0.01, 0.02):
+        after = edit(session, move("B", before.place("B")[0] * (1 + share), 0), commit=False)
+    monkeypatch.undo()
+    found = session.shown
+    want = eq.move(replace(found.design.machine), len(found.motion.crank_angle))
+    for name, point in want.points.items():
+        np.testing.assert_allclose(found.motion.points[name].place, point.place, atol=1e-12)
+        np.testing.assert_allclose(after.place(name), point.place, atol=1e-7)
 
 
 def test_a_point_dragged_across_its_dyad_changes_the_assembly() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import socket
 import struct
@@ -18,11 +19,12 @@ from websockets.sync.client import ClientConnection, connect
 
 from equipoise.balancing.balanced import Balanced
 from equipoise.errors import UsageError
+from equipoise.web import page as page_module
 from equipoise.web import server as served_module
 from equipoise.web import session as session_module
 from equipoise.web.balanced import balanced
 from equipoise.web.design import Design
-from equipoise.web.lanes import MOMENT, Work
+from equipoise.web.lanes import MOMENT, Lanes, Work
 from equipoise.web.openings import opened_example
 from equipoise.web.page import MOST_WAITING
 from equipoise.web.server import FULL, HOST, MOST_PAGES, ORIGIN, POLICY, TOKEN, served
@@ -206,6 +208,58 @@ def test_dragging_goes_on_while_something_takes_long(
         assert "was changed while" in late["message"]
         rest = iter(lambda: hear(page), {"type": "told", "seq": 2})  # both are answered by now
         assert "told" not in {one["type"] for one in rest}
+
+
+class Dragged:
+    """The socket of a page that moves something on as soon as it knows the last move's state."""
+
+    def __init__(self, moves: int) -> None:
+        self.coming: asyncio.Queue[Content] = asyncio.Queue()
+        self.moves, self.sent = moves, list[tuple[str, int]]()
+        self.go(1)
+
+    def go(self, seq: int) -> None:
+        last = seq == self.moves
+        change = {"set": "drive.speed", "value": 20.0 + seq}
+        edit = {"type": "edit", "seq": seq, "commit": last, "label": "", "edits": [change]}
+        self.coming.put_nowait({"type": "websocket.receive", "text": json.dumps(edit)})
+
+    async def accept(self) -> None: ...
+
+    async def receive(self) -> Content:
+        return await self.coming.get()
+
+    async def send_bytes(self, data: bytes) -> None:
+        told = unpacked(data)[0]
+        if told["type"] in {"state", "response"}:
+            self.sent.append((told["type"], told["seq"]))
+        if told["type"] == "state" and told["seq"] < self.moves:
+            self.go(told["seq"] + 1)
+        elif told == {"type": "told", "seq": self.moves}:
+            self.coming.put_nowait({"type": "websocket.disconnect"})
+
+
+@pytest.mark.parametrize("seldom", [1e9, -1.0])
+def test_a_move_that_is_overtaken_is_told_by_its_state_alone(
+    seldom: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """But now and then all of it is told, or a drag without a pause would show too little."""
+    monkeypatch.setattr(page_module, "NEXT", 20.0)
+    monkeypatch.setattr(page_module, "SELDOM", seldom)
+    monkeypatch.setattr(page_module, "PAUSE", 0.0)
+    session = Session()
+    session.open(opened_example("yamashita-rig"))
+
+    async def drag() -> list[tuple[str, int]]:
+        socket = Dragged(4)
+        with Lanes() as lanes:
+            await page_module.Page(socket, session, lanes).run()  # type: ignore[arg-type]
+        return socket.sent
+
+    sent = asyncio.run(drag())
+    assert [seq for kind, seq in sent if kind == "state"] == [1, 2, 3, 4]
+    shaken = [seq for kind, seq in sent if kind == "response" and seq is not None]
+    assert shaken == ([4] if seldom > 0 else [1, 2, 3, 4])
 
 
 def test_a_page_does_not_wait_for_what_others_open(

@@ -1,0 +1,151 @@
+"""How Sphinx makes the site of what `make.py` has laid out."""
+
+from __future__ import annotations
+
+import re
+import sys
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+import ziamath
+from docutils.nodes import SkipNode, image
+from latex2mathml.converter import convert
+from search import Words
+from sphinx.util.logging import getLogger
+
+import equipoise
+
+if TYPE_CHECKING:
+    from docutils import nodes
+    from sphinx.application import Sphinx
+
+FONT = "STIXTwoMath-Regular.ttf"
+project = "Equipoise"
+copyright = "The Equipoise authors"
+release = version = equipoise.__version__
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
+root_doc = "index"
+default_role = "code"
+nitpicky = True
+nitpick_ignore_regex = [("py:.*", ".*")]  # types of annotations; links of pages are all looked for
+
+myst_enable_extensions = ["dollarmath", "amsmath", "colon_fence"]
+myst_heading_anchors = 5
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_preserve_defaults = True
+
+html_theme = "furo"
+html_title = "Equipoise"
+html_static_path = ["static", str(Path(ziamath.__file__).with_name("fonts") / FONT)]
+html_css_files = ["site.css"]
+html_copy_source = html_show_sourcelink = html_show_sphinx = False
+html_show_search_summary = False  # a page opened as a file must not read others
+html_search_language = Words.lang
+html_math_renderer = "mathml"
+pygments_style, pygments_dark_style = "a11y-high-contrast-light", "a11y-high-contrast-dark"
+
+LISTED = re.compile(r"^- \[([^\]]+)\]\(([\w./-]+)\.md\)", re.MULTILINE)
+"""A page in the lists of `index.md`."""
+ITEM = re.compile(r"^(\w[\w, ]*) : ")
+"""In a docstring: what something is called, and what it is."""
+
+
+def as_tree(app: Sphinx, docname: str, source: list[str]) -> None:
+    """The lists of the first page, each with its heading, are the tree of the site."""
+    if docname != root_doc:
+        return
+    for part in source[0].split("\n## ")[1:]:
+        pages = "\n".join(f"{name} <{page}>" for name, page in LISTED.findall(part))
+        caption = part.partition("\n")[0]
+        source[0] += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n\n{pages}\n```\n"
+
+
+def as_definitions(
+    app: Sphinx, what: str, name: str, found: Any, options: Any, lines: list[str]
+) -> None:
+    """Docstrings say ``name : meaning``, and nothing in them is markup but what is code."""
+    told: list[str] = []
+    for line in "\n".join(lines).replace(".  ", ".\n").split("\n"):
+        if line.startswith("---"):
+            told[-1:] = [f".. rubric:: {told[-1]}", ""]
+        elif item := ITEM.match(line):
+            told += ["", f"``{item[1]}``", f"    {plain(line[item.end() :])}"]
+        else:
+            ended = told and told[-1].startswith("    ") and line[:1].strip()
+            told += [*[""] * bool(ended), plain(line)]
+    lines[:] = told
+
+
+def plain(line: str) -> str:
+    """A line whose signs are no markup, but for what is code."""
+    parts = line.split("`")
+    parts[::2] = [re.sub(r"[*|]|_\b", r"\\\g<0>", part) for part in parts[::2]]
+    return "`".join(parts)
+
+
+SET = {
+    r"<mo([^>]*)>(&#x0007C;)": r'<mo\1 lspace="0" rspace="0">\2',  # bars of an absolute value
+    r"(&#x0003D;</mo>)<mo>(&#x0002B;|&#x02212;)": r'\1<mo form="prefix">\2',  # signs, not sums
+    r"<msup>(<m[io]>[^<]*</m[io]>)<mi>(&#x0203[2-4];)</mi></msup>": (
+        r'<mrow>\1<mo lspace="0" rspace="0">\2</mo></mrow>'  # primes stand high by themselves
+    ),
+}
+"""What formulas need to be set well, as patterns in MathML."""
+
+
+@cache
+def mathml(tex: str, display: str) -> str:
+    """A formula as browsers draw it themselves."""
+    formula: str = convert(tex, display=display)
+    for pattern, better in SET.items():
+        formula = re.sub(pattern, better, formula)
+    if re.search(r"\\|>&<", formula):
+        getLogger(__name__).warning("not understood in a formula: %s", tex)
+    return formula
+
+
+def inline_math(self: Any, node: nodes.math) -> None:
+    """Write a formula of a line."""
+    self.body.append(mathml(node.astext(), "inline"))
+    raise SkipNode
+
+
+def block_math(self: Any, node: nodes.math_block) -> None:
+    """Write a formula of its own."""
+    self.body.append(f'<div class="math" tabindex="0">{mathml(node.astext(), "block")}</div>')
+    raise SkipNode
+
+
+def lazily(app: Sphinx, doctree: nodes.document) -> None:
+    """Pictures are loaded where they come into sight: of the gallery all move."""
+    for one in doctree.findall(image):
+        one["loading"] = "lazy"
+
+
+REACHED = {
+    "<pre>": '<pre tabindex="0">',
+    '<div class="table-wrapper': '<div tabindex="0" class="table-wrapper',
+    'role="heading">': 'role="heading" aria-level="2">',
+}
+"""What is too wide is moved by keys too; headings of the tree have a level."""
+
+
+def reached(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
+    """Let keys and readers of screens reach all of a page."""
+    for part in {"body", "furo_navigation_tree"} & context.keys():
+        for written, better in REACHED.items():
+            context[part] = context[part].replace(written, better)
+
+
+def setup(app: Sphinx) -> None:
+    """Tell Sphinx of what is made here."""
+    app.add_search_language(Words)
+    app.add_html_math_renderer("mathml", (inline_math, None), (block_math, None))
+    app.connect("source-read", as_tree)
+    app.connect("autodoc-process-docstring", as_definitions)
+    app.connect("doctree-read", lazily)
+    app.connect("html-page-context", reached, priority=900)  # after the theme's own

@@ -1,0 +1,119 @@
+"""Make the documentation site, `build/docs/index.html`, which needs no network to be read.
+
+    make docs
+
+Pages of `docs` are laid out in `build/docs-source` beside what is made of the product itself: the
+gallery, the commands, the public names, the scripts, the pictures of the theory.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import sys
+from hashlib import sha256
+from pathlib import Path
+
+HERE = Path(__file__).parent
+DOCS = HERE.parent
+ROOT = DOCS.parent
+SOURCE, BUILT = ROOT / "build" / "docs-source", ROOT / "build" / "docs"
+AROUND = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")
+"""Pages of the repository that the site has too."""
+MADE = {"examples": "scripts.md"}
+"""Folders of the repository that have a page here."""
+GALLERY = {"en": "examples.md", "ja": "ja/examples.md", "ko": "ko/examples.md"}
+SITE_ONLY = re.compile(r"<!-- site only\n(.*?)-->\n", re.DOTALL)
+"""What is hidden in a page of the repository, for it goes to pages that only the site has."""
+ANCHOR = re.compile(r'<a id="([\w-]+)"></a>')
+LINK = re.compile(r"\[([^\]]*)\]\((?!\w+:|[#/])([^)#\s]+)(#[^)\s]*)?\)")
+
+
+def linked(page: Path) -> str:
+    """The text of a page, whose links go to pages of the site; of what has none, the name remains.
+
+    Raises
+    ------
+    FileNotFoundError : a link goes to no file of the repository.
+    """
+
+    def to(found: re.Match[str]) -> str:
+        words, path, place = found[1], found[2], found[3] or ""
+        target = Path(os.path.normpath(page.parent / path))
+        name = target.relative_to(ROOT).as_posix()
+        if name.startswith("docs/") or name in AROUND:
+            inside = name.removeprefix("docs/")
+        elif not target.exists():
+            raise FileNotFoundError(f"{page}: there is no {path}")
+        elif name not in MADE:
+            return words if "`" in words else f"`{name}`"
+        else:
+            inside = MADE[name]
+        here = page.parent.relative_to(DOCS) if page.is_relative_to(DOCS) else Path()
+        return f"[{words}]({os.path.relpath(inside, here)}{place})"
+
+    return LINK.sub(to, page.read_text(encoding="utf-8"))
+
+
+def lay_out(source: Path) -> None:
+    """Write every page and picture that Sphinx reads."""
+    from commands import commands
+    from gallery import gallery
+    from names import names
+
+    pages = {
+        **{page.relative_to(DOCS).as_posix(): linked(page) for page in DOCS.rglob("*.md")},
+        **{name: linked(ROOT / name) for name in AROUND},
+        **names(),
+        "commands.md": commands(),
+        "scripts.md": scripts(),
+    }
+    shown = gallery({language: pages[page] for language, page in GALLERY.items()}, source)
+    pages |= {GALLERY[language]: text for language, text in shown.items()}
+    for name, text in pages.items():
+        path = source / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        marked = ANCHOR.sub(r"(\1)=\n", text)
+        path.write_text(SITE_ONLY.sub(r"\1", marked), encoding="utf-8")
+    shutil.copytree(DOCS / "pictures", source / "pictures")
+
+
+def scripts() -> str:
+    """The page of the scripts for common tasks."""
+    parts = ["# Scripts", "Short programs for common tasks, in `examples` of the repository."]
+    for file in sorted((ROOT / "examples").glob("*.py")):
+        text = file.read_text(encoding="utf-8").rstrip()
+        parts += [f"## {file.stem.replace('_', ' ').capitalize()}", f"```python\n{text}\n```"]
+    return "\n\n".join([*parts, ""])
+
+
+def digest() -> str:
+    """What the site is made of: the same as what it was made of last, if nothing has changed."""
+    folders = ("docs", "examples", "src")
+    files = [file for folder in folders for file in (ROOT / folder).rglob("*.*") if file.is_file()]
+    kept = [file for file in files if file.suffix not in {".pyc", ".js", ".map"}]
+    every = sorted([*kept, *(ROOT / name for name in AROUND)])
+    return sha256(b"".join(map(Path.read_bytes, every))).hexdigest()
+
+
+def main() -> int:
+    """Make the site anew, unless nothing has changed; returns 0 if Sphinx warns of nothing."""
+    from sphinx.cmd.build import main as sphinx
+
+    stamp, now = BUILT / "made-of.txt", digest()
+    if not stamp.exists() or stamp.read_text(encoding="utf-8") != now:
+        for old in (SOURCE, BUILT):
+            shutil.rmtree(old, ignore_errors=True)
+        lay_out(SOURCE)
+        options = ["--quiet", "--fail-on-warning", f"-c{HERE}", f"-d{SOURCE}/.read"]
+        if status := sphinx([*options, str(SOURCE), str(BUILT)]):
+            return status
+        stamp.write_text(now, encoding="utf-8")
+    print(f"open {BUILT / 'index.html'}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.path[:0] = [str(HERE), str(ROOT / "src")]
+    sys.exit(main())

@@ -1,0 +1,228 @@
+"""The commands as tools of a program: what each takes as JSON Schema, and what it answers.
+
+Both follow from what commands declare for the command line; none is declared here again.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import redirect_stderr, redirect_stdout
+from dataclasses import dataclass
+from functools import cached_property
+from importlib.resources import files
+from inspect import cleandoc
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, get_args, get_origin
+
+from cyclopts import App
+
+from equipoise.cli import app
+from equipoise.cli.outputs import heard
+from equipoise.errors import UsageError, unknown
+from equipoise.fence import Fence, fenced
+from equipoise.partial import together
+
+if TYPE_CHECKING:
+    from cyclopts import Argument, ArgumentCollection
+
+LEFT_OUT = {"completion", "mcp", "serve"}
+"""Commands for a person at a terminal."""
+HIDDEN = {"--cluster", "--workers"}
+"""Options that reach beyond the folder, or are of the computer."""
+WRITTEN = {"FILE", "FOLDER", "PATH"}
+"""What options want that name what is written."""
+OVERWRITE = {
+    "type": "boolean",
+    "default": False,
+    "description": "Write files anew that are there already.",
+}
+USUAL = {"format": "png"}
+"""Instead of what commands do by themselves: pictures that any program can show."""
+MOST = 24
+"""Values in a list, above which it is left out where the whole object is not asked for."""
+Schema = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a command told.
+
+    text : as on a terminal.  values : of its JSON object, in SI units and radians; long lists are
+    left out unless asked for.  written : files, in the order in which they were written.
+    """
+
+    text: str
+    values: dict[str, Any]
+    written: tuple[Path, ...]
+
+
+@dataclass(frozen=True)
+class Tool:
+    """A command, such as ``balance trade-off``, as the tool ``balance_trade_off``."""
+
+    words: tuple[str, ...]
+    command: App
+
+    @property
+    def name(self) -> str:
+        """By which programs call it."""
+        return "_".join(self.words).replace("-", "_")
+
+    @cached_property
+    def arguments(self) -> dict[str, Argument]:
+        """What it takes, by the names that programs give."""
+        found: ArgumentCollection = self.command.assemble_argument_collection(parse_docstring=True)
+        named = {one.name: one for one in found if one.name != "*" and one.name not in HIDDEN}
+        return {key.lstrip("-").replace("-", "_").lower(): one for key, one in named.items()}
+
+    @property
+    def help(self) -> str:
+        """What it does."""
+        return _line(cleandoc(self.command.help).partition("\n\nParameters\n")[0])
+
+    @property
+    def writes(self) -> bool:
+        """Whether it can write files."""
+        options = (one for key, one in self.arguments.items() if not _is_positional(one))
+        return any(one.parameter.metavar in WRITTEN for one in options)
+
+    def schema(self) -> Schema:
+        """JSON Schema of what it takes."""
+        properties = {key: _schema(one) for key, one in self.arguments.items()}
+        for key in USUAL.keys() & properties.keys():
+            properties[key]["default"] = USUAL[key]
+        required = [key for key, one in self.arguments.items() if one.required]
+        return {
+            "type": "object",
+            "properties": properties | ({"overwrite": OVERWRITE} if self.writes else {}),
+            "required": required,
+            "additionalProperties": False,
+        }
+
+    def answer(self, given: Mapping[str, Any], folder: Path) -> Answer:
+        """Run the command in a folder, outside of which it reads and writes no file.
+
+        Raises
+        ------
+        UsageError : an argument is unknown, or leads out of the folder.
+        EquipoiseError, CycloptsError : as the command.
+        """
+        bundled = Path(str(files("equipoise"))).resolve()
+        fence = Fence(folder, (bundled,), replaces=given.get("overwrite") is True)
+        line = self.line(given, fence)
+        printed, told, both = io.StringIO(), io.StringIO(), list[str]()
+        token = heard.set(both)
+        try:
+            with redirect_stdout(printed), redirect_stderr(told), fenced(fence), together():
+                app(line, exit_on_error=False, print_error=False, result_action="return_value")
+        finally:
+            heard.reset(token)
+        whole = given.get("json") is True
+        values = [json.loads(one) for one in ([printed.getvalue()] if whole else both)]
+        merged = {key: value for one in values for key, value in one.items()}
+        text = printed.getvalue() + told.getvalue()
+        return Answer(text, merged if whole else _short(merged), tuple(fence.written))
+
+    def line(self, given: Mapping[str, Any], fence: Fence) -> list[str]:
+        """The words of the command line that means the same."""
+        known = self.schema()["properties"]
+        options, places = list[str](), list[str]()
+        for key, value in {**self._usual(given), **given}.items():
+            if key not in known:
+                raise UsageError(unknown(key, known, "parameter"))
+            for one in value if isinstance(value, list) else [value]:
+                if isinstance(one, str):
+                    fence.check_name(key, one)
+                if key != "overwrite" and one is not None and one is not False:
+                    self._add(key, one, options, places)
+        return [*self.words, *options, "--", *places]
+
+    def _add(self, key: str, value: Any, options: list[str], places: list[str]) -> None:
+        argument = self.arguments[key]
+        if _is_positional(argument):
+            places.append(str(value))
+        else:
+            options.append(argument.name if value is True else f"{argument.name}={value}")
+
+    def _usual(self, given: Mapping[str, Any]) -> dict[str, str]:
+        """What is meant where nothing is given; a kind of pictures only where some are drawn."""
+        drawn = "plot" in given or "plot" not in self.arguments
+        return {key: USUAL[key] for key in USUAL if drawn and key in self.arguments}
+
+
+def tools() -> dict[str, Tool]:
+    """Every command that is of use to a program, by its tool's name."""
+    found = (one for name in sorted(app.resolved_commands()) for one in _below((name,), app[name]))
+    return {one.name: one for one in found if one.words[0] not in LEFT_OUT}
+
+
+def _below(words: tuple[str, ...], command: App) -> Iterator[Tool]:
+    if words[-1].startswith("-"):
+        return
+    yield Tool(words, command)
+    for name in command:
+        if not name.startswith("-"):
+            yield from _below((*words, name), command[name])
+
+
+def _line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _is_positional(one: Argument) -> bool:
+    return not one.name.startswith("-")
+
+
+def _schema(one: Argument) -> Schema:
+    """Of one value, or of several where it may be repeated."""
+    several = get_origin(one.hint) in {list, tuple} or any(
+        get_origin(part) is list for part in get_args(one.hint)
+    )
+    told: Schema = {"description": _line(one.parameter.help)} if one.parameter.help else {}
+    default = one.field_info.default
+    if isinstance(default, str | int | float) and default is not False:
+        told["default"] = default
+    value = _value(one)
+    return {**({"type": "array", "items": value} if several else value), **told}
+
+
+def _value(one: Argument) -> Schema:
+    """What is read by a function of its own is a text, such as a quantity with its unit."""
+    metavar = one.parameter.metavar or ""
+    if choices := one.get_choices():
+        return {"type": "string", "enum": [*choices]}
+    if metavar.startswith('"'):
+        return {"type": "string", "examples": [metavar.strip('"')]}
+    kinds = {one.hint, *get_args(one.hint)}
+    for kind, name in ((bool, "boolean"), (int, "integer"), (float, "number")):
+        if kind in kinds:
+            return {"type": [name, "string"] if one.parameter.converter else name}
+    return {"type": "string"}
+
+
+def _short(values: dict[str, Any]) -> dict[str, Any]:
+    """Without lists that are long, which are counted."""
+    left = 0
+
+    def cut(value: Any) -> Any:
+        nonlocal left
+        if isinstance(value, dict):
+            kept = {key: cut(one) for key, one in value.items() if not _is_long(one)}
+            left += len(value) - len(kept)
+            return kept
+        return [cut(one) for one in value] if isinstance(value, list) else value
+
+    kept: dict[str, Any] = cut(values)
+    return kept | ({"left_out": f"{left} lists of more than {MOST}; ask with json"} if left else {})
+
+
+def _is_long(value: Any) -> bool:
+    return isinstance(value, list) and len(value) > MOST
+
+
+def shown(path: Path, folder: Path) -> str:
+    """Name of a file in the folder."""
+    return os.path.relpath(path, folder).replace(os.sep, "/")

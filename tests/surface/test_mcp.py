@@ -1,0 +1,192 @@
+"""The commands as tools: a session with the protocol's own client, over standard streams."""
+
+from __future__ import annotations
+
+import base64
+import os
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import anyio
+import jsonschema
+import pytest
+from mcp import Client, StdioServerParameters
+from mcp.types import CallToolResult, Tool
+
+import equipoise as eq
+from equipoise.cli.tools import tools
+from surface.running import equipoise, refused
+from unit.schema.samples import FOUR_BAR
+
+Calls = dict[str, tuple[str, dict[str, Any]]]
+CALLS: Calls = {
+    "made": ("new", {"file": "mine.toml"}),
+    "analysed": ("analyze", {"file": "mine.toml", "speed": "250 rpm", "csv": "all.csv"}),
+    "whole": ("analyze", {"file": "mine.toml", "json": True, "orders": 3, "angles": 90}),
+    "balanced": (
+        "balance",
+        {
+            **{"file": "mine.toml", "objective": ["rms shaking_force"], "out": "new.toml"},
+            **{"crank_counterweight": True, "at_most": "500 g"},
+        },
+    ),
+    "drawn": ("plot", {"file": "new.toml", "only": ["linkage"]}),
+    "animated": ("animate", {"file": "mine.toml", "out": "turns.svg"}),
+    "example": ("plant_fit", {"file": "transplanter", "targets": "none.toml"}),
+    "again": ("analyze", {"file": "mine.toml", "csv": "all.csv"}),
+    "anew": ("analyze", {"file": "mine.toml", "csv": "all.csv", "overwrite": True}),
+    "flag": ("check", {"file": "--help"}),
+    "unknown": ("analyze", {"file": "mine.toml", "sped": "3 rpm"}),
+    "no tool": ("analyse", {}),
+    "missing": ("analyze", {}),
+    # what leads out of the folder
+    "up": ("check", {"file": "../outside.toml"}),
+    "up inside": ("check", {"file": "sub/../../outside.toml"}),
+    "up backwards": ("check", {"file": "sub\\..\\..\\outside.toml"}),
+    "root": ("check", {"file": "/etc/hostname"}),
+    "drive": ("check", {"file": "C:\\outside.toml"}),
+    "home": ("check", {"file": "~/outside.toml"}),
+    "null": ("check", {"file": "a\0b"}),
+    "link": ("check", {"file": "link.toml"}),
+    "linked folder": ("analyze", {"file": "mine.toml", "csv": "way/out.csv"}),
+    "named in a file": ("check", {"file": "reads.toml"}),
+    "written": ("analyze", {"file": "mine.toml", "csv": "../out.csv"}),
+    "pictures": ("plot", {"file": "mine.toml", "out": "../pictures"}),
+    "second": ("exposure", {"input": ["3 m/s^2 for 2 h", "../day.csv"]}),
+}
+OUTSIDE = [*CALLS][[*CALLS].index("up") :]
+
+
+@dataclass
+class Session:
+    """What a client was told: its tools, and an answer for each call."""
+
+    tools: dict[str, Tool]
+    answers: dict[str, CallToolResult]
+    folder: Path
+
+
+@pytest.fixture(scope="module")
+def session(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Session]:
+    around = tmp_path_factory.mktemp("around")
+    folder = around / "folder"
+    (folder / "sub").mkdir(parents=True)
+    (around / "outside.toml").write_text(FOUR_BAR, encoding="utf-8")
+    (around / "load.csv").write_text("crank_angle [deg],torque [N m]\n0,1\n180,2\n")
+    load = '[[loads]]\nlink = "crank"\ntable = "../load.csv"\n'
+    (folder / "reads.toml").write_text(f"{FOUR_BAR}\n{load}", encoding="utf-8")
+    (folder / "link.toml").symlink_to(around / "outside.toml")
+    (folder / "way").symlink_to(around)
+    words = ["-m", "equipoise", "mcp", "--folder", str(folder)]
+    server = StdioServerParameters(command=sys.executable, args=words, env={**os.environ})
+    yield anyio.run(partial(talk, server, folder))
+    assert {one.name for one in around.iterdir()} == {"folder", "outside.toml", "load.csv"}
+
+
+async def talk(server: StdioServerParameters, folder: Path) -> Session:
+    async with Client(server, read_timeout_seconds=60) as client:
+        known = {one.name: one for one in (await client.list_tools()).tools}
+        told = {key: await client.call_tool(*call) for key, call in CALLS.items()}
+    return Session(known, told, folder)
+
+
+def text(answer: CallToolResult) -> str:
+    found = answer.content[0]
+    assert found.type == "text"
+    return found.text
+
+
+def values(answer: CallToolResult) -> dict[str, Any]:
+    assert not answer.is_error, text(answer)
+    content: dict[str, Any] = answer.structured_content
+    return content
+
+
+def test_tools_are_the_commands_with_their_options(session: Session) -> None:
+    assert session.tools.keys() == tools().keys()
+    assert {"analyze", "balance_trade_off", "tool_design"} <= session.tools.keys()
+    assert not {"mcp", "serve", "completion"} & session.tools.keys()
+    analyze = session.tools["analyze"]
+    assert analyze.description and analyze.description.startswith("Motion, shaking force")
+    given = analyze.input_schema["properties"]
+    assert given["speed"] == {
+        "type": "string",
+        "examples": ["250 rpm"],
+        "description": "Speed of the crank instead of the file's.",
+    }
+    assert given["split"]["type"] == "boolean"
+    assert given["output"]["items"] == {"type": "string"}
+    assert analyze.input_schema["required"] == ["file"]
+    assert session.tools["modes"].input_schema["properties"]["model"]["enum"][0] == "linear"
+    for key, (name, call) in CALLS.items():
+        if key not in {"no tool", "unknown", "missing"}:
+            jsonschema.validate(call, session.tools[name].input_schema)
+
+
+def test_a_machine_is_made_analysed_balanced_and_drawn(session: Session) -> None:
+    answers, folder = session.answers, session.folder
+    assert text(answers["made"]).startswith("wrote mine.toml; next: equipoise analyze")
+    machine = eq.load(folder / "mine.toml").with_drive(speed=250 * 2 * 3.141592653589793 / 60)
+    told = values(answers["analysed"])
+    summary = eq.analyze(machine).summary["shaking_force"]
+    assert told["values"]["summary"]["shaking_force"]["peak"] == pytest.approx(summary.peak)
+    assert told["units"]["force"] == "N"
+    assert told["files"] == ["all.csv"]
+    assert "lists of more than" in told["values"]["left_out"]
+    assert "Force in each joint" in text(answers["analysed"])
+    whole = values(answers["whole"])["values"]
+    assert len(whole["crank_angle"]) == 90 and "by_order" in whole
+    assert values(answers["balanced"])["files"] == ["new.toml"]
+    better = eq.analyze(eq.load(folder / "new.toml")).summary["shaking_force"].rms
+    assert better < eq.analyze(eq.load(folder / "mine.toml")).summary["shaking_force"].rms
+
+
+@pytest.mark.parametrize(
+    ("key", "kind", "begin"), [("drawn", "png", b"\x89PNG"), ("animated", "svg+xml", b"<")]
+)
+def test_pictures_are_shown(session: Session, key: str, kind: str, begin: bytes) -> None:
+    answer = session.answers[key]
+    (name,) = values(answer)["files"]
+    _, picture = answer.content
+    assert picture.type == "image" and picture.mime_type == f"image/{kind}"
+    data = base64.b64decode(picture.data)
+    assert data.startswith(begin) and data == (session.folder / name).read_bytes()
+
+
+def test_files_are_written_anew_where_it_is_asked_for(session: Session) -> None:
+    assert "all.csv: is there already" in wrong(session, "again")
+    assert values(session.answers["anew"])["files"] == ["all.csv"]
+
+
+def wrong(session: Session, key: str) -> str:
+    answer = session.answers[key]
+    assert answer.is_error
+    assert len(answer.content) == 1 and "Traceback" not in text(answer)
+    return text(answer)
+
+
+@pytest.mark.parametrize(
+    ("key", "said"),
+    [
+        ("example", "none.toml: there is no such file"),
+        ("flag", "--help: there is no such file"),
+        ("unknown", "no parameter is called 'sped'; did you mean 'speed'?"),
+        ("no tool", "no command is called 'analyse'; did you mean 'analyze'?"),
+        ("missing", "FILE"),
+    ],
+)
+def test_what_is_wrong_is_an_error_of_the_tool(session: Session, key: str, said: str) -> None:
+    assert said in wrong(session, key)
+
+
+@pytest.mark.parametrize("key", OUTSIDE)
+def test_nothing_outside_of_the_folder_is_read_or_written(session: Session, key: str) -> None:
+    assert "folder that is served" in wrong(session, key)
+
+
+def test_a_folder_that_is_not_there() -> None:
+    assert "give a folder that is there" in refused(equipoise("mcp", "--folder", "none"))

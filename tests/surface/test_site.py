@@ -1,0 +1,68 @@
+"""The documentation site: it has everything that there is to document, and its pages agree."""
+
+from __future__ import annotations
+
+import re
+import runpy
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import pytest
+
+from equipoise.cli import COMMANDS, app
+from equipoise.schema.opening import bundled
+from unit.test_public_names import NAMES
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+PAGES = [*sorted(DOCS.rglob("*.md")), *(ROOT / name for name in ("README.md", "CONTRIBUTING.md"))]
+GALLERY = {"en": "examples", "ja": "ja/examples", "ko": "ko/examples"}
+lessons = runpy.run_path(str(DOCS / "site" / "gallery.py"))["lessons"]
+
+
+def test_it_has_every_command_and_every_public_name(site: Path) -> None:
+    told = (site / "commands.html").read_text(encoding="utf-8")
+    assert [name for name in COMMANDS if f'id="equipoise-{name}"' not in told] == []
+    names = "".join(page.read_text(encoding="utf-8") for page in site.glob("api/*.html"))
+    ids = {one.rpartition(".")[2] for one in re.findall(r'<dt [^>]*id="([\w.]+)"', names)}
+    assert {name.rpartition(".")[2] for name in NAMES} <= ids
+
+
+@pytest.mark.parametrize("language", GALLERY)
+def test_the_gallery_has_every_example_with_its_picture(site: Path, language: str) -> None:
+    page = site / f"{GALLERY[language]}.html"
+    text = page.read_text(encoding="utf-8")
+    body = text[text.index("<article") : text.index("</article")]
+    pictures = re.findall(r'<img alt="[^"]+" loading="lazy" src="([^"]+\.svg)"', body)
+    assert len(pictures) == len(bundled())
+    assert all((page.parent / one).is_file() for one in pictures)
+    told = lessons((DOCS / f"{GALLERY[language]}.md").read_text(encoding="utf-8"))
+    assert {*told} == {*bundled()}
+    assert [name for name in told if f">{name}<" not in body] == []
+
+
+@pytest.mark.parametrize("name", bundled())
+def test_what_is_to_be_tried_is_a_command(name: str) -> None:
+    """With options that it has."""
+    _, to_try = lessons((DOCS / "examples.md").read_text(encoding="utf-8"))[name]
+    words = to_try.strip("`").split()
+    assert words[0] == "equipoise"
+    app.parse_args(words[1:], exit_on_error=False, print_error=False)
+
+
+@pytest.mark.parametrize("folder", ["", "ja", "ko"])
+def test_the_first_hour_writes_the_file_that_is_bundled(folder: str) -> None:
+    """Every line of its tables, comments aside."""
+    page = (DOCS / folder / "first-machine.md").read_text(encoding="utf-8")
+    tables = "".join(re.findall(r"```toml\n(.*?)```", page, re.DOTALL))
+    written = re.sub(r" +#.*| {2,}", "", tables).replace("\n\n", "\n").splitlines()
+    there = bundled()["sieve"].read_text("utf-8").splitlines()
+    assert [line for line in written if line not in there and "title" not in line] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+def test_links_to_other_sites_are_addresses(page: Path) -> None:
+    """They are not asked for; those between pages are checked when the site is made."""
+    for link in re.findall(r"\]\((\w+:[^)]*)\)", page.read_text(encoding="utf-8")):
+        address = urlsplit(link)
+        assert address.scheme == "https" and "." in address.netloc and " " not in link, link
