@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from equipoise.codegen.loops import write_loops
 from equipoise.codegen.source import Read, Sheet
 from equipoise.errors import MassError
 from equipoise.mechanism import kernels
+from equipoise.mechanism.cycle import Cycle
 from equipoise.mechanism.dynamics import inertia_about, massless
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.loads import load_at
@@ -79,8 +81,14 @@ class Writer:
 
     def turned(self, order: float) -> str:
         """exp(i order theta), which no design changes."""
-        cos = self.sheet.row(f"cos({order!r})", lambda theta: np.cos(order * theta))
-        sin = self.sheet.row(f"sin({order!r})", lambda theta: np.sin(order * theta))
+        cos, sin = (
+            self.sheet.row(
+                f"{name}({order!r})",
+                partial(_of, wave, partial(np.multiply, order)),
+                f"{name}({float(order)!r} * theta)",
+            )
+            for name, wave in (("cos", np.cos), ("sin", np.sin))
+        )
         return f"({cos} + 1j * {sin})"
 
     def rate(self, key: str) -> str:
@@ -111,7 +119,7 @@ def write_motion(writer: Writer) -> None:
             sheet.put(name, value)
     if writer.counted:
         sheet.put(f"phi({FRAME})", "0.0")
-        sheet.put(f"phi({drive})", sheet.row("theta", lambda theta: theta))
+        sheet.put(f"phi({drive})", sheet.row("theta", lambda theta: theta, "theta"))
     for number, step in enumerate(writer.linkage.motion):
         _write_step(writer, step, "motion", number)
 
@@ -145,12 +153,39 @@ def _write_running_angle(writer: Writer, link: str) -> None:
     several at once.
     """
     sheet, cycle = writer.sheet, writer.linkage.cycle
-    base = sheet.row(f"angle({link} of base)", lambda theta: cycle.reference(link, theta))
-    cos = sheet.row(f"cos({link} of base)", lambda theta: np.cos(cycle.reference(link, theta)))
-    sin = sheet.row(f"sin({link} of base)", lambda theta: np.sin(cycle.reference(link, theta)))
+    near = _straight(cycle, link)
+    base, cos, sin = (
+        sheet.row(
+            f"{name}({link} of base)",
+            partial(_of, of, partial(cycle.reference, link)),
+            near and (f"{name}({near})" if name != "angle" else near),
+        )
+        for name, of in (("angle", np.asarray), ("cos", np.cos), ("sin", np.sin))
+    )
     between = sheet.put(f"between({link})", f"{writer.name(f'u({link})')} * ({cos} - 1j * {sin})")
     sheet.put(f"phi({link})", f"{base} + angle_of({between})")
     sheet.running[link] = sheet.put(f"cosine({link})", f"{between}.real")
+
+
+def _of(outer: Callable[[Any], Any], inner: Callable[[Any], Any], theta: Any) -> Any:
+    """One function after the other."""
+    return outer(inner(theta))
+
+
+FARTHEST = 3.0
+"""rad: less than half a turn, from where an angle is told by the rotation."""
+
+
+def _straight(cycle: Cycle, link: str) -> str:
+    """A formula for an angle that takes the place of the base's; none where it goes too far from a
+    straight line.
+    """
+    theta = np.linspace(0.0, 2 * np.pi * cycle.turns, 721)
+    angle = cycle.reference(link, theta)
+    slope = float(angle[-1] - angle[0]) / float(theta[-1])
+    rest = angle - slope * theta
+    middle = float(np.max(rest) + np.min(rest)) / 2
+    return f"({middle!r} + {slope!r} * theta)" if np.ptp(rest) < 2 * FARTHEST else ""
 
 
 def _write_call(writer: Writer, step: Call, steps: str, number: int) -> None:
