@@ -207,6 +207,7 @@ EXTRAS = {
     "mcp": "mcp",
     "anyio": "mcp",
     "ezdxf": "exchange",
+    "svgelements": "exchange",
     "xlsxwriter": "exchange",
 }
 """Libraries that come with another extra than ``studies``."""

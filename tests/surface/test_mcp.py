@@ -36,6 +36,7 @@ CALLS: Calls = {
     ),
     "drawn": ("plot", {"file": "new.toml", "only": ["linkage"]}),
     "animated": ("animate", {"file": "mine.toml", "out": "turns.svg"}),
+    "exported": ("export", {"file": "mine.toml", "out": "mine.xml"}),
     "example": ("plant_fit", {"file": "transplanter", "targets": "none.toml"}),
     "again": ("analyze", {"file": "mine.toml", "csv": "all.csv"}),
     "anew": ("analyze", {"file": "mine.toml", "csv": "all.csv", "overwrite": True}),
@@ -155,6 +156,12 @@ def test_pictures_are_shown(session: Session, key: str, kind: str, begin: bytes)
     assert picture.type == "image" and picture.mime_type == f"image/{kind}"
     data = base64.b64decode(picture.data)
     assert data.startswith(begin) and data == (session.folder / name).read_bytes()
+
+
+def test_a_format_that_is_none_of_pictures_is_left_to_the_command(session: Session) -> None:
+    assert "default" not in session.tools["export"].input_schema["properties"]["format"]
+    assert session.tools["plot"].input_schema["properties"]["format"]["default"] == "png"
+    assert values(session.answers["exported"])["files"] == ["mine.xml"]
 
 
 def test_files_are_written_anew_where_it_is_asked_for(session: Session) -> None:

@@ -92,8 +92,9 @@ class Tool:
     def schema(self) -> Schema:
         """JSON Schema of what it takes."""
         properties = {key: _schema(one) for key, one in self.arguments.items()}
-        for key in USUAL.keys() & properties.keys():
-            properties[key]["default"] = USUAL[key]
+        for key, value in USUAL.items():
+            if key in properties and _allows(self.arguments[key], value):
+                properties[key]["default"] = value
         required = [key for key, one in self.arguments.items() if one.required]
         return {
             "type": "object",
@@ -150,7 +151,8 @@ class Tool:
     def _usual(self, given: Mapping[str, Any]) -> dict[str, str]:
         """What is meant where nothing is given; a kind of pictures only where some are drawn."""
         drawn = "plot" in given or "plot" not in self.arguments
-        return {key: USUAL[key] for key in USUAL if drawn and key in self.arguments}
+        named = ((key, self.arguments.get(key), value) for key, value in USUAL.items())
+        return {key: value for key, one, value in named if drawn and one and _allows(one, value)}
 
 
 def tools() -> dict[str, Tool]:
@@ -166,6 +168,10 @@ def _below(words: tuple[str, ...], command: App) -> Iterator[Tool]:
     for name in command:
         if not name.startswith("-"):
             yield from _below((*words, name), command[name])
+
+
+def _allows(one: Argument, value: str) -> bool:
+    return value in (one.get_choices() or ())
 
 
 def _line(text: str) -> str:
