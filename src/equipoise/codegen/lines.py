@@ -8,16 +8,15 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterator
-from functools import partial
 from typing import Any
 
 import numpy as np
 
+from equipoise.codegen.angles import turned, write_running_angle
 from equipoise.codegen.loops import write_loops
 from equipoise.codegen.source import Read, Sheet
 from equipoise.errors import MassError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.cycle import Cycle
 from equipoise.mechanism.dynamics import inertia_about, massless
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.loads import load_at
@@ -81,15 +80,7 @@ class Writer:
 
     def turned(self, order: float) -> str:
         """exp(i order theta), which no design changes."""
-        cos, sin = (
-            self.sheet.row(
-                f"{name}({order!r})",
-                partial(_of, wave, partial(np.multiply, order)),
-                f"{name}({float(order)!r} * theta)",
-            )
-            for name, wave in (("cos", np.cos), ("sin", np.sin))
-        )
-        return f"({cos} + 1j * {sin})"
+        return turned(self.sheet, order)
 
     def rate(self, key: str) -> str:
         """Identifier of the crank's ``speed`` or ``acceleration``."""
@@ -132,7 +123,7 @@ def _write_step(writer: Writer, step: Step, steps: str, number: int) -> None:
     """Write a step, the one of this number of a linkage's ``motion`` or ``forces``."""
     sheet = writer.sheet
     if isinstance(step, RunningAngle):
-        _write_running_angle(writer, step.link)
+        write_running_angle(writer.sheet, writer.linkage.cycle, step.link)
     elif isinstance(step, Rotation):
         if writer.counted:
             sheet.put(f"u({step.link})", f"rotation({writer.name(f'phi({step.link})')})")
@@ -144,48 +135,6 @@ def _write_step(writer: Writer, step: Step, steps: str, number: int) -> None:
     elif isinstance(step, LoopGroup):
         write_loops(sheet, writer.linkage, number)
         writer.points.update(step.anchors)
-
-
-def _write_running_angle(writer: Writer, link: str) -> None:
-    """The angle of a link that a dyad moves: that of the base, and what lies between them.
-
-    Nothing is counted on from crank angle to crank angle, which would keep the loop from handling
-    several at once.
-    """
-    sheet, cycle = writer.sheet, writer.linkage.cycle
-    near = _straight(cycle, link)
-    base, cos, sin = (
-        sheet.row(
-            f"{name}({link} of base)",
-            partial(_of, of, partial(cycle.reference, link)),
-            near and (f"{name}({near})" if name != "angle" else near),
-        )
-        for name, of in (("angle", np.asarray), ("cos", np.cos), ("sin", np.sin))
-    )
-    between = sheet.put(f"between({link})", f"{writer.name(f'u({link})')} * ({cos} - 1j * {sin})")
-    sheet.put(f"phi({link})", f"{base} + angle_of({between})")
-    sheet.running[link] = sheet.put(f"cosine({link})", f"{between}.real")
-
-
-def _of(outer: Callable[[Any], Any], inner: Callable[[Any], Any], theta: Any) -> Any:
-    """One function after the other."""
-    return outer(inner(theta))
-
-
-FARTHEST = 3.0
-"""rad: less than half a turn, from where an angle is told by the rotation."""
-
-
-def _straight(cycle: Cycle, link: str) -> str:
-    """A formula for an angle that takes the place of the base's; none where it goes too far from a
-    straight line.
-    """
-    theta = np.linspace(0.0, 2 * np.pi * cycle.turns, 721)
-    angle = cycle.reference(link, theta)
-    slope = float(angle[-1] - angle[0]) / float(theta[-1])
-    rest = angle - slope * theta
-    middle = float(np.max(rest) + np.min(rest)) / 2
-    return f"({middle!r} + {slope!r} * theta)" if np.ptp(rest) < 2 * FARTHEST else ""
 
 
 def _write_call(writer: Writer, step: Call, steps: str, number: int) -> None:
