@@ -135,7 +135,10 @@ def test_a_machine_is_made_analysed_balanced_and_drawn(session: Session) -> None
     told = values(answers["analysed"])
     summary = eq.analyze(machine).summary["shaking_force"]
     assert told["values"]["summary"]["shaking_force"]["peak"] == pytest.approx(summary.peak)
-    assert told["units"]["force"] == "N"
+    assert told["units"]["force"] == told["units"]["shaking_force"] == "N"
+    assert told["units"]["drive_torque"] == "N m"
+    assert told["values"]["joints"]["B"] == {"on": "coupler", "by": "crank"}
+    assert "links" not in told["values"], "of which long lists are all"
     assert told["files"] == ["all.csv"]
     assert "lists of more than" in told["values"]["left_out"]
     assert "Force in each joint" in text(answers["analysed"])

@@ -14,7 +14,6 @@ from cyclopts import CycloptsError
 from equipoise import __version__
 from equipoise.cli.options import wants
 from equipoise.errors import EquipoiseError, UsageError, needed, unknown
-from equipoise.quantities import SI
 
 if TYPE_CHECKING:
     from mcp.server.lowlevel import Server
@@ -33,7 +32,7 @@ ANSWER = {
     "type": "object",
     "properties": {
         "values": {"type": "object", "description": "in SI units and radians"},
-        "units": {"type": "object", "description": "SI unit of each kind of quantity"},
+        "units": {"type": "object", "description": "of each kind of quantity and output"},
         "files": {"type": "array", "items": {"type": "string"}},
     },
     "required": ["values", "units", "files"],
@@ -109,7 +108,7 @@ def answered(
     """What a tool tells, with its pictures; what is wrong is told in the product's sentence."""
     from mcp import types
 
-    from equipoise.cli.tools import shown
+    from equipoise.cli.tools import shown, units_of
 
     try:
         if name not in known:
@@ -120,7 +119,11 @@ def answered(
     names = [shown(path, folder) for path in answer.written]
     return types.CallToolResult(
         content=[types.TextContent(text=answer.text), *_pictures(answer.written)],
-        structured_content={"values": answer.values, "units": SI, "files": names},
+        structured_content={
+            "values": answer.values,
+            "units": units_of(answer.values),
+            "files": names,
+        },
     )
 
 
