@@ -200,3 +200,8 @@ def test_nothing_outside_of_the_folder_is_read_or_written(session: Session, key:
 
 def test_a_folder_that_is_not_there() -> None:
     assert "give a folder that is there" in refused(equipoise("mcp", "--folder", "none"))
+
+
+def test_what_is_not_installed_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "mcp.server.stdio", None)
+    assert 'pip install "equipoise[mcp]"' in refused(equipoise("mcp"))

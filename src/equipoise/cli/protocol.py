@@ -47,8 +47,9 @@ def mcp(*, folder: Annotated[str, wants("FOLDER")] = ".") -> None:
     folder
         Whose files are read and written; none outside of it are.
     """
-    anyio = needed("anyio", "the Model Context Protocol")
     needed("mcp.server.stdio", "the Model Context Protocol")
+    import anyio
+
     if not os.path.isdir(folder):
         raise UsageError(f"--folder: got {folder!r}; give a folder that is there")
     os.chdir(folder)
