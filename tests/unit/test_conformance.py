@@ -28,13 +28,15 @@ with what comes out here. The tests write this page and hold each row of it: `ma
 one is no longer met.
 
 Of the printed numbers {printed} are met as they are printed; {explained} are not, and it is told
-why; {slips} are slips of the print; {drawn} more are drawn in print without being told as numbers.
-Printed equations are held by {equations} tests, and {agreements} rows compare with other programs
-and second routes.
+why; {slips} are slips of the print. Another {drawn} are drawn in print without being told as
+numbers. Printed equations are held by {equations} tests, and {agreements} rows compare with other
+programs and second routes.
 
 Each digit of a computed number is held. A deviation is what is computed less what is printed; a
-dash says that the printed digits are met. Names such as `lee-kim-a` are those of
-[bundled machines](examples.md), and such as `curve.height` those of figures that commands tell.
+dash says that the printed digits are met. Differences from other programs are parts of the largest
+value, or of a thousandth of all forces where an output vanishes. Names such as `lee-kim-a` are
+those of [bundled machines](examples.md), and such as `curve.height` those of figures that commands
+tell.
 """
 NUMBERS = (
     "| case | quantity | where | printed | computed | deviation | why |\n"
