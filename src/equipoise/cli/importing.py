@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from equipoise.cli.options import Many, Names, Rate, naming, read_by, size, wants
-from equipoise.cli.outputs import Shown, check_result_file, wrote
+from equipoise.cli.outputs import Shown, check_new, wrote
 from equipoise.errors import UsageError
 
 
@@ -76,7 +76,6 @@ def import_file(
     from equipoise.schema.files import write
 
     path = f"{Path(file).stem}.toml" if out is None else out
-    check_result_file("--out", path, [file])
     with naming(file):
         found = import_machine(
             file,
@@ -89,6 +88,7 @@ def import_file(
             pin=pin or (),
             unit=unit,
         )
+    check_new(found.outline.machine(), path)
     text = found.text()
     with shown.showing(found.machine):
         show_blocks(str(found.outline.rest["title"]), found.blocks())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import runpy
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,10 @@ import pytest
 
 import equipoise as eq
 from equipoise.mechanism.support import unit_vector
+from support.conformance import compared
+from support.sources import EXUDYN
 
-exudyn = pytest.importorskip("exudyn", reason="Exudyn is not for this computer")
+pytestmark = pytest.mark.skipif(find_spec("exudyn") is None, reason="not for this computer")
 START = 0.3
 """Crank angle at which scripts are drawn, rad."""
 STEPS = 2000
@@ -31,6 +34,7 @@ def run(machine: eq.Machine, path: Path, turns: float, start: float = START) -> 
     return runpy.run_path(str(path))["simulate"](turns, STEPS)
 
 
+@compared(EXUDYN, "drive torque of the exported script over half a turn", 2e-4)
 @pytest.mark.parametrize("name", RUNNING)
 def test_drive_torque(name: str, tmp_path: Path) -> None:
     """Its steps are of second order, 3e-3 rad long; what they begin with dies out in some."""
@@ -44,6 +48,7 @@ def test_drive_torque(name: str, tmp_path: Path) -> None:
     assert np.max(apart) < 2e-4 * np.max(np.abs(wanted))
 
 
+@compared(EXUDYN, "gauges of the exported script from rest", 1e-5)
 @pytest.mark.parametrize("name", SHAKEN)
 def test_a_support_from_rest(name: str, tmp_path: Path) -> None:
     """Each gauge, as the exact equations have it, to 1e-5 of its largest displacement."""

@@ -12,6 +12,8 @@ import pytest
 import equipoise as eq
 from equipoise.exchange.mjcf import STEPS
 from equipoise.mechanism.support import unit_vector
+from support.conformance import compared
+from support.sources import MUJOCO
 
 START = 0.3
 """Crank angle at which the files are drawn, rad."""
@@ -32,6 +34,7 @@ def opened(
     return model, data
 
 
+@compared(MUJOCO, "drive torque of the exported file over a turn, its constraints soft", 0.02)
 @pytest.mark.parametrize("name", RUNNING)
 def test_a_turn_of_the_crank(name: str, tmp_path: Path) -> None:
     """Pins hold to 3e-4 of the size, since MuJoCo's are soft; the servo lags 1e-4 of the speed.
@@ -64,6 +67,7 @@ def test_a_turn_of_the_crank(name: str, tmp_path: Path) -> None:
     assert np.max(np.abs(torques - wanted)[settled]) < 0.02 * np.max(np.abs(wanted))
 
 
+@compared(MUJOCO, "gauges of the exported file from rest, its constraints soft", 0.02)
 @pytest.mark.parametrize("name", ["yamashita-rig", "exudyn-slider-crank", "sieve"])
 def test_a_support_from_rest(name: str, tmp_path: Path) -> None:
     """Its gauges for half a turn, to 2 % of their largest displacement, with the softness above."""

@@ -9,6 +9,8 @@ import pinocchio as pin
 import pytest
 
 import equipoise as eq
+from support.conformance import compared
+from support.sources import PINOCCHIO
 
 START, LATER = 0.3, 1.1
 """Crank angles at which the file is drawn and looked at, rad."""
@@ -37,6 +39,7 @@ def coordinate(machine: eq.Machine, model: pin.Model, number: int, motion: objec
     return list(turned - turned[0])
 
 
+@compared(PINOCCHIO, "drive torque of the exported tree, by differences", 1e-6)
 @pytest.mark.parametrize("name", CUT)
 def test_drive_torque_of_the_tree(name: str, tmp_path: Path) -> None:
     """Virtual work of all joints, speeds and accelerations by differences over 1e-4 rad: 1e-6."""
