@@ -135,7 +135,9 @@ REACHED = {
 
 
 def reached(app: Sphinx, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
-    """Let keys and readers of screens reach all of a page."""
+    """Let keys and readers of screens reach all of a page, and tell its language."""
+    folder = page.partition("/")[0]
+    context["language"] = folder if folder in {"ja", "ko"} else "en"
     for part in {"body", "furo_navigation_tree"} & context.keys():
         for written, better in REACHED.items():
             context[part] = context[part].replace(written, better)

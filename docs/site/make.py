@@ -61,6 +61,7 @@ def lay_out(source: Path) -> None:
     from commands import commands
     from gallery import gallery
     from names import names
+    from pictures import draw
 
     pages = {
         **{page.relative_to(DOCS).as_posix(): linked(page) for page in DOCS.rglob("*.md")},
@@ -69,14 +70,17 @@ def lay_out(source: Path) -> None:
         "commands.md": commands(),
         "scripts.md": scripts(),
     }
-    shown = gallery({language: pages[page] for language, page in GALLERY.items()}, source)
+    shown = gallery({language: pages[page] for language, page in GALLERY.items()})
     pages |= {GALLERY[language]: text for language, text in shown.items()}
+    source.mkdir(parents=True)
+    draw(pages.values(), source)
     for name, text in pages.items():
         path = source / name
         path.parent.mkdir(parents=True, exist_ok=True)
         marked = ANCHOR.sub(r"(\1)=\n", text)
         path.write_text(SITE_ONLY.sub(r"\1", marked), encoding="utf-8")
     shutil.copytree(DOCS / "pictures", source / "pictures")
+    shutil.copy(DOCS / "api.txt", source)
 
 
 def scripts() -> str:

@@ -63,6 +63,9 @@ export class App {
   private readonly picker = picker((file) => void this.read(file));
   private readonly gallery = new Gallery({
     wanted: () => this.talk.ask({ type: "gallery" }),
+    stores: () => this.talk.ask({ type: "stores" }),
+    store: (name) => void this.open({ type: "study", store: name }, name),
+    begin: () => this.anew(),
     example: (name) => void this.open({ type: "open", example: name }, name),
     file: () => this.picker.click(),
   });
@@ -120,6 +123,7 @@ export class App {
         this.views.showTool(message, numbers);
         this.name({ ...message, has_forces: false, file: null });
       },
+      stores: (message) => this.gallery.stored(message),
       study: (message, numbers) => {
         this.opened = "";
         this.views.showStudy(message, numbers);
@@ -171,7 +175,7 @@ export class App {
       stage: this.stage,
       board: this.board.root,
       snaps: () => this.bench.snaps(),
-      begin: () => void this.open({ type: "open", new: true }, say("a new machine")),
+      begin: () => this.anew(),
       angle: () => this.player.angle,
       turn: (degrees) => this.turn(degrees),
       chosen: (link) => this.chooseLink(link),
@@ -233,7 +237,10 @@ export class App {
     stage.append(this.transport.root, this.seeing.root, this.heading.notes, this.readings.root);
     stage.append(this.seeing.variants.root);
     stage.append(this.strokes.root, this.planted.root);
-    this.side.append(this.charts.root);
+    const empty = say(
+      "Forces, torque and paths stand here as soon as the machine moves. What is missing is told above the drawing.",
+    );
+    this.side.append(h("p", { class: "quiet empty" }, empty), this.charts.root);
     // A file that plays shows numbers, and takes none.
     const disabled = this.played;
     const parts = [...this.bench.roots, this.inspector.root];
@@ -327,6 +334,8 @@ export class App {
     if (begins) this.player.suit();
     if (other) this.heading.forget();
     if (other) this.bench.forget();
+    if (other) this.inspector.anew();
+    if (other) this.tools.anew();
     if (other || !state.planting) this.planted.hide();
     if (other) this.strokes.hide();
     if (!state.before) this.balance.hide();
@@ -440,6 +449,7 @@ export class App {
 
   private line(up: boolean): void {
     this.lost.hidden = up;
+    this.tools.anew(); // what was asked is not answered any more
     write(
       this.lost,
       up
@@ -459,6 +469,10 @@ export class App {
     // What is named is what is drawn, until the other machine is there.
     this.name();
     this.board.say(say("Opening {name} …", { name }), false);
+  }
+
+  private anew(): void {
+    void this.open({ type: "open", new: true }, say("a new machine"));
   }
 
   private async read(file: File): Promise<void> {

@@ -3,7 +3,7 @@
 import type { Asked, Edit, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
 import { Numbers, type Pictured, type Planted, type ResponseMessage, type State } from "./protocol";
-import type { GhostMessage, StudyMessage, ToolMessage, VariantsMessage } from "./protocol";
+import type { GhostMessage, Stores, StudyMessage, ToolMessage, VariantsMessage } from "./protocol";
 import { OPENS, type Shelf, type Shown, Story, type Told as Kept } from "./story";
 import { language } from "./words";
 
@@ -16,6 +16,7 @@ export interface Events {
   variants(message: VariantsMessage): void;
   tool(message: ToolMessage, numbers: Numbers): void;
   study(message: StudyMessage, numbers: Numbers): void;
+  stores(message: Stores): void;
   refused(message: string, edit: boolean): void;
   balanced(message: Extract<Told, { type: "balanced" }>): void;
   busy(what: string | null): void;
@@ -48,7 +49,7 @@ const SLOW = new Set(["balance", "download", "gallery"]);
 const PATIENCE = 100;
 
 /** What leaves the machine on the server as it was; all else is said again after a broken line. */
-const IDLE = new Set(["ready", "speak", "save", "download", "tables", "study", "record"]);
+const IDLE = new Set(["ready", "speak", "save", "download", "tables", "study", "stores"]);
 
 /** Who asks these says himself why not. */
 const ASIDE = new Set(["entry", "tables"]);
@@ -156,6 +157,9 @@ export class Conversation {
         return this.heard(told);
       case "study":
         this.events.study(told, new Numbers(told.arrays, buffers[0]));
+        return this.end(told.seq, null);
+      case "stores":
+        this.events.stores(told);
         return this.end(told.seq, null);
       case "variants":
         return this.events.variants(told);

@@ -1,7 +1,7 @@
 /** The bundled machines, each drawn small; what there is to open, and what the page is for. */
 
 import { h, s } from "./dom";
-import type { Numbers, Pictured } from "./protocol";
+import type { Numbers, Pictured, Stores } from "./protocol";
 import { Piece } from "./signs";
 import { View } from "./view";
 import { say } from "./words";
@@ -14,17 +14,23 @@ const TURN = 2400;
 interface Wishes {
   /** Ask for the pictures, once. */
   wanted(): void;
+  /** Ask for the stores of studies. */
+  stores(): void;
+  store(name: string): void;
   example(name: string): void;
+  begin(): void;
   file(): void;
 }
 
 export class Gallery {
   readonly root: HTMLDialogElement;
   private readonly cards = h("div", { class: "cards" });
+  private readonly stores = h("section", { class: "stores", hidden: true });
   private readonly still = h("p", { class: "quiet", role: "status" }, say("Drawing the examples …"));
   private asked = false;
 
   constructor(private readonly wishes: Wishes) {
+    const begin = () => this.take(() => wishes.begin());
     const search = h("input", {
       type: "search",
       "aria-label": say("Search examples"),
@@ -48,7 +54,15 @@ export class Gallery {
           "This page shows how a linkage moves and what it does to its frame: drag it, change its numbers, balance it.",
         ),
       ),
-      h("div", { class: "line" }, file, search, close),
+      h(
+        "div",
+        { class: "line" },
+        file,
+        h("button", { type: "button", onclick: begin }, say("New machine")),
+        search,
+        close,
+      ),
+      this.stores,
       this.still,
       this.cards,
     );
@@ -58,7 +72,23 @@ export class Gallery {
   show(): void {
     if (!this.asked) this.wishes.wanted();
     this.asked = true;
+    this.wishes.stores();
     this.root.showModal();
+  }
+
+  /** Studies that lie beside what is open, or where the server was started. */
+  stored({ folder, names }: Stores): void {
+    this.stores.hidden = folder === null;
+    const open = (name: string) =>
+      h("button", { type: "button", onclick: () => this.take(() => this.wishes.store(name)) }, name);
+    const none = say(
+      "The folder “{folder}” has no store of a study; the command equipoise sweep makes one.",
+      { folder: folder ?? "" },
+    );
+    this.stores.replaceChildren(
+      h("h3", {}, say("Designs of a study")),
+      names.length ? h("div", { class: "line" }, ...names.map(open)) : h("p", { class: "quiet" }, none),
+    );
   }
 
   /** All pictures have come. */
@@ -100,7 +130,7 @@ export class Gallery {
 function picture(card: HTMLElement, one: Pictured, numbers: Numbers): SVGSVGElement {
   const view = new View();
   [view.width, view.height] = [WIDTH, HEIGHT];
-  view.fit(one.scene.box, 0);
+  view.fit(one.scene.box); // with room for the feet of pivots
   const pieces = one.scene.signs.map((sign) => new Piece(sign, one.scene));
   const size = { viewBox: `0 0 ${WIDTH} ${HEIGHT}` };
   const svg = s("svg", { class: "linkage small", "aria-hidden": "true", ...size });

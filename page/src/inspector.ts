@@ -6,6 +6,7 @@ import type { Field, State } from "./protocol";
 import { breakable } from "./format";
 import type { Locks } from "./locks";
 import { Row } from "./row";
+import { say } from "./words";
 
 /** x or y of a place. */
 const AXIS = /^(.*)\.([xy])$/;
@@ -15,7 +16,7 @@ const WEIGHT = "counterweight on ";
 
 export class Inspector {
   readonly root = h("div", { class: "fields" });
-  private shape = "";
+  private shape: string | null = null;
   private rows = new Map<string, Row>();
   private groups = new Map<string, HTMLDetailsElement>();
 
@@ -29,6 +30,12 @@ export class Inspector {
     const shape = state.fields.map((field) => field.path).join();
     if (shape !== this.shape) this.build(state.fields, shape);
     for (const field of state.fields) this.rows.get(field.path)?.show(field);
+  }
+
+  /** Another machine has numbers and locks of its own. */
+  anew(): void {
+    this.locks.forget();
+    this.shape = null;
   }
 
   /** Give back every number that was typed but not taken. */
@@ -71,11 +78,14 @@ export class Inspector {
       details.open = !closed.has(group);
       this.groups.set(group, details);
     }
-    this.root.replaceChildren(...this.groups.values());
+    const words = say(
+      "Lengths and masses stand here as soon as there is a link: take Link above the drawing, then show where it begins and where it ends.",
+    );
+    this.root.replaceChildren(...this.groups.values(), ...(fields.length ? [] : [h("p", { class: "quiet" }, words)]));
   }
 
   private row(field: Field, slider: boolean): Row {
-    const row = new Row(field, slider, this.talk, this.holding);
+    const row = new Row(field, slider, this.talk, this.holding, (point) => this.locks.keep(point));
     if (field.between) {
       const name = `${field.heading} ${field.label}`;
       row.root.insertBefore(this.locks.button(field.between, name), row.root.lastChild);

@@ -11,6 +11,11 @@ export type Ends = [string, string];
 export class Locks {
   private readonly pairs = new Map<string, Ends>();
 
+  /** Another machine has locks of its own. */
+  forget(): void {
+    this.pairs.clear();
+  }
+
   /** Points from which a point keeps its distance. */
   keep(point: string): string[] {
     const found = [...this.pairs.values()].filter((ends) => ends.includes(point));

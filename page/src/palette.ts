@@ -94,7 +94,7 @@ export const TOOLS: Told[] = [
     tool: "delete",
     key: "Delete",
     name: toSay("Delete"),
-    first: toSay("click the joint or the link that is to go"),
+    first: toSay("click the joint, the link, the slider or the gears that are to go"),
     then: "",
     picture: "M3 4.500h10M6.500 4.500v-2h3v2M4.500 4.500l.7 9h5.600l.7-9",
   },

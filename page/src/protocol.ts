@@ -3,9 +3,9 @@
 export type Pair = [number, number];
 
 export type Edit =
-  | { set: string; text: string }
+  /** `keep`: points whose distance from the one that is moved is locked. */
+  | { set: string; text: string; keep?: string[] }
   | { set: string; value: number }
-  /** `keep`: points whose distance from it is locked. */
   | { move: string; to: Pair; at: number; keep?: string[] }
   | { move_mass: string; to: Pair; at: number };
 
@@ -53,8 +53,10 @@ export type Asked =
   | { type: "variant"; do: "go" | "drop"; name: string }
   | { type: "variant"; do: "against"; to: string }
   | { type: "record"; name: string; text: string }
-  | { type: "study" }
-  | { type: "design"; number: number };
+  | { type: "stores" }
+  /** Of the store that is open, or of another one of the server's folder. */
+  | { type: "study"; store?: string }
+  | { type: "design"; number: number; store: string };
 
 export interface Example {
   name: string;
@@ -66,7 +68,7 @@ export interface Hello {
   version: string;
   examples: Example[];
   tools: Example[];
-  /** Name of the store that the server was started with. */
+  /** Name of the store that is open. */
   study?: string | null;
   /** Most bytes of a model file. */
   largest: number;
@@ -133,6 +135,8 @@ export interface Field extends Unit {
   min?: number | null;
   max?: number | null;
   step?: number | null;
+  /** The point that a length or direction moves. */
+  moves?: string;
   /** Ends of a length between points. */
   between?: [string, string];
 }
@@ -170,6 +174,8 @@ export interface Sign {
     at?: Pair;
     ground?: Pair;
   } | null;
+  /** The slider or the pair of gears that it tells, if any. */
+  part: [what: "slider" | "gears", name: string] | null;
   /** Whether it stands on the ground, and not on the support. */
   still: boolean;
   shapes: Shape[];
@@ -371,6 +377,14 @@ export interface StudyMessage {
   arrays: Arrays;
 }
 
+/** Stores that can be opened, and the folder that they lie in; null where there is no server. */
+export interface Stores {
+  type: "stores";
+  seq: number;
+  folder: string | null;
+  names: string[];
+}
+
 /** A design that is drawn pale, or none. */
 export interface GhostMessage {
   type: "ghost";
@@ -390,7 +404,9 @@ export interface VariantsMessage {
 /** Figures of a planting finger, or of sliders and rockers; null where they are not finite. */
 export interface Planted {
   type: "planting" | "strokes";
-  figures: { name: string; label: string; unit: string; value: number | null; text: string }[];
+  figures: (Pick<Figure, "name" | "label" | "unit" | "value" | "text" | "was">)[];
+  /** Whether figures of another design are told beside them. */
+  compared: boolean;
   notes: string[];
 }
 
@@ -542,6 +558,7 @@ export type Told =
   | GhostMessage
   | ToolMessage
   | StudyMessage
+  | Stores
   | VariantsMessage
   | Planted
   | Balanced

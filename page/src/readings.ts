@@ -78,16 +78,23 @@ export class FigureTable {
   constructor(private readonly caption: string) {}
 
   show(planted: Planted): void {
-    const rows = planted.figures.map(({ label, unit, text }) =>
+    this.root.classList.toggle("compared", planted.compared);
+    const rows = planted.figures.map(({ label, unit, text, was }) =>
       h(
         "tr",
         {},
         h("th", { scope: "row" }, capital(label)),
-        h("td", {}, h("span", { class: "value" }, text)),
+        h(
+          "td",
+          {},
+          h("span", { class: "value" }, text),
+          planted.compared && h("span", { class: "was" }, was ?? ""),
+        ),
         h("td", { class: "unit" }, unbroken(unit)),
       ),
     );
-    const caption = h("caption", { class: "unseen" }, this.caption);
+    const words = planted.compared ? `${this.caption}, ${say("and what they were before")}` : this.caption;
+    const caption = h("caption", { class: "unseen" }, words);
     this.root.replaceChildren(h("table", {}, caption, h("tbody", {}, ...rows)));
     this.root.hidden = !rows.length;
   }

@@ -34,6 +34,8 @@ export class Row {
     slider: boolean,
     private readonly talk: Conversation,
     private readonly holding: (on: boolean) => void,
+    /** Points from which a point is to keep its distance. */
+    private readonly kept: (point: string) => string[],
   ) {
     const name = `${field.heading} ${field.label}`;
     this.input = h("input", {
@@ -120,7 +122,7 @@ export class Row {
     this.talk.release();
     const { path, unit } = this.field;
     const bare = Number.isFinite(Number(text));
-    const edits = [{ set: path, text: bare ? `${text} ${unit}` : text }];
+    const edits = [{ set: path, text: bare ? `${text} ${unit}` : text, ...this.keep }];
     this.talk.ask({ type: "edit", commit: true, label: this.label, edits }, (refusal) => {
       this.asked = null;
       if (refusal === null) this.typing = false;
@@ -150,7 +152,13 @@ export class Row {
     }
     const { path, factor, unit } = this.field;
     const text = `${Number((value * factor).toPrecision(DIGITS))} ${unit}`;
-    this.gesture.move([{ set: path, text }], stamp);
+    this.gesture.move([{ set: path, text, ...this.keep }], stamp);
+  }
+
+  /** What stays as it is locked, whatever the number becomes. */
+  private get keep(): { keep?: string[] } {
+    const { moves } = this.field;
+    return moves ? { keep: this.kept(moves) } : {};
   }
 
   private get label(): string {

@@ -29,7 +29,9 @@ export class Piece {
       return element;
     });
     const link = sign.link || null;
-    this.element = s("g", { class: `piece${kind}`, "data-link": link }, ...this.parts);
+    const [what, name] = sign.part ?? [null, null];
+    const told = { class: `piece${kind}`, "data-link": link, "data-what": what, "data-name": name };
+    this.element = s("g", told, ...this.parts);
   }
 
   get link(): string {
@@ -97,8 +99,9 @@ export class Piece {
 
 /** What has to be the same for elements to be used again. */
 export function build(scene: Scene): string {
-  const drawn = scene.signs.map(({ link, hold, shapes }) => [
+  const drawn = scene.signs.map(({ link, part, hold, shapes }) => [
     link,
+    part,
     hold && [hold.point, hold.link, hold.guide, hold.to, hold.mount],
     runs(shapes).map(([first]) => first?.[0]),
   ]);

@@ -5,6 +5,8 @@ import type { Asked, State } from "./protocol";
 /** Most signs that are kept of one story, and most stories. */
 const LONGEST = 4_000_000;
 const MOST = 5;
+/** Signs of a record that is kept: of a longer one the story would not be. */
+const RECORD = 1_000_000;
 const PREFIX = "equipoise story ";
 const TAB = "equipoise tab";
 
@@ -23,6 +25,8 @@ export interface Told {
   start: Step;
   past: Step[];
   future: Step[];
+  /** What was measured, which no step takes back. */
+  record?: Asked | undefined;
 }
 
 /** Where stories outlive the page; a widget in a notebook has none. */
@@ -99,7 +103,10 @@ export class Story {
   remember(question: Asked, state: Shown): void {
     const { told } = this;
     if (OPENS.has(question.type)) this.told = { ...empty(told.base), start: [question] };
-    else if (question.type === "undo") move(told.past, told.future, "start");
+    else if (question.type === "record") {
+      const { length } = question.text;
+      told.record = length && length <= RECORD ? question : undefined;
+    } else if (question.type === "undo") move(told.past, told.future, "start");
     else if (question.type === "redo") move(told.future, told.past, "end");
     else if (this.deeper(question, state)) {
       told.past.push([question]);
@@ -133,11 +140,12 @@ function fits(told: Told, base: string): boolean {
 }
 
 function asked(told: Told, base: string): Asked[] {
-  const { start, past, future, text, name } = told;
+  const { start, past, future, text, name, record } = told;
   const again = told.base !== base && text !== undefined && !start.some((a) => OPENS.has(a.type));
   const open: Asked[] = again ? [{ type: "open", name, text, file: true }] : [];
   const back = future.map((): Asked => ({ type: "undo" }));
-  return [...open, ...start, ...past.flat(), ...future.flat(), ...back];
+  const measured = record ? [record] : [];
+  return [...open, ...start, ...past.flat(), ...future.flat(), ...back, ...measured];
 }
 
 /** One step from the end or the start of what was done to what can be done again, or back. */

@@ -230,6 +230,7 @@ export class StudyView {
   }
 
   private open(i: number): void {
-    if (this.designs) this.ask({ type: "design", number: this.designs.numberOf(i) });
+    const { designs } = this;
+    if (designs) this.ask({ type: "design", number: designs.numberOf(i), store: designs.study.name });
   }
 }

@@ -38,6 +38,9 @@ export class Tools {
   private tool: Tool = "select";
   private pending: Hit | null = null;
   private chosen: Chosen | null = null;
+  /** Questions that are not answered yet, and what is done with the tool after them. */
+  private unheard = 0;
+  private readonly later: (() => void)[] = [];
   private cross: Pair = [0, 0];
   private readonly rubber = s("path", { class: "rubber" });
   private readonly target = s("circle", { class: "aim", r: 7 });
@@ -50,7 +53,7 @@ export class Tools {
 
   constructor(private readonly page: Making) {
     this.palette = new Palette({
-      chosen: (tool) => this.take(tool, true),
+      chosen: (tool) => this.soon(() => this.take(tool, true)),
       made: () => page.begin(),
       renamed: (name) => this.rename(name),
     });
@@ -78,6 +81,21 @@ export class Tools {
         ? state.numbers.has(`place.${chosen.name}`)
         : bodies.some(({ name }) => name === chosen?.name);
     if (chosen && !there) this.choose(null);
+  }
+
+  /** Another machine is there: nothing of the last one is begun or chosen any more. */
+  anew(): void {
+    this.later.length = 0;
+    [this.pending, this.unheard] = [null, 0];
+    this.choose(null);
+    this.palette.show(this.tool, false);
+    this.draw(null);
+  }
+
+  /** Do something as soon as all that was asked before is there: joints may be among it. */
+  private soon(act: () => void): void {
+    if (this.unheard || this.later.length) this.later.push(act);
+    else act();
   }
 
   /** What is chosen: for its name, and for Delete. */
@@ -133,9 +151,14 @@ export class Tools {
     const below = document.elementsFromPoint(box.left + px[0], box.top + px[1]);
     const root = this.page.stage.svg.getRootNode() as Document | ShadowRoot;
     const inside = "elementsFromPoint" in root ? root.elementsFromPoint(box.left + px[0], box.top + px[1]) : below;
-    const link = inside.map((one) => one.closest<SVGElement>(".body")?.dataset.link).find(Boolean);
+    const parts = inside.flatMap((one) => one.closest<SVGElement>("[data-link], [data-what]") ?? []);
+    const link = parts.map(({ dataset }) => dataset.link).find(Boolean);
     const from = level ? (this.pending?.place ?? null) : null;
-    return meant(this.page, px, link, from);
+    const hit = meant(this.page, px, link, from);
+    const { what, name } = parts[0]?.dataset ?? {};
+    // A block lies on its joint, wheels lie about theirs.
+    if (what === "slider" || (what === "gears" && !hit.point)) hit.part = { what, name: name ?? "" };
+    return hit;
   }
 
   private readonly press = (event: PointerEvent): void => {
@@ -145,14 +168,18 @@ export class Tools {
     const start = this.spot(event);
     const { svg } = this.page.stage;
     svg.setPointerCapture(event.pointerId);
-    const begun = this.pending === null;
-    this.put(this.at(start, event.shiftKey));
+    let begun = false;
+    this.soon(() => {
+      begun = this.pending === null;
+      this.put(this.at(start, event.shiftKey));
+    });
     const stop = (now: PointerEvent) => {
       if (now.pointerId !== event.pointerId) return;
       for (const name of ["pointerup", "pointercancel"] as const) svg.removeEventListener(name, stop);
       const end = this.spot(now);
       const far = Math.hypot(end[0] - start[0], end[1] - start[1]) > FAR;
-      if (now.type === "pointerup" && begun && far && this.pending) this.put(this.at(end, now.shiftKey));
+      if (now.type !== "pointerup" || !far) return;
+      this.soon(() => begun && this.pending && this.put(this.at(end, now.shiftKey)));
     };
     for (const name of ["pointerup", "pointercancel"] as const) svg.addEventListener(name, stop);
   };
@@ -184,7 +211,7 @@ export class Tools {
     const told = TOOLS.find(({ key }) => key.toLowerCase() === pressed);
     if (pressed === "delete" && this.tool === "select" && this.chosen) {
       this.ask({ do: "delete", ...this.chosen });
-    } else if (told && !event.altKey) this.take(told.tool, true);
+    } else if (told && !event.altKey) this.soon(() => this.take(told.tool, true));
     else if (this.tool === "select") return;
     else if (event.key === "Escape") this.leave();
     else if (event.key === "Enter") this.enter(event);
@@ -197,8 +224,9 @@ export class Tools {
   private enter(event: KeyboardEvent): void {
     const { kind, name } = (event.target as SVGElement).closest<SVGElement>(".grip")?.dataset ?? {};
     const place = kind === "point" && name ? this.page.stage.place({ kind, name }) : null;
-    if (place && name) this.put({ point: name, place });
-    else this.put(this.at(this.page.stage.view.px(...this.cross)));
+    const cross = this.cross;
+    if (place && name) this.soon(() => this.put({ point: name, place }));
+    else this.soon(() => this.put(this.at(this.page.stage.view.px(...cross))));
   }
 
   private steer(event: KeyboardEvent): void {
@@ -266,6 +294,7 @@ export class Tools {
       case "drive":
         return link ? { do: "drive", link } : null;
       case "delete":
+        if (hit.part) return { do: "delete", ...hit.part };
         if (hit.point) return { do: "delete", what: "point", name: hit.point };
         return link ? { do: "delete", what: "link", name: link } : null;
       default:
@@ -296,7 +325,12 @@ export class Tools {
   private ask(made: Made, then?: () => void): void {
     this.page.talk.release();
     const at = this.page.state() ? this.page.sample() : 0;
-    this.page.talk.ask({ type: "make", at, ...made }, (refusal) => refusal === null && then?.());
+    this.unheard++;
+    this.page.talk.ask({ type: "make", at, ...made }, (refusal) => {
+      this.unheard = Math.max(this.unheard - 1, 0);
+      if (refusal === null) then?.();
+      while (!this.unheard && this.later.length) this.later.shift()?.();
+    });
   }
 }
 

@@ -37,7 +37,7 @@ export class Views {
     this.study.close();
   }
 
-  /** The store that the server was started with, if any. */
+  /** The store that is open, if any. */
   stored(name: string | null | undefined): void {
     this.store = name ?? null;
     this.offer();
@@ -53,6 +53,7 @@ export class Views {
   }
 
   showStudy(message: StudyMessage, numbers: Numbers): void {
+    this.store = message.name;
     this.turn(this.study.root);
     this.study.show(message, numbers);
   }

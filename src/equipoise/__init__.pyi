@@ -11,6 +11,7 @@ from . import vibration as vibration
 from .balancing.optimisation import balance as balance
 from .errors import EquipoiseError as EquipoiseError
 from .exchange.export import export as export
+from .exchange.reading.formats import import_machine as import_machine
 from .mechanism.dynamics import forces as forces
 from .mechanism.force_elements import Spring as Spring
 from .mechanism.model import Drive as Drive

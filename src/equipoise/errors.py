@@ -205,8 +205,8 @@ EXTRAS = {
     "distributed": "cluster",
     "av": "video",
     "mcp": "mcp",
-    "anyio": "mcp",
     "ezdxf": "exchange",
+    "svgelements": "exchange",
     "xlsxwriter": "exchange",
 }
 """Libraries that come with another extra than ``studies``."""

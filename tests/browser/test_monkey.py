@@ -224,10 +224,10 @@ class Monkey:
         if live.page.locator(".tool:visible").count():
             return
         while live.page.locator(".equipoise.unfinished").count():
+            live.page.wait_for_timeout(200)
             if live.button("Undo").is_disabled():
                 return  # it was begun from nothing
             live.button("Undo").click()
-            live.page.wait_for_timeout(200)
         shown = self._download("csv")
         analysis = eq.analyze(eq.loads(self._download("model")))
         angles = (shown.count("\n") - 1) // analysis.motion.turns

@@ -130,5 +130,7 @@ def test_a_record_is_drawn_beside_the_model(live: Live) -> None:
     expect(chart).to_be_visible()
     live.drop("bad.csv", "place [m],drive torque [N m]\n1,2\n")
     expect(live.told("bad.csv, line 1: got 'place [m]'")).to_be_visible()
+    page.reload()
+    expect(page.get_by_text("Record run.csv; drive torque: RMS measured")).to_be_visible()
     live.button("Remove the record").click()
     expect(chart).to_be_hidden()

@@ -89,5 +89,13 @@ def test_designs_are_brushed_and_opened(browser: Browser, store: str) -> None:
     expect(live.joint("B")).to_be_visible()
     page.reload()
     expect(live.joint("B")).to_be_visible()
+    expect(page.get_by_role("combobox", name="Example")).to_have_value(re.compile("lengths.zarr "))
+    page.get_by_role("button", name="Open", exact=True).click()
+    page.get_by_role("button", name="lengths.zarr", exact=True).click()
+    expect(told).to_be_visible()
+    page.get_by_role("button", name="Open", exact=True).click()
+    page.get_by_role("button", name="New machine").click()
+    expect(page.get_by_text("nothing moves yet")).to_be_visible()
+    expect(page.get_by_text("stand here as soon as")).to_have_count(2)
     assert wrong == []
     page.close()

@@ -19,9 +19,6 @@ Tolerances.  Equations are met to 1e-9 of the largest value.  Figures are found 
 on the motion and read off by `plant`, and both met to the last digit told.  How far print may be
 away is told where it stands: a few percent for what is read off a drawing, angles 10 deg where an
 extreme is flat and 2 deg where the path crosses the soil's surface.
-
-Slips in print that are no numbers: Table 2 calls both soil crossings "entry position"; largest
-acceleration is in m/s2.
 """
 
 from __future__ import annotations

@@ -30,6 +30,7 @@ LEE_KIM = Source(
     """J. K. Lee, K. U. Kim, "Dynamic balancing of crank-type transplanting mechanism of rice
     transplanter" (in Korean), Seoul National University, about 1990. The pitch radius of the gear
     on the rocker is not printed; 50 mm gives the energy of mechanism B.""",
+    ("the summary has the counterweight faster than the rocker; by Table 4 it is slower, n < 1",),
 )
 NAGAMINE_IRIE = Source(
     "Nagamine and Irie",
@@ -79,11 +80,14 @@ CLOSED_FORMS = Source(
     "Machines so simple that the answer can be written down: series, triangles, circles.",
 )
 MUJOCO = Source(
-    "MuJoCo", "Every link loose, the motion forced upon it, and inverse dynamics; 24 crank angles."
+    "MuJoCo",
+    """Every link loose, the motion forced upon it, and inverse dynamics at 24 crank angles; and
+    exported files as they are.""",
 )
 PINOCCHIO = Source(
     "Pinocchio",
-    "An open tree of hinges, cut where loops close, and recursive Newton-Euler; 24 crank angles.",
+    """An open tree of hinges, cut where loops close, and recursive Newton-Euler at 24 crank angles;
+    and exported trees.""",
 )
 EXUDYN = Source(
     "Exudyn",
@@ -117,7 +121,8 @@ IN_TIME = Source(
 )
 SERIES = Source(
     "Fourier series",
-    "Figures of planting, stays, loops and cusps by angles, cosines and series in long doubles.",
+    """Figures of planting, stays, loops and cusps by angles, cosines and series in long doubles;
+    the length of a hole to 1e-7 where the finger's foot dips below the surface.""",
 )
 BLIND_SEARCH = Source(
     "Other optima",

@@ -52,7 +52,7 @@ from surface.running import (
 ROOT = Path(__file__).parents[2]
 COMMANDS = (
     *["analyze", "animate", "balance", "best", "check", "completion", "decay", "examples"],
-    *["export", "exposure", "mcp", "modes", "new", "plant", "plot", "report", "respond"],
+    *["export", "exposure", "import", "mcp", "modes", "new", "plant", "plot", "report", "respond"],
     *["resume", "schema", "search", "serve", "simulate", "sweep", "tolerance", "tool"],
 )
 LINK_KEYS = ["angle", "angular_velocity", "angular_acceleration"]
@@ -159,6 +159,10 @@ OPTIONS = {
     "exposure": [
         *["INPUT", "--duration", "--idle", "--racing", "--bands", "--weighted", "--single-axis"],
         *["--periodic", *DRAWN],
+    ],
+    "import": [
+        *["FILE", "--out", "--crank", "--speed", "--frame", "--guide", "--link", "--unit", "--pin"],
+        *["--tolerance", "--units"],
     ],
     "mcp": ["--folder"],
     "modes": ["FILE", "--model", *DRAWN],

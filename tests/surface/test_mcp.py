@@ -36,6 +36,7 @@ CALLS: Calls = {
     ),
     "drawn": ("plot", {"file": "new.toml", "only": ["linkage"]}),
     "animated": ("animate", {"file": "mine.toml", "out": "turns.svg"}),
+    "exported": ("export", {"file": "mine.toml", "out": "mine.xml"}),
     "example": ("plant_fit", {"file": "transplanter", "targets": "none.toml"}),
     "again": ("analyze", {"file": "mine.toml", "csv": "all.csv"}),
     "anew": ("analyze", {"file": "mine.toml", "csv": "all.csv", "overwrite": True}),
@@ -134,7 +135,10 @@ def test_a_machine_is_made_analysed_balanced_and_drawn(session: Session) -> None
     told = values(answers["analysed"])
     summary = eq.analyze(machine).summary["shaking_force"]
     assert told["values"]["summary"]["shaking_force"]["peak"] == pytest.approx(summary.peak)
-    assert told["units"]["force"] == "N"
+    assert told["units"]["force"] == told["units"]["shaking_force"] == "N"
+    assert told["units"]["drive_torque"] == "N m"
+    assert told["values"]["joints"]["B"] == {"on": "coupler", "by": "crank"}
+    assert "links" not in told["values"], "of which long lists are all"
     assert told["files"] == ["all.csv"]
     assert "lists of more than" in told["values"]["left_out"]
     assert "Force in each joint" in text(answers["analysed"])
@@ -155,6 +159,12 @@ def test_pictures_are_shown(session: Session, key: str, kind: str, begin: bytes)
     assert picture.type == "image" and picture.mime_type == f"image/{kind}"
     data = base64.b64decode(picture.data)
     assert data.startswith(begin) and data == (session.folder / name).read_bytes()
+
+
+def test_a_format_that_is_none_of_pictures_is_left_to_the_command(session: Session) -> None:
+    assert "default" not in session.tools["export"].input_schema["properties"]["format"]
+    assert session.tools["plot"].input_schema["properties"]["format"]["default"] == "png"
+    assert values(session.answers["exported"])["files"] == ["mine.xml"]
 
 
 def test_files_are_written_anew_where_it_is_asked_for(session: Session) -> None:
@@ -190,3 +200,8 @@ def test_nothing_outside_of_the_folder_is_read_or_written(session: Session, key:
 
 def test_a_folder_that_is_not_there() -> None:
     assert "give a folder that is there" in refused(equipoise("mcp", "--folder", "none"))
+
+
+def test_what_is_not_installed_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "mcp.server.stdio", None)
+    assert 'pip install "equipoise[mcp]"' in refused(equipoise("mcp"))

@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = [*sorted(DOCS.rglob("*.md")), *(ROOT / name for name in ("README.md", "CONTRIBUTING.md"))]
 GALLERY = {"en": "examples", "ja": "ja/examples", "ko": "ko/examples"}
-lessons = runpy.run_path(str(DOCS / "site" / "gallery.py"))["lessons"]
+lessons = runpy.run_path(str(DOCS / "site" / "lessons.py"))["lessons"]
 
 
 def test_it_has_every_command_and_every_public_name(site: Path) -> None:
@@ -32,6 +32,7 @@ def test_it_has_every_command_and_every_public_name(site: Path) -> None:
 def test_the_gallery_has_every_example_with_its_picture(site: Path, language: str) -> None:
     page = site / f"{GALLERY[language]}.html"
     text = page.read_text(encoding="utf-8")
+    assert f'lang="{language}"' in text.partition("<head>")[0]
     body = text[text.index("<article") : text.index("</article")]
     pictures = re.findall(r'<img alt="[^"]+" loading="lazy" src="([^"]+\.svg)"', body)
     assert len(pictures) == len(bundled())

@@ -47,6 +47,11 @@ from = "200 mm"
 to = "300 mm"
 """
 FILES = {"study.toml": LENGTHS, "tolerances.toml": TOLERANCES, "targets.toml": TARGETS}
+FILES["four-bar.svg"] = (
+    '<svg width="100mm" viewBox="0 0 100 100"><path id="crank" d="M0 0 20 -20"/>'
+    '<path id="coupler" d="M20 -20 90 -60 40 -70Z"/><path id="rocker" d="M90 -60 100 0"/>'
+    '<path id="frame" d="M0 0 100 0"/></svg>'
+)
 FILES["tool.toml"] = example_text("pole-saw") + DESIGN
 FILES["decay.csv"] = "time [s],displacement [mm]\n" + "".join(
     f"{k / 100},{20 * exp(-k / 150) * cos(k / 8)}\n" for k in range(240)
@@ -69,6 +74,7 @@ LINES = [
     "check study-of-lengths",
     "check riding-transplanter",
     "examples",
+    "import four-bar.svg",
     "exposure 'mowing: 4.6 m/s^2 for 2 h' 'sawing: 9 m/s^2 for 2 h'",
     "exposure --idle '3.1 m/s^2' --racing '9 m/s^2' --duration '3 h'",
     "modes riding-transplanter",

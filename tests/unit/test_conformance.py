@@ -28,14 +28,20 @@ with what comes out here. The tests write this page and hold each row of it: `ma
 one is no longer met.
 
 Of the printed numbers {printed} are met as they are printed; {explained} are not, and it is told
-why; {slips} are slips of the print; {drawn} more are drawn in print without being told as numbers.
-Printed equations are held by {equations} tests, and {agreements} rows compare with other programs
-and second routes.
+why; {slips} are slips of the print. Another {drawn} are drawn in print without being told as
+numbers. Printed equations are held by {equations} tests, and {agreements} rows compare with other
+programs and second routes.
 
 Each digit of a computed number is held. A deviation is what is computed less what is printed; a
-dash says that the printed digits are met. Names such as `lee-kim-a` are those of
-[bundled machines](examples.md), and such as `curve.height` those of figures that commands tell.
+dash says that the printed digits are met. Differences from other programs are parts of the largest
+value, or of a thousandth of all forces where an output vanishes. Names such as `lee-kim-a` are
+those of [bundled machines](examples.md), and such as `curve.height` those of figures that commands
+tell.
 """
+CONTENTS = (
+    "| source | met | explained | slips | drawn | tests of equations | comparisons |\n"
+    "|---|---|---|---|---|---|---|"
+)
 NUMBERS = (
     "| case | quantity | where | printed | computed | deviation | why |\n"
     "|---|---|---|---|---|---|---|"
@@ -62,9 +68,11 @@ def declared() -> Rows:
 
 def page(rows: Rows) -> str:
     """The page, as Markdown."""
-    parts = [HEAD.format(**counts(rows)), "## Contents\n", "| source | rows |\n|---|---|"]
-    parts += [f"| [{one.name}](#{anchor(one.name)}) | {len(told)} |" for one, told in rows.items()]
-    parts.append(f"| [Slips in print](#slips-in-print) | {len(list(slips(rows)))} |")
+    parts = [HEAD.format(**counts(rows)), "## Contents\n", CONTENTS]
+    for one, told in rows.items():
+        kinds = " | ".join(str(count or "") for count in counts({one: told}).values())
+        parts.append(f"| [{one.name}](#{anchor(one.name)}) | {kinds} |")
+    parts.append("\nThe last section lists the [slips in print](#slips-in-print).")
     for source, told in rows.items():
         parts.append(f"\n## {source.name}\n\n{' '.join(source.text.split())}\n")
         parts += sections(told)

@@ -42,6 +42,7 @@ MODULES = {
     "exchange": ["export"],
     "files": ["check", "completion", "examples", "new", "schema", "serve"],
     "handheld:app": ["tool"],
+    "importing:import_file": ["import"],
     "linkage": ["analyze", "modes", "respond", "simulate"],
     "linkage:planting": ["plant"],
     "measured": ["decay", "exposure"],

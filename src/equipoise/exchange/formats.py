@@ -39,6 +39,26 @@ FORMATS: Mapping[str, Format] = {
             "mounts, the drive at constant speed",
         ),
         Format(
+            "exudyn",
+            ".py",
+            "Exudyn",
+            "a script that builds and runs bodies, pins, sliders, gears, springs, constant loads, "
+            "rows, the support on its mounts in the plane, the drive at constant speed",
+        ),
+        Format(
+            "urdf",
+            ".urdf",
+            "robots (URDF)",
+            "the tree: links with masses, hinges, slides, gears of two joints; loops are cut",
+        ),
+        Format(
+            "fmu",
+            ".fmu",
+            "co-simulation (FMI 2.0)",
+            "motion and forces as outputs, speed and acceleration of the crank as inputs; gears, "
+            "springs, constant loads; C sources, and a library where a C compiler is found",
+        ),
+        Format(
             "dxf",
             ".dxf",
             "drawing (DXF)",
@@ -90,3 +110,10 @@ class Job:
         """Tell, once, what the file does not hold."""
         if what not in self.left_out:
             self.left_out.append(what)
+
+    def leave_out_motor(self) -> None:
+        """Tell that the drive has its speed, whatever turns it."""
+        drive = self.machine.drive
+        for name, given in (("motor", drive.motor), ("drive's acceleration", drive.acceleration)):
+            if given:
+                self.leave_out(f"the {name}: the drive turns at constant speed")

@@ -15,13 +15,21 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from equipoise.exchange.formats import Job
-from equipoise.exchange.tree import Hung, Tree, mass_of, trees, weighed
+from equipoise.exchange.tree import (
+    Hung,
+    Tree,
+    constant_loads,
+    mass_of,
+    moment_of,
+    preloads,
+    trees,
+    weighed,
+)
 from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.links import size_of
 from equipoise.mechanism.model import FRAME, Machine, Vector
 from equipoise.mechanism.motion import move
 from equipoise.mechanism.support import FREEDOMS, Support, unit_vector
-from equipoise.vibration.free import modes
 
 STEPS = 2000
 """Steps of the integration in a turn of the crank."""
@@ -163,7 +171,7 @@ def _support(world: ET.Element, machine: Machine, support: Support) -> ET.Elemen
             kind = "slide" if FREEDOMS.index(name) < 3 else "hinge"
             at = _row(support.reference)
             ET.SubElement(base, "joint", name=name, type=kind, axis=_row(direction), pos=at)
-    moments = support.inertia or (_about_center(support),)
+    moments = support.inertia or (moment_of(support),)
     x, y, z = moments if len(moments) == 3 else moments * 3
     xy, yz, zx = (-one for one in support.products or (0.0, 0.0, 0.0))
     z -= machine.drive.flywheel  # it turns with the crank, where it is told
@@ -172,13 +180,6 @@ def _support(world: ET.Element, machine: Machine, support: Support) -> ET.Elemen
         if gauge.point is not None:
             _site(base, f"gauge {name}", gauge.point)
     return base
-
-
-def _about_center(support: Support) -> float:
-    """Moment of inertia of a support about its centre of mass, from that about its pivot."""
-    assert support.pivot_inertia is not None and support.pivot is not None
-    arm = complex(*support.center_of_mass[:2]) - complex(*support.pivot)
-    return support.pivot_inertia - support.mass * abs(arm) ** 2
 
 
 # -- what holds and drives them --------------------------------------------------------------------
@@ -223,14 +224,8 @@ def _springs(root: ET.Element, tree: Tree) -> None:
 
 
 def _loads(root: ET.Element, world: ET.Element, tree: Tree, job: Job) -> None:
-    """Loads that are always the same; others are told to be left out."""
-    planting = tree.machine.planting
-    if planting is not None and planting.soil is not None:
-        job.leave_out("the soil's force")
-    for number, load in enumerate(tree.machine.loads, 1):
-        if load.jumps or load.table is not None:
-            job.leave_out(f"load {number}, which is not the same all the time")
-            continue
+    """Loads that are always the same."""
+    for number, load in constant_loads(job):
         name = f"load {number}{tree.suffix}"
         point = load.point or next(iter(tree.machine.links[load.link].points))
         gear = (*(load.force or (0, 0)), 0, 0, 0, load.torque or 0)
@@ -266,10 +261,7 @@ def _push(
 def _drive(root: ET.Element, tree: Tree, job: Job) -> None:
     """The crank at constant speed, by a servo that no torque of the machine slows down much."""
     machine, speed = tree.machine, tree.machine.drive.speed
-    if machine.drive.motor is not None:
-        job.leave_out("the motor: the drive turns at constant speed")
-    if machine.drive.acceleration:
-        job.leave_out("the drive's acceleration: the drive turns at constant speed")
+    job.leave_out_motor()
     torque = np.max(np.abs(forces(move(machine, acceleration=0.0)).drive_torque))
     stiff = STIFF * (float(torque) or 1.0) / (abs(speed) or 1.0)
     crank = f"{machine.drive.link}{tree.suffix}"
@@ -286,7 +278,7 @@ def _shaft(root: ET.Element, drawn: Sequence[Tree]) -> None:
 
 def _mounts(root: ET.Element, world: ET.Element, base: ET.Element, machine: Machine) -> None:
     """Springs and dampers under the support, with what they carry at rest."""
-    support, carried = machine.support, modes(machine).preloads
+    support, carried = machine.support, preloads(machine)
     assert support is not None
     for name, mount in support.mounts.items():
         place = support.reference if mount.point is None else mount.point

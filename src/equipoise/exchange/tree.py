@@ -14,11 +14,13 @@ from typing import Any, Literal
 import numpy as np
 
 from equipoise.errors import MassError, UsageError
+from equipoise.exchange.formats import Job
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import FRAME, Link, Machine, Slider, Vector
+from equipoise.mechanism.model import FRAME, Link, Load, Machine, Slider, Vector
 from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.support import Row, Support
+from equipoise.vibration.free import modes
 from equipoise.vibration.linkages import rows_of
 
 Kind = Literal["hinge", "slide"]
@@ -144,6 +146,32 @@ def mass_of(link: Link) -> tuple[float, Vector, float]:
     """Mass, centre of mass and inertia about it."""
     assert link.mass is not None and link.center_of_mass is not None and link.inertia is not None
     return link.mass, link.center_of_mass, link.inertia
+
+
+def moment_of(support: Support) -> float:
+    """Moment of inertia of a support about its centre of mass, in the plane, kg m2."""
+    if support.pivot_inertia is None:
+        return support.inertia[-1]
+    assert support.pivot is not None
+    arm = complex(*support.center_of_mass[:2]) - complex(*support.pivot)
+    return support.pivot_inertia - support.mass * abs(arm) ** 2
+
+
+def preloads(machine: Machine) -> Mapping[str, float]:
+    """What each mount carries in the drawn position, N or N m: as the exact equations have it."""
+    return modes(machine, "moment").preloads
+
+
+def constant_loads(job: Job) -> Iterator[tuple[int, Load]]:
+    """Loads that are always the same, by number; others, and soil, are told to be left out."""
+    planting = job.machine.planting
+    if planting is not None and planting.soil is not None:
+        job.leave_out("the soil's force")
+    for number, load in enumerate(job.machine.loads, 1):
+        if load.jumps or load.table is not None:
+            job.leave_out(f"load {number}, which is not the same all the time")
+        else:
+            yield number, load
 
 
 def _tree(machine: Machine, crank_angle: float, row: Row, suffix: str) -> Tree:

@@ -39,14 +39,7 @@ def read_text(path: str | os.PathLike[str], largest: int = LARGEST) -> str:
     FileError
         Missing, no regular file (a pipe would wait for ever), too large, not UTF-8.
     """
-    try:
-        data = _bytes(path, largest)
-    except FileNotFoundError as error:
-        raise FileError("there is no such file") from error
-    except PermissionError as error:
-        raise FileError("the file may not be read; change its permissions") from error
-    except (OSError, ValueError) as error:  # ValueError: a path with a null character
-        raise FileError(f"the file cannot be read ({reason(error)})") from error
+    data = read_bytes(path, largest)
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -54,6 +47,18 @@ def read_text(path: str | os.PathLike[str], largest: int = LARGEST) -> str:
         raise FileError(
             f"line {line} is not text in UTF-8; give a text file saved as UTF-8"
         ) from error
+
+
+def read_bytes(path: str | os.PathLike[str], largest: int = LARGEST) -> bytes:
+    """Read a regular file as it is; `largest` and errors as of `read_text`."""
+    try:
+        return _bytes(path, largest)
+    except FileNotFoundError as error:
+        raise FileError("there is no such file") from error
+    except PermissionError as error:
+        raise FileError("the file may not be read; change its permissions") from error
+    except (OSError, ValueError) as error:  # ValueError: a path with a null character
+        raise FileError(f"the file cannot be read ({reason(error)})") from error
 
 
 def _bytes(path: str | os.PathLike[str], largest: int) -> bytes:

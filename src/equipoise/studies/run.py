@@ -34,6 +34,7 @@ from equipoise.studies.outcomes import Block, Evaluator, Progress, Tally
 from equipoise.studies.sampling import samples
 from equipoise.studies.store import (
     LAYOUT,
+    MARK,
     NUMBERS,
     REASON,
     UNKNOWN,
@@ -308,7 +309,7 @@ def _unit(dimension: str | None) -> dict[str, str]:
 
 def _about(study: Study, chunk: int, engine: str) -> dict[str, Any]:
     return {
-        "equipoise_store": LAYOUT,
+        MARK: LAYOUT,
         "title": study.title,
         "method": study.sampling.method,
         "seed": study.sampling.seed,

@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 
 Array = np.ndarray[Any, Any]
 
-LAYOUT = 1
-"""Of the folder; another number is another meaning of what is in it."""
+MARK, LAYOUT = "equipoise_store", 1
+"""What a folder says of itself, and how it is laid out; another number is another meaning of it."""
 REASON, UNKNOWN = "reason", 255
 DAMAGED = "see whether the disk is there, or sweep anew"
 BLOCK, NUMBERS = 65_536, 2**22
@@ -212,7 +212,7 @@ def open_store(path: str | os.PathLike[str], *, write: bool = False) -> Store:
         raise UsageError(f"{folder}: there is no such store; make it by: equipoise sweep")
     try:
         group = zarr.open_group(folder, mode="r+" if write else "r", zarr_format=3)
-        layout = group.attrs["equipoise_store"]
+        layout = group.attrs[MARK]
         if layout == LAYOUT:
             return _opened(folder, group)
     except Exception as error:  # Zarr and its codecs raise anything where a file is damaged

@@ -48,6 +48,7 @@ class Piece:
     layer : ``field``, ``support``, ``rows``, ``wheels``, ``guides``, ``stands``, ``links``,
         ``springs``, ``pivots``, ``blocks``, ``joints``, ``tray`` or ``drive``.
     link : whose plate or bar it is, if any.
+    part : ``slider`` or ``gears``, and the name of that which it tells, if any.
     still : whether it stands on the ground, and not on the support.
     """
 
@@ -56,6 +57,7 @@ class Piece:
     hold: Hold | None = None
     link: str = ""
     still: bool = False
+    part: tuple[str, str] | None = None
 
     def track(self, scene: Scene, unit: float = 0.0) -> Track | None:
         """How it moves; None where it stands still.  unit : of signs, m; the scene's if 0."""
@@ -75,7 +77,7 @@ def pieces(scene: Scene, traced: Collection[str] = (), field: bool = True) -> li
     found += _links(scene)
     found += [*_springs(scene), Piece("pivots", tuple(_pivots(scene)))]
     found += [
-        Piece("blocks", tuple(block()), Hold(guide.point, guide=guide.name))
+        Piece("blocks", tuple(block()), Hold(guide.point, guide=guide.name), part=_part(guide))
         for guide in scene.guides
     ]
     found += [
@@ -85,6 +87,10 @@ def pieces(scene: Scene, traced: Collection[str] = (), field: bool = True) -> li
         found.append(Piece("tray", (line("tray", *scene.field.tray),)))
     found += _sense(scene)
     return [piece for piece in found if piece.shapes]
+
+
+def _part(guide: Guide) -> tuple[str, str]:
+    return "slider", guide.name
 
 
 def _with(body: Body) -> Hold:
@@ -150,13 +156,14 @@ def _wheels(scene: Scene) -> Iterator[Piece]:
         if (key := (gear.link, gear.center, round(gear.radius / scene.unit))) in seen:
             continue
         seen.add(key)
+        part = "gears", gear.pair
         if gear.link == FRAME:
             still = complex(scene.places[gear.center][0])
-            yield Piece("wheels", (circle("wheel", still, gear.radius),))
+            yield Piece("wheels", (circle("wheel", still, gear.radius),), part=part)
             continue
         body = bodies[gear.link]
         center = scene.local(body, scene.places[gear.center])
-        yield Piece("wheels", tuple(wheel(center, gear.radius)), _with(body))
+        yield Piece("wheels", tuple(wheel(center, gear.radius)), _with(body), part=part)
 
 
 def _stands(scene: Scene) -> Iterator[Piece]:
@@ -170,7 +177,8 @@ def _stands(scene: Scene) -> Iterator[Piece]:
     for guide in scene.guides:
         if guide.on == FRAME:
             low, high = (complex(end[0]) for end in _ends(scene, guide))
-            yield Piece("guides", tuple(rails(low, high, scene.unit, grounded)))
+            shapes = tuple(rails(low, high, scene.unit, grounded))
+            yield Piece("guides", shapes, part=_part(guide))
 
 
 def _ends(scene: Scene, guide: Guide) -> tuple[Array, Array]:

@@ -50,11 +50,13 @@ class Wheel:
     """The pitch circle of a gear.
 
     link : what turns with it, maybe the frame.  center : the point in its middle.  radius : m.
+    pair : name of the gears that it is one of.
     """
 
     link: str
     center: str
     radius: float
+    pair: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -317,8 +319,8 @@ def wheels_of(joints: Structure, bodies: Bodies) -> Iterator[Wheel]:
         carrier = bodies[gear.carrier]
         apart = abs(complex(*carrier[driver]) - complex(*carrier[driven]))
         radius = apart / abs(1 - gear.speed_ratio)
-        yield Wheel(gear.driver, driver, radius * abs(gear.speed_ratio))
-        yield Wheel(gear.driven, driven, radius)
+        yield Wheel(gear.driver, driver, radius * abs(gear.speed_ratio), gear.name)
+        yield Wheel(gear.driven, driven, radius, gear.name)
 
 
 def _guides(motion: Motion) -> Iterator[Guide]:

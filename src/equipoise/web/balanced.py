@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from math import dist, isclose, sqrt
+from threading import Lock
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Protocol
 
 from equipoise.balancing.advice import advise
 from equipoise.balancing.balanced import Balanced
@@ -23,15 +25,19 @@ from equipoise.balancing.told import (
     worse_told,
 )
 from equipoise.balancing.workshop import SPREAD, sentences
-from equipoise.i18n import said
+from equipoise.errors import UsageError
+from equipoise.i18n import Note, said, say
 from equipoise.mechanism.balance import Balance, Limit, Objective
 from equipoise.mechanism.model import Link, Machine
 from equipoise.mechanism.outputs import declared
 from equipoise.quantities import clean, display, told
 from equipoise.results.outputs import objective_named, shown_in
 from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
-from equipoise.web.edits import Solved
+from equipoise.web.drawn import Drawn
+from equipoise.web.edits import Solved, solved
 from equipoise.web.figures import compared, figures_of, signals_of
+from equipoise.web.messages import Message
+from equipoise.web.replies import Reply
 
 Values = dict[str, Any]
 MAIN = ("rms", "peak")
@@ -225,3 +231,55 @@ def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
         unit = shown_in(figure_unit(found, name), [before, after])
     values = compared(unit.factor * before, unit.factor * after)
     return {"label": label, "unit": unit.name, "main": main, **values}
+
+
+# -- what a page may ask ---------------------------------------------------------------------------
+
+
+class Session(Protocol):
+    """What answers need of a session."""
+
+    found: Solved | Drawn | None
+    before: Solved | None
+    lock: Lock
+
+    def current(self) -> Solved:
+        """The design that is."""
+
+    def go_to(self, found: Solved | Drawn, label: str) -> None:
+        """Make another design the one that is."""
+
+    def telling(self) -> AbstractContextManager[None]:
+        """Inside, the reader's language is spoken, in the units of the file that is open."""
+
+    def told(self, seq: int | None, *notes: str) -> Iterator[Reply]:
+        """Tell of what is shown."""
+
+
+def _balance(session: Session, message: Message) -> Iterator[Reply]:
+    base = session.current()
+    with session.telling():
+        what = say("balancing")
+    yield Reply({"type": "busy", "seq": message.seq, "what": what})
+    found = balanced(base.design, message.flag("hold", False))
+    with session.telling():
+        nothing = nothing_gained(found)
+    if nothing is not None:
+        yield from session.told(message.seq, nothing)
+        return
+    after = solved(balanced_design(base.design, found))
+    with session.telling():
+        content = balanced_told(base, after, found)
+    with session.lock:
+        if session.found is not base:
+            raise UsageError(
+                Note("the machine was changed while it was balanced; balance it again")
+            )
+        session.go_to(after, "balance")
+        session.before = base
+    yield Reply({"type": "balanced", "seq": message.seq, **content})
+    yield from session.told(message.seq)
+
+
+ASKED: dict[str, Callable[[Session, Message], Iterator[Reply]]] = {"balance": _balance}
+"""Answers to messages, by their kind."""

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from equipoise.errors import EquipoiseError, UsageError
-from equipoise.i18n import speaking
+from equipoise.i18n import Note, speaking
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import showing_by_default
+from equipoise.schema.files import printable
 from equipoise.schema.opening import kind_of_text, opened
 from equipoise.schema.template import Template
 from equipoise.web.design import Design
@@ -20,7 +23,7 @@ from equipoise.web.openings import opened_file
 from equipoise.web.replies import Reply, refused
 from equipoise.web.seen import NO_STORE
 from equipoise.web.session import Session
-from equipoise.web.stores import StoreDesk, is_store
+from equipoise.web.stores import StoreDesk, is_store, stores_in
 from equipoise.web.tools import ToolDesk, tool_asked, tool_of_file
 
 ALWAYS = ("speak", "gallery")
@@ -34,13 +37,15 @@ class Desk:
     """The counterpart of a page.
 
     session : of its machine.  tool : that is open instead, if any.
-    store : of a study, with which the server was started.  studied : whether it is what is shown.
+    store : of a study.  studied : whether it is what is shown.
+    folder : in which stores are looked for, by their names; none where there is no server.
     """
 
     session: Session = field(default_factory=Session)
     tool: ToolDesk | None = None
     store: StoreDesk | None = None
     studied: bool = False
+    folder: Path | None = None
 
     def hello(self) -> Reply:
         """The first thing that a page is told."""
@@ -53,6 +58,9 @@ class Desk:
         """Answer a message; what takes long comes last, and may be left unasked."""
         if message.kind in ALWAYS:
             yield from self.session.receive(message)
+            return
+        if message.kind == "stores":
+            yield self._stores(message)
             return
         try:
             self._turn_to(message)
@@ -78,8 +86,7 @@ class Desk:
             self.tool, self.studied = tool_asked(message), False
         if message.kind not in ("study", "design"):
             return
-        if self.store is None:
-            raise UsageError(NO_STORE)
+        self.store = self._store_of(message.optional("store"))
         if message.kind == "study":
             self.studied = True
             return
@@ -91,6 +98,28 @@ class Desk:
         else:
             self.tool = ToolDesk.of(name, Template.of(model))
         self.session.disk, self.studied = None, False
+
+    def _stores(self, message: Message) -> Reply:
+        """Stores that the page may open."""
+        names = [] if self.folder is None else stores_in(self.folder)
+        folder = None if self.folder is None else printable(self.folder.name)
+        return Reply({"type": "stores", "seq": message.seq, "folder": folder, "names": names})
+
+    def _store_of(self, name: str | None) -> StoreDesk:
+        """The store that is open, or another one of the folder, by nothing but its name there."""
+        if self.store is not None and name in (None, self.store.name):
+            return self.store
+        if name is None or self.folder is None:
+            raise UsageError(NO_STORE)
+        if name not in stores_in(self.folder):
+            raise UsageError(
+                Note(
+                    "{folder} has no store of the name {name!r}; choose one that is listed",
+                    folder=printable(self.folder.name),
+                    name=printable(name),
+                )
+            )
+        return StoreDesk.load(str(self.folder / name))
 
     def _answers(self, message: Message) -> Iterator[Reply]:
         """What a store or a tool answers."""
@@ -130,15 +159,17 @@ def begun(file: str | None) -> Callable[[], Desk]:
     ------
     EquipoiseError : what is in the file cannot be computed.
     """
+    there = file is not None and os.path.exists(file)
+    folder = Path(os.path.abspath(file)).parent if there and file else Path.cwd()
     if file is None:
-        return Desk
+        return lambda: Desk(folder=folder)
     if is_store(file):
         store = StoreDesk.load(file)
-        return lambda: Desk(Session(), store=store, studied=True)
+        return lambda: Desk(Session(), store=store, studied=True, folder=folder)
     if kind_of_text(opened(file).text) == "tool":
         tool = tool_of_file(file)
         _ = tool.first.figures.whole
-        return lambda: Desk(Session(), tool.again)
+        return lambda: Desk(Session(), tool.again, folder=folder)
     first = Session()
     first.open(opened_file(file))
     disk = on_disk(file, first.shown)
@@ -147,6 +178,6 @@ def begun(file: str | None) -> Callable[[], Desk]:
         session = Session(disk=disk)
         found = first.shown if disk is None else disk.found
         session.open(found.design, found)
-        return Desk(session)
+        return Desk(session, folder=folder)
 
     return begin

@@ -24,10 +24,11 @@ UNIT = 1.25
 def stage_of(scene: Scene, handles: Sequence[str]) -> Values:
     """Names and the drawing of a scene.
 
-    signs : from the back to the front, each with its ``layer``, the ``link`` that it is, what it
-        moves with (`symbols.pieces.Hold`, with the ``length`` of which it is stretched), and its
-        shapes: role, whether it is closed, radius (m), and that in pixels, then x and y (m) and
-        offsets from there (pixels) of each corner.
+    signs : from the back to the front, each with its ``layer``, the ``link`` that it is, the
+        ``part`` (``slider`` or ``gears``, and its name) that it tells, what it moves with
+        (`symbols.pieces.Hold`, with the ``length`` of which it is stretched), and its shapes:
+        role, whether it is closed, radius (m), and that in pixels, then x and y (m) and offsets
+        from there (pixels) of each corner.
     looks : role -> style.
     """
     low, high = scene.box
@@ -58,6 +59,7 @@ def _sign(scene: Scene, piece: Piece) -> Values:
         "layer": piece.layer,
         "link": piece.link,
         "hold": hold,
+        "part": piece.part,
         "still": piece.still,
         "shapes": shapes,
     }

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from equipoise.errors import EquipoiseError, MobilityError, UsageError, to_paste
-from equipoise.i18n import Note
+from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.quantities import DIGITS, display
@@ -156,7 +156,7 @@ def redrawn(sketch: Sketch, changes: list[Change]) -> Sketch:
             fields = fields_of_sketch(sketch)
             if change.path not in fields:
                 raise UsageError(unknown(change.path, fields, "number of this machine"))
-            sketch = fields[change.path].typed(sketch, change.to)
+            sketch = fields[change.path].keeping(change.keep).typed(sketch, change.to)
         elif change.of_mass:
             raise UsageError(Note("a centre of mass can be dragged once the machine is finished"))
         else:
@@ -172,13 +172,13 @@ def fields_of_sketch(sketch: Sketch) -> dict[str, Field]:
 def _fields(sketch: Sketch) -> Iterator[Field]:
     if sketch.drive is not None:
         yield Field(
-            "drive.speed", "drive", "speed", "angular speed", sketch.drive.speed, _with_speed
+            "drive.speed", "drive", say("speed"), "angular speed", sketch.drive.speed, _with_speed
         )
     for body, points in sketch.bodies.items():
         for one in measures_of(points):
             path = f"{'frame' if body == FRAME else f'links.{body}'}.{one.key}"
             put = partial(_measured, body, one)
-            yield Field(path, body, one.label, one.dimension, one.value, put, one.between)
+            yield Field(path, body, one.label, one.dimension, one.value, put, one)
     for point, place in sketch.frame.items():
         for axis, value in zip("xy", place, strict=True):
             put = partial(_placed, point, axis)
@@ -191,9 +191,18 @@ def _with_speed(sketch: Sketch, value: float) -> Sketch:
     return replace(sketch, drive=replace(sketch.drive, speed=value))
 
 
-def _measured(body: str, measure: Measure, sketch: Sketch, value: float) -> Sketch:
-    """A point of a body so that it has another length or angle; what it joins goes with it."""
-    place = sketch.pose(body).out(measure.place(sketch.bodies[body], value))
+def _measured(
+    body: str, measure: Measure, sketch: Sketch, value: float, keep: tuple[str, ...] = ()
+) -> Sketch:
+    """A point of a body so that it has another length or angle; what it joins goes with it.
+
+    keep : points of any body.
+    """
+    pose = sketch.pose(body)
+    others = {name: pose.into(sketch.places[name]) for name in keep if name in sketch.places}
+    points = {name: (at.real, at.imag) for name, at in others.items()}
+    points.update(sketch.bodies[body])
+    place = pose.out(measure.place(points, value, keep))
     return moved(sketch, measure.moves, place, DIGITS)
 
 

@@ -104,7 +104,7 @@ def _set(design: Design, change: Setting) -> Design:
     field = fields.get(change.path)
     if field is None:
         raise UsageError(unknown(change.path, fields, "number of this machine"))
-    return field.typed(design, change.to)  # type: ignore[no-any-return]
+    return field.keeping(change.keep).typed(design, change.to)  # type: ignore[no-any-return]
 
 
 def _moved(base: Solved, design: Design, change: Drag) -> tuple[Design, complex]:

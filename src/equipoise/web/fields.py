@@ -29,8 +29,8 @@ from equipoise.quantities.units import KINDS, Dimension
 from equipoise.web.design import Design, pin_of
 from equipoise.web.measures import Measure, measures_of
 
-Put = Callable[[Any, float], Any]
-"""From a design or a sketch, and the value, to another one."""
+Put = Callable[..., Any]
+"""From a design or a sketch, and the value, to another one; of a measure, with points to keep."""
 FINE = 1000
 """Steps of a slider over its range."""
 FREE = 0.5
@@ -45,7 +45,7 @@ class Field:
     """A number: its path, such as ``links.crank.mass``, the heading that it belongs under, its
     label, its value in SI units and radians, and the design with another value.
 
-    between : both ends of a length between points.
+    measure : the length or direction that it is, if it is one.
     """
 
     path: str
@@ -54,7 +54,13 @@ class Field:
     dimension: Dimension
     value: float
     put: Put
-    between: tuple[str, str] | None = None
+    measure: Measure | None = None
+
+    def keeping(self, points: tuple[str, ...]) -> Field:
+        """The same, but that the point that it moves keeps its distance from others."""
+        if self.measure is None or not points:
+            return self
+        return replace(self, put=partial(self.put, keep=points))
 
     def typed(self, of: Any, to: str | float) -> Any:
         """What it is a number of, with the number set to a value or to what was typed.
@@ -129,7 +135,7 @@ class Scale:
             "max": high,
             "step": (high - low) / FINE,
             "kind": "number",
-            **({} if field.between is None else {"between": field.between}),
+            **({} if field.measure is None else field.measure.told),
         }
 
 
@@ -243,13 +249,13 @@ def _measures(where: str, body: str, points: Mapping[str, Vector]) -> Iterator[F
     """Lengths and directions between the points of a body."""
     for one in measures_of(points):
         put = partial(_measured, body, one)
-        yield Field(
-            f"{where}.{one.key}", body, one.label, one.dimension, one.value, put, one.between
-        )
+        yield Field(f"{where}.{one.key}", body, one.label, one.dimension, one.value, put, one)
 
 
-def _measured(body: str, measure: Measure, design: Design, value: float) -> Design:
-    place = clean_place(complex(*measure.place(design.own.points_of(body), value)))
+def _measured(
+    body: str, measure: Measure, design: Design, value: float, keep: tuple[str, ...] = ()
+) -> Design:
+    place = clean_place(complex(*measure.place(design.own.points_of(body), value, keep)))
     return design.with_machine(design.own.with_point(body, measure.moves, place))
 
 

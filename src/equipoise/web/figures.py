@@ -101,7 +101,7 @@ def _figures(signals: Signals, old: Signals | None, size: float) -> Iterator[Val
             }
             if was is not None:
                 before = _plain(of(was), least)
-                entry |= {"before": before, "was": _was(_in(unit, before), _in(unit, value))}
+                entry |= {"before": before, "was": was_of(_in(unit, before), _in(unit, value))}
             yield entry
 
 
@@ -154,7 +154,7 @@ def compared(before: float, after: float) -> Values:
     return {"before": before, "after": after, "texts": texts, "way": way}
 
 
-def _was(before: float | None, value: float | None) -> str:
+def was_of(before: float | None, value: float | None) -> str:
     """What a figure was, and by how much it has changed; nothing where it is the same."""
     if before is None or value is None:
         return ""

@@ -17,8 +17,10 @@ from equipoise.web.remaking import (
     pinned,
     renamed,
     separated,
+    without_gears,
     without_link,
     without_point,
+    without_slider,
 )
 from equipoise.web.sketch import Sketch
 
@@ -53,13 +55,20 @@ def _separate(sketch: Sketch, asked: Message) -> Sketch:
     return separated(sketch, asked.text("point"), asked.optional("link"))
 
 
+DELETED: Mapping[str, Callable[[Sketch, str], Sketch]] = {
+    "point": without_point,
+    "link": without_link,
+    "slider": without_slider,
+    "gears": without_gears,
+}
+"""What can be taken away, by its name."""
+
+
 def _delete(sketch: Sketch, asked: Message) -> Sketch:
     what = asked.text("what")
-    if what == "point":
-        return without_point(sketch, asked.text("name"))
-    if what == "link":
-        return without_link(sketch, asked.text("name"))
-    raise UsageError(unknown(what, ("point", "link"), "part that can be deleted"))
+    if what not in DELETED:
+        raise UsageError(unknown(what, DELETED, "part that can be deleted"))
+    return DELETED[what](sketch, asked.text("name"))
 
 
 def _rename(sketch: Sketch, asked: Message) -> Sketch:

@@ -7,10 +7,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
 from math import hypot
-from typing import Literal
+from typing import Any, Literal
 
 from equipoise.errors import UsageError
-from equipoise.i18n import say
+from equipoise.i18n import Note, all_of, say
 from equipoise.mechanism.model import Vector
 from equipoise.web.messages import Drag
 
@@ -39,9 +39,10 @@ class Measure:
         return f"{what}.{self.start}-{self.moves}"
 
     @property
-    def between(self) -> tuple[str, str] | None:
-        """Both ends of a length."""
-        return (self.start, self.moves) if self.dimension == "length" else None
+    def told(self) -> dict[str, Any]:
+        """What a page is told of its points: which one moves, and both ends of a length."""
+        ends = {"between": (self.start, self.moves)} if self.dimension == "length" else {}
+        return {"moves": self.moves, **ends}
 
     @property
     def label(self) -> str:
@@ -49,13 +50,18 @@ class Measure:
         line = say("{point} to {other}", point=self.start, other=self.moves)
         return line if self.dimension == "length" else f"{line}, {say('direction')}"
 
-    def place(self, points: Mapping[str, Vector], value: float) -> Vector:
+    def place(
+        self, points: Mapping[str, Vector], value: float, keep: tuple[str, ...] = ()
+    ) -> Vector:
         """Where the second point goes for another value, in the axes of the body, m.
+
+        points : in those axes.  keep : those from which it keeps its distance.
 
         Raises
         ------
-        UsageError : a length is not above 0.
+        UsageError : a length is not above 0, or other lengths that are locked do not let it.
         """
+        others = [name for name in keep if name in points and name not in (self.start, self.moves)]
         start = complex(*points[self.start])
         way = complex(*points[self.moves]) - start
         if self.dimension == "length" and value <= 0:
@@ -63,6 +69,20 @@ class Measure:
             raise UsageError(f"got a length of {text}; give more than 0").about(value, text)
         size, angle = hypot(way.real, way.imag), phase(way)
         found = start + (rect(value, angle) if self.dimension == "length" else rect(size, value))
+        if others:
+            centers = [start, *(complex(*points[name]) for name in others)]
+            now = complex(*points[self.moves])
+            radii = [abs(found - start), *(abs(now - center) for center in centers[1:])]
+            near = REACHED * sum(radii)
+            places = [
+                place
+                for place in _crossings(centers[:2], radii[:2])
+                if abs(abs(place - start) - radii[0]) <= near
+            ]
+            if self.dimension == "angle" or len(others) > 1 or not places:
+                names = all_of([f"{name}–{self.moves}" for name in others])
+                raise UsageError(Note("{names} would not stay as long as locked", names=names))
+            found = min(places, key=lambda place: abs(place - now))
         return found.real, found.imag
 
 

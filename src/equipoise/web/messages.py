@@ -29,6 +29,7 @@ KINDS = (
     "arrows",
     "variant",
     "record",
+    "stores",
     "study",
     "design",
     "download",
@@ -61,10 +62,14 @@ class Spot:
 
 @dataclass(frozen=True)
 class Setting:
-    """A number that is set: to the text that was typed, or to a value in SI units."""
+    """A number that is set: to the text that was typed, or to a value in SI units.
+
+    keep : points from which the one that it moves keeps its distance.
+    """
 
     path: str
     to: str | float
+    keep: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -253,14 +258,14 @@ def _change(edit: object) -> Change:
     if len(given) != 1 or not isinstance(edit[given[0]], str):
         _wrong("an edit", edit, "one of set, move and move_mass, with a name")
     kind, name = given[0], edit[given[0]]
-    if kind == "set":
-        return Setting(name, _typed(edit))
-    at = edit.get("at", 0)
-    if isinstance(at, bool) or not isinstance(at, int):
-        _wrong("at", at, "the number of a crank angle")
     keep = edit.get("keep", [])
     if not isinstance(keep, list) or not all(isinstance(one, str) for one in keep):
         _wrong("keep", keep, "a list of points")
+    if kind == "set":
+        return Setting(name, _typed(edit), tuple(keep))
+    at = edit.get("at", 0)
+    if isinstance(at, bool) or not isinstance(at, int):
+        _wrong("at", at, "the number of a crank angle")
     return Drag(name, kind == "move_mass", _place("to", edit.get("to")), at, tuple(keep))
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.checks import Bodies
+from equipoise.mechanism.checks import Bodies, unknown
 from equipoise.mechanism.model import FRAME
 from equipoise.web.adding import (
     check_body,
@@ -110,6 +110,27 @@ def without_link(sketch: Sketch, link: str) -> Sketch:
     links = {name: one for name, one in sketch.links.items() if name != link}
     poses = {name: sketch.poses[name] for name in links}
     return _tidied(replace(sketch, links=links, poses=poses))
+
+
+def without_slider(sketch: Sketch, name: str) -> Sketch:
+    """One sliding joint less; its block goes with it, where that is nothing else."""
+    found = next((one for one in sketch.sliders if one.name == name), None)
+    if found is None:
+        raise UsageError(unknown(name, [one.name for one in sketch.sliders], "slider"))
+    sketch = replace(sketch, sliders=tuple(one for one in sketch.sliders if one is not found))
+    bare = len(sketch.links[found.link].points) == 1 and not sketch.links[found.link].has_mass
+    if bare and all(one.link != found.link for one in sketch.sliders):
+        return without_link(sketch, found.link)
+    return _tidied(sketch)
+
+
+def without_gears(sketch: Sketch, name: str) -> Sketch:
+    """One pair of gears less."""
+    names = [one.name for one in sketch.gears]
+    if name not in names:
+        raise UsageError(unknown(name, names, "pair of gears"))
+    first = names.index(name)
+    return replace(sketch, gears=sketch.gears[:first] + sketch.gears[first + 1 :])
 
 
 def _tidied(sketch: Sketch) -> Sketch:

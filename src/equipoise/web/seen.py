@@ -8,7 +8,7 @@ from threading import Lock
 from typing import Any, Protocol
 
 from equipoise.errors import UsageError
-from equipoise.i18n import say
+from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown
 from equipoise.web.arrows import points_of
 from equipoise.web.block import Block
@@ -167,7 +167,12 @@ def _record(session: Session, message: Message) -> Iterator[Reply]:
     yield from session.told(message.seq)
 
 
-NO_STORE = "no store of a study is open; give one to `equipoise serve`"
+NO_STORE = Note("no store of a study is open; give one to `equipoise serve`")
+
+
+def _stores(session: Session, message: Message) -> Iterator[Reply]:
+    """Without a server there are none."""
+    yield Reply({"type": "stores", "seq": message.seq, "folder": None, "names": []})
 
 
 def _stored(session: Session, message: Message) -> Iterator[Reply]:
@@ -186,6 +191,7 @@ ASKED: dict[str, Callable[[Session, Message], Iterator[Reply]]] = {
     "arrows": _arrows,
     "variant": _variant,
     "record": _record,
+    "stores": _stores,
     "study": _stored,
     "design": _stored,
 }

@@ -12,13 +12,12 @@ from threading import Lock
 
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
-from equipoise.i18n import Note, said, say, speaking
+from equipoise.i18n import Note, said, speaking
 from equipoise.mechanism.outline import USUAL_SIZE
 from equipoise.mechanism.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
 from equipoise.schema.files import LARGEST
-from equipoise.web import entering, kept
-from equipoise.web.balanced import balanced, balanced_design, balanced_told, nothing_gained
+from equipoise.web import balanced, entering, kept
 from equipoise.web.block import Values
 from equipoise.web.design import Design
 from equipoise.web.disk import Disk
@@ -52,7 +51,8 @@ class Session:
     history : of its designs.  found : the one that is, computed, or drawn while it is unfinished.
     preview : what it is while something is dragged; each one starts from `found`.
     before : with which it is compared, if with any.
-    scale : of the sliders.  more_told : the design of which `tell_more` has told.
+    scale : of the sliders.
+    more_told : the design of which `tell_more` has told, and that which it was told against.
     wanted : outputs that the page draws besides those that it always does.
     language : that its reader speaks.  disk : the file that is open, if it can be saved.
     seen : what else the page shows.
@@ -64,7 +64,7 @@ class Session:
     preview: Solved | Drawn | None = None
     before: Solved | None = None
     scale: Scale | None = None
-    more_told: Solved | None = None
+    more_told: tuple[Solved | Drawn | None, Solved | None] = (None, None)
     wanted: tuple[str, ...] = ()
     language: str = "en"
     disk: Disk | None = None
@@ -74,14 +74,11 @@ class Session:
     def receive(self, message: Message) -> Iterator[Reply]:
         """Answer a message; what takes long comes last, and may be left unasked."""
         try:
-            if message.kind in kept.ASKED:
-                yield from kept.ASKED[message.kind](self, message)
-            elif message.kind in entering.ASKED:
-                yield from entering.ASKED[message.kind](self, message)
-            elif message.kind in ASKED:
-                yield from ASKED[message.kind](self, message)
-            else:
-                yield from getattr(self, f"_{message.kind}")(message)
+            for asked in (kept.ASKED, entering.ASKED, balanced.ASKED, ASKED):
+                if message.kind in asked:
+                    yield from asked[message.kind](self, message)
+                    return
+            yield from getattr(self, f"_{message.kind}")(message)
         except EquipoiseError as error:
             yield refused(message.seq, error, self.language)
 
@@ -139,7 +136,8 @@ class Session:
             found = drawn(sketch)
             self._go(self._past.then(found.design, label), found)
             self._measure(found, False)
-            notes = [*lost(base, sketch)] if message.text("do") == "delete" else []
+            named = message.text("do") == "delete" and message.text("what") in ("point", "link")
+            notes = [*lost(base, sketch)] if named else []
         yield from self.told(message.seq, *notes)
 
     def _undo(self, message: Message) -> Iterator[Reply]:
@@ -163,30 +161,6 @@ class Session:
         for name in names:
             _ = self.current().analysis.outputs[name]
         self.wanted = names
-        yield from self.told(message.seq)
-
-    def _balance(self, message: Message) -> Iterator[Reply]:
-        base = self.current()
-        with self.telling():
-            what = say("balancing")
-        yield Reply({"type": "busy", "seq": message.seq, "what": what})
-        found = balanced(base.design, message.flag("hold", False))
-        with self.telling():
-            nothing = nothing_gained(found)
-        if nothing is not None:
-            yield from self.told(message.seq, nothing)
-            return
-        after = solved(balanced_design(base.design, found))
-        with self.telling():
-            told = balanced_told(base, after, found)
-        with self.lock:
-            if self.found is not base:
-                raise UsageError(
-                    Note("the machine was changed while it was balanced; balance it again")
-                )
-            self._go(self._past.then(after.design, "balance"), after)
-            self.before = base
-        yield Reply({"type": "balanced", "seq": message.seq, **told})
         yield from self.told(message.seq)
 
     # -- its state ---------------------------------------------------------------------------------
@@ -240,12 +214,19 @@ class Session:
     @property
     def has_more(self) -> bool:
         """Whether there is more to tell of the design, which takes longer."""
-        return isinstance(self.found, Solved) and self.view is not self.more_told
+        told, against = self.more_told
+        if not isinstance(self.found, Solved):
+            return False
+        return self.view is not told or self._against is not against
 
     def tell_more(self) -> Iterator[Reply]:
         """What takes too long to be told at every move of a drag; ends when the design changes."""
-        found = self.more_told = self.shown
-        told = more(found, lambda: self.view is not found)
+        found = self.view
+        if not isinstance(found, Solved):  # what was asked for before it became unfinished
+            return
+        sweep, against = self.more_told[0] is not found, self._against
+        self.more_told = found, against
+        told = more(found, against, sweep, lambda: self.view is not found)
         while True:
             with self.telling():  # left where this waits: whoever goes on may be another thread
                 one = next(told, None)
@@ -330,15 +311,21 @@ class Session:
         return Reply({"type": "state", "seq": seq, **told, **content}, data)
 
     def _state_of(self, found: Solved) -> tuple[Values, bytes]:
-        seen, held = self.seen, self.found if self.preview is not None else None
+        seen = self.seen
         return state_of(
             found,
             seen.pale or self.before,
             self.wanted,
-            against=seen.against(held if isinstance(held, Solved) else None),
+            against=self._against,
             arrows_at=seen.arrows_at,
             record=seen.record,
         )
+
+    @property
+    def _against(self) -> Solved | None:
+        """The design that figures are told against, if any."""
+        held = self.found if self.preview is not None else None
+        return self.seen.against(held if isinstance(held, Solved) else None) or self.before
 
 
 def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:

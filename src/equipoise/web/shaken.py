@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 from math import isfinite
 from typing import Any
@@ -17,7 +18,7 @@ from equipoise.mechanism.strokes import declared_figures, dimension_of
 from equipoise.mechanism.support import FREEDOMS, PLANAR
 from equipoise.planting.blocks import cell
 from equipoise.planting.names import FIGURES
-from equipoise.planting.summary import plant
+from equipoise.planting.summary import PlantingFigures, plant
 from equipoise.quantities import Dimension, display
 from equipoise.results.analysis import Analysis
 from equipoise.symbols.scene import Scene
@@ -28,7 +29,7 @@ from equipoise.vibration.sampling import COARSE
 from equipoise.vibration.sweep import sweep_speed
 from equipoise.web.block import Block
 from equipoise.web.edits import Solved
-from equipoise.web.figures import chart, gauge_choice, text_of
+from equipoise.web.figures import chart, gauge_choice, text_of, was_of
 
 Values = dict[str, Any]
 SAMPLES = 360
@@ -145,19 +146,22 @@ class OutdatedError(Exception):
     """The design is no longer shown."""
 
 
-def more(found: Solved, outdated: Callable[[], bool]) -> Iterator[tuple[Values, bytes]]:
-    """Planting figures, and the response over speed; each as values and a block of floats.
+def more(
+    found: Solved, against: Solved | None, sweep: bool, outdated: Callable[[], bool]
+) -> Iterator[tuple[Values, bytes]]:
+    """Strokes, planting figures, the response over speed; each as values and a block of floats.
 
+    against : the design that figures are told against, if any.
+    sweep : whether the response is wanted.
     outdated : tells when the design is no longer shown, so that the rest is not wanted.
     """
-    machine = found.design.machine
     if found.analysis.strokes and not outdated():
-        yield {"type": "strokes", "figures": [*_strokes(found.analysis)], "notes": []}, b""
-    if machine.planting is not None and machine.drive.speed:
-        planted = _planted(machine)
+        yield _told_against("strokes", _strokes, found, against), b""
+    if _plants(found) and not outdated():
+        planted = _told_against("planting", _planted, found, against)
         if not outdated():
             yield planted, b""
-    if not can_be_shaken(machine):
+    if not sweep or not can_be_shaken(found.design.machine):
         return
 
     def progress(done: int, total: int) -> None:
@@ -173,37 +177,85 @@ def more(found: Solved, outdated: Callable[[], bool]) -> Iterator[tuple[Values, 
         yield {"type": "response", **content}, data
 
 
-def _shown(value: float, dimension: Dimension | None, unit: str | None = None) -> Values:
+@dataclass(frozen=True)
+class _Told:
+    """A figure that is told: what it is called, its value (SI units), and how it is shown."""
+
+    label: str
+    value: float
+    dimension: Dimension | None
+    unit: str | None = None
+
+
+_Figures = Mapping[str, _Told]
+
+
+def _told_against(
+    kind: str, of: Callable[[Solved], _Figures], found: Solved, against: Solved | None
+) -> Values:
+    """Figures of a design, each with what it is in the other one where that has it too."""
+    try:
+        figures = of(found)
+    except EquipoiseError as error:
+        return {"type": kind, "figures": [], "compared": False, "notes": [error.told()]}
+    try:
+        others = {} if against is None else of(against)
+    except EquipoiseError:
+        others = {}
+    told = [_shown(name, one, others.get(name)) for name, one in figures.items()]
+    notes = list(map(said, planted(found).notes)) if kind == "planting" else []
+    return {"type": kind, "figures": told, "compared": bool(others), "notes": notes}
+
+
+def _shown(name: str, one: _Told, other: _Told | None) -> Values:
     """A figure in the unit in which it is told; None where it is not finite."""
-    shown = display(dimension, [value], unit)
-    there = shown.factor * value if isfinite(value) else None
-    return {"unit": shown.name, "value": there, "text": text_of(there)}
+    shown = display(one.dimension, [one.value], one.unit)
+
+    def there(value: float) -> float | None:
+        return shown.factor * value if isfinite(value) else None
+
+    now = there(one.value)
+    told = {"name": name, "label": one.label, "unit": shown.name, "value": now}
+    was = {} if other is None else {"was": was_of(there(other.value), now)}
+    return {**told, "text": text_of(now), **was}
 
 
-def _strokes(analysis: Analysis) -> Iterator[Values]:
+def _strokes(found: Solved) -> _Figures:
     """Figures of every slider and rocker, but for the crank angles at which they are."""
+    return dict(_strokes_of(found.analysis))
+
+
+def _strokes_of(analysis: Analysis) -> Iterator[tuple[str, _Told]]:
     for name, one in analysis.strokes.items():
         for kind in declared_figures():
             value = getattr(one, kind.name)
             if value is not None and not kind.name.endswith("_at"):
-                path = f"strokes.{name}.{kind.name}"
                 label = f"{joint_named(name)}: {say(kind.metadata['label'])}"
-                shown = _shown(value, dimension_of(analysis.machine, f"{name}.{kind.name}"))
-                yield {"name": path, "label": label, **shown}
+                dimension = dimension_of(analysis.machine, f"{name}.{kind.name}")
+                yield f"strokes.{name}.{kind.name}", _Told(label, value, dimension)
 
 
-def _planted(machine: Machine) -> Values:
-    """Figures of the tip's path, None where they are not finite, or why there are none."""
-    try:
-        found = plant(machine)
-    except EquipoiseError as error:
-        return {"type": "planting", "figures": [], "notes": [error.told()]}
-    figures = [
-        {"name": name, "label": say(one.words), **_shown(float(value), told.dimension, told.unit)}
+def _plants(found: Solved) -> bool:
+    """Whether there is a planting finger that moves."""
+    machine = found.design.machine
+    return machine.planting is not None and machine.drive.speed != 0
+
+
+@lru_cache(8)
+def planted(found: Solved) -> PlantingFigures:
+    """What a design plants, with the errors of `plant`."""
+    return plant(found.design.machine)
+
+
+def _planted(found: Solved) -> _Figures:
+    """Figures of the tip's path; none of a machine that has no planting finger."""
+    if not _plants(found):
+        return {}
+    figures = planted(found).figures
+    return {
+        name: _Told(say(one.words), float(figures[name]), told.dimension, told.unit)
         for name, one in FIGURES.items()
-        if name in found.figures
-        for value in [found.figures[name]]
-        for told in [cell(float(value), name)]
+        if name in figures
+        for told in [cell(float(figures[name]), name)]
         if told is not None
-    ]
-    return {"type": "planting", "figures": figures, "notes": list(map(said, found.notes))}
+    }

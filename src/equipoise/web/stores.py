@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,7 +22,7 @@ from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import kept
 from equipoise.studies.sampling import random_numbers
 from equipoise.studies.selection import best
-from equipoise.studies.store import UNKNOWN, Store, open_store
+from equipoise.studies.store import MARK, UNKNOWN, Store, open_store
 from equipoise.web.block import Array, Block, Values
 from equipoise.web.replies import Reply
 
@@ -45,6 +47,26 @@ assert {*REASONS} - {COMPUTED} <= WHY.keys()
 def is_store(path: str) -> bool:
     """Whether a path is that of a folder such as a store is."""
     return Path(path).is_dir()
+
+
+def stores_in(folder: Path) -> list[str]:
+    """Names of the stores that lie in a folder itself; links to elsewhere are left out."""
+    try:
+        return sorted(one.name for one in os.scandir(folder) if _looks_so(one))
+    except OSError:
+        return []
+
+
+def _looks_so(one: os.DirEntry[str]) -> bool:
+    """Whether an entry of a folder is a store by what it says of itself."""
+    try:
+        if one.name.startswith(".") or not one.is_dir(follow_symlinks=False):
+            return False
+        with open(Path(one) / "zarr.json", encoding="utf-8") as file:
+            told = json.load(file)
+        return MARK in told["attributes"]
+    except (OSError, ValueError, LookupError, TypeError):
+        return False
 
 
 @dataclass(frozen=True, eq=False)

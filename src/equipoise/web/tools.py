@@ -92,6 +92,13 @@ class ToolDesk:
         elif message.kind == "download":
             yield self._download(message)
             return
+        elif message.kind == "record":
+            raise UsageError(
+                Note(
+                    "a record stands beside curves over the crank angle, and a tool has none; open "
+                    "a linkage first"
+                )
+            )
         elif message.kind not in ("ready", "open"):
             raise UsageError(Note("{kind} is for linkages; a tool is open", kind=message.kind))
         yield self.told(message.seq)

@@ -11,6 +11,9 @@ import pytest
 
 import equipoise as eq
 from equipoise.exchange.mjcf import STEPS
+from equipoise.mechanism.support import unit_vector
+from support.conformance import compared
+from support.sources import MUJOCO
 
 START = 0.3
 """Crank angle at which the files are drawn, rad."""
@@ -21,14 +24,17 @@ RUNNING = [
 ]
 
 
-def opened(machine: eq.Machine, path: Path) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    eq.export(machine, path, crank_angle=START)
+def opened(
+    machine: eq.Machine, path: Path, start: float = START
+) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    eq.export(machine, path, crank_angle=start)
     model = mujoco.MjModel.from_xml_path(str(path))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
     return model, data
 
 
+@compared(MUJOCO, "drive torque of the exported file over a turn, its constraints soft", 0.02)
 @pytest.mark.parametrize("name", RUNNING)
 def test_a_turn_of_the_crank(name: str, tmp_path: Path) -> None:
     """Pins hold to 3e-4 of the size, since MuJoCo's are soft; the servo lags 1e-4 of the speed.
@@ -59,6 +65,26 @@ def test_a_turn_of_the_crank(name: str, tmp_path: Path) -> None:
     wanted = sum(eq.forces(eq.move(machine, late + phase)).drive_torque for phase in phases)
     settled = slice(STEPS // 10, None)
     assert np.max(np.abs(torques - wanted)[settled]) < 0.02 * np.max(np.abs(wanted))
+
+
+@compared(MUJOCO, "gauges of the exported file from rest, its constraints soft", 0.02)
+@pytest.mark.parametrize("name", ["yamashita-rig", "exudyn-slider-crank", "sieve"])
+def test_a_support_from_rest(name: str, tmp_path: Path) -> None:
+    """Its gauges for half a turn, to 2 % of their largest displacement, with the softness above."""
+    machine = replace(eq.load(name).with_drive(motor=None), balance=None)
+    model, data = opened(machine, tmp_path / "model.xml", 0.0)
+    seen = np.empty((STEPS // 2, len(machine.support.gauges), 3))
+    mujoco.mj_forward(model, data)
+    sites = [model.site(f"gauge {gauge}").id for gauge in machine.support.gauges]
+    start = data.site_xpos[sites].copy()
+    for step in range(len(seen)):
+        seen[step] = data.site_xpos[sites] - start
+        mujoco.mj_step(model, data)
+    times = (len(seen) - 1) * model.opt.timestep
+    exact = eq.simulate(machine, times, machine.drive.speed, samples=len(seen))
+    for number, (gauge, reading) in enumerate(machine.support.gauges.items()):
+        moved, wanted = seen[:, number] @ unit_vector(reading.direction), exact.gauges[gauge]
+        assert np.max(np.abs(moved - wanted)) < 0.02 * np.max(np.abs(wanted)), gauge
 
 
 def test_a_constant_load(tmp_path: Path) -> None:

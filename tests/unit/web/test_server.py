@@ -19,6 +19,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from equipoise.balancing.balanced import Balanced
 from equipoise.errors import UsageError
+from equipoise.web import balanced as balanced_module
 from equipoise.web import page as page_module
 from equipoise.web import server as served_module
 from equipoise.web import session as session_module
@@ -196,7 +197,7 @@ def test_dragging_goes_on_while_something_takes_long(
         assert dragged.wait(20)
         return balanced(design, hold)
 
-    monkeypatch.setattr(session_module, "balanced", slowly)
+    monkeypatch.setattr(balanced_module, "balanced", slowly)
     with here.page() as page:
         hear(page)
         assert ask(page, {"type": "balance", "seq": 1})["type"] == "busy"
@@ -313,7 +314,7 @@ def test_work_ends_with_its_page_and_leaves_no_word(
         finally:
             ended.set()
 
-    monkeypatch.setattr(session_module, "balanced", without_end)
+    monkeypatch.setattr(balanced_module, "balanced", without_end)
     with here.page() as page:
         hear(page)
         assert ask(page, {"type": "balance", "seq": 1})["type"] == "busy"

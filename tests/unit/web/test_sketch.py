@@ -281,6 +281,54 @@ def test_numbers_of_what_is_unfinished_are_typed() -> None:
     assert sentence == "got a length of -5 mm; give more than 0"
 
 
+def test_one_slider_or_pair_of_gears_is_deleted() -> None:
+    maker = Maker()
+    maker.session = opened("slider-crank-engine")[0]
+    assert "can move freely" in maker.do("delete", what="slider", name="piston on frame")
+    sketch = maker.session.base().design
+    assert not sketch.sliders and "piston" in sketch.links  # which has a mass
+    assert maker.seen.content["notes"] == []
+    told = "no slider is called 'x on y'"
+    assert told in maker.refused("delete", what="slider", name="x on y")
+    maker = Maker()
+    maker.session = opened("geared-counterweight")[0]
+    name = maker.machine.gears[0].name
+    count = len(maker.machine.gears)
+    maker.do("delete", what="gears", name=name)
+    assert len(maker.session.base().design.gears) == count - 1
+
+
+def test_a_bare_block_goes_with_its_slider() -> None:
+    maker = Maker()
+    maker.do("new")
+    maker.do("link", **{"from": at(0j, "frame"), "to": at(0.03 + 0j)})
+    maker.do("slider", **{"from": spot("B"), "to": at(0.1 + 0j, "frame")})
+    (slider,) = maker.session.base().design.sliders
+    maker.do("delete", what="slider", name=slider.name)
+    assert [*maker.session.base().design.links] == ["crank"]
+
+
+def test_locked_lengths_stay_while_another_is_typed() -> None:
+    maker = Maker()
+    maker.do("new")
+    maker.do("link", **{"from": at(0j, "frame"), "to": at(0.05 + 0j)})
+    maker.do("link", **{"from": spot("B"), "to": at(0.08 + 0.06j)})
+    length = abs(0.03 + 0.06j)
+
+    def typed(text: str, **edit: object):
+        path = "links.crank.lengths.A-B"
+        edits = [{"set": path, "text": text, "keep": ["C"], **edit}]
+        return ask(maker.session, "edit", commit=True, label="x", edits=edits)
+
+    typed("70 mm")
+    places = maker.session.base().design.places
+    assert abs(places["B"] - places["A"]) == pytest.approx(0.07)
+    assert abs(places["C"] - places["B"]) == pytest.approx(length)
+    assert refusal(typed("500 mm")) == "C–B would not stay as long as locked"
+    typed("500 mm", keep=[])
+    assert abs(maker.session.base().design.places["B"]) == pytest.approx(0.5)
+
+
 def test_locked_lengths_stay_while_a_point_is_dragged() -> None:
     for page in (four_bar(), Maker(opened("yamashita-1")[0])):
         before = state(ask(page.session, "ready")[1])

@@ -76,6 +76,31 @@ def test_figures_of_sliders_and_rockers_are_told_in_the_units_of_tables() -> Non
     assert "block on lever: least mechanical advantage" not in told
 
 
+def test_strokes_and_planting_are_told_before_and_after() -> None:
+    session, _ = opened("kim-chung-a")
+    assert not any(one.content["compared"] for one in session.tell_more())
+    edit(session, {"set": "drive.speed", "text": "100 rpm"})
+    strokes, planting = session.tell_more()
+    assert [one["was"] for one in strokes.content["figures"] if one["was"]] == []  # a path has none
+    was = {one["name"]: one["was"] for one in planting.content["figures"]}
+    assert was["hill_spacing"] == "150.0 · +140.0 %"
+    ask(session, "variant", do="pin")
+    edit(session, {"set": "links.rocker.lengths.D-C", "text": "82 mm"})
+    for one in session.tell_more():
+        assert any(figure["was"] for figure in one.content["figures"])
+    ask(session, "variant", do="against", to="nothing")
+    assert session.has_more
+    assert not any(one.content["compared"] for one in session.tell_more())
+
+
+def test_no_more_is_told_of_what_is_unfinished_by_then() -> None:
+    session, _ = opened("slider-crank-engine")
+    assert session.has_more
+    more = session.tell_more()
+    ask(session, "make", do="delete", what="link", name="crank")
+    assert not [*more]
+
+
 def test_what_is_infinite_is_drawn_with_gaps() -> None:
     name = "sliders.piston on frame.advantage"
     session, _ = opened("slider-crank-engine")

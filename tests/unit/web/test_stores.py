@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,8 @@ from equipoise.studies import best, open_store, run_study
 from equipoise.web import stores
 from equipoise.web.desk import begun
 from equipoise.web.messages import message_of
+from equipoise.web.session import Session
+from surface.running import example_text
 
 STUDY = """
 schema = 1
@@ -107,6 +110,30 @@ def test_what_cannot_be_opened_is_told(path, tmp_path) -> None:
     assert "give one to `equipoise serve`" in ask(other, "study")[0].content["message"]
     with pytest.raises(UsageError):
         begun(str(tmp_path))
+
+
+def test_stores_of_the_folder_are_opened_by_their_names_alone(path, tmp_path, monkeypatch) -> None:
+    folder = Path(path).parent
+    monkeypatch.chdir(folder)
+    (folder / "other").mkdir()
+    (folder / "link.zarr").symlink_to(path)
+    desk = begun(None)()
+    (listed,) = ask(desk, "stores")
+    assert (listed.content["folder"], listed.content["names"]) == (folder.name, ["lengths.zarr"])
+    for name in ("../" + Path(path).name, str(path), "other", "link.zarr", ""):
+        told = ask(desk, "study", store=name)[0].content["message"]
+        assert told == f"{folder.name} has no store of the name {name!r}; choose one that is listed"
+    (shown,) = ask(desk, "study", store="lengths.zarr")
+    assert shown.content["type"] == "study" and ask(desk, "ready")[0].content["study"]
+    again = begun(None)()  # as after a reload
+    told = ask(again, "design", number=shown.content["best"][0], store="lengths.zarr")[0]
+    assert told.content["name"] == f"lengths.zarr {shown.content['best'][0]}"
+    model = folder / "model.toml"
+    model.write_text(example_text("yamashita-1"), encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    assert ask(begun(None)(), "stores")[0].content["names"] == []
+    assert ask(begun(str(model))(), "stores")[0].content["names"] == ["lengths.zarr"]
+    assert ask(Session(), "stores")[0].content["folder"] is None
 
 
 def test_of_many_designs_some_are_drawn_and_the_best_among_them(path, monkeypatch) -> None:

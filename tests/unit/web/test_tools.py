@@ -94,6 +94,7 @@ def test_numbers_are_set_by_the_paths_of_studies_and_figures_told_before_and_aft
         (("edit", {"edits": [{"set": "shaft.colour", "text": "1"}]}), "shaft.colour"),
         (("edit", {"edits": [{"move": "A", "to": [0, 0]}]}), "no joints to be dragged"),
         (("balance", {}), "balance is for linkages; a tool is open"),
+        (("record", {"text": "x"}), "a record stands beside curves over the crank angle, and a"),
         (("undo", {}), "there is nothing to undo"),
         (("download", {"kind": "csv"}), "of a tool, model or report"),
     ],

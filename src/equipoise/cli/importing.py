@@ -1,0 +1,96 @@
+"""The command `import`: a machine from a file of another program."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from equipoise.cli.options import Many, Names, Rate, naming, read_by, size, wants
+from equipoise.cli.outputs import Shown, check_new, wrote
+from equipoise.errors import UsageError
+
+
+def _unit(option: str, text: str) -> float:
+    """A length, or the unit of one: m."""
+    from equipoise.cli.options import quantity
+
+    value = quantity(option, text if text[:1].isdigit() else f"1 {text}", "length")
+    if value <= 0:
+        raise UsageError(
+            f"{option}: got {text!r}; give a unit such as mm, or a length of more than 0"
+        )
+    return value
+
+
+def import_file(
+    file: Annotated[str, Parameter(name="FILE")],
+    /,
+    *,
+    out: Annotated[str | None, Parameter(name=["--out", "-o"], metavar="FILE")] = None,
+    crank: Annotated[str | None, wants("LINK")] = None,
+    speed: Rate = None,
+    frame: Names = None,
+    guide: Names = None,
+    link: Names = None,
+    unit: Annotated[float | None, read_by(_unit, "UNIT")] = None,
+    pin: Annotated[Many, wants('"A = B"')] = None,
+    tolerance: Annotated[
+        float | None, size("length", "give more than 0"), wants('"0.1 mm"')
+    ] = None,
+    shown: Shown = Shown(),
+) -> None:
+    """Make a model file of a DXF or SVG drawing, of MJCF or URDF, or of Linkage or PMKS+.
+
+    Parameters
+    ----------
+    file
+        Path of the file; what it is, its content and its ending tell.
+    out
+        Model file to write; FILE.toml beside you if not given.
+    crank
+        Driven link; if not given the file's, or one that turns fully.
+    speed
+        Speed of the crank instead of the file's.
+    frame
+        Of a drawing: layer, colour or group of what stands still; "frame", "ground", "fixed" and
+        "base" if not given.  Of a model: body that stands still.  May be repeated.
+    guide
+        Of a drawing: layer, colour or group of lines on which ends of links slide; "guide",
+        "slider" and "rail" if not given.  May be repeated.
+    link
+        Of a drawing: layer, colour or group, what is drawn under which is one link.  May be
+        repeated.
+    unit
+        Of a drawing: its unit, such as mm, or the length of one, such as "0.5 mm", instead of what
+        it tells.
+    pin
+        Of a model: two bodies or sites that a pin joins, where the file closes no loops, as
+        "rod_end = rocker_end".  May be repeated.
+    tolerance
+        Of a drawing: distance below which ends of lines meet; a millionth of its size if not given.
+    """
+    from equipoise.exchange.reading.formats import import_machine
+    from equipoise.present import show_blocks
+    from equipoise.schema.files import write
+
+    path = f"{Path(file).stem}.toml" if out is None else out
+    with naming(file):
+        found = import_machine(
+            file,
+            crank=crank or "",
+            speed=speed,
+            frame=frame or (),
+            guide=guide or (),
+            link=link or (),
+            tolerance=tolerance or 0.0,
+            pin=pin or (),
+            unit=unit,
+        )
+    check_new(found.outline.machine(), path)
+    text = found.text()
+    with shown.showing(found.machine):
+        show_blocks(str(found.outline.rest["title"]), found.blocks())
+    write(path, text, replace=False)
+    wrote(path)

@@ -1,0 +1,188 @@
+"""A script for Exudyn: `exudyn_script`, and in it the model as plain data."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pprint import pformat
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.exchange.formats import Job
+from equipoise.exchange.tree import (
+    Tree,
+    constant_loads,
+    mass_of,
+    moment_of,
+    preloads,
+    trees,
+    weighed,
+)
+from equipoise.mechanism.joints import structure
+from equipoise.mechanism.model import FRAME, Machine
+from equipoise.mechanism.motion import move
+from equipoise.mechanism.support import PLANAR, Support, unit_vector
+
+Data = dict[str, Any]
+End = tuple[str, list[float]]
+BASE, GROUND = "support", "ground"
+LISTS = ("pins", "sliders", "geared", "springs", "loads", "mounts", "held")
+EMPTY = "MODEL: Data = {}"
+
+
+def made(job: Job) -> str:
+    """The file's text."""
+    script = files("equipoise.exchange").joinpath("exudyn_script.py").read_text("utf-8")
+    before, _, after = script.partition(EMPTY)
+    model = pformat(_model(job), width=100, sort_dicts=False)
+    return f"{before}TITLE = {str(job.machine.title)!r}\n{EMPTY[:-2]}{model}{after}"
+
+
+def _model(job: Job) -> Data:
+    """Everything that the script builds, with names of rows behind those of links."""
+    machine, drawn = weighed(job.machine), trees(job.machine, job.crank_angle)
+    job.leave_out_motor()
+    support, base = machine.support, "" if machine.support is None else BASE
+    model: Data = {
+        "crank_angle": job.crank_angle,
+        "gravity": list(machine.gravity),
+        "bodies": {} if support is None else {BASE: _support(machine, support)},
+        **{
+            kind: [] for kind in ("pins", "sliders", "geared", "springs", "loads", "mounts", "held")
+        },
+    }
+    for tree in drawn:
+        _row(model, tree, job, machine.drive.flywheel if tree is drawn[0] else 0.0)
+    if support is not None:
+        held = (number for number, name in enumerate(PLANAR) if name not in support.coordinates)
+        model["mounts"] = _mounts(machine, support)
+        model["held"] = [(BASE, number) for number in held]
+        if support.pivot is not None:
+            model["pins"].append([(GROUND, list(support.pivot)), _on_base(machine, support.pivot)])
+            model["held"] = []
+    crank, *others = (f"{machine.drive.link}{tree.suffix}" for tree in drawn)
+    model["drive"] = {"body": crank, "on": base, "speed": machine.drive.speed, "others": others}
+    return model
+
+
+# -- bodies, joints --------------------------------------------------------------------------------
+
+
+def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
+    """One linkage."""
+    machine, motion = (
+        tree.machine,
+        move(tree.machine, [tree.crank_angle + tree.row.phase], acceleration=0.0),
+    )
+    shift = complex(*tree.row.offset)
+    for name, link in machine.links.items():
+        mass, _, inertia = mass_of(link)
+        center, turning = motion.mass_centers[name], motion.links[name]
+        place, speed = complex(center.place[0]) + shift, complex(center.velocity[0])
+        model["bodies"][f"{name}{tree.suffix}"] = {
+            "mass": mass,
+            "inertia": inertia + (flywheel if name == machine.drive.link else 0.0),
+            "pose": [place.real, place.imag, float(turning.angle[0])],
+            "velocity": [speed.real, speed.imag, float(turning.angular_velocity[0])],
+        }
+    for pin, (first, *others) in structure(machine).pins.items():
+        model["pins"] += [[_end(tree, first, pin), _end(tree, other, pin)] for other in others]
+    for slider in machine.sliders:
+        way = np.exp(1j * slider.direction)
+        across = 1j * np.exp(-1j * slider.angle)  # in the axes of what slides
+        ends = [_end(tree, slider.on, slider.through), _end(tree, slider.link, slider.point)]
+        axes = ([float(one.real), float(one.imag), 0.0] for one in (way, across))
+        model["sliders"].append(dict(zip(("ends", "axis", "normal"), (ends, *axes), strict=True)))
+    model["geared"] += _geared(tree)
+    for spring in machine.springs:
+        ends = [_end(tree, FRAME, spring.to), _end(tree, spring.link, spring.point)]
+        rates = {"stiffness": spring.stiffness, "length": spring.free_length}
+        model["springs"].append({"ends": ends, **rates})
+    for _, load in constant_loads(job):
+        end = _end(tree, load.link, load.point or next(iter(machine.links[load.link].points)))
+        force = list(load.force or (0.0, 0.0))
+        model["loads"].append({"end": end, "force": force, "torque": load.torque or 0.0})
+
+
+def _end(tree: Tree, body: str, point: str) -> End:
+    """A point from the centre of mass of its body; the frame is the support, or the ground."""
+    machine = tree.machine
+    x, y = machine.points_of(body)[point]
+    if body == FRAME:
+        x, y = x + tree.row.offset[0], y + tree.row.offset[1]
+        return (GROUND, [x, y]) if machine.support is None else _on_base(machine, (x, y))
+    _, (cx, cy), _ = mass_of(machine.links[body])
+    return f"{body}{tree.suffix}", [x - cx, y - cy]
+
+
+def _geared(tree: Tree) -> list[Data]:
+    """Links that turn so many times as fast as one other, as gears make them.
+
+    Raises
+    ------
+    UsageError : gears sit on three bodies of which none follows another or stands still.
+    """
+    shares: dict[str, dict[str, float]] = {}
+    for gear in tree.machine.gears:
+        ratio, total = gear.speed_ratio, dict[str, float]()
+        for body, share in ((gear.driver, ratio), (gear.carrier, 1 - ratio)):
+            for root, factor in shares.get(body, {body: 1.0}).items():
+                total[root] = total.get(root, 0.0) + share * factor
+        total.pop(FRAME, None)
+        shares[gear.driven] = {body: factor for body, factor in total.items() if factor}
+        if len(shares[gear.driven]) > 1 or tree.machine.support is not None:
+            raise UsageError(
+                f"the gears {gear.name} follow two bodies that move, which the file's format has "
+                "no joint for; give another format"
+            )
+    named = ((driven, by, one) for driven, follows in shares.items() for by, one in follows.items())
+    return [
+        {"driven": f"{driven}{tree.suffix}", "by": f"{by}{tree.suffix}", "factor": factor}
+        for driven, by, factor in named
+    ]
+
+
+# -- the support -----------------------------------------------------------------------------------
+
+
+def _support(machine: Machine, support: Support) -> Data:
+    """The body that carries the linkages.
+
+    Raises
+    ------
+    UsageError : it moves out of the plane.
+    """
+    if not support.planar:
+        raise UsageError(
+            "the support moves out of the plane of the drawing, but the format's model is planar; "
+            "give mjcf, or a support with other freedoms"
+        )
+    inertia = moment_of(support) - machine.drive.flywheel  # which turns with the crank
+    pose = [*support.center_of_mass[:2], 0.0]
+    return {"mass": support.mass, "inertia": inertia, "pose": pose, "velocity": [0.0, 0.0, 0.0]}
+
+
+def _on_base(machine: Machine, place: tuple[float, float]) -> End:
+    assert machine.support is not None
+    cx, cy = machine.support.center_of_mass[:2]
+    return BASE, [place[0] - cx, place[1] - cy]
+
+
+def _mounts(machine: Machine, support: Support) -> list[Data]:
+    carried = preloads(machine)
+    found = []
+    for name, mount in support.mounts.items():
+        place = (support.reference if mount.point is None else mount.point)[:2]
+        found.append(
+            {
+                "body": BASE,
+                "at": _on_base(machine, place)[1],
+                "ground": list(place),
+                "along": list(unit_vector(mount.direction)[:2]),
+                "torsional": mount.axis is not None,
+                "rates": [carried[name], mount.spring, mount.damper],
+                "one_sided": mount.one_sided,
+            }
+        )
+    return found

@@ -1,0 +1,189 @@
+"""A linkage in Exudyn, planar: bodies by their centres of mass, joints as constraints, SI units.
+
+Run it for one turn of the crank; or call `simulate` for more.
+"""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Any
+
+import exudyn
+import numpy as np
+from exudyn import itemInterface as item
+
+Data = dict[str, Any]
+MODEL: Data = {}
+
+
+class Build:
+    """The system of Exudyn, drawn where the model is and moving as it does there."""
+
+    def __init__(self, model: Data) -> None:
+        self.model, self.container = model, exudyn.SystemContainer()
+        self.system = self.container.AddSystem()
+        self.ground = self.system.AddObject(item.ObjectGround())
+        still = self.system.AddNode(item.NodePointGround())
+        self.still = self.marker(item.MarkerNodeCoordinate(nodeNumber=still, coordinate=0))
+        self.nodes: dict[str, int] = {}
+        self.objects: dict[str, int] = {"ground": self.ground}
+        for name, body in model["bodies"].items():
+            self.body(name, **body)
+        for pin in model["pins"]:
+            self.add(item.ObjectJointRevolute2D(markerNumbers=self.both(pin)))
+        for guide in model["sliders"]:
+            kinds = {"axisMarker0": guide["axis"], "normalMarker1": guide["normal"]}
+            self.add(item.ObjectJointPrismatic2D(markerNumbers=self.both(guide["ends"]), **kinds))
+        for turning in model["geared"]:
+            self.geared(**turning)
+        for spring in model["springs"]:
+            self.spring(**spring)
+        for load in model["loads"]:
+            self.load(**load)
+        for mount in model["mounts"]:
+            self.mount(**mount)
+        for body, coordinate in model["held"]:
+            self.add(item.ObjectConnectorCoordinate(markerNumbers=self.pair("", body, coordinate)))
+        self.drive = self.driven(**model["drive"])
+
+    def marker(self, made: Any) -> int:
+        """Add a marker."""
+        return int(self.system.AddMarker(made))
+
+    def add(self, made: Any) -> int:
+        """Add an object."""
+        return int(self.system.AddObject(made))
+
+    def body(
+        self, name: str, mass: float, inertia: float, pose: list[float], velocity: list[float]
+    ) -> None:
+        """Add a rigid body whose reference point is its centre of mass."""
+        node = item.NodeRigidBody2D(referenceCoordinates=pose, initialVelocities=velocity)
+        self.nodes[name] = self.system.AddNode(node)
+        rigid = item.ObjectRigidBody2D(nodeNumber=self.nodes[name], mass=mass, inertia=inertia)
+        self.objects[name] = self.add(rigid)
+        weighed = self.marker(item.MarkerBodyMass(bodyNumber=self.objects[name]))
+        weight = [*self.model["gravity"], 0]
+        self.system.AddLoad(item.LoadMassProportional(markerNumber=weighed, loadVector=weight))
+
+    def place(self, end: tuple[str, list[float]]) -> int:
+        """Mark a point of a body, told from its centre of mass."""
+        body, at = end
+        rigid = item.MarkerBodyRigid(bodyNumber=self.objects[body], localPosition=[*at, 0])
+        return self.marker(rigid)
+
+    def both(self, ends: list[Any]) -> list[int]:
+        """Mark both ends of a joint."""
+        return [self.place(end) for end in ends]
+
+    def coordinate(self, body: str, number: int = 2) -> int:
+        """Mark a coordinate of a body, its angle if not said; of the ground, what stands still."""
+        if not body:
+            return self.still
+        return self.marker(
+            item.MarkerNodeCoordinate(nodeNumber=self.nodes[body], coordinate=number)
+        )
+
+    def pair(self, one: str, other: str, number: int = 2) -> list[int]:
+        """Mark the same coordinate of two bodies."""
+        return [self.coordinate(one, number), self.coordinate(other, number)]
+
+    def geared(self, driven: str, by: str, factor: float) -> None:
+        """Turn a body so many times as fast as another."""
+        pair = self.pair(driven, by)
+        self.add(item.ObjectConnectorCoordinate(markerNumbers=pair, factor1=factor))
+
+    def spring(self, ends: list[Any], stiffness: float, length: float) -> None:
+        """Put a spring between two points."""
+        both = self.both(ends)
+        self.add(
+            item.ObjectConnectorSpringDamper(
+                markerNumbers=both, stiffness=stiffness, referenceLength=length
+            )
+        )
+
+    def load(self, end: Any, force: list[float], torque: float) -> None:
+        """Load a body by a force at a point and a torque, always the same."""
+        at = self.place(end)
+        self.system.AddLoad(item.LoadForceVector(markerNumber=at, loadVector=[*force, 0]))
+        self.system.AddLoad(item.LoadTorqueVector(markerNumber=at, loadVector=[0, 0, torque]))
+
+    def mount(
+        self,
+        body: str,
+        at: list[float],
+        ground: list[float],
+        along: list[float],
+        torsional: bool,
+        rates: list[float],
+        one_sided: bool,
+    ) -> None:
+        """Push a body along a line, or turn it: by a preload, less by way and by speed."""
+        preload, stiffness, damping = rates
+        if torsional:
+            pair = self.pair("", body)
+            rest = preload / (stiffness or 1.0)
+            spring: Data = {"stiffness": stiffness, "damping": damping, "offset": rest}
+            self.add(item.ObjectConnectorCoordinateSpringDamper(markerNumbers=pair, **spring))
+            return
+        line = np.array([*along, 0.0])
+
+        def push(_: Any, t: float, number: int, way: Any, speed: Any, *rest: Any) -> list[float]:
+            size = preload - stiffness * (line @ way) - damping * (line @ speed)
+            size = max(size, 0.0) if one_sided else size
+            return [float(-one) for one in size * line]
+
+        ends = self.both([("ground", ground), (body, at)])
+        pushed: Data = {"stiffness": [stiffness] * 3, "springForceUserFunction": push}
+        self.add(item.ObjectConnectorCartesianSpringDamper(markerNumbers=ends, **pushed))
+
+    def driven(self, body: str, on: str, speed: float, others: list[str]) -> int:
+        """Turn the crank, and with it those of other rows, at constant speed against a body."""
+
+        def turn(_: Any, t: float, number: int, offset: float) -> float:
+            return speed * t
+
+        def rate(_: Any, t: float, number: int, offset: float) -> float:
+            return speed
+
+        for other in others:
+            self.add(item.ObjectConnectorCoordinate(markerNumbers=self.pair(body, other)))
+        turned: Data = {"offsetUserFunction": turn, "offsetUserFunction_t": rate}
+        return self.add(item.ObjectConnectorCoordinate(markerNumbers=self.pair(on, body), **turned))
+
+
+def simulate(turns: float = 1.0, steps_per_turn: int = 2000, model: Data | None = None) -> Data:
+    """Move for some turns of the crank; the crank angle, rad, and the drive's torque, N m, (N,);
+    and of each body x, y, m, and angle, rad, from where it is drawn, (N, 3).
+    """
+    built = Build(MODEL if model is None else model)
+    system, speed = built.system, abs(built.model["drive"]["speed"])
+    kinds = exudyn.OutputVariableType
+    kept: Data = {"storeInternal": True, "writeToFile": False}
+    torque = item.SensorObject(objectNumber=built.drive, outputVariableType=kinds.Force, **kept)
+    sensors = {"": system.AddSensor(torque)}
+    for name, node in built.nodes.items():
+        sensor = item.SensorNode(nodeNumber=node, outputVariableType=kinds.Coordinates, **kept)
+        sensors[name] = system.AddSensor(sensor)
+    system.Assemble()
+    chosen = exudyn.SimulationSettings()
+    chosen.solution.file.write = False
+    chosen.solution.sensors.writePeriod = 2 * pi / speed / steps_per_turn
+    chosen.timeIntegration.endTime = 2 * pi / speed * turns
+    chosen.timeIntegration.numberOfSteps = round(turns * steps_per_turn)
+    chosen.timeIntegration.generalizedAlpha.spectralRadius = 0.8
+    chosen.timeIntegration.newton.relativeTolerance = 1e-10
+    chosen.timeIntegration.verboseMode = 0
+    system.SolveDynamic(chosen)
+    told: Data = {name: system.GetSensorStoredData(sensor) for name, sensor in sensors.items()}
+    time, force = told.pop("").T
+    start, rate = built.model["crank_angle"], built.model["drive"]["speed"]
+    moved = {name: values[:, 1:4] for name, values in told.items()}
+    return {"crank_angle": start + rate * time, "drive_torque": -force, "bodies": moved}
+
+
+if __name__ == "__main__":
+    found = simulate()
+    print("crank_angle [rad],drive_torque [N m]")
+    for angle, torque in zip(found["crank_angle"], found["drive_torque"], strict=True):
+        print(f"{angle!r},{torque!r}")

@@ -1,0 +1,138 @@
+"""DXF drawings by ezdxf: lines, circles and hatchings of the model space, blocks taken apart."""
+
+from __future__ import annotations
+
+import logging
+from collections import deque
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from io import BytesIO
+from itertools import count as count_from
+from typing import Any
+
+from equipoise.errors import ModelError, needed
+from equipoise.exchange.reading.found import Read
+from equipoise.exchange.reading.strokes import Drawing, Marks, Ring, Stroke, skeleton
+
+UNITS = {1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 8: 2.54e-8, 9: 2.54e-5, 10: 0.9144,
+         13: 1e-6, 14: 0.1}  # fmt: skip
+"""m in a unit of $INSUNITS."""
+MILLIMETRE = 1e-3
+COLOURS = {1: "red", 2: "yellow", 3: "green", 4: "cyan", 5: "blue", 6: "magenta", 7: "white"}
+DEEPEST, MOST = 6, 20_000
+"""Blocks in blocks, and entities in all."""
+DAMAGED = "recovered invalid floating"
+"""How ezdxf begins to tell that it has read a number otherwise than it is written."""
+CURVES = {"ARC", "ELLIPSE", "SPLINE", "LINE", "LWPOLYLINE", "POLYLINE"}
+
+
+def read(data: bytes, marks: Marks, unit: float | None) -> Read:
+    """The machine of a drawing.
+
+    unit : m in a unit of it, instead of what it tells.
+
+    Raises
+    ------
+    ModelError : it cannot be read, or has no lines.
+    """
+    recover = needed("ezdxf.recover", "a DXF drawing")
+    try:
+        with _heard() as warnings:
+            document, _ = recover.read(BytesIO(data))
+            drawing = _drawing(document, unit)
+    except (ModelError, MemoryError):
+        raise
+    except Exception as error:  # of many kinds, where a file is damaged
+        raise ModelError("", "this is no DXF drawing that can be read; save it anew") from error
+    if damaged := next((one for one in warnings if one.startswith(DAMAGED)), ""):
+        line = damaged.partition(" near line ")[2].partition(" ")[0]
+        raise ModelError("", f"near line {line} of the drawing a number is damaged; save it anew")
+    return skeleton(drawing, marks)
+
+
+@contextmanager
+def _heard() -> Iterator[list[str]]:
+    """What ezdxf warns of meanwhile, which nobody else is told."""
+    heard: list[str] = []
+    handler = logging.Handler()
+    handler.emit = lambda record: heard.append(record.getMessage())  # type: ignore[method-assign]
+    logger = logging.getLogger("ezdxf")
+    logger.addHandler(handler)
+    propagated, logger.propagate = logger.propagate, False
+    try:
+        yield heard
+    finally:
+        logger.propagate = propagated
+        logger.removeHandler(handler)
+
+
+def _drawing(document: Any, unit: float | None) -> Drawing:
+    drawing = Drawing("")
+    told = UNITS.get(int(document.header.get("$INSUNITS", 0)))
+    if unit is None and told is None:
+        drawing.note("the drawing tells no unit and is taken for millimetres; --unit tells another")
+    scale = unit or told or MILLIMETRE
+    for entity in _entities(document, document.modelspace()):
+        _add(drawing, entity, scale)
+    return drawing
+
+
+def _entities(document: Any, entities: Iterable[Any]) -> Iterator[Any]:
+    """What is seen, with blocks taken apart."""
+    hidden = {layer.dxf.name.casefold() for layer in document.layers
+              if layer.is_off() or layer.is_frozen()}  # fmt: skip
+    left = deque((one, 0) for one in entities)
+    for count in count_from(1):
+        if not left:
+            return
+        entity, deep = left.popleft()
+        if count > MOST:
+            raise ModelError("", f"the drawing has more than {MOST:,} entities; give a skeleton")
+        if entity.dxf.layer.casefold() in hidden or entity.dxf.get("invisible", 0):
+            continue
+        if entity.dxftype() != "INSERT":
+            yield entity
+        elif deep < DEEPEST and entity.mcount <= MOST:
+            single = entity.multi_insert() if entity.mcount > 1 else (entity,)
+            parts = [(one, deep + 1) for part in single for one in part.virtual_entities()]
+            left.extendleft(reversed(parts))
+
+
+def _add(drawing: Drawing, entity: Any, scale: float) -> None:
+    from ezdxf.path import from_hatch, make_path
+
+    kind = entity.dxftype()
+    colour = COLOURS.get(entity.dxf.get("color", 256), "")
+    names = tuple(filter(None, (entity.dxf.layer, colour)))
+    if kind == "CIRCLE":
+        x, y, _ = entity.ocs().to_wcs(entity.dxf.center)
+        drawing.rings.append(Ring(_place(x, y, scale), float(entity.dxf.radius) * scale, names))
+    elif kind == "POINT":
+        x, y, _ = entity.dxf.location
+        drawing.rings.append(Ring(_place(x, y, scale), 0.0, names))
+    elif kind == "TEXT" and (word := entity.dxf.text.strip()).isprintable() and word:
+        x, y, _ = entity.dxf.insert
+        drawing.words.append((_place(x, y, scale), word[:100]))
+    elif kind == "HATCH":
+        drawing.areas += [Stroke(tuple(_corners(path, scale)), names, True)
+                          for path in from_hatch(entity) if len(path)]  # fmt: skip
+    elif kind in CURVES:
+        path = make_path(entity)
+        if not len(path):
+            return
+        places = [*_corners(path, scale)]
+        closed = len(places) > 2 and abs(places[-1] - places[0]) < 1e-12 * scale
+        drawing.strokes.append(Stroke(tuple(places[:-1] if closed else places), names, closed))
+
+
+def _corners(path: Any, scale: float) -> Iterator[complex]:
+    """The start, and the end of every piece."""
+    yield _place(path.start.x, path.start.y, scale)
+    yield from (_place(one.end.x, one.end.y, scale) for one in path.commands())
+
+
+def _place(x: float, y: float, scale: float) -> complex:
+    place = complex(x, y) * scale
+    if not abs(place) < 1e9:
+        raise ModelError("", "a line lies beyond all machines; check the drawing's coordinates")
+    return place

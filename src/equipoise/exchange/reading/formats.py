@@ -1,0 +1,175 @@
+"""What is read of other programs: one declaration a format."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import Element
+
+from equipoise.errors import ModelError, UsageError
+from equipoise.exchange.reading import dxf, linkage2, mjcf, pmks, svg, urdf
+from equipoise.exchange.reading.found import Imported, Read, finished
+from equipoise.exchange.reading.markup import tree_of
+from equipoise.exchange.reading.spatial import Told as Bodies
+from equipoise.exchange.reading.strokes import Marks
+from equipoise.schema.files import FileError, printable, read_bytes, read_text
+
+SMALL, LARGE = 2_000_000, 20_000_000
+"""Bytes of a text, and of a drawing, that are read at most."""
+
+
+DRAWN = ("frame", "guide", "link", "tolerance", "unit")
+
+
+MODELS = ("frame", "pin")
+"""What can be told of a drawing, and of bodies in space."""
+
+
+@dataclass(frozen=True)
+class Told:
+    """What is told beside the file.  unit : m in a unit of it; `None` as it tells itself."""
+
+    marks: Marks
+    bodies: Bodies
+    unit: float | None
+
+
+@dataclass(frozen=True)
+class Format:
+    """One kind of file.
+
+    holds : what is read of it.  endings : of its files.  root : of its XML, where it is XML.
+    read : the machine of its content: XML by its root, text, or bytes.
+    takes : which options it takes besides `crank` and `speed`.
+    """
+
+    name: str
+    title: str
+    holds: str
+    endings: tuple[str, ...]
+    read: Callable[[Any, Told], Read]
+    root: str = ""
+    takes: tuple[str, ...] = ("unit",)
+
+
+FORMATS: Mapping[str, Format] = {
+    one.name: one
+    for one in (
+        Format("dxf", "DXF drawing", "lines, polylines, circles, hatchings, blocks", (".dxf",),
+               lambda data, told: dxf.read(data, told.marks, told.unit), takes=DRAWN),
+        Format("svg", "SVG drawing", "lines, paths, polygons, circles, groups", (".svg",),
+               lambda root, told: svg.read(root, told.marks, told.unit), "svg", takes=DRAWN),
+        Format("mjcf", "MuJoCo (MJCF)", "bodies, hinges, slides, connect, weld, gears, springs, "
+               "masses of bodies and shapes, the drive", (".xml", ".mjcf"),
+               lambda root, told: mjcf.read(root, told.bodies), "mujoco", MODELS),
+        Format("urdf", "URDF", "links, revolute, continuous, prismatic, planar and fixed joints, "
+               "mimic, masses", (".urdf",),
+               lambda root, told: urdf.read(root, told.bodies), "robot", MODELS),
+        Format("linkage2", "Linkage", "connectors, links, anchors, sliders, the input",
+               (".linkage2", ".linkage"), lambda root, told: linkage2.read(root, told.unit),
+               "linkage2"),
+        Format("pmks", "PMKS+", "joints, links, sliders on the frame, the input", (".pmks",),
+               lambda text, told: pmks.read(text, told.unit)),
+    )
+}  # fmt: skip
+"""By name."""
+
+
+def import_machine(
+    path: str | os.PathLike[str],
+    *,
+    crank: str = "",
+    speed: float | None = None,
+    frame: Iterable[str] = (),
+    guide: Iterable[str] = (),
+    link: Iterable[str] = (),
+    pin: Iterable[str] = (),
+    tolerance: float = 0.0,
+    unit: float | None = None,
+) -> Imported:
+    """Read a machine from a file of another program.
+
+    Parameters
+    ----------
+    path : of a drawing (DXF, SVG), a model (MJCF, URDF), or a file of Linkage or PMKS+; which it
+        is, its content and its ending tell.
+    crank : name of the driven link; where nobody tells, one that turns fully.
+    speed : of the crank, rad/s.
+    frame : names of layers, colours or groups of a drawing, or of bodies of a model, that stand
+        still.
+    guide : those of lines on which ends of links slide.
+    link : names; what is drawn under each of them is one link.
+    pin : two bodies or sites each that a pin joins, as ``A = B``, where a model closes no loops.
+    tolerance : distance below which ends of lines meet, m; 0 for a millionth of the drawing.
+    unit : m in a unit of the drawing, instead of what it tells.
+
+    Returns
+    -------
+    Imported
+        The machine, what is missing of it, and what was assumed.
+
+    Raises
+    ------
+    ModelError, UsageError : one sentence: what of the file cannot be read, or which argument.
+    """
+    source = printable(path) or "''"
+    bodies = Bodies(tuple(frame), tuple(pin))
+    told = Told(Marks(tuple(frame), tuple(guide), tuple(link), tolerance), bodies, unit)
+    try:
+        kind, content = _opened(path)
+        _check(kind, told)
+        read = kind.read(content, told)
+    except FileError as problem:
+        raise ModelError("", str(problem), source) from problem
+    except ModelError as error:
+        raise error.in_file(source) from error
+    try:
+        return finished(_titled(read, path), crank, speed)
+    except ModelError as error:
+        raise error.in_file(source) from error
+
+
+def _titled(read: Read, path: str | os.PathLike[str]) -> Read:
+    """With the name of the file as the title where it has none that can be printed."""
+    rest = dict(read.outline.rest)
+    title = " ".join(str(rest.get("title", "")).split())[:150]
+    stem = Path(os.fspath(path)).stem
+    rest["title"] = title if title.isprintable() and title else printable(stem) or "imported"
+    return replace(read, outline=replace(read.outline, rest=rest))
+
+
+def _check(kind: Format, told: Told) -> None:
+    """Refuse what would do nothing."""
+    marks = told.marks
+    given = {"frame": marks.frame, "guide": marks.guide, "link": marks.link,
+             "pin": told.bodies.pins, "tolerance": marks.together, "unit": told.unit}  # fmt: skip
+    for option, value in given.items():
+        if value and option not in kind.takes:
+            known = ", ".join(f"--{one}" for one in ("crank", "speed", *kind.takes))
+            raise UsageError(f"--{option} does nothing to {kind.title}; it takes {known}")
+
+
+def _opened(path: str | os.PathLike[str]) -> tuple[Format, Any]:
+    """The kind of a file by its content and its ending, and what is in it."""
+    ending = Path(os.fspath(path)).suffix.casefold()
+    by_ending = next((one for one in FORMATS.values() if ending in one.endings), None)
+    if by_ending is FORMATS["dxf"]:
+        return by_ending, read_bytes(path, LARGE)
+    text = read_text(path, LARGE if by_ending is FORMATS["svg"] else SMALL)
+    if by_ending is FORMATS["pmks"] or re.match(r"\s*https?://\S+\?\S+\s*$", text):
+        return FORMATS["pmks"], text
+    if not text.lstrip().startswith("<"):
+        known = ", ".join(one for kind in FORMATS.values() for one in kind.endings)
+        raise ModelError("", f"it is of no kind that is read; give one of {known}")
+    root: Element = tree_of(text)
+    kind = next((one for one in FORMATS.values() if one.root and one.root == root.tag), None)
+    if kind is None:
+        known = ", ".join(f"<{one.root}>" for one in FORMATS.values() if one.root)
+        raise ModelError(
+            "", f"its XML begins with <{root.tag[:40]}>; what is read begins with {known}"
+        )
+    return kind, root

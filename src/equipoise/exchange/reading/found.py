@@ -1,0 +1,207 @@
+"""What a file of another program tells of a machine, and what it leaves open."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from math import pi, remainder
+
+from equipoise.errors import EquipoiseError, ModelError, UsageError, unknown
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.model import FRAME, Drive, Link, Machine
+from equipoise.mechanism.motion import move
+from equipoise.mechanism.outline import Outline
+from equipoise.results.blocks import Block, Notes, Table, Text, Value
+
+USUAL_SPEED = 2 * pi
+"""rad/s, where nobody tells one."""
+CRANKS = ("crank", "drive", "input")
+"""Names of a link that is driven, where the file does not tell."""
+MOST = 20
+"""Links that are tried as the crank."""
+
+
+@dataclass(frozen=True)
+class Read:
+    """What was read.
+
+    outline : the machine, as far as it is known, as it is drawn.
+    crank, speed : the driven link and how fast it turns, rad/s, where the file tells.
+    notes : what was left out or assumed, a sentence each.
+    """
+
+    outline: Outline
+    crank: str = ""
+    speed: float | None = None
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Imported:
+    """A machine from a file of another program.
+
+    machine : `None` where the file, and what was told besides, do not make one that moves.
+    outline : what there is of it, where it is drawn.
+    missing : what stands in the way of an analysis, or of forces; notes : what was assumed or
+    left out; a sentence each.
+    """
+
+    machine: Machine | None
+    outline: Outline
+    missing: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @property
+    def massless(self) -> list[str]:
+        """Links whose masses are open."""
+        return [name for name, link in self.outline.links.items() if not link.has_mass]
+
+    def blocks(self) -> Iterator[Block]:
+        """What was understood, what is missing, and what was assumed."""
+        outline = self.outline
+        joints = outline.joints
+        pins = sum(len(bodies) - 1 for bodies in joints.pins.values())
+        counts = {"link": len(outline.links), "pin": pins, "sliding joint": len(outline.sliders),
+                  "gear": len(outline.gears)}  # fmt: skip
+        told = ", ".join(f"{n} {what}{'s' * (n != 1)}" for what, n in counts.items() if n)
+        yield Text(f"{told}; mobility {outline.mobility}")
+        heads = ("link", "points", "mass")
+        yield Table.of("", heads, (self._row(name, link) for name, link in outline.links.items()))
+        if self.missing:
+            yield Notes(tuple(f"missing: {one}" for one in self.missing))
+        if self.notes:
+            yield Notes(self.notes)
+
+    def _row(self, name: str, link: Link) -> Iterable[object]:
+        pinned = self.outline.joints.pins
+        points = (f"{one} (frame)" if FRAME in pinned.get(one, ()) else one for one in link.points)
+        mass = Value(link.mass, dimension="mass") if link.mass is not None else "open"
+        return name, ", ".join(points), mass
+
+    def text(self) -> str:
+        """The model file, with lines to fill in for what is open."""
+        from equipoise.schema.models import text_of
+
+        open_now = [f"# missing: {one}\n" for one in self.missing]
+        notes = [f"# {one}\n" for one in self.notes]
+        machine = self.machine or self.outline.machine()
+        text = text_of(machine, {})
+        for name in self.massless:
+            head = _header(name)
+            text = text.replace(head, f"{head}{MASSES}", 1)
+        if self.outline.drive is None:
+            start = text.index("[drive]")
+            end = text.index("\n\n", start) + 1
+            names = " or ".join(self.outline.links)
+            text = f"{text[:start]}{DRIVE.format(names=names)}{text[end:]}"
+        return "".join([*open_now, *notes]) + text
+
+
+MASSES = (
+    '# mass = "100 g"                          # all three, for forces\n'
+    '# center_of_mass = ["0 mm", "0 mm"]\n'
+    '# inertia = "30 kg mm^2"\n'
+)
+DRIVE = '# [drive]\n# link = "{names}"\n# speed = "60 rpm"\n'
+
+
+def _header(name: str) -> str:
+    """Line that begins the table of a link."""
+    import tomli_w
+
+    key = tomli_w.dumps({name: 0}).removesuffix(" = 0\n")
+    return f"[links.{key}]\n"
+
+
+# -- the drive -------------------------------------------------------------------------------------
+
+
+def finished(read: Read, crank: str = "", speed: float | None = None) -> Imported:
+    """The machine of what was read, with what its user tells besides.
+
+    crank : name of the driven link.  speed : of it, rad/s.
+
+    Raises
+    ------
+    UsageError, ModelError : there is no such link, or what was read contradicts itself.
+    """
+    outline, notes = read.outline, [*read.notes]
+    missing: list[str] = []
+    _check(outline)
+    name, why = _crank(outline, crank, read.crank)
+    given = speed if speed is not None else read.speed
+    if name:
+        outline = replace(outline, drive=Drive(name, USUAL_SPEED if given is None else given))
+        if given is None:
+            missing.append("the speed of the drive, for which 60 rpm stands in the file")
+    if why:
+        notes.append(why)
+    machine: Machine | None = None
+    try:
+        machine = _meshed(outline) if name else None
+        if machine is not None:
+            _ = assemble(machine).cycle
+    except EquipoiseError as error:
+        missing.append(str(error).replace("\n", " "))
+    if not name:
+        missing.append(_undriven(outline))
+    if massless := [link for link in outline.links if not outline.links[link].has_mass]:
+        missing.append(f"masses, for forces, of {', '.join(massless)}")
+    return Imported(machine, outline, tuple(missing), tuple(notes))
+
+
+def _meshed(outline: Outline) -> Machine:
+    """The machine, whose gears start so that they come to where they are drawn."""
+    machine = outline.settled()
+    for number, gear in enumerate(machine.gears):
+        found = move(machine, [outline.crank_angle]).links[gear.driven].angle[0]
+        off = remainder(outline.poses[gear.driven].angle - float(found), 2 * pi)
+        gears = [*machine.gears]
+        gears[number] = replace(gear, start=gear.start + off)
+        machine = replace(machine, gears=tuple(gears))
+    return machine
+
+
+def _check(outline: Outline) -> None:
+    if not outline.links:
+        raise ModelError("", "there is no link in it; give a file with at least one")
+    if not outline.frame:
+        raise ModelError("", "nothing in it is the frame; name what stands still by --frame")
+    outline.machine()
+
+
+def _crank(outline: Outline, wanted: str, told: str) -> tuple[str, str]:
+    """The driven link, and how it was found where nobody told."""
+    turning = [name for name, link in outline.links.items()
+               if sum(point in outline.frame for point in link.points) == 1]  # fmt: skip
+    if wanted:
+        if wanted not in outline.links:
+            raise UsageError(f"--crank: {unknown(wanted, outline.links, 'link')}")
+        if wanted not in turning:
+            raise UsageError(f"--crank: {wanted!r} is not pinned to the frame at one point; "
+                             f"there is {', '.join(turning) or 'no such link'}")  # fmt: skip
+        return wanted, ""
+    if told in turning:
+        return told, ""
+    by_name = [one for one in turning if one.casefold().startswith(CRANKS)]
+    tried = [*dict.fromkeys((*by_name, *turning))][:MOST]
+    able = [name for name in tried if _turns(outline, name)] if outline.mobility == 1 else []
+    if not able:
+        return "", ""
+    others = f"; {', '.join(able[1:])} could be it too" if len(able) > 1 else ""
+    return able[0], f"{able[0]} is taken as the crank, which turns fully{others}"
+
+
+def _turns(outline: Outline, name: str) -> bool:
+    """Whether the machine turns fully with a link as its crank."""
+    try:
+        _ = assemble(replace(outline, drive=Drive(name, USUAL_SPEED)).settled()).cycle
+    except EquipoiseError:
+        return False
+    return True
+
+
+def _undriven(outline: Outline) -> str:
+    if outline.mobility != 1:
+        return f"joints: the mobility is {outline.mobility}, and one drive commands one motion"
+    return "the driven link: none that is pinned to the frame once turns fully; name it by --crank"

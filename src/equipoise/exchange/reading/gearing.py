@@ -1,0 +1,89 @@
+"""Gears in files that know only sums of angles of joints that stay what they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import permutations
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.exchange.reading.spatial import Array, Space
+from equipoise.mechanism.model import FRAME, Gear
+from equipoise.mechanism.outline import Outline
+
+EXACT = 1e-9
+"""Share of a factor by which another may differ from it: rounding."""
+Chains = Mapping[str, frozenset[str]]
+
+
+def gears(
+    space: Space, link_of: Mapping[str, str], normal: Array, outline: Outline, crank: str
+) -> Iterator[Gear]:
+    """Pairs of gears that hold the sums of a system.
+
+    link_of : the link of each body.  normal : of the plane, (3,).  crank : the driven link.
+
+    Raises
+    ------
+    ModelError : there is none on a common carrier that does.
+    """
+    chains = {body: frozenset(_chain(space, link_of, body)) for body in outline.bodies}
+    moved = {crank, FRAME}
+    for name, factors in space.sums:
+        wanted = {joint: factor * float(np.sign(space.joints[joint].axis @ normal))
+                  for joint, factor in factors.items()}  # fmt: skip
+        able = [one for one in _fitting(outline, chains, wanted) if one.driven not in moved]
+        if not able:
+            what = "it ties joints together otherwise than a pair of gears on a common carrier does"
+            raise ModelError(name, f"{what}; leave it out")
+        gear = min(able, key=lambda one: (one.driver not in moved, _joints(outline, one.driven)))
+        moved.add(gear.driven)
+        yield gear
+
+
+def _joints(outline: Outline, link: str) -> int:
+    """At how many points a link is pinned; what is driven by gears alone has one."""
+    return sum(link in bodies for bodies in outline.joints.pins.values())
+
+
+def _chain(space: Space, link_of: Mapping[str, str], body: str) -> Iterator[str]:
+    """Hinges whose angles add up to that of a link."""
+    holding = {link_of[one.child]: one for one in space.joints.values()}
+    while body != FRAME and (joint := holding.pop(body, None)) is not None:
+        if joint.kind == "hinge":
+            yield joint.name
+        body = link_of[joint.parent]
+
+
+def _fitting(outline: Outline, chains: Chains, wanted: Mapping[str, float]) -> Iterator[Gear]:
+    """Pairs of gears that hold such a sum."""
+    for carrier in chains:
+        around = [body for body in chains if body != carrier and _pinned(outline, body, carrier)]
+        for driven, driver in permutations(around, 2):
+            ratio = _ratio(wanted, *(chains[body] for body in (driven, driver, carrier)))
+            if driven != FRAME and ratio not in (None, 0.0, 1.0):
+                yield Gear(driver, driven, ratio=ratio, carrier=carrier)
+
+
+def _pinned(outline: Outline, one: str, other: str) -> bool:
+    return len(outline.bodies[one].keys() & outline.bodies[other].keys()) == 1
+
+
+def _ratio(
+    wanted: Mapping[str, float],
+    driven: frozenset[str],
+    driver: frozenset[str],
+    carrier: frozenset[str],
+) -> float | None:
+    """The ratio r of which driven - r driver + (r - 1) carrier is a multiple of a sum, if any."""
+    joints = [*(driven | driver | carrier | wanted.keys())]
+    told = np.array([[joint in chain for joint in joints] for chain in (driven, driver, carrier)])
+    own, geared, carried = told.astype(float)
+    sides = np.column_stack([own - carried, carried - geared])
+    right = np.array([wanted.get(joint, 0.0) for joint in joints])
+    (scale, scaled), _, rank, _ = np.linalg.lstsq(sides, right)
+    left = np.abs(sides @ (scale, scaled) - right).max()
+    if rank < 2 or left > EXACT * np.abs(right).max() or abs(scale) < EXACT:
+        return None
+    return float(scaled / scale)

@@ -1,0 +1,315 @@
+"""MJCF, the models of MuJoCo: bodies in each other, whose loops `connect` and `weld` close."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from math import radians
+from typing import Any
+from xml.etree.ElementTree import Element
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.exchange.reading import geoms
+from equipoise.exchange.reading.found import Read
+from equipoise.exchange.reading.markup import called, number, numbers
+from equipoise.exchange.reading.planar import planar
+from equipoise.exchange.reading.spatial import (
+    WORLD,
+    Array,
+    Frame3,
+    Joint3,
+    Loop3,
+    Lump,
+    Pull,
+    Solid,
+    Space,
+    Told,
+    by_euler,
+    by_quaternion,
+    direction,
+    together,
+    turned,
+)
+
+UNREAD = {"include", "replicate", "composite", "flexcomp", "attach", "deformable"}
+"""Elements that stand for others, which only MuJoCo makes of them."""
+GRAVITY = "0 0 -9.81"
+"""MuJoCo's."""
+LOST = {"stiffness": "springs", "damping": "damping", "frictionloss": "friction",
+        "armature": "inertia of rotors"}  # fmt: skip
+"""What joints may have beside, and what it is."""
+
+
+def read(root: Element, told: Told) -> Read:
+    """The machine of a model.
+
+    Raises
+    ------
+    ModelError : it has what is not read, or does not move in one plane.
+    """
+    for element in root.iter():
+        if element.tag in UNREAD:
+            what = f"<{element.tag}> is not read; save the whole model by mj_saveLastXML, and"
+            raise ModelError("", f"{what} give that")
+    return planar(_Model(root).space, told)
+
+
+@dataclass(frozen=True)
+class _Within:
+    """Where an element stands: the body, its axes in space, and the class of its defaults."""
+
+    body: str
+    axes: Frame3
+    kind: str = "main"
+
+
+class _Model:
+    def __init__(self, root: Element) -> None:
+        self.root = root
+        compiler = _first(root, "compiler")
+        self.degrees = compiler.get("angle", "degree") != "radian"
+        self.order = compiler.get("eulerseq", "xyz")
+        if len(self.order) != 3 or not set(self.order) <= set("xyzXYZ"):
+            raise ModelError("compiler", "eulerseq: give three letters such as xyz")
+        self.from_geoms = compiler.get("inertiafromgeom", "auto")
+        self.defaults = dict(_defaults(root))
+        gravity = numbers(_first(root, "option"), "gravity", GRAVITY, (3,))
+        self.space = Space(root.get("model") or "", gravity)
+        self.sites: dict[str, tuple[str, Array]] = {}
+        self.dofs: list[str] = []  # joints in the order of MuJoCo
+        for world in root.findall("worldbody"):
+            self._inside(world, _Within(WORLD, Frame3()))
+        self._equalities()
+        self._springs()
+        self._driven()
+
+    # -- bodies --------------------------------------------------------------------------------
+
+    def _inside(self, parent: Element, at: _Within) -> list[Lump | None]:
+        """What stands in a body or in axes of it; the masses of its shapes."""
+        lumps: list[Lump | None] = []
+        for element in parent:
+            if element.tag == "body":
+                self._body(element, at)
+            elif element.tag == "frame":
+                inner = replace(at, axes=at.axes @ self._axes(element))
+                lumps += self._inside(element, self._of_class(element, inner))
+            elif element.tag == "site":
+                self._site(element, at)
+            elif element.tag == "geom":
+                one = self._with_defaults(element, at.kind)
+                found = geoms.lump(one, self._axes(one), self.space.note)
+                lumps += [] if found is None else [found.placed(at.axes)]
+        return lumps
+
+    def _body(self, element: Element, outside: _Within) -> None:
+        name = element.get("name") or f"body {len(self.space.solids)}"
+        solid = Solid(name, outside.axes @ self._axes(element))
+        self.space.add(solid)
+        at = self._of_class(element, _Within(name, solid.axes, outside.kind))
+        joints = [self._with_defaults(one, at.kind) for one in element.findall("joint")]
+        if element.find("freejoint") is not None:
+            raise ModelError(called(element), "it moves freely in space; give a planar machine")
+        self._hang(element, joints, outside.body, solid)
+        lumps = [one for one in self._inside(element, at) if one is not None]
+        inertial = element.find("inertial")
+        if inertial is not None and self.from_geoms != "true":
+            solid.lump = self._inertial(inertial).placed(solid.axes)
+        elif lumps and self.from_geoms != "false":
+            solid.lump = together(lumps)
+        elif not joints:
+            solid.lump = Lump(0.0, solid.axes.origin, np.zeros((3, 3)))
+
+    def _hang(self, element: Element, given: list[Element], parent: str, solid: Solid) -> None:
+        """By its joints, one after the other, with bodies without mass between them."""
+        joints = [self._joint(one, element, number, len(given), solid)
+                  for number, one in enumerate(given, 1)]  # fmt: skip
+        self.dofs += [one.name for one in joints]
+        if not joints:
+            self.space.rigid.append((parent, solid.name))
+        if sorted(one.kind for one in joints) == ["hinge", "slide", "slide"]:
+            return  # which leaves it free in the plane
+        for joint in joints:
+            last = joint is joints[-1]
+            child = solid.name if last else f"{joint.name} carrier"
+            if not last:
+                none = Lump(0.0, solid.axes.origin, np.zeros((3, 3)))
+                self.space.add(Solid(child, solid.axes, none))
+            self.space.join(replace(joint, parent=parent, child=child))
+            parent = child
+
+    def _joint(self, one: Element, body: Element, number: int, count: int, solid: Solid) -> Joint3:
+        suffix = f" {number}" if count > 1 else ""
+        name = one.get("name") or f"{body.get('name') or solid.name}{suffix}"
+        kind = one.get("type", "hinge")
+        if kind not in ("hinge", "slide"):
+            raise ModelError(f"joint {name!r}", f"it is of type {kind}; give hinge or slide")
+        for key, what in LOST.items():
+            if any(numbers(one, key, "0")):
+                self.space.note(f"{what} of joints are left out")
+        axis = solid.axes.turn @ direction(f"joint {name!r}", numbers(one, "axis", "0 0 1", (3,)))
+        place = solid.axes.out(np.array(numbers(one, "pos", "0 0 0", (3,))))
+        return Joint3(name, "hinge" if kind == "hinge" else "slide", "", "", place, axis)
+
+    def _inertial(self, element: Element) -> Lump:
+        axes = self._axes(element)
+        if "fullinertia" in element.keys():  # noqa: SIM118 - an element is no dict
+            xx, yy, zz, xy, xz, yz = numbers(element, "fullinertia", count=(6,))
+            moments = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        else:
+            moments = np.diag(numbers(element, "diaginertia", "0 0 0", (3,)))
+        return Lump(number(element, "mass"), np.zeros(3), moments).placed(axes)
+
+    def _site(self, element: Element, at: _Within) -> None:
+        one = self._with_defaults(element, at.kind)
+        place = at.axes.out(np.array(numbers(one, "pos", "0 0 0", (3,))))
+        if name := element.get("name"):
+            self.sites[name] = at.body, place
+            self.space.solids[at.body].points[name] = place
+
+    # -- axes and defaults ---------------------------------------------------------------------
+
+    def _axes(self, element: Element) -> Frame3:
+        return Frame3(np.array(numbers(element, "pos", "0 0 0", (3,))), self._turn(element))
+
+    def _turn(self, element: Element) -> Array:
+        where, unit = called(element), radians if self.degrees else float
+        if element.get("quat"):
+            return by_quaternion(where, numbers(element, "quat", count=(4,)))
+        if element.get("axisangle"):
+            *axis, angle = numbers(element, "axisangle", count=(4,))
+            return turned(direction(where, tuple(axis)), unit(angle))
+        if element.get("euler"):
+            angles = numbers(element, "euler", count=(3,))
+            return by_euler(tuple(map(unit, angles)), self.order)
+        if element.get("xyaxes"):
+            both = numbers(element, "xyaxes", count=(6,))
+            x, y = direction(where, both[:3]), np.array(both[3:])
+            y = direction(where, tuple(y - (y @ x) * x))
+            return np.column_stack([x, y, np.cross(x, y)])
+        if element.get("zaxis"):
+            return geoms.toward(direction(where, numbers(element, "zaxis", count=(3,))))
+        return np.eye(3)
+
+    def _of_class(self, element: Element, at: _Within) -> _Within:
+        return replace(at, kind=element.get("childclass", at.kind))
+
+    def _with_defaults(self, element: Element, kind: str) -> Element:
+        """The element with what its class has and itself has not."""
+        kind = element.get("class", kind)
+        known = self.defaults.get(kind)
+        if known is None and kind != "main":
+            raise ModelError(called(element), f"there is no class {kind!r} of defaults")
+        return Element(element.tag, {**(known or {}).get(element.tag, {}), **element.attrib})
+
+    # -- what holds and drives -----------------------------------------------------------------
+
+    def _equalities(self) -> None:
+        held = (one for group in self.root.findall("equality") for one in group)
+        for place, one in enumerate(held, 1):
+            if one.get("active") == "false":
+                continue
+            name = one.get("name") or f"{one.tag} {place}"
+            if one.tag == "connect":
+                self._connect(one, name)
+            elif one.tag == "weld":
+                if any(numbers(one, "relpose", "0")[:7]):
+                    raise ModelError(name, "its relpose is not read; weld bodies as they are drawn")
+                self.space.rigid.append(self._bodies(one, name))
+            elif one.tag in ("joint", "tendon"):
+                self._sum(one, name)
+            else:
+                raise ModelError(name, f"<{one.tag}> is not read; give connect, weld or joint")
+
+    def _connect(self, one: Element, name: str) -> None:
+        if one.get("site1"):
+            ends = [self._known(self.sites, one.get(key), name) for key in ("site1", "site2")]
+            (first, place), (second, other) = ends
+        else:
+            first, second = self._bodies(one, name)
+            axes = self.space.solids[first].axes
+            place = other = axes.out(np.array(numbers(one, "anchor", None, (3,))))
+        self.space.loops.append(Loop3(name, (first, second), (place, other)))
+
+    def _bodies(self, one: Element, name: str) -> tuple[str, str]:
+        if one.get("site1"):
+            first, second = (self._known(self.sites, one.get(key), name)[0]
+                             for key in ("site1", "site2"))  # fmt: skip
+            return first, second
+        first, second = one.get("body1", ""), one.get("body2", WORLD)
+        for body in (first, second):
+            self._known(self.space.solids, body, name)
+        return first, second
+
+    def _known(self, among: Mapping[Any, Any], name: str | None, where: str) -> Any:
+        if name not in among:
+            raise ModelError(where, f"there is no {name!r} in the file that it could hold")
+        return among[name]
+
+    def _sum(self, one: Element, name: str) -> None:
+        """Joints whose angles are tied to each other."""
+        if one.tag == "joint":
+            first, second = one.get("joint1"), one.get("joint2")
+            slope, *bent = (*numbers(one, "polycoef", "0 1 0 0 0"), 0.0, 0.0)[1:]
+            factors = {first: 1.0} if second is None else {first: 1.0, second: -slope}
+            straight = second is not None and not any(bent)
+        else:
+            fixed = {tendon.get("name"): tendon for tendon in self.root.findall("tendon/fixed")}
+            tendon = self._known(fixed, one.get("tendon1"), name)
+            factors = {part.get("joint"): number(part, "coef") for part in tendon}
+            straight = one.get("tendon2") is None
+        hinges = {key: joint for key, joint in self.space.joints.items() if joint.kind == "hinge"}
+        if not straight or not factors.keys() <= hinges.keys():
+            raise ModelError(name, "only angles of hinges in a straight line can be gears; leave "
+                             "it out")  # fmt: skip
+        self.space.sums.append((name, {key: one for key, one in factors.items() if key}))
+
+    def _springs(self) -> None:
+        for group in self.root.findall("tendon/spatial"):
+            sites = [one.get("site", "") for one in group.findall("site")]
+            if len(sites) != 2 or len(group) != 2:
+                self.space.note("tendons of more than two sites are left out")
+                continue
+            ends = [(self._known(self.sites, one, called(group))[0], one) for one in sites]
+            stiffness, *_ = numbers(group, "stiffness", "0")
+            length, *rest = numbers(group, "springlength", "-1")
+            if stiffness <= 0 or length < 0 or any(one != length for one in rest):
+                self.space.note("tendons without a stiffness and one springlength are left out")
+                continue
+            self.space.pulls.append(Pull((ends[0], ends[1]), stiffness, length))
+
+    def _driven(self) -> None:
+        """The hinge of an actuator, and its speed by the first key."""
+        actuators = [one for group in self.root.findall("actuator") for one in group]
+        known = [one.get("joint", "") for one in actuators]
+        self.space.driven = next((one for one in known if one in self.space.joints), "")
+        if left := [one for one in actuators if one.get("joint") != self.space.driven]:
+            self.space.note(f"{len(left)} other actuators are left out")
+        key = self.root.find("keyframe/key")
+        rates = numbers(key, "qvel", "") if key is not None else ()
+        if self.space.driven and len(rates) == len(self.dofs):
+            self.space.speed = rates[self.dofs.index(self.space.driven)] or None
+
+
+def _first(root: Element, tag: str) -> Element:
+    """The attributes of all elements of a kind together, of which the last one counts."""
+    merged = Element(tag)
+    for one in root.findall(tag):
+        merged.attrib.update(one.attrib)
+    return merged
+
+
+def _defaults(
+    root: Element, known: Mapping[str, Mapping[str, str]] | None = None, top: bool = True
+) -> Iterator[tuple[str, dict[str, dict[str, str]]]]:
+    """Attributes by tag, by class; a class has those of the one around it too."""
+    for element in root.findall("default"):
+        own = {tag: dict(values) for tag, values in (known or {}).items()}
+        for one in element:
+            own[one.tag] = {**own.get(one.tag, {}), **one.attrib}
+        yield from (
+            (name, own) for name in (element.get("class", ""), "main" if top else "") if name
+        )
+        yield from _defaults(element, own, top=False)

@@ -1,0 +1,231 @@
+"""From bodies in space to a machine in the plane: the plane is found, everything else projected."""
+
+from __future__ import annotations
+
+from cmath import phase
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError, UsageError, unknown
+from equipoise.exchange.reading.found import Read
+from equipoise.exchange.reading.gearing import gears
+from equipoise.exchange.reading.pinning import Pinning
+from equipoise.exchange.reading.spatial import (
+    WORLD,
+    Array,
+    Joint3,
+    Loop3,
+    Solid,
+    Space,
+    Told,
+    together,
+)
+from equipoise.mechanism.model import FRAME, Link, Slider, Spring
+from equipoise.mechanism.outline import Outline, Pose
+
+SKEW = 1e-6
+"""Of the sine of an angle between axes that are to be parallel: files have six digits at least."""
+
+
+def planar(space: Space, told: Told) -> Read:
+    """The machine in its plane of motion.
+
+    Raises
+    ------
+    ModelError : it does not move in one plane; the sentence names the joint.
+    """
+    for body in told.still:
+        if body not in space.solids:
+            raise UsageError(f"--frame: {unknown(body, space.solids, 'body')}")
+        space.hold(body)
+    for pair in told.pins:
+        space.loops.append(_closed(space, pair))
+    space.tie_shafts()
+    flat = _Flat(space)
+    sliders = [*flat.joined()]
+    names = flat.pins.named()
+    points = {link: {names[one]: place for one, place in own.items()}
+              for link, own in flat.pins.points.items()}  # fmt: skip
+    slides = tuple(Slider(link, names[point], on, names[through], *angles)
+                   for link, point, on, through, *angles in sliders)  # fmt: skip
+    x, y = flat.plane @ np.array(space.gravity)
+    rest = {"title": space.title, "gravity": (float(x), float(y)),
+            "springs": tuple(flat.springs(names))}  # fmt: skip
+    links = {link: Link(points=points[link], **flat.mass(link)) for link in flat.pins.poses}
+    outline = Outline(points[FRAME], links, flat.pins.poses, None, slides, (), rest)
+    crank, speed = flat.drive()
+    meshing = gears(space, flat.link_of, flat.normal, outline, crank)
+    outline = replace(outline, gears=tuple(meshing))
+    return Read(outline, crank, speed, tuple(space.notes))
+
+
+def _closed(space: Space, pair: str) -> Loop3:
+    """The pin between two bodies, or points of them, that is told as ``A = B``."""
+    known = {point: (name, place) for name, solid in space.solids.items()
+             for point, place in {name: solid.axes.origin, **solid.points}.items()}  # fmt: skip
+    ends = [part.strip() for part in pair.split("=")]
+    if len(ends) != 2:
+        raise UsageError(
+            f"--pin: got {pair!r}; give two bodies or sites such as 'rod = rocker_end'"
+        )
+    for end in ends:
+        if end not in known:
+            raise UsageError(f"--pin: {unknown(end, known, 'body or site')}")
+    (one, place), (other, there) = (known[end] for end in ends)
+    return Loop3(pair, (one, other), (place, there))
+
+
+def _plane(space: Space) -> Array:
+    """Directions x and y of the plane (2, 3), in space."""
+    hinges = [one for one in space.joints.values() if one.kind == "hinge"]
+    if not hinges:
+        raise ModelError("", "no body turns about a joint; give a linkage with hinges")
+    normal, first = hinges[0].axis, hinges[0].name
+    for joint in space.joints.values():
+        skew = float(np.linalg.norm(np.cross(joint.axis, normal)))
+        if joint.kind == "hinge" and skew > SKEW:
+            what = f"its axis is not parallel to that of {first!r}, so the machine does not move in"
+            raise ModelError(f"joint {joint.name!r}", f"{what} one plane; give a planar one")
+        if joint.kind == "slide" and abs(float(joint.axis @ normal)) > SKEW:
+            what = f"it slides out of the plane that is across the axis of {first!r}"
+            raise ModelError(f"joint {joint.name!r}", f"{what}; give a planar machine")
+    return _axes(normal)
+
+
+def _axes(normal: Array) -> Array:
+    """The first of the axes x and y that is not the normal becomes x, and what is up stays up."""
+    first = np.eye(3)[0] if abs(normal[0]) < 0.9 else np.eye(3)[1]
+    x = first - (first @ normal) * normal
+    x /= np.linalg.norm(x)
+    y = np.cross(normal, x)
+    up = y[2] if abs(y[2]) > 1e-9 else y[1]
+    return np.array([x, y if up > 0 else -y])
+
+
+def _merged(space: Space) -> dict[str, str]:
+    """The link, or the frame, that each body is a part of."""
+    root = {name: name for name in space.solids}
+    order = {name: number for number, name in enumerate(space.solids)}
+
+    def top(name: str) -> str:
+        while root[name] != name:
+            name = root[name]
+        return name
+
+    for one, other in space.rigid:
+        first, second = sorted((top(one), top(other)), key=order.__getitem__)
+        root[second] = first
+    found = {name: FRAME if top(name) == WORLD else top(name) for name in root}
+    if FRAME in found and top(FRAME) != WORLD:
+        raise ModelError(f"body {FRAME!r}", "it moves; give it another name")
+    return found
+
+
+class _Flat:
+    """What there is in space, in the plane.
+
+    plane : its directions x and y (2, 3).  normal : (3,).  link_of : the link of each body.
+    """
+
+    def __init__(self, space: Space) -> None:
+        self.space, self.plane, self.link_of = space, _plane(space), _merged(space)
+        self.normal = np.cross(*self.plane)
+        tops = {link: space.solids[link] for link in self.link_of.values() if link != FRAME}
+        self.pins = Pinning({link: self._pose(solid) for link, solid in tops.items()})
+        self.points: dict[tuple[str, str], tuple[str, complex]] = {}
+        for name, solid in space.solids.items():
+            for point, place in solid.points.items():
+                link, spot = self.link_of[name], self.flat(place)
+                self.points[name, point] = link, spot
+                self.pins.held(link, spot, _short(point, name, link))
+
+    def flat(self, place: Array) -> complex:
+        """A place in space, projected."""
+        x, y = self.plane @ place
+        return complex(x, y)
+
+    def _pose(self, solid: Solid) -> Pose:
+        """Its axes, along the first of its own that lies in the plane."""
+        lying = (one for one in solid.axes.turn.T if abs(one @ self.normal) < SKEW)
+        way = self.flat(next(lying, self.plane[0]))
+        return Pose(self.flat(solid.axes.origin), phase(way))
+
+    def joined(self) -> Iterator[tuple[Any, ...]]:
+        """Pin what is pinned; of each slider link and number of the point, body and number of the
+        guide's, and both angles.
+        """
+        joints, pins = self.space.joints.values(), self.pins
+        for joint in joints:
+            pins.size = max(pins.size, abs(self.flat(joint.place)))
+        for joint in joints:
+            place = self.flat(joint.place)
+            on, link = self._apart(f"joint {joint.name!r}", joint.parent, joint.child)
+            if joint.kind == "hinge":
+                pins.pin(joint.name, (on, place), (link, place))
+        for loop in self.space.loops:
+            links = self._apart(f"loop {loop.name!r}", *loop.bodies)
+            one, other = zip(links, map(self.flat, loop.places), strict=True)
+            pins.pin(loop.name, one, other)
+        for joint in joints:
+            if joint.kind == "slide":
+                yield self._slider(joint)
+
+    def _slider(self, joint: Joint3) -> tuple[Any, ...]:
+        on, link = self.link_of[joint.parent], self.link_of[joint.child]
+        place, way, pins = self.flat(joint.place), phase(self.flat(joint.axis)), self.pins
+        point = pins.held(link, place, joint.name)
+        through = pins.at(on, place)
+        if through is None or through == point:
+            through = pins.put(on, place, f"{joint.name} guide")
+        return link, point, on, through, way - pins.pose(on).angle, pins.pose(link).angle - way
+
+    def _apart(self, where: str, *bodies: str) -> tuple[str, str]:
+        """The links of two bodies that are joined."""
+        one, other = (self.link_of[body] for body in bodies)
+        if one == other:
+            raise ModelError(where, "both of its bodies are one link; leave it out")
+        return one, other
+
+    def mass(self, link: str) -> dict[str, Any]:
+        """Masses of a link, where all parts of it tell theirs."""
+        parts = [one for name, one in self.space.solids.items() if self.link_of[name] == link]
+        lumps = [one.lump for one in parts if one.lump is not None]
+        if len(lumps) < len(parts):
+            return {}
+        whole = together(lumps)
+        local = self.pins.pose(link).into(self.flat(whole.center))
+        inertia = float(self.normal @ whole.inertia @ self.normal) if whole.mass else 0.0
+        if whole.mass < 0 or inertia < 0:
+            raise ModelError(f"body {link!r}", "its mass or its inertia is below 0; give 0 or more")
+        return {"mass": whole.mass, "center_of_mass": (local.real, local.imag), "inertia": inertia}
+
+    def springs(self, names: Mapping[int, str]) -> Iterator[Spring]:
+        for pull in self.space.pulls:
+            ends = sorted((self.points[end] for end in pull.ends), key=lambda end: end[0] == FRAME)
+            (link, _), (other, _) = ends
+            if other != FRAME or link == FRAME:
+                self.space.note("springs that are not between a link and the frame are left out")
+                continue
+            point, to = (names[self.pins.held(*end, "")] for end in ends)
+            yield Spring(link, point, to, pull.stiffness, pull.free_length)
+
+    def drive(self) -> tuple[str, float | None]:
+        """The driven link and its speed, where it is a joint with the frame that is driven."""
+        joint = self.space.joints.get(self.space.driven)
+        if joint is None or joint.kind != "hinge" or self.link_of[joint.parent] != FRAME:
+            return "", None
+        speed = self.space.speed
+        sign = float(np.sign(joint.axis @ self.normal))
+        return self.link_of[joint.child], None if speed is None else sign * speed
+
+
+def _short(point: str, *bodies: str) -> str:
+    """A point's name without that of its body in front."""
+    for body in bodies:
+        short = point.removeprefix(body).strip(" _-./")
+        if short and point.startswith(body):
+            return short
+    return point

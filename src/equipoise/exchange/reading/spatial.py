@@ -1,0 +1,237 @@
+"""Rigid bodies in space, as programs for multibody systems have them: what URDF and MJCF tell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from equipoise.errors import ModelError
+
+Array = np.ndarray[Any, Any]
+WORLD = "world"
+DOWN = (0.0, 0.0, -9.80665)
+"""m/s2, of files that do not tell."""
+
+MOST = 200
+"""Bodies; no linkage has so many."""
+
+
+@dataclass(frozen=True)
+class Told:
+    """What is told beside a file.
+
+    still : bodies that are held still, whatever joints they have.
+    pins : that close loops, each as ``A = B`` of two bodies, or points of them.
+    """
+
+    still: tuple[str, ...] = ()
+    pins: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Frame3:
+    """Axes in space: their origin (3,), m, and their directions as columns (3, 3)."""
+
+    origin: Array = field(default_factory=lambda: np.zeros(3))
+    turn: Array = field(default_factory=lambda: np.eye(3))
+
+    def __matmul__(self, inner: Frame3) -> Frame3:
+        return Frame3(self.out(inner.origin), self.turn @ inner.turn)
+
+    def out(self, place: Array) -> Array:
+        """Where a place (3,) in these axes is in those around them."""
+        found: Array = self.origin + self.turn @ place
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Lump:
+    """Mass, kg; its centre (3,), m; moments and products of inertia about it (3, 3), kg m2."""
+
+    mass: float
+    center: Array
+    inertia: Array
+
+    def placed(self, at: Frame3) -> Lump:
+        """In the axes around those that it is told in."""
+        return Lump(self.mass, at.out(self.center), at.turn @ self.inertia @ at.turn.T)
+
+
+def together(lumps: list[Lump]) -> Lump:
+    """Several as one."""
+    mass = sum(one.mass for one in lumps)
+    if not mass:
+        return Lump(0.0, lumps[0].center, np.zeros((3, 3)))
+    center = sum((one.mass * one.center for one in lumps), np.zeros(3)) / mass
+    inertia = np.zeros((3, 3))
+    for one in lumps:
+        arm = one.center - center
+        inertia += one.inertia + one.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    return Lump(mass, center, inertia)
+
+
+@dataclass(eq=False)
+class Solid:
+    """A body where it is drawn.
+
+    lump : in space; `None` where the file does not tell.  points : places in space by name.
+    """
+
+    name: str
+    axes: Frame3
+    lump: Lump | None = None
+    points: dict[str, Array] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Joint3:
+    """What holds a body on another: place (3,) and axis (3,) in space, of length 1."""
+
+    name: str
+    kind: Literal["hinge", "slide"]
+    parent: str
+    child: str
+    place: Array
+    axis: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Loop3:
+    """A point of one body that stays at a point of another, each (3,) in space."""
+
+    name: str
+    bodies: tuple[str, str]
+    places: tuple[Array, Array]
+
+
+@dataclass(frozen=True)
+class Pull:
+    """A spring between points of two bodies, N/m and m."""
+
+    ends: tuple[tuple[str, str], tuple[str, str]]
+    stiffness: float
+    free_length: float
+
+
+@dataclass(eq=False)
+class Space:
+    """A system of bodies, where it is drawn.
+
+    rigid : pairs of bodies that are one.  sums : of angles of hinges by name, each with a factor,
+    that stay what they are.  driven : hinge that is driven.  speed : of its coordinate, rad/s.
+    """
+
+    title: str
+    gravity: tuple[float, ...] = DOWN
+    solids: dict[str, Solid] = field(default_factory=lambda: {WORLD: Solid(WORLD, Frame3())})
+    joints: dict[str, Joint3] = field(default_factory=dict)
+    loops: list[Loop3] = field(default_factory=list)
+    rigid: list[tuple[str, str]] = field(default_factory=list)
+    sums: list[tuple[str, Mapping[str, float]]] = field(default_factory=list)
+    pulls: list[Pull] = field(default_factory=list)
+    driven: str = ""
+    speed: float | None = None
+    notes: list[str] = field(default_factory=list)
+
+    def note(self, sentence: str) -> None:
+        """Tell something once."""
+        if sentence not in self.notes:
+            self.notes.append(sentence)
+
+    def add(self, solid: Solid) -> None:
+        """Refuses a name that is there already, and more bodies than a machine has."""
+        if len(self.solids) > MOST:
+            raise ModelError("", f"there are more than {MOST} bodies; give a linkage")
+        if solid.name in self.solids:
+            raise ModelError("", f"two bodies are called {solid.name!r}; rename one")
+        self.solids[solid.name] = solid
+
+    def join(self, joint: Joint3) -> None:
+        """Refuses a name that is there already."""
+        if joint.name in self.joints:
+            raise ModelError("", f"two joints are called {joint.name!r}; rename one")
+        self.joints[joint.name] = joint
+
+    def hold(self, body: str) -> None:
+        """Let a body stand still, without the joints and bodies between it and the world."""
+        self.rigid.append((WORLD, body))
+        while held := [key for key, one in self.joints.items() if one.child == body]:
+            body = self.joints[held[0]].parent
+            self._drop(held[0], {})
+            self.rigid.append((WORLD, body))
+
+    def _drop(self, joint: str, instead: Mapping[str, str]) -> None:
+        """Leave out a joint, in whose place others stand in sums, or none."""
+        del self.joints[joint]
+        self.driven = instead.get(self.driven, self.driven)
+        for number, (name, factors) in enumerate(self.sums):
+            left: dict[str, float] = {}
+            for key, factor in factors.items():
+                new = instead.get(key, key)
+                if new in self.joints:
+                    left[new] = left.get(new, 0.0) + factor
+            self.sums[number] = name, {key: one for key, one in left.items() if one}
+
+    def tie_shafts(self) -> None:
+        """Make one of bodies that turn together about one axis, as linkages in a row do."""
+        order = [*self.joints]
+        for number in range(len(self.sums)):
+            factors = self.sums[number][1]
+            if len(factors) != 2 or sum(factors.values()) != 0:
+                continue
+            one, other = (self.joints[key] for key in sorted(factors, key=order.index))
+            apart = np.linalg.norm(np.cross(other.place - one.place, one.axis))
+            reach = np.linalg.norm(one.place) + np.linalg.norm(other.place)
+            same = one.parent == other.parent and float(one.axis @ other.axis) > 1 - 1e-9
+            if same and apart <= 1e-9 * (1 + reach):
+                self.rigid.append((one.child, other.child))
+                self._drop(other.name, {other.name: one.name})
+        self.sums = [one for one in self.sums if one[1]]
+
+
+def direction(where: str, given: tuple[float, ...]) -> Array:
+    """A vector (3,) of length 1.
+
+    Raises
+    ------
+    ModelError : it has no length.
+    """
+    vector = np.array(given)
+    length = float(np.linalg.norm(vector))
+    if length < 1e-12:
+        raise ModelError(where, "its axis has no length; give one such as 0 0 1")
+    found: Array = vector / length
+    return found
+
+
+def turned(axis: Array, angle: float) -> Array:
+    """Rotation about an axis of length 1 by an angle, rad: (3, 3)."""
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    found: Array = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    return found
+
+
+def by_euler(angles: tuple[float, ...], order: str) -> Array:
+    """Rotation by angles (rad) about the axes of an order, each turned by those before it; in
+    capitals about axes that stay.
+    """
+    found = np.eye(3)
+    for angle, letter in zip(angles, order, strict=True):
+        one = turned(np.eye(3)["xyz".index(letter.lower())], angle)
+        found = found @ one if letter.islower() else one @ found
+    return found
+
+
+def by_quaternion(where: str, given: tuple[float, ...]) -> Array:
+    """Rotation of w, x, y, z, of any length but 0."""
+    length = float(np.linalg.norm(given))
+    if length < 1e-12:
+        raise ModelError(where, "its quat has no length; give one such as 1 0 0 0")
+    w, *rest = (one / length for one in given)
+    vector = np.array(rest)
+    sine = float(np.linalg.norm(vector))
+    return turned(vector / sine, 2 * np.arctan2(sine, w)) if sine > 1e-300 else np.eye(3)

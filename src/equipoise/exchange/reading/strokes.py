@@ -1,0 +1,259 @@
+"""A drawing of lines as the skeleton of a machine: lines are links, ends that meet are pins."""
+
+from __future__ import annotations
+
+from cmath import phase
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from string import ascii_uppercase
+
+from equipoise.errors import ModelError, unknown
+from equipoise.exchange.reading.found import Read
+from equipoise.exchange.reading.joined import Slot, free, outline_of
+from equipoise.mechanism.model import FRAME
+
+MOST = 2000
+"""Corners of lines, beyond which a drawing is none of a skeleton."""
+TOGETHER = 1e-6
+"""Distance over the size of the drawing below which ends meet, where none is told."""
+PIVOT = 0.2
+"""Radius over the size of the drawing above which a circle marks no pivot."""
+FRAMES = ("frame", "ground", "fixed", "base")
+GUIDES = ("guide", "slider", "rail")
+"""Names of what stands still, and of lines on which ends slide, where none are told."""
+BESIDE = ("path", "part", "springs", "gears", "names")
+"""First words of layers of what `export` draws beside the links."""
+LINK = "link "
+"""Before the name of a link in its layer there."""
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """A line with corners; `closed` where it comes back.  places : m.  names : by which it goes."""
+
+    places: tuple[complex, ...]
+    names: tuple[str, ...] = ()
+    closed: bool = False
+
+    @property
+    def sides(self) -> Iterator[tuple[complex, complex]]:
+        yield from pairwise((*self.places, *(self.places[:1] if self.closed else ())))
+
+    def distance(self, place: complex) -> float:
+        """From a place to the nearest point of it, m."""
+        return min((_distance(place, *side) for side in self.sides),
+                   default=abs(place - self.places[0]))  # fmt: skip
+
+    def holds(self, place: complex) -> bool:
+        """Whether a place lies inside, as of an area."""
+        x, y = place.real, place.imag
+        crossed = ((a, b) for a, b in self.sides if (a.imag > y) != (b.imag > y))
+        right = (x < a.real + (y - a.imag) / (b.imag - a.imag) * (b - a).real for a, b in crossed)
+        return sum(right) % 2 == 1
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A circle, of a radius in m."""
+
+    center: complex
+    radius: float
+    names: tuple[str, ...] = ()
+
+
+@dataclass
+class Drawing:
+    """What is drawn: lines, circles and points, hatched areas, and words where they are."""
+
+    title: str
+    strokes: list[Stroke] = field(default_factory=list)
+    rings: list[Ring] = field(default_factory=list)
+    areas: list[Stroke] = field(default_factory=list)
+    words: list[tuple[complex, str]] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    def note(self, sentence: str) -> None:
+        """Tell something once."""
+        if sentence not in self.notes:
+            self.notes.append(sentence)
+
+
+@dataclass(frozen=True)
+class Marks:
+    """How a drawing is to be taken.
+
+    frame, guide : names of what stands still and of lines to slide on; the usual ones if empty.
+    link : names, what is drawn under each of which is one link.
+    together : distance below which ends meet, m; 0 for a millionth of the drawing.
+    """
+
+    frame: tuple[str, ...] = ()
+    guide: tuple[str, ...] = ()
+    link: tuple[str, ...] = ()
+    together: float = 0.0
+
+
+def skeleton(drawing: Drawing, marks: Marks) -> Read:
+    """The machine of a drawing.
+
+    Raises
+    ------
+    ModelError : there is no line, or a name that is told is in none of them.
+    """
+    if not drawing.strokes:
+        raise ModelError("", "there is no line in it that could be a link")
+    if sum(len(one.places) for one in drawing.strokes) > MOST:
+        raise ModelError("", f"its lines have more than {MOST} corners; give a skeleton")
+    _check(drawing, marks)
+    return _Skeleton(drawing, marks).read()
+
+
+def _check(drawing: Drawing, marks: Marks) -> None:
+    every: list[Stroke | Ring] = [*drawing.strokes, *drawing.rings, *drawing.areas]
+    known = dict.fromkeys(name for one in every for name in one.names)
+    for option in ("frame", "guide", "link"):
+        for name in getattr(marks, option):
+            if name.casefold() not in {one.casefold() for one in known}:
+                raise ModelError(
+                    "", f"--{option}: {unknown(name, known, 'layer, colour or group')}"
+                )
+
+
+def _distance(place: complex, start: complex, end: complex) -> float:
+    way = end - start
+    length = abs(way) ** 2
+    share = ((place - start) * way.conjugate()).real / length if length else 0.0
+    return abs(place - start - min(max(share, 0.0), 1.0) * way)
+
+
+def _named(one: Stroke | Ring, names: Iterable[str]) -> bool:
+    own = {part for name in one.names for part in (name.casefold(), _first(name))}
+    return any(name.casefold() in own for name in names)
+
+
+def _first(name: str) -> str:
+    """The first word of a name."""
+    return name.casefold().partition(" ")[0]
+
+
+class _Skeleton:
+    def __init__(self, drawing: Drawing, marks: Marks) -> None:
+        self.drawing, self.marks = drawing, marks
+        frames, guides = marks.frame or FRAMES, marks.guide or GUIDES
+        every: list[Stroke | Ring] = [*drawing.strokes, *drawing.rings]
+        self.grounds = [one for one in every if _named(one, frames)]
+        self.guides = [one for one in drawing.strokes if _named(one, guides)]
+        taken = {id(one) for one in (*self.grounds, *self.guides)}
+        beside = [one for one in drawing.strokes if _first((*one.names, "")[0]) in BESIDE]
+        if beside:
+            drawing.note(f"{len(beside)} lines of paths, parts, springs and gears are left out")
+        taken |= {id(one) for one in beside}
+        lines = [one for one in drawing.strokes if id(one) not in taken]
+        places = [place for one in drawing.strokes for place in one.places]
+        xs, ys = zip(*((place.real, place.imag) for place in places), strict=True)
+        self.size = max(max(xs) - min(xs), max(ys) - min(ys))
+        self.near = marks.together or TOGETHER * self.size
+        self.pivots = [one for one in drawing.rings if 0 < one.radius < PIVOT * self.size]
+        self.joints: list[complex] = [one.center for one in self.pivots]
+        self.bodies = [*self._bodies(lines)]
+
+    def read(self) -> Read:
+        if not self.bodies:
+            raise ModelError(
+                "", "all its lines are of the frame or guides; none is left for a link"
+            )
+        points = self._points()
+        names = self._names([strokes for strokes, _ in self.bodies])
+        links = {name: [points[one] for one in corners]
+                 for name, (_, corners) in zip(names, self.bodies, strict=True)}  # fmt: skip
+        places = {name: self.joints[number] for number, name in points.items()}
+        frame = [points[one] for one in points if self._still(one)]
+        slots = []
+        for number, guide in enumerate(self.guides, 1):
+            start, end = guide.places[0], guide.places[-1]
+            places[f"G{number}"] = start
+            on = [
+                name
+                for one, name in points.items()
+                if guide.distance(self.joints[one]) <= self.near
+            ]
+            frame += [f"G{number}"] if on else []
+            slots += [Slot(point, FRAME, f"G{number}", phase(end - start)) for point in on]
+        outline = outline_of(self.drawing.title, places, links, frame, slots)
+        return Read(outline, notes=tuple(self.drawing.notes))
+
+    # -- lines and corners ---------------------------------------------------------------------
+
+    def _bodies(self, lines: Sequence[Stroke]) -> Iterator[tuple[list[Stroke], list[int]]]:
+        """Strokes of each link, and the numbers of its corners; a line drawn twice is one."""
+        groups = [[one for one in lines if _named(one, [name])] for name in self.marks.link]
+        grouped = {id(one) for group in groups for one in group}
+        groups += [[one] for one in lines if id(one) not in grouped]
+        seen = set()
+        for group in groups:
+            corners = [*dict.fromkeys(self._joint(z) for one in group for z in one.places)]
+            on = (number for number, ring in enumerate(self.pivots)
+                  if any(one.distance(ring.center) <= self.near for one in group))  # fmt: skip
+            corners = [*dict.fromkeys((*corners, *on))]
+            if len(corners) > 1 and frozenset(corners) not in seen:
+                seen.add(frozenset(corners))
+                yield group, corners
+
+    def _joint(self, place: complex) -> int:
+        """The number of a corner; ends in a circle go to its centre."""
+        for number, ring in enumerate(self.pivots):
+            if abs(place - ring.center) <= max(1.01 * ring.radius, self.near):
+                return number
+        known = (n for n, other in enumerate(self.joints) if abs(place - other) <= self.near)
+        found = next(known, None)
+        if found is None:
+            self.joints.append(place)
+            found = len(self.joints) - 1
+        return found
+
+    def _points(self) -> dict[int, str]:
+        """Names of the corners that links have: the word that stands there, else A to Z, then P1
+        and so on.
+        """
+        used = dict.fromkeys(number for _, corners in self.bodies for number in corners)
+        found: dict[int, str] = {}
+        for place, word in self.drawing.words:
+            near = (one for one in used if abs(self.joints[one] - place) <= self.near)
+            if (at := next(near, None)) is not None and word not in found.values():
+                found.setdefault(at, word)
+        names = (*ascii_uppercase, *(f"P{number}" for number in range(1, len(used) + 1)))
+        free_names = (name for name in names if name not in found.values())
+        return {one: found.get(one) or next(free_names) for one in used}
+
+    def _names(self, links: Sequence[Sequence[Stroke]]) -> Iterator[str]:
+        """The first name that is that of one link alone, or a number."""
+        own = [dict.fromkeys(name.removeprefix(LINK) for one in strokes for name in one.names)
+               for strokes in links]  # fmt: skip
+        taken: set[str] = {FRAME}
+        for names in own:
+            alone = (name for name in names if sum(name in other for other in own) == 1
+                     and name not in taken and name.isprintable() and len(name) < 60)  # fmt: skip
+            name = next(alone, "") or free("link", taken)
+            taken.add(name)
+            yield name
+
+    # -- what stands still ---------------------------------------------------------------------
+
+    def _still(self, number: int) -> bool:
+        """Whether a corner lies on the frame: on what is named so, in a hatching, or, where
+        nothing marks the frame, in a circle at the end of one link only.
+        """
+        place = self.joints[number]
+        for one in self.grounds:
+            off = (
+                abs(place - one.center) - one.radius
+                if isinstance(one, Ring)
+                else one.distance(place)
+            )
+            if off <= self.near:
+                return True
+        if any(one.holds(place) or one.distance(place) <= self.near for one in self.drawing.areas):
+            return True
+        links = sum(number in corners for _, corners in self.bodies)
+        return not (self.grounds or self.drawing.areas) and number < len(self.pivots) and links == 1

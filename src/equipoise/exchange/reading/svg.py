@@ -1,0 +1,143 @@
+"""SVG drawings: lines, paths, polygons and circles, with their groups' names; y goes upward."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any
+from xml.etree.ElementTree import Element
+
+from equipoise.errors import ModelError, needed
+from equipoise.exchange.reading.found import Read
+from equipoise.exchange.reading.markup import called, number, numbers
+from equipoise.exchange.reading.strokes import Drawing, Marks, Ring, Stroke, skeleton
+
+METRES = {"": 0.0254 / 96, "px": 0.0254 / 96, "mm": 1e-3, "cm": 1e-2, "in": 0.0254,
+          "pt": 0.0254 / 72, "pc": 0.0254 / 6}  # fmt: skip
+"""m in the units of CSS."""
+UNSEEN = {"defs", "symbol", "clipPath", "mask", "marker", "pattern", "metadata", "style", "title"}
+NUMBERED = re.compile(r"(svg|g|path|line|polyline|polygon|rect|circle|layer|use)[-_]?[0-9.-]*")
+"""Names that programs give by themselves."""
+LONGEST = 200_000
+"""Signs of a path or of corners."""
+
+
+def read(root: Element, marks: Marks, unit: float | None) -> Read:
+    """The machine of a drawing.
+
+    unit : m in a unit of it, instead of what it tells.
+
+    Raises
+    ------
+    ModelError : it cannot be read, or has no lines.
+    """
+    drawing = Drawing(root.findtext("title", "").strip())
+    scale = _scale(root, drawing) if unit is None else unit
+    shapes = needed("svgelements", "an SVG drawing")
+    _Reader(drawing, shapes, scale).inside(root, shapes.Matrix(), ())
+    return skeleton(drawing, marks)
+
+
+def _scale(root: Element, drawing: Drawing) -> float:
+    """m in a unit of the drawing: width over that of its view box, else 96 units an inch."""
+    size = re.fullmatch(r"\s*([0-9.eE+-]+)\s*([a-z]*)\s*", root.get("width", ""))
+    if size is None or size[2] not in METRES:
+        drawing.note(
+            "the drawing tells no width with a unit: 96 of its units are taken for an inch"
+        )
+        return METRES[""]
+    box = numbers(root, "viewBox", "0 0 0 0", (4,))
+    try:
+        width = float(size[1])
+    except ValueError:
+        raise ModelError("svg", f"width: got {size[0]!r}; give a length such as 200mm") from None
+    if box[2] <= 0:
+        return METRES[size[2]]
+    if not width > 0:
+        raise ModelError("svg", f"width: got {size[0]!r}; give more than 0")
+    return METRES[size[2]] * width / box[2]
+
+
+class _Reader:
+    def __init__(self, drawing: Drawing, shapes: Any, scale: float) -> None:
+        self.drawing, self.shapes, self.scale = drawing, shapes, scale
+
+    def inside(self, parent: Element, at: Any, names: tuple[str, ...]) -> None:
+        """Everything that is drawn in an element."""
+        for element in parent:
+            if element.tag in UNSEEN or "none" in (
+                element.get("display"),
+                _style(element, "display"),
+            ):
+                continue
+            if element.tag == "use":
+                self.drawing.note("copies by <use> are left out")
+                continue
+            inner = at
+            if text := element.get("transform"):
+                inner = self._library(element, self.shapes.Matrix, text) * at
+            own = (*self._names(element), *names)
+            if element.tag in ("g", "a", "svg", "switch"):
+                self.inside(element, inner, own)
+            elif element.tag == "circle":
+                self._circle(element, inner, own)
+            else:
+                self._stroke(element, inner, own)
+
+    def _library(self, element: Element, make: Any, text: str) -> Any:
+        if len(text) > LONGEST:
+            raise ModelError(called(element), f"it has more than {LONGEST:,} signs")
+        try:
+            return make(text)
+        except Exception as error:  # of many kinds
+            raise ModelError(called(element), f"{text[:40]!r} cannot be read") from error
+
+    def _names(self, element: Element) -> Iterator[str]:
+        """Name, layer, classes and colour."""
+        given = [element.get(key) for key in ("id", "label", "stroke")]
+        for name in (*given, *element.get("class", "").split(), _style(element, "stroke")):
+            if name and name != "none" and not NUMBERED.fullmatch(name):
+                yield name
+
+    def _place(self, x: float, y: float, at: Any) -> complex:
+        place = complex(at.a * x + at.c * y + at.e, -(at.b * x + at.d * y + at.f)) * self.scale
+        if not abs(place) < 1e9:
+            raise ModelError("", "a line lies beyond all machines; check the drawing's coordinates")
+        return place
+
+    def _circle(self, element: Element, at: Any, names: tuple[str, ...]) -> None:
+        x, y, r = (number(element, key, "0") for key in ("cx", "cy", "r"))
+        center = self._place(x, y, at)
+        radius = abs(self._place(x + r, y, at) - center)
+        self.drawing.rings.append(Ring(center, radius, names))
+
+    def _stroke(self, element: Element, at: Any, names: tuple[str, ...]) -> None:
+        for corners, closed in self._corners(element):
+            places = [self._place(x, y, at) for x, y in corners]
+            if closed and len(places) > 2 and places[0] == places[-1]:
+                places.pop()
+            if len(places) > 1:
+                self.drawing.strokes.append(Stroke(tuple(places), names, closed))
+
+    def _corners(self, element: Element) -> Iterator[tuple[list[tuple[float, float]], bool]]:
+        """Corners of each line of an element, and whether it comes back."""
+        if element.tag == "line":
+            x, y, u, v = (number(element, key, "0") for key in ("x1", "y1", "x2", "y2"))
+            yield [(x, y), (u, v)], False
+        elif element.tag in ("polyline", "polygon"):
+            flat = numbers(element, "points", "")
+            yield [*zip(flat[::2], flat[1::2], strict=False)], element.tag == "polygon"
+        elif element.tag == "rect":
+            x, y, w, h = (number(element, key, "0") for key in ("x", "y", "width", "height"))
+            yield [(x, y), (x + w, y), (x + w, y + h), (x, y + h)], True
+        elif element.tag == "path":
+            path = self._library(element, self.shapes.Path, element.get("d", ""))
+            for part in path.as_subpaths():
+                ends = [(one.end.x, one.end.y) for one in part if one.end is not None]
+                yield ends, type(part[-1]).__name__ == "Close"
+
+
+def _style(element: Element, key: str) -> str:
+    """A value of the attribute `style`."""
+    found = re.search(rf"(?:^|;)\s*{key}\s*:\s*([^;]+)", element.get("style", ""))
+    return found[1].strip() if found else ""

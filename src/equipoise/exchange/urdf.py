@@ -1,0 +1,125 @@
+"""URDF: the tree of a linkage, in SI units; pins that close loops have no place in it.
+
+A link's frame is at its joint there, with the axes of the link.
+"""
+
+from __future__ import annotations
+
+from math import atan2, hypot
+from xml.etree import ElementTree as ET
+
+import numpy as np
+
+from equipoise.exchange.formats import Job
+from equipoise.exchange.tree import Hung, Tree, mass_of, trees, weighed
+from equipoise.mechanism.links import size_of
+from equipoise.mechanism.model import FRAME, Machine, Vector
+from equipoise.mechanism.motion import move
+
+EFFORT = 1e6
+"""N or N m: URDF wants a limit of what slides."""
+
+
+def made(job: Job) -> str:
+    """The file's text."""
+    machine, drawn = weighed(job.machine), trees(job.machine, job.crank_angle)
+    root = ET.Element("robot", name=str(machine.title))
+    ET.SubElement(root, "link", name=FRAME)
+    for tree in drawn:
+        for link in tree.links:
+            _link(root, tree, link)
+            _joint(root, tree, link)
+        _gears(root, tree, job)
+        for loop in tree.loops:
+            job.leave_out(
+                f"the pin {loop.pin} of {loop.one!r} and {loop.other!r}: it closes a loop"
+            )
+    missing = {
+        "springs": machine.springs,
+        "loads": machine.loads,
+        "what the support stands on": machine.support,
+        "the drive's speed": machine.drive.speed,
+    }
+    for what, given in missing.items():
+        if given:
+            job.leave_out(what)
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode") + "\n"
+
+
+def _row(*values: float) -> str:
+    return " ".join(repr(float(value)) for value in values)
+
+
+def _link(root: ET.Element, tree: Tree, link: Hung) -> None:
+    """Mass, and lines from its joint to its points to be seen."""
+    body = tree.machine.links[link.name]
+    part = ET.SubElement(root, "link", name=f"{link.name}{tree.suffix}")
+    mass, center, inertia = mass_of(body)
+    inertial = ET.SubElement(part, "inertial")
+    ET.SubElement(inertial, "origin", xyz=_row(*_from(link, center), 0.0), rpy="0 0 0")
+    ET.SubElement(inertial, "mass", value=repr(mass))
+    moments = {"ixx": inertia, "iyy": inertia, "izz": inertia, "ixy": 0.0, "ixz": 0.0, "iyz": 0.0}
+    ET.SubElement(inertial, "inertia", {name: repr(value) for name, value in moments.items()})
+    thin = size_of(body.points) / 40
+    for place in body.points.values():
+        _bar(part, _from(link, place), thin)
+
+
+def _from(link: Hung, place: Vector) -> Vector:
+    """A place in a link's axes, from its joint."""
+    return place[0] - link.at[0], place[1] - link.at[1]
+
+
+def _bar(part: ET.Element, end: Vector, thin: float) -> None:
+    length = hypot(*end)
+    if not length:
+        return
+    visual = ET.SubElement(part, "visual")
+    middle, turned = (end[0] / 2, end[1] / 2, 0.0), (0.0, 0.0, atan2(end[1], end[0]))
+    ET.SubElement(visual, "origin", xyz=_row(*middle), rpy=_row(*turned))
+    ET.SubElement(ET.SubElement(visual, "geometry"), "box", size=_row(length, thin, thin))
+
+
+def _joint(root: ET.Element, tree: Tree, link: Hung) -> None:
+    """A hinge that turns without end, or a slide with the way of a turn to either side."""
+    hinge = link.kind == "hinge"
+    name = f"{link.name}{tree.suffix}"
+    joint = ET.SubElement(root, "joint", name=name, type="continuous" if hinge else "prismatic")
+    place, turned = tree.beside(link)
+    spot = place + complex(*link.at) * np.exp(1j * turned)
+    across = 0.0
+    if link.parent == FRAME:
+        across = tree.row.lateral
+    else:
+        spot -= complex(*tree.hung[link.parent].at)
+    origin = _row(spot.real, spot.imag, across)
+    ET.SubElement(joint, "origin", xyz=origin, rpy=_row(0.0, 0.0, turned))
+    parent = FRAME if link.parent == FRAME else f"{link.parent}{tree.suffix}"
+    ET.SubElement(joint, "parent", link=parent)
+    ET.SubElement(joint, "child", link=name)
+    along = (0.0, 0.0, 1.0) if hinge else (np.cos(link.along), np.sin(link.along), 0.0)
+    ET.SubElement(joint, "axis", xyz=_row(*along))
+    if not hinge:
+        way = _way(tree.machine, link)
+        limits = {"lower": -way, "upper": way, "effort": EFFORT, "velocity": EFFORT}
+        ET.SubElement(joint, "limit", {key: repr(value) for key, value in limits.items()})
+
+
+def _way(machine: Machine, link: Hung) -> float:
+    """How far a slide goes over the whole cycle, m."""
+    ends = {link.name, link.parent}
+    slider = next(one for one in machine.sliders if {one.link, one.on} == ends)
+    return float(np.ptp(move(machine).sliders[slider.name].travel))
+
+
+def _gears(root: ET.Element, tree: Tree, job: Job) -> None:
+    """A joint that follows another; of three URDF does not know."""
+    for gear, factors in tree.gears:
+        if len(factors) != 2:
+            job.leave_out(f"the gears {gear}, which join more than two joints")
+            continue
+        (one, by), (other, share) = factors.items()
+        joint = next(j for j in root.iter("joint") if j.get("name") == f"{one}{tree.suffix}")
+        mimic = {"joint": f"{other}{tree.suffix}", "multiplier": repr(-share / by)}
+        ET.SubElement(joint, "mimic", mimic)

@@ -1,0 +1,230 @@
+"""Skeletons that are drawn: every bundled machine, drawn as lines, comes back with its lengths."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import combinations
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+import pytest
+
+from equipoise.errors import EquipoiseError
+from equipoise.exchange.export import export
+from equipoise.exchange.reading.formats import import_machine
+from equipoise.exchange.reading.found import Imported
+from equipoise.mechanism.model import FRAME, Machine
+from equipoise.mechanism.motion import move
+from equipoise.schema.models import load_linkage, loads_linkage
+
+Draw = Callable[[Path, Machine, dict[str, complex]], Path]
+AT = 0.7
+"""rad, at which machines are drawn."""
+PINNED = ["yamashita-1", "drag-link", "watt-six-bar", "stephenson-six-bar", "class-three"]
+TURN, SHIFT = np.exp(0.4j), 0.3 - 0.2j
+DEGREES = 0.4 * 180 / np.pi
+"""Of blocks and groups that a drawing has."""
+
+
+def places(machine: Machine, angle: float = AT) -> dict[str, complex]:
+    """Points of a machine in its frame, m."""
+    motion = move(machine, [angle])
+    found = {name: complex(point.place[0]) for name, point in motion.points.items()}
+    return found | {name: complex(*place) for name, place in machine.frame.items()}
+
+
+def as_dxf(path: Path, machine: Machine, at: dict[str, complex]) -> Path:
+    """In inches; every other link is in a block that is turned and shifted."""
+    document = ezdxf.new(units=1)
+    space = document.modelspace()
+    for number, (name, link) in enumerate(machine.links.items()):
+        corners = np.array([at[point] for point in link.points])
+        layout = space
+        if number % 2:
+            layout = document.blocks.new(name)
+            corners = (corners - SHIFT) / TURN
+            where = {"rotation": DEGREES}
+            space.add_blockref(name, (SHIFT.real / 0.0254, SHIFT.imag / 0.0254), dxfattribs=where)
+        flat = [(z.real / 0.0254, z.imag / 0.0254) for z in corners]
+        layout.add_lwpolyline(flat, close=len(flat) > 2, dxfattribs={"layer": name})
+    for place in machine.frame.values():
+        x, y = (one / 0.0254 for one in place)
+        space.add_circle((x, y), 0.01, dxfattribs={"layer": FRAME})
+    document.saveas(path.with_suffix(".dxf"))
+    return path.with_suffix(".dxf")
+
+
+def as_svg(path: Path, machine: Machine, at: dict[str, complex]) -> Path:
+    """With a view box of half millimetres, y downward, and every other link in a turned group."""
+    shapes = []
+    for number, (name, link) in enumerate(machine.links.items()):
+        corners = 2000 * np.conj([at[point] for point in link.points])
+        open_group, close = "", ""
+        if number % 2:
+            corners = (corners - 70) / TURN
+            open_group = f'<g transform="translate(70,0) rotate({DEGREES!r})">'
+            close = "</g>"
+        way = " L ".join(f"{z.real!r},{z.imag!r}" for z in corners.tolist())
+        shapes.append(f'{open_group}<path id="{name}" d="M {way}"/>{close}')
+    rings = "".join(
+        f'<circle r="0.01" cx="{2000 * x!r}" cy="{-2000 * y!r}"/>'
+        for x, y in machine.frame.values()
+    )
+    head = '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" viewBox="0 0 200 100">'
+    text = f"{head}{''.join(shapes)}<g id='{FRAME}'>{rings}</g></svg>"
+    path.with_suffix(".svg").write_text(text)
+    return path.with_suffix(".svg")
+
+
+@pytest.mark.parametrize("draw", [as_dxf, as_svg])
+@pytest.mark.parametrize("name", PINNED)
+def test_a_machine_that_is_drawn_comes_back(name: str, draw: Draw, tmp_path: Path) -> None:
+    """Shapes of all links to 1e-9, and so does what they do: places a fifth of a turn later."""
+    machine = load_linkage(name)
+    at = places(machine)
+    found = import_machine(draw(tmp_path / name, machine, at), crank=machine.drive.link)
+    assert found.machine is not None, found.missing
+    assert found.machine == loads_linkage(found.text())
+    assert [*found.machine.links] == [*machine.links]
+    size = max(map(abs, at.values()))
+    drawn = places(found.machine, found.outline.crank_angle)
+    new = {point: min(at, key=lambda one: abs(at[one] - drawn[point])) for point in drawn}
+    for link in machine.links:
+        own = {new[one]: complex(*z) for one, z in found.machine.links[link].points.items()}
+        assert own.keys() == machine.links[link].points.keys()
+        for one, other in combinations(own, 2):
+            length = abs(at[one] - at[other])
+            assert abs(own[one] - own[other]) == pytest.approx(length, abs=1e-9 * size)
+    later = places(machine, AT + 1.2)
+    for point, place in places(found.machine, found.outline.crank_angle + 1.2).items():
+        assert abs(place - later[new[point]]) < 1e-8 * size
+
+
+def drawing(path: Path, *shapes: str, head: str = 'width="200mm" viewBox="0 0 200 100"') -> Path:
+    """An SVG file in millimetres."""
+    path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {head}>{"".join(shapes)}</svg>')
+    return path
+
+
+CRANK = '<line id="crank" x1="0" y1="0" x2="20" y2="-20"/>'
+ROD = '<line id="rod" x1="20" y1="-20" x2="120" y2="0"/>'
+PIVOT = '<circle id="base" cx="0" cy="0" r="2"/>'
+
+
+def test_what_is_named_a_guide_carries_a_block(tmp_path: Path) -> None:
+    guide = '<line class="guide" x1="90" y1="0" x2="150" y2="0"/>'
+    found = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT, guide), speed=3.0)
+    machine = found.machine
+    assert machine is not None
+    assert machine.drive.link == "crank"
+    assert machine.drive.speed == 3.0
+    (slider,) = machine.sliders
+    assert (slider.on, slider.direction) == (FRAME, 0.0)
+    assert found.outline.mobility == 1
+    assert any("masses" in one and "rod" in one for one in found.missing)
+
+
+def test_circles_at_free_ends_are_pivots_where_nothing_marks_the_frame(tmp_path: Path) -> None:
+    """Lines that end at the rim of a circle go to its centre; one in a line's middle pins it."""
+    rocker = '<line x1="70" y1="-8.9" x2="70" y2="60"/>'
+    rings = [f'<circle cx="{x}" cy="{y}" r="1.2"/>' for x, y in ((0, 0), (70, -10), (70, 60))]
+    rod = '<line id="rod" x1="20" y1="-20" x2="120" y2="0"/>'
+    found = import_machine(drawing(tmp_path / "a.svg", CRANK, rod, rocker, *rings))
+    assert found.outline.mobility == 1
+    assert len(found.outline.frame) == 2
+    assert len(found.outline.links["rod"].points) == 3
+    assert found.machine is not None
+
+
+def test_lines_under_one_name_are_one_link(tmp_path: Path) -> None:
+    plate = ('<g id="plate"><line x1="20" y1="-20" x2="60" y2="-60"/>'
+             '<line x1="60" y1="-60" x2="120" y2="0"/></g>')  # fmt: skip
+    path = drawing(tmp_path / "a.svg", CRANK, plate, PIVOT)
+    assert len(import_machine(path).outline.links) == 3
+    links = import_machine(path, link=["plate"]).outline.links
+    assert len(links["plate"].points) == 3
+
+
+@pytest.mark.parametrize(("unit", "length"), [(None, 1e-3), (0.5e-3, 0.5e-3)])
+def test_a_unit_can_be_told(unit: float | None, length: float, tmp_path: Path) -> None:
+    found = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT), unit=unit)
+    _, (x, _) = found.outline.links["crank"].points.values()
+    assert x == pytest.approx(20 * 2**0.5 * length, rel=1e-9)
+
+
+def test_ends_within_a_tolerance_meet(tmp_path: Path) -> None:
+    sloppy = '<line id="rod" x1="20.05" y1="-20" x2="120" y2="0"/>'
+    path = drawing(tmp_path / "a.svg", CRANK, sloppy, PIVOT)
+    assert import_machine(path).outline.mobility == 4
+    assert import_machine(path, tolerance=0.1e-3).outline.mobility == 2
+
+
+def test_a_hatching_marks_the_frame(tmp_path: Path) -> None:
+    document = ezdxf.new(units=4)
+    space = document.modelspace()
+    space.add_line((0, 0), (30, 0))
+    space.add_line((30, 0), (100, 50))
+    hatch = space.add_hatch()
+    hatch.paths.add_polyline_path([(-5, -5), (5, -5), (5, 5), (-5, 5)], is_closed=True)
+    document.layers.add("hidden").off()
+    space.add_line((0, 0), (7, 7), dxfattribs={"layer": "hidden"})
+    document.saveas(tmp_path / "a.dxf")
+    outline = import_machine(tmp_path / "a.dxf").outline
+    assert outline.frame == {"A": (0.0, 0.0)}
+    assert [*outline.links] == ["link1", "link2"]
+
+
+@pytest.mark.parametrize(
+    ("shapes", "told", "sentence"),
+    [
+        ([CRANK], {}, "nothing in it is the frame; name what stands still by --frame"),
+        ([CRANK, PIVOT], {"frame": ["bse"]}, "did you mean 'base'"),
+        ([CRANK, PIVOT], {"pin": ["a = b"]}, "--pin does nothing to SVG drawing"),
+        ([CRANK, PIVOT], {"crank": "rod"}, "--crank: no link is called 'rod'"),
+        ([PIVOT], {}, "there is no line in it"),
+        (['<line x1="nan" y1="0" x2="1" y2="1"/>'], {}, "x1: got 'nan'; give 1 numbers"),
+        (['<line x1="1e400" y1="0" x2="1" y2="1"/>'], {}, "x1: got '1e400'"),
+        (['<path d="M 0 0 L 1e99 0"/>'], {}, "beyond all machines"),
+        (["<g>" * 120 + "</g>" * 120], {}, "more than 100 elements inside of each other"),
+    ],
+)
+def test_what_cannot_be_read_is_told(
+    shapes: list[str], told: dict[str, object], sentence: str, tmp_path: Path
+) -> None:
+    path = drawing(tmp_path / "a.svg", *shapes)
+    with pytest.raises(EquipoiseError) as caught:
+        import_machine(path, **told)  # type: ignore[arg-type]
+    assert sentence in str(caught.value)
+
+
+def test_entities_are_refused(tmp_path: Path) -> None:
+    bomb = '<!DOCTYPE svg [<!ENTITY a "b">]><svg>&a;</svg>'
+    (tmp_path / "a.svg").write_text(bomb)
+    with pytest.raises(EquipoiseError, match="declares entities"):
+        import_machine(tmp_path / "a.svg")
+
+
+def test_unfinished_drawings_leave_lines_to_fill_in(tmp_path: Path) -> None:
+    found: Imported = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT))
+    assert found.machine is None
+    text = found.text()
+    assert '# link = "crank or rod"' in text
+    assert "# missing: joints: the mobility is 2" in text
+    whole = text.replace("# [drive]", "[drive]").replace("crank or rod", "crank")
+    whole = whole.replace('# link = "', 'link = "').replace("# speed", "speed")
+    assert loads_linkage(whole).drive.link == "crank"
+
+
+@pytest.mark.parametrize("name", ["yamashita-1", "watt-six-bar", "slider-crank-engine"])
+def test_a_drawing_that_export_wrote_comes_back(name: str, tmp_path: Path) -> None:
+    """With its names, to 1e-9; a block is a link of its own there, and drawn as none."""
+    machine = load_linkage(name)
+    export(machine, tmp_path / "a.dxf", crank_angle=AT)
+    found = import_machine(tmp_path / "a.dxf", crank=machine.drive.link)
+    assert found.machine is not None, found.missing
+    size = max(map(abs, places(machine).values()))
+    later = places(machine, AT + 0.9)
+    moved = places(found.machine, found.outline.crank_angle + 0.9)
+    for point in later.keys() - machine.frame.keys():
+        assert abs(moved[point] - later[point]) < 1e-9 * size

@@ -1,0 +1,39 @@
+"""A fence holds where files are read and written, whoever named them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from equipoise.errors import UsageError
+from equipoise.fence import Fence, fenced
+from equipoise.partial import together
+from equipoise.schema.files import FileError, read_text, write
+
+
+def test_files_beyond_a_fence(tmp_path: Path) -> None:
+    folder, beyond = tmp_path / "folder", tmp_path / "folder too"
+    for one in (folder, beyond):
+        one.mkdir()
+        (one / "there.txt").write_text("there")
+    (folder / "way.txt").symlink_to(beyond / "there.txt")
+    fence = Fence(folder)
+    with fenced(fence), together():
+        assert read_text(folder / "there.txt") == "there"
+        for name in (beyond / "there.txt", folder / ".." / "folder too" / "there.txt"):
+            with pytest.raises(FileError, match="outside of the folder"):
+                read_text(name)
+            with pytest.raises(UsageError, match="outside of the folder"):
+                write(name, "new")
+        with pytest.raises(UsageError, match="outside of the folder"):
+            write(folder / "way.txt", "new")
+        with pytest.raises(UsageError, match="is there already"):
+            write(folder / "there.txt", "new")
+        write(folder / "new.txt", "new")
+    assert fence.written == [folder / "new.txt"]
+    with fenced(Fence(folder, (beyond,), replaces=True)):
+        assert read_text(beyond / "there.txt") == "there"
+        write(folder / "there.txt", "new")
+    assert (beyond / "there.txt").read_text() == "there"
+    assert (folder / "there.txt").read_text() == "new"
