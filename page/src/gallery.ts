@@ -82,7 +82,7 @@ export class Gallery {
     const open = (name: string) =>
       h("button", { type: "button", onclick: () => this.take(() => this.wishes.store(name)) }, name);
     const none = say(
-      "The folder {folder} has no store of a study; `equipoise sweep` makes one.",
+      "The folder “{folder}” has no store of a study; the command equipoise sweep makes one.",
       { folder: folder ?? "" },
     );
     this.stores.replaceChildren(
@@ -130,7 +130,7 @@ export class Gallery {
 function picture(card: HTMLElement, one: Pictured, numbers: Numbers): SVGSVGElement {
   const view = new View();
   [view.width, view.height] = [WIDTH, HEIGHT];
-  view.fit(one.scene.box, 0);
+  view.fit(one.scene.box); // with room for the feet of pivots
   const pieces = one.scene.signs.map((sign) => new Piece(sign, one.scene));
   const size = { viewBox: `0 0 ${WIDTH} ${HEIGHT}` };
   const svg = s("svg", { class: "linkage small", "aria-hidden": "true", ...size });

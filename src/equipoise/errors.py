@@ -205,7 +205,6 @@ EXTRAS = {
     "distributed": "cluster",
     "av": "video",
     "mcp": "mcp",
-    "anyio": "mcp",
     "ezdxf": "exchange",
     "svgelements": "exchange",
     "xlsxwriter": "exchange",

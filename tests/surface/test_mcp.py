@@ -135,7 +135,10 @@ def test_a_machine_is_made_analysed_balanced_and_drawn(session: Session) -> None
     told = values(answers["analysed"])
     summary = eq.analyze(machine).summary["shaking_force"]
     assert told["values"]["summary"]["shaking_force"]["peak"] == pytest.approx(summary.peak)
-    assert told["units"]["force"] == "N"
+    assert told["units"]["force"] == told["units"]["shaking_force"] == "N"
+    assert told["units"]["drive_torque"] == "N m"
+    assert told["values"]["joints"]["B"] == {"on": "coupler", "by": "crank"}
+    assert "links" not in told["values"], "of which long lists are all"
     assert told["files"] == ["all.csv"]
     assert "lists of more than" in told["values"]["left_out"]
     assert "Force in each joint" in text(answers["analysed"])
@@ -197,3 +200,8 @@ def test_nothing_outside_of_the_folder_is_read_or_written(session: Session, key:
 
 def test_a_folder_that_is_not_there() -> None:
     assert "give a folder that is there" in refused(equipoise("mcp", "--folder", "none"))
+
+
+def test_what_is_not_installed_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "mcp.server.stdio", None)
+    assert 'pip install "equipoise[mcp]"' in refused(equipoise("mcp"))

@@ -14,7 +14,6 @@ from cyclopts import CycloptsError
 from equipoise import __version__
 from equipoise.cli.options import wants
 from equipoise.errors import EquipoiseError, UsageError, needed, unknown
-from equipoise.quantities import SI
 
 if TYPE_CHECKING:
     from mcp.server.lowlevel import Server
@@ -33,7 +32,7 @@ ANSWER = {
     "type": "object",
     "properties": {
         "values": {"type": "object", "description": "in SI units and radians"},
-        "units": {"type": "object", "description": "SI unit of each kind of quantity"},
+        "units": {"type": "object", "description": "of each kind of quantity and output"},
         "files": {"type": "array", "items": {"type": "string"}},
     },
     "required": ["values", "units", "files"],
@@ -48,8 +47,9 @@ def mcp(*, folder: Annotated[str, wants("FOLDER")] = ".") -> None:
     folder
         Whose files are read and written; none outside of it are.
     """
-    anyio = needed("anyio", "the Model Context Protocol")
     needed("mcp.server.stdio", "the Model Context Protocol")
+    import anyio
+
     if not os.path.isdir(folder):
         raise UsageError(f"--folder: got {folder!r}; give a folder that is there")
     os.chdir(folder)
@@ -109,7 +109,7 @@ def answered(
     """What a tool tells, with its pictures; what is wrong is told in the product's sentence."""
     from mcp import types
 
-    from equipoise.cli.tools import shown
+    from equipoise.cli.tools import shown, units_of
 
     try:
         if name not in known:
@@ -120,7 +120,11 @@ def answered(
     names = [shown(path, folder) for path in answer.written]
     return types.CallToolResult(
         content=[types.TextContent(text=answer.text), *_pictures(answer.written)],
-        structured_content={"values": answer.values, "units": SI, "files": names},
+        structured_content={
+            "values": answer.values,
+            "units": units_of(answer.values),
+            "files": names,
+        },
     )
 
 

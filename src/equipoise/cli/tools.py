@@ -23,7 +23,9 @@ from equipoise.cli import app
 from equipoise.cli.outputs import heard
 from equipoise.errors import UsageError, unknown
 from equipoise.fence import Fence, fenced
+from equipoise.mechanism.outputs import declared
 from equipoise.partial import together
+from equipoise.quantities import SI
 
 if TYPE_CHECKING:
     from cyclopts import Argument, ArgumentCollection
@@ -42,7 +44,7 @@ OVERWRITE = {
 USUAL = {"format": "png"}
 """Instead of what commands do by themselves: pictures that any program can show."""
 MOST = 24
-"""Values in a list, above which it is left out where the whole object is not asked for."""
+"""Values in a list, and in those in it, above which only the whole object has it."""
 Schema = dict[str, Any]
 
 
@@ -210,23 +212,39 @@ def _value(one: Argument) -> Schema:
 
 
 def _short(values: dict[str, Any]) -> dict[str, Any]:
-    """Without lists that are long, which are counted."""
+    """Without lists that are long, which are counted, and tables that had nothing else."""
     left = 0
 
     def cut(value: Any) -> Any:
         nonlocal left
         if isinstance(value, dict):
-            kept = {key: cut(one) for key, one in value.items() if not _is_long(one)}
-            left += len(value) - len(kept)
-            return kept
+            short = {key: one for key, one in value.items() if _size(one) <= MOST}
+            left += len(value) - len(short)
+            kept = {key: (one, cut(one)) for key, one in short.items()}
+            return {key: new for key, (one, new) in kept.items() if new != {} or one == {}}
         return [cut(one) for one in value] if isinstance(value, list) else value
 
     kept: dict[str, Any] = cut(values)
     return kept | ({"left_out": f"{left} lists of more than {MOST}; ask with json"} if left else {})
 
 
-def _is_long(value: Any) -> bool:
-    return isinstance(value, list) and len(value) > MOST
+def _size(value: Any) -> int:
+    """Values in a list, and in the lists in it."""
+    return sum(map(_size, value)) if isinstance(value, list) else 1
+
+
+def units_of(values: Any) -> dict[str, str]:
+    """SI unit of each kind of quantity, and of each output that is told by its name."""
+    named = {name: declared(name) for name in _names(values)}
+    told = {name: one[0].dimension for name, one in named.items() if one is not None}
+    kinds = {kind: kind for kind in SI} | told
+    return {name: SI[kind] for name, kind in kinds.items() if kind is not None}
+
+
+def _names(values: Any) -> Iterator[str]:
+    for key, one in values.items() if isinstance(values, dict) else ():
+        yield key
+        yield from _names(one)
 
 
 def shown(path: Path, folder: Path) -> str:

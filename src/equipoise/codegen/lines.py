@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.codegen.angles import turned, write_running_angle
 from equipoise.codegen.loops import write_loops
 from equipoise.codegen.source import Read, Sheet
 from equipoise.errors import MassError
@@ -79,9 +80,7 @@ class Writer:
 
     def turned(self, order: float) -> str:
         """exp(i order theta), which no design changes."""
-        cos = self.sheet.row(f"cos({order!r})", lambda theta: np.cos(order * theta))
-        sin = self.sheet.row(f"sin({order!r})", lambda theta: np.sin(order * theta))
-        return f"({cos} + 1j * {sin})"
+        return turned(self.sheet, order)
 
     def rate(self, key: str) -> str:
         """Identifier of the crank's ``speed`` or ``acceleration``."""
@@ -111,7 +110,7 @@ def write_motion(writer: Writer) -> None:
             sheet.put(name, value)
     if writer.counted:
         sheet.put(f"phi({FRAME})", "0.0")
-        sheet.put(f"phi({drive})", sheet.row("theta", lambda theta: theta))
+        sheet.put(f"phi({drive})", sheet.row("theta", lambda theta: theta, "theta"))
     for number, step in enumerate(writer.linkage.motion):
         _write_step(writer, step, "motion", number)
 
@@ -124,7 +123,7 @@ def _write_step(writer: Writer, step: Step, steps: str, number: int) -> None:
     """Write a step, the one of this number of a linkage's ``motion`` or ``forces``."""
     sheet = writer.sheet
     if isinstance(step, RunningAngle):
-        _write_running_angle(writer, step.link)
+        write_running_angle(writer.sheet, writer.linkage.cycle, step.link)
     elif isinstance(step, Rotation):
         if writer.counted:
             sheet.put(f"u({step.link})", f"rotation({writer.name(f'phi({step.link})')})")
@@ -136,21 +135,6 @@ def _write_step(writer: Writer, step: Step, steps: str, number: int) -> None:
     elif isinstance(step, LoopGroup):
         write_loops(sheet, writer.linkage, number)
         writer.points.update(step.anchors)
-
-
-def _write_running_angle(writer: Writer, link: str) -> None:
-    """The angle of a link that a dyad moves: that of the base, and what lies between them.
-
-    Nothing is counted on from crank angle to crank angle, which would keep the loop from handling
-    several at once.
-    """
-    sheet, cycle = writer.sheet, writer.linkage.cycle
-    base = sheet.row(f"angle({link} of base)", lambda theta: cycle.reference(link, theta))
-    cos = sheet.row(f"cos({link} of base)", lambda theta: np.cos(cycle.reference(link, theta)))
-    sin = sheet.row(f"sin({link} of base)", lambda theta: np.sin(cycle.reference(link, theta)))
-    between = sheet.put(f"between({link})", f"{writer.name(f'u({link})')} * ({cos} - 1j * {sin})")
-    sheet.put(f"phi({link})", f"{base} + angle_of({between})")
-    sheet.running[link] = sheet.put(f"cosine({link})", f"{between}.real")
 
 
 def _write_call(writer: Writer, step: Call, steps: str, number: int) -> None:

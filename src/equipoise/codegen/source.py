@@ -61,10 +61,15 @@ class Slot:
 
 @dataclass(frozen=True)
 class Row:
-    """Something that depends on the crank angle alone: values (N,) at crank angles (N,), rad."""
+    """Something that depends on the crank angle alone: values (N,) at crank angles (N,), rad.
+
+    formula : the same of `theta`, or of the base what is near enough to it, as other languages
+        write it too; empty where it has none.
+    """
 
     name: str
     values: Callable[[Array], Array]
+    formula: str = ""
 
 
 @dataclass(frozen=True)
@@ -140,10 +145,10 @@ class Sheet:
             self.width += 1 + vector
         return found
 
-    def row(self, name: str, values: Callable[[Array], Array]) -> str:
+    def row(self, name: str, values: Callable[[Array], Array], formula: str = "") -> str:
         """A number that depends on the crank angle alone."""
         found = self.name(name)
-        self.rows.setdefault(found, Row(found, values))
+        self.rows.setdefault(found, Row(found, values, formula))
         return found
 
     def carry(self, value: str, start: float | complex) -> str:

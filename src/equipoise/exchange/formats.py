@@ -52,6 +52,13 @@ FORMATS: Mapping[str, Format] = {
             "the tree: links with masses, hinges, slides, gears of two joints; loops are cut",
         ),
         Format(
+            "fmu",
+            ".fmu",
+            "co-simulation (FMI 2.0)",
+            "motion and forces as outputs, speed and acceleration of the crank as inputs; gears, "
+            "springs, constant loads; C sources, and a library where a C compiler is found",
+        ),
+        Format(
             "dxf",
             ".dxf",
             "drawing (DXF)",

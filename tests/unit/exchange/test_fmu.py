@@ -1,0 +1,87 @@
+"""FMUs run by FMPy: their C gives what the analysis gives, but for rounding."""
+
+from __future__ import annotations
+
+import shutil
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.validation import validate_fmu
+
+import equipoise as eq
+
+START = 0.3
+"""Crank angle at which the FMU begins, rad."""
+RUNNING = [
+    *("kim-chung-b", "quick-return", "scotch-yoke", "sieve", "spring-balanced-crank"),
+    *("geared-counterweight", "planetary-planting-arm", "slider-crank-engine"),
+]
+compiled = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
+
+
+def run(name: str, path: Path, **options: Any) -> tuple[eq.Machine, Any]:
+    """The machine, and what its FMU told over time."""
+    machine = eq.load(name)
+    eq.export(machine, path, crank_angle=START)
+    assert validate_fmu(str(path)) == []
+    return machine, fmpy.simulate_fmu(str(path), **options)
+
+
+@compiled
+@pytest.mark.parametrize("name", RUNNING)
+def test_every_output_over_a_turn(name: str, tmp_path: Path) -> None:
+    machine, found = run(name, tmp_path / "x.fmu")
+    angle = found["crank_angle"]
+    assert angle[0] == START
+    assert angle[-1] - START == pytest.approx(np.copysign(2 * np.pi, machine.drive.speed))
+    bare = eq.Machine(**{**{key: getattr(machine, key) for key in KEPT}, "loads": ()})
+    outputs = eq.analyze(bare, angle).outputs
+    names = [one for one in found.dtype.names if one not in {"time", "crank_angle"}]
+    assert {"drive_torque", "shaking_force.x", "shaking_moment"} <= {*names}
+    sizes: dict[str, float] = {}
+    for one in names:  # what vanishes has the rounding of its like
+        unit, size = outputs[one].unit, float(np.max(np.abs(outputs[one].values)))
+        sizes[unit] = max(sizes.get(unit, 0.0), size)
+    for one in names:
+        least = 1e-9 * sizes[outputs[one].unit]
+        np.testing.assert_allclose(found[one], outputs[one].values, rtol=0, atol=least, err_msg=one)
+
+
+KEPT = ("title", "drive", "frame", "links", "assembly", "sliders", "gears", "gravity", "springs")
+
+
+@compiled
+def test_speed_and_acceleration_are_inputs(tmp_path: Path) -> None:
+    """Each step goes by those that it begins with."""
+    kinds = [("time", float), ("speed", float), ("acceleration", float)]
+    given = np.array([(0.0, 5.0, 2.0), (0.2, 5.4, 2.0)], dtype=kinds)
+    machine, found = run(
+        "yamashita-1", tmp_path / "x.fmu", input=given, stop_time=0.2, output_interval=0.01
+    )
+    turned = found["crank_angle"][-1] - START
+    assert turned == pytest.approx(5 * 0.2 + 0.5 * 2 * 0.2**2, rel=1e-9)
+    last = eq.analyze(machine, [found["crank_angle"][-1]], speed=5.38, acceleration=2.0)
+    assert found["drive_torque"][-1] == pytest.approx(last.forces.drive_torque[0], rel=1e-9)
+
+
+def test_without_a_compiler_it_has_its_sources(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(shutil, "which", lambda _: None)
+    (told,) = eq.export(eq.load("yamashita-1"), tmp_path / "x.fmu")
+    assert "fmpy compile" in told
+    names = zipfile.ZipFile(tmp_path / "x.fmu").namelist()
+    assert names == ["modelDescription.xml", "sources/model.c"]
+
+
+def test_what_no_c_is_written_of(tmp_path: Path) -> None:
+    path = tmp_path / "x.fmu"
+    with pytest.raises(eq.EquipoiseError, match="loops that no dyads solve cannot be written in C"):
+        eq.export(eq.load("class-three"), path)
+    assert not path.exists()
+    told = eq.export(eq.load("riding-transplanter"), path)
+    assert told == ("the support", "all rows but one")
