@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from lessons import TABLE, lessons
 from pictures import command_of
 
-from equipoise.schema.opening import bundled, kind_of
+from equipoise.schema.opening import bundled
 
 
 class Words(NamedTuple):
@@ -41,8 +41,7 @@ def plain(text: str) -> str:
 def card(language: str, name: str, content: Mapping[str, Any], lesson: str, to_try: str) -> str:
     """What there is to say of one example; `lesson` and `to_try` are Markdown."""
     words = WORDS[language]
-    moving = f"/moving/{content.get('model', name)}.svg"  # of a study, its model
-    picture = f"/drawn/{name}/side-modes.svg" if kind_of(content) == "tool" else moving
+    picture = f"/moving/{content.get('model', name)}.svg"  # of a study, its model
     title = plain(content["title"][language])
     description = content.get("description", {}).get(language, "")  # studies have none
     told = {

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from sketches import SKETCHES
 
+from equipoise import examples
 from equipoise.cli import run
 
 SHOWN = re.compile(r"\]\((/(?:moving|drawn|sketches)/[\w/-]+\.svg)\)")
@@ -23,7 +24,8 @@ def command_of(path: str) -> str:
     """The command that makes a picture, in the folder of its kind."""
     _, kind, name, *more = path.removesuffix(".svg").split("/")
     if kind == "moving":
-        return f"animate {name} --force -o {name}.svg"
+        option = "--mode 3" if name in examples("tool") else "--force"
+        return f"animate {name} {option} -o {name}.svg"
     return f"plot {name} --only {more[0]} -o {name}"
 
 

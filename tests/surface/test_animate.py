@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
+from equipoise.cli.reports import TOOL_FRAMES
 from surface.running import (
     changed,
     equipoise,
@@ -106,3 +108,34 @@ def test_a_support_that_cannot_be_computed_is_drawn_standing_still() -> None:
     result = equipoise("animate", "sieve", "--speed", "0 rpm", "-o", "still.svg")
     assert "the support is drawn standing still: " in result.err
     assert "movement" not in Path("still.svg").read_text(encoding="utf-8")
+
+
+# -- tools -----------------------------------------------------------------------------------------
+
+
+def test_a_tool_swings_in_a_mode() -> None:
+    """Each instant has its share of half a swing, and is another picture."""
+    succeeded(equipoise("animate", "brush-cutter", "--mode", "3", "--seconds", "4"))
+    text = Path("brush-cutter.svg").read_text(encoding="utf-8")
+    frames = re.findall(r'<g class="f f\d+">(.*?)</g>', text, re.DOTALL)
+    assert len(frames) == len({*frames}) == TOOL_FRAMES
+    still = text.split('<g class="f f0">')[0]
+    assert "mode 3: " in still and "<title>Brush cutter with loop handle</title>" in still
+    assert still.count("2s step-end infinite alternate") == TOOL_FRAMES
+    shown = re.findall(r"([\d.]+)%\{visibility:visible\}([\d.]+)%", text)
+    ends = [float(end) for share in shown for end in share]
+    assert ends[0] == 0 and ends[-1] == 100 and ends[1:-1:2] == ends[2:-1:2]
+
+
+@pytest.mark.parametrize(
+    ("command", "why"),
+    [
+        ("--mode 7", "got 7; of the vertical plane there are 1 to 6"),
+        ("--mode 0", "got 0; of the vertical plane there are 1 to 6"),
+        ("--force", "--force: a tool swings in a mode"),
+        ("--trace P", "--trace: a tool swings in a mode"),
+        ("-o saw.gif", "give a name that ends in .svg"),
+    ],
+)
+def test_what_only_a_linkage_has_is_refused_of_a_tool(command: str, why: str) -> None:
+    refuses(f"animate pole-saw {command}", why)

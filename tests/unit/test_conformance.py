@@ -38,6 +38,10 @@ value, or of a thousandth of all forces where an output vanishes. Names such as 
 those of [bundled machines](examples.md), and such as `curve.height` those of figures that commands
 tell.
 """
+CONTENTS = (
+    "| source | met | explained | slips | drawn | tests of equations | comparisons |\n"
+    "|---|---|---|---|---|---|---|"
+)
 NUMBERS = (
     "| case | quantity | where | printed | computed | deviation | why |\n"
     "|---|---|---|---|---|---|---|"
@@ -64,9 +68,11 @@ def declared() -> Rows:
 
 def page(rows: Rows) -> str:
     """The page, as Markdown."""
-    parts = [HEAD.format(**counts(rows)), "## Contents\n", "| source | rows |\n|---|---|"]
-    parts += [f"| [{one.name}](#{anchor(one.name)}) | {len(told)} |" for one, told in rows.items()]
-    parts.append(f"| [Slips in print](#slips-in-print) | {len(list(slips(rows)))} |")
+    parts = [HEAD.format(**counts(rows)), "## Contents\n", CONTENTS]
+    for one, told in rows.items():
+        kinds = " | ".join(str(count or "") for count in counts({one: told}).values())
+        parts.append(f"| [{one.name}](#{anchor(one.name)}) | {kinds} |")
+    parts.append("\nThe last section lists the [slips in print](#slips-in-print).")
     for source, told in rows.items():
         parts.append(f"\n## {source.name}\n\n{' '.join(source.text.split())}\n")
         parts += sections(told)

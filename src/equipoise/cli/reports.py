@@ -62,6 +62,8 @@ def animate(
 ) -> None:
     """Show how a linkage and its support move: as SVG for a page, as GIF, or as a film in MP4.
 
+    A hand-held tool is shown in a mode of its vertical plane, as SVG.
+
     Parameters
     ----------
     out
@@ -83,7 +85,8 @@ def animate(
         By how much larger than true the support moves; 1 is to scale.  If not given, so that it
         can be seen.
     mode
-        The support in this mode of free vibration, counted from 1, instead of what moves at speed.
+        The support in this mode of free vibration, counted from 1, instead of what moves at speed;
+        of a tool its mode, the lowest if not given.
     dark
         With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
     """
@@ -91,6 +94,7 @@ def animate(
     from equipoise.figures.stage import Arrow, check_seconds, check_width
     from equipoise.results.analysis import analyze
     from equipoise.schema.files import write
+    from equipoise.schema.opening import kind_of_text, opened
 
     name = default_name(file, ".svg") if out is None else out
     kind = _kind(name)
@@ -100,6 +104,11 @@ def animate(
         raise UsageError("--dark: an SVG follows the reader's screen; leave it out")
     check_seconds(seconds)
     check_width(width)
+    if kind_of_text(opened(file).text) == "tool":
+        given = {"turns": turns, "trace": trace, "speed": speed, "exaggerate": exaggerate}
+        _check_tool(kind, **given, force=force or None)
+        write(name, _tool_in_mode(file, mode, seconds, width))
+        return wrote(name)
     machine = linkage_of(file, speed)
     _check_support(machine, force, speed, exaggerate, mode)
     check_result_file("--out", name, sources_of(machine, file))
@@ -143,6 +152,31 @@ def _check_support(
     for name, value in others.items():
         if mode is not None and value is not None:
             raise UsageError(f"{name}: in a mode the crank stands still; leave it out")
+
+
+def _check_tool(kind: str, **given: object) -> None:
+    """Refuse what only a linkage has."""
+    if kind != "svg":
+        raise UsageError("--out: a tool is animated as SVG; give a name that ends in .svg")
+    for name, value in given.items():
+        if value is not None:
+            raise UsageError(f"--{name}: a tool swings in a mode; leave it out")
+
+
+TOOL_FRAMES = 9
+"""Of half a swing."""
+
+
+def _tool_in_mode(file: str, mode: int | None, seconds: float, width: int) -> str:
+    from equipoise.figures.flip import flipped
+    from equipoise.figures.tool_side import in_mode
+    from equipoise.handheld.modes import vibrate_tool
+    from equipoise.handheld.sweep import MODES
+    from equipoise.schema.models import load_tool
+
+    modes = vibrate_tool(load_tool(file), MODES)
+    with blaming("--mode"):
+        return flipped(in_mode(modes, 1 if mode is None else mode, TOOL_FRAMES), seconds, width)
 
 
 def _swinging(found: Analysis, factor: float | None) -> Scene:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.errors import UsageError
 from equipoise.figures.shared import by_name
 from equipoise.figures.style import short
 from equipoise.figures.tool_designs import changes_told, design
@@ -33,6 +35,7 @@ from equipoise.results.charts import (
     quantity,
     shown,
 )
+from equipoise.signals import Array
 
 if TYPE_CHECKING:
     from equipoise.handheld.design import ToolDesign
@@ -58,17 +61,43 @@ def side(tool: Tool) -> Chart:
 
 def side_modes(modes: ToolModes) -> Chart:
     """``side-modes``: the tool in its lowest modes of the vertical plane."""
-    found, panels = modes.planes[0], []
-    lowest = np.flatnonzero(found.frequency > 0)[:MOST_MODES]
-    for k in map(int, lowest):
-        swing = SWING * modes.tool.shaft.length
-        frequency = shown(float(found.cycles_per_second[k]))
-        title = say("mode {number}: {frequency} Hz", number=k + 1, frequency=frequency)
-        drawn = side_of(modes.tool, modes.places, swing * found.shapes[k : k + 1])
-        panels.append(_panel(drawn, (), title))
+    lowest = np.flatnonzero(modes.planes[0].frequency > 0)[:MOST_MODES]
+    still = np.ones(1)
+    return _modes_chart(modes, [_swinging(modes, k, still)[0] for k in map(int, lowest)])
+
+
+def in_mode(modes: ToolModes, number: int, count: int) -> list[Chart]:
+    """The tool at `count` instants of half a swing, from one end to the other.
+
+    number : of the mode in the vertical plane, counted from 1.
+
+    Raises
+    ------
+    UsageError : there is no such mode.
+    """
+    frequency = modes.planes[0].frequency
+    if not (1 <= number <= len(frequency) and frequency[number - 1] > 0):
+        first, last = np.flatnonzero(frequency > 0)[[0, -1]] + 1
+        raise UsageError(f"got {number}; of the vertical plane there are {first} to {last}")
+    phases = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    return [_modes_chart(modes, [panel]) for panel in _swinging(modes, number - 1, phases)]
+
+
+def _modes_chart(modes: ToolModes, panels: Sequence[Panel]) -> Chart:
     drawn_as = quantity(SWING * modes.tool.shaft.length, "length")
     what = say("Modes from the side; largest displacement drawn as {length}", length=drawn_as)
     return Chart("side-modes", modes.tool.title, what, tuple(panels))
+
+
+def _swinging(modes: ToolModes, k: int, phases: Array) -> list[Panel]:
+    """Mode k of the vertical plane; phases (N,) : shares of its largest displacement."""
+    found = modes.planes[0]
+    frequency = shown(float(found.cycles_per_second[k]))
+    title = say("mode {number}: {frequency} Hz", number=k + 1, frequency=frequency)
+    swing = SWING * modes.tool.shaft.length * phases[:, None]
+    drawn = side_of(modes.tool, modes.places, swing * found.shapes[k])
+    panel = _panel(drawn, (), title)
+    return [replace(panel, signs=tuple(drawn.at(instant))) for instant in range(len(phases))]
 
 
 def side_design(found: ToolDesign) -> Chart:
