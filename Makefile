@@ -46,9 +46,13 @@ demo: $(VENV)/.installed
 	@echo "  $(BIN)/equipoise check study-of-lengths           what a study of many designs computes; docs/studies.md has more"
 	@echo "  $(BIN)/equipoise new mine.toml                    a commented file of your own to start from"
 
+# Each worker begins with tests that stand together, which share what is costly, and takes over from
+# the other at the end.
+WORKERS = --numprocesses auto --dist worksteal
+
 test: $(VENV)/.installed-test
 	-@$(BIN)/python page/bundle.py
-	$(BIN)/python -m pytest --numprocesses auto
+	$(BIN)/python -m pytest $(WORKERS)
 
 # Unit tests and laws as on a processor without wide instructions, where sums round otherwise.  Left
 # out is what compares texts and structures, the gallery, and shares of many random records.
@@ -56,12 +60,12 @@ NO_ROUNDING = $(addprefix tests/unit/,i18n present quantities schema symbols web
 	test_public_names.py figures/test_pictures.py measured/test_intervals.py)
 WIDE = import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"].get("found", []))
 narrow: $(VENV)/.installed-test
-	NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(WIDE)')" $(BIN)/python -m pytest --numprocesses auto \
+	NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(WIDE)')" $(BIN)/python -m pytest $(WORKERS) \
 		$(addprefix --ignore=,$(NO_ROUNDING)) tests/unit tests/laws
 
 coverage: $(VENV)/.installed-test
 	-@$(BIN)/python page/bundle.py
-	$(BIN)/python -m pytest --numprocesses auto --cov --cov-report=term
+	$(BIN)/python -m pytest $(WORKERS) --cov --cov-report=term
 
 lint: $(VENV)/.installed-test
 	$(BIN)/ruff check .

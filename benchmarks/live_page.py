@@ -20,6 +20,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from playwright.sync_api import Browser, Page
 
 from browser.live import Live
+from equipoise import load
+from equipoise.web.edits import movable
 from support.chromium import chromium, serving
 
 NAMES = "yamashita-1", "yamashita-rig", "class-three"
@@ -42,17 +44,25 @@ def waits(page: Page) -> list[float]:
     return found
 
 
-def keys(live: Live) -> None:
+def pin_of(name: str) -> str:
+    """The crank's pin, or another point that moves and can be dragged."""
+    machine = load(name)
+    points = [point for point in movable(machine) if point not in machine.frame]
+    crank = machine.links[machine.drive.link].points
+    return next((point for point in points if point in crank), points[0])
+
+
+def keys(live: Live, joint: str) -> None:
     """Move a joint by arrow keys."""
-    live.joint("B").focus()
+    live.joint(joint).focus()
     for number in range(INPUTS):
         live.page.keyboard.press("ArrowRight" if number // 10 % 2 else "ArrowLeft")
         live.page.wait_for_timeout(PAUSE)
 
 
-def drags(live: Live) -> None:
+def drags(live: Live, joint: str) -> None:
     """Drag a joint around a small circle."""
-    x, y = live.spot(live.joint("B"))
+    x, y = live.spot(live.joint(joint))
     live.page.mouse.move(x, y)
     live.page.mouse.down()
     for number in range(INPUTS):
@@ -82,7 +92,7 @@ def timed(browser: Browser, name: str) -> bool:
         within = [sum(sizes) <= LARGEST]
         for what, act in {"arrow keys": keys, "drag": drags}.items():
             waits(page)
-            act(live)
+            act(live, pin_of(name))
             page.wait_for_timeout(500)
             within.append(report(f"{name}, {what}", waits(page)))
         page.close()

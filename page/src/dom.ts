@@ -46,7 +46,10 @@ export function set(element: Element, attributes: Attributes): void {
 
 /** Change a text only where it differs, so that nothing is read out or laid out again. */
 export function write(element: Element, text: string): void {
-  if (element.textContent !== text) element.textContent = text;
+  if (element.textContent === text) return;
+  const [only, more] = element.childNodes;
+  if (only instanceof Text && !more) only.data = text;
+  else element.textContent = text;
 }
 
 /** Show or hide only what is otherwise: an attribute that is written again is looked at again. */

@@ -93,7 +93,7 @@ export class Piece {
 
   private place([x, y]: Pair, more: string): void {
     const here = `translate(${x.toFixed(2)} ${y.toFixed(2)})${more}`;
-    this.element.setAttribute("transform", this.before + here);
+    set(this.element, { transform: this.before + here });
   }
 }
 

@@ -71,7 +71,7 @@ export class Stage {
     this.svg.append(this.dims.layer);
   }
 
-  /** Take a state; `other` where it is of another machine. Another build is drawn from scratch. */
+  /** Take a state, before it is posed; `other` is of another machine, another build is drawn from scratch. */
   show(state: State, other: boolean): void {
     const { frame, bodies, movable, mass_centers } = state.scene;
     // While a point is dragged signs may change their order, but what is held must stay the same.
@@ -86,10 +86,7 @@ export class Stage {
     [this.names, this.signs] = [names, signs];
     if (other) this.fit();
     else if (built) this.redraw();
-    else {
-      this.draw();
-      this.pose(this.k);
-    }
+    else this.draw();
   }
 
   /** Draw something more, below one of the layers. */
@@ -313,5 +310,5 @@ function labelOf(name: string, scene: Scene): Label {
 }
 
 function move(element: SVGElement, place: Pair): void {
-  element.setAttribute("transform", `translate(${at(place)})`);
+  set(element, { transform: `translate(${at(place)})` });
 }

@@ -126,6 +126,12 @@ export class Strip {
     this.stale = false;
   }
 
+  /** Take it away; what its curves hear of the window is let go, and they with it. */
+  close(): void {
+    this.plot?.destroy();
+    this.root.remove();
+  }
+
   private data(): uPlot.AlignedData {
     const rows = this.content.curves.flatMap((c) => (c.before ? [c.before, c.values] : [c.values]));
     return [this.content.x, ...rows.map((row) => gapped(row, this.scale.log))];
@@ -192,16 +198,18 @@ export class Strip {
     const shape = [...this.scale.ends, ...this.levels, low, high, this.width].join();
     if (shape === this.numbered) return;
     this.numbered = shape;
-    const texts: HTMLElement[] = [];
-    const put = (className: string, text: string, x: number, y: number) => {
-      const label = h("span", { class: className }, text);
-      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
-      texts.push(label);
+    const kept = this.numbers.children;
+    let count = 0;
+    const put = (name: string, text: string, x: number, y: number) => {
+      const label = kept[count++] ?? this.numbers.appendChild(h("span"));
+      set(label, { class: name });
+      write(label, text);
+      (label as HTMLElement).style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
     };
-    for (const y of this.levels) put("y", marked(y, this.scale, this.levels), 0, this.down(y));
     const marks = this.look.xAxis ? this.marks(low, high) : [];
     for (const x of marks) put("x", this.named(x), LEFT + this.across(x), this.look.height - 17);
-    this.numbers.replaceChildren(...texts);
+    for (const y of this.levels) put("y", marked(y, this.scale, this.levels), 0, this.down(y));
+    while (kept[count]) kept[count]?.remove();
   }
 
   /** What a chart says to those who cannot see it: each curve's extremes. */

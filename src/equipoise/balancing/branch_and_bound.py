@@ -11,6 +11,7 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import count
 from math import inf, isfinite
 
@@ -78,7 +79,7 @@ class Square:
         for sign in (1.0, -1.0):
             program.nonnegative(sign * y + (width - sign * ratio) * w)
 
-    @property
+    @cached_property
     def _rows(self) -> tuple[Affine, Affine, Affine]:
         """lift, w and y."""
         w = Affine.fixed(1.0) if self.w is None else Affine.of(self.w, 1.0)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -52,6 +53,15 @@ class Affine:
         """Values (R,) of the rows for numbers x."""
         return np.asarray(self.factors @ x[self.columns] + self.constant)
 
+    @cached_property
+    def entries(self) -> tuple[Array, Array, Array]:
+        """Rows, numbers and values of the factors that are not 0."""
+        if isinstance(self.factors, np.ndarray):
+            row, column = np.nonzero(self.factors)
+            return row, self.columns[column], self.factors[row, column]
+        found = self.factors.tocoo()
+        return found.row, self.columns[found.col], found.data
+
     def of_rows(self, places: Array) -> Affine:
         """Some of the rows."""
         return Affine(self.factors[places], self.columns, self.constant[places])
@@ -60,11 +70,12 @@ class Affine:
 
     def __add__(self, other: Affine) -> Affine:
         """Row by row; one of both may be a single row."""
-        count = max(len(self.constant), len(other.constant))
-        both = [np.broadcast_to(a.factors, (count, len(a.columns))) for a in (self, other)]
+        both = [self.factors, other.factors]
+        if len(self.constant) != len(other.constant):
+            count = max(len(self.constant), len(other.constant))
+            both = [np.broadcast_to(one, (count, one.shape[1])) for one in both]
         columns = np.concatenate([self.columns, other.columns])
-        constant = np.broadcast_to(self.constant + other.constant, (count,))
-        return Affine(np.concatenate(both, axis=1), columns, constant)
+        return Affine(np.concatenate(both, axis=1), columns, self.constant + other.constant)
 
     def __mul__(self, factor: float) -> Affine:
         return Affine(factor * self.factors, self.columns, factor * self.constant)
@@ -284,11 +295,11 @@ class Program:
         values, rows, columns, right, cones = [], [], [], [], []
         start = 0
         for block in self.blocks:
-            row, column, value = _entries(block.rows.factors)
+            row, column, value = block.rows.entries
             count = len(block.rows.constant)
             values.append(-value)
             rows.append(row + start)
-            columns.append(block.rows.columns[column])
+            columns.append(column)
             right.append(block.rows.constant)
             start += count
             if block.cone == "second-order":
@@ -311,15 +322,6 @@ class Program:
                 prices[block.name] += float(dual[start : start + count] @ block.slope.at(x))
             start += count
         return prices
-
-
-def _entries(factors: Any) -> tuple[Array, Array, Array]:
-    """Rows, columns and values of what is not 0 in a matrix, sparse or not."""
-    if isinstance(factors, np.ndarray):
-        row, column = np.nonzero(factors)
-        return row, column, factors[row, column]
-    entries = factors.tocoo()
-    return entries.row, entries.col, entries.data
 
 
 def stacked(*rows: Affine) -> Affine:

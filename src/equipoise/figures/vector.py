@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 from html import escape
+from itertools import pairwise
 
 import numpy as np
 
@@ -90,12 +92,21 @@ def _stroke(stroke: Stroke) -> str:
 
 def _path(line: Array) -> str:
     """Straight lines, each step told from the one before it."""
-    tenths = np.round(10 * np.clip(line, -FAR, FAR)).astype(int)
-    steps = np.diff(tenths, axis=0)
-    steps = steps[np.any(steps != 0, axis=1)]
-    x, y = tenths[0].tolist()
-    rest = " ".join(f"{a / 10:g},{b / 10:g}" for a, b in steps.tolist())
-    return f"M{x / 10:g},{y / 10:g}l{rest}" if rest else f"M{x / 10:g},{y / 10:g}h0"
+    tenths = np.round(10 * np.clip(line, -FAR, FAR)).astype(int).tolist()
+    steps = (
+        f"{_tenths(x - x0)},{_tenths(y - y0)}"
+        for (x0, y0), (x, y) in pairwise(tenths)
+        if x != x0 or y != y0
+    )
+    x, y = map(_tenths, tenths[0])
+    rest = " ".join(steps)
+    return f"M{x},{y}l{rest}" if rest else f"M{x},{y}h0"
+
+
+@lru_cache(10_000)
+def _tenths(count: int) -> str:
+    """So many tenths; most steps of a picture are among few."""
+    return f"{count / 10:g}"
 
 
 def _signs(signs: Signs) -> str:

@@ -85,7 +85,7 @@ def fitted(samples: Samples, at: float, width: float, still: bool = False, side:
     powers = next((row for least, row in (STILL if still else ORDERS) if len(u) >= least), None)
     if powers is None:
         return Local(at, np.nan, inf, None, np.zeros(5), width)
-    design = u[:, None] ** np.array(powers)
+    design = np.vander(u, powers[-1] + 1, increasing=True)[:, powers]
     inverse = np.linalg.pinv(design.T @ design, hermitian=True)
     mean = float(np.mean(y))  # values about it: a large offset must not cost digits
     found = inverse @ (design.T @ (y - mean))

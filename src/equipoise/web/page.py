@@ -27,7 +27,7 @@ Do = Callable[[Callable[[], Any]], Any]
 MOST_WAITING, MOST_QUESTIONS = 100, 3
 PAUSE = 0.2
 """s without a message, after which what takes longer is told too."""
-NEXT = 0.03
+NEXT = 0.1
 """s in which a drag that goes on has its next move here; else what follows a state is told too."""
 SELDOM = 0.2
 """s after which that is told of a drag that never pauses."""

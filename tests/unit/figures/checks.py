@@ -87,11 +87,12 @@ def texts_cut(laid: Laid) -> Iterator[Fault]:
 
 def texts_covered(laid: Laid) -> Iterator[Fault]:
     """No text lies on another."""
-    boxes = [(words.text, box_of(words)) for words in laid.sheet.words if words.text]
-    for (one, a), (other, b) in combinations(boxes, 2):
-        across, up = (min(a[k + 2], b[k + 2]) - max(a[k], b[k]) for k in (0, 1))
-        if across > 1 and up > 2:
-            yield "text covered", f"{one!r} and {other!r}"
+    texts = [words for words in laid.sheet.words if words.text]
+    boxes = np.array([box_of(words) for words in texts]).reshape(-1, 4)
+    ends, begins = boxes[:, 2:], boxes[:, :2]
+    shared = np.minimum(ends[:, None], ends) - np.maximum(begins[:, None], begins)
+    for one, other in np.argwhere(np.triu(np.all(shared > (1, 2), axis=2), 1)):
+        yield "text covered", f"{texts[one].text!r} and {texts[other].text!r}"
 
 
 # -- axes ------------------------------------------------------------------------------------------
