@@ -29,7 +29,7 @@ var splitQuery = (query) =>
 """
 
     def init(self, options: dict[str, str]) -> None:
-    Q
+        """Stem each word once, or it takes a tenth of all the time."""
         super().init(options)
         self.stem = cache(super().stem)  # type: ignore[method-assign]
 
