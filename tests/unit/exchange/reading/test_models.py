@@ -269,12 +269,8 @@ WRIST = '<joint name="wrist"/>'
 
 def test_masses_that_are_not_told_stay_open(tmp_path: Path) -> None:
     """Of a mesh without an inertial; what hangs fixed on a link of URDF weighs nothing then."""
-    rod = '</body>
-    <body name="rod"'
+    rod = '</body>\n    <body name="rod"'
     mesh = changed(rod, f'<body><geom mesh="m"/></body>{rod}')
-        '</body>\n    <body name="rod"',
-        '<body><geom mesh="m"/></body></body>\n    <body name="rod"',
-    )
     found = imported(tmp_path / "a.xml", mesh)
     assert found.massless == ["crank"]
     assert any("meshes" in one for one in found.notes)
