@@ -28,10 +28,10 @@ from browser.live import SCREENSHOTS, Live
 from equipoise.schema.files import to_csv
 
 MINUTES, LONG = float(os.environ.get("EQUIPOISE_MONKEY", "0")), 20
-"""That each monkey plays, at least a round with each of two machines; from where on memory counts,
+"""That each monkey plays, at least a round; from where on memory counts,
 when all that is made once has been made.
 """
-ACTIONS = 40
+ACTIONS = 30
 """Of a round."""
 MACHINES = (
     *("yamashita-1", "class-three", "yamashita-rig", "planetary-planting-arm", "scotch-yoke"),
@@ -283,7 +283,7 @@ def test_a_monkey(new_page: Callable[..., Page], server: tuple[str, int], seed: 
     memory = Memory(page.context.new_cdp_session(page), server[1])
     end = time.monotonic() + 60 * MINUTES
     machines = cycle(MACHINES[seed:] + MACHINES[:seed])
-    while monkey.rounds < 2 or time.monotonic() < end:
+    while monkey.rounds < 1 or time.monotonic() < end:
         monkey.round(next(machines), ACTIONS)
         monkey.open(REST)
         memory.measure()
