@@ -7,6 +7,7 @@ as each sign and each pair of neighbours; a search asks for all pairs of what wa
 from __future__ import annotations
 
 import re
+from functools import cache
 from itertools import pairwise
 
 from sphinx.search.en import SearchEnglish
@@ -26,6 +27,11 @@ var splitQuery = (query) =>
   (query.match(/[{EAST}]+|[^\s{EAST}!-,./:-@\[-^`{{-~]+/gu) ?? []).flatMap((run) =>
     /[{EAST}]{{2}}/.test(run) ? [...run].slice(1).map((sign, at) => run[at] + sign) : [run]);
 """
+
+    def init(self, options: dict[str, str]) -> None:
+        """Stem each word once, or it takes a tenth of all the time."""
+        super().init(options)
+        self.stem = cache(super().stem)  # type: ignore[method-assign]
 
     def split(self, input: str) -> list[str]:
         """Words, signs and pairs of a text."""

@@ -67,6 +67,7 @@ export class Charts {
 
   close(): void {
     this.watcher.disconnect();
+    for (const strip of this.strips) strip.close();
   }
 
   private get strips(): Strip[] {

@@ -62,7 +62,7 @@ export class Outputs {
     this.names = told.map(({ name }) => name);
     for (const [name, { strip }] of this.drawn) {
       if (this.names.includes(name)) continue;
-      strip.root.remove();
+      strip.close();
       this.drawn.delete(name);
     }
     for (const output of told) this.draw(state, output);

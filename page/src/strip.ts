@@ -126,6 +126,12 @@ export class Strip {
     this.stale = false;
   }
 
+  /** Take it away; what its curves hear of the window is let go, and they with it. */
+  close(): void {
+    this.plot?.destroy();
+    this.root.remove();
+  }
+
   private data(): uPlot.AlignedData {
     const rows = this.content.curves.flatMap((c) => (c.before ? [c.before, c.values] : [c.values]));
     return [this.content.x, ...rows.map((row) => gapped(row, this.scale.log))];

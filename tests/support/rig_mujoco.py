@@ -1,11 +1,12 @@
-"""The shaken support in MuJoCo: an open tree, told how it moves, asked what acts.
+"""The shaken support in MuJoCo, as it is exported: a tree, told how it moves, asked what acts.
 
 The base hangs on a hinge at O, or on two slides and a hinge.  On it are the crank with the coupler
 and, apart from these, the rocker.  Nothing holds the loop closed at C: the relative angles follow
 the crank, as MuJoCo's own places and Jacobians of the two ends at C ask for, and are kept as
-Fourier series.  The loop's forces are inside the tree and leave the equations of base and crank
-alone.  MuJoCo's inertia matrix and inverse dynamics, led back on the few free coordinates, then
-give the accelerations of the base and the torque of the motor, without a soft constraint.
+Fourier series.  They count from where the file is drawn.  The loop's forces are inside the tree
+and leave the equations of base and crank alone.  MuJoCo's inertia matrix and inverse dynamics, led
+back on the few free coordinates, then give the accelerations of the base and the torque of the
+motor, without a soft constraint.
 """
 
 from __future__ import annotations
@@ -15,94 +16,23 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from equipoise.exchange.formats import Job
+from equipoise.exchange.mjcf import made
 from support.rig_reference import (
     TURN,
-    Bar,
     Real,
     Rig,
-    Row,
     difference_steps,
     fixed_point,
     followed,
     swing,
 )
+from support.rigs import in_package
 
-LIGHT = 1e-9
-"""Mass (kg) of what must weigh nothing, a flywheel whose mass is the support's."""
 PLACES = 512
 """Crank angles at which the loop is closed; twice the number of harmonics kept."""
-
-
-# -- the model -------------------------------------------------------------------------------------
-
-
-def xy(point: complex) -> str:
-    """Write a place down."""
-    return f"{point.real!r} {point.imag!r} 0"
-
-
-def inertial(mass: float, center: complex, inertia: float) -> str:
-    """Write mass, centre of mass and the inertia of a planar body down."""
-    return (
-        f'<inertial pos="{xy(center)}" mass="{mass!r}" diaginertia="{inertia!r} {inertia!r} '
-        f'{inertia!r}"/>'
-    )
-
-
-def hinge(name: str, stiffness: float = 0.0, damping: float = 0.0) -> str:
-    """Write a hinge down that turns in the plane."""
-    return (
-        f'<joint name="{name}" type="hinge" axis="0 0 1" stiffness="{stiffness!r}" '
-        f'damping="{damping!r}"/>'
-    )
-
-
-def link(name: str, at: complex, bar: Bar, inside: str) -> str:
-    """Write a link down that hangs on its parent by a hinge at its origin."""
-    weighing = inertial(bar.mass, bar.center, bar.inertia)
-    return f'<body name="{name}" pos="{xy(at)}">{hinge(name)}{weighing}{inside}</body>'
-
-
-def tree(rig: Rig, number: int, row: Row) -> str:
-    """Write one open four-bar down, relative to the origin of the base."""
-    bar = rig.linkage
-    a = bar.pivot + row.offset - rig.support.origin
-    d = a + bar.a * np.exp(1j * bar.ground)
-    end = f'<site name="coupler_end{number}" pos="{xy(complex(bar.c))}"/>'
-    coupler = link(f"coupler{number}", complex(bar.b), bar.coupler, end)
-    crank = link(f"crank{number}", a, bar.crank, coupler)
-    end = f'<site name="rocker_end{number}" pos="{xy(complex(bar.d))}"/>'
-    return crank + link(f"rocker{number}", complex(d), bar.rocker, end)
-
-
-def mjcf(rig: Rig) -> str:
-    """Write the rig down; all torsions are one, in the hinge of the base."""
-    body = rig.support
-    stiffness = sum(spring.stiffness for spring in rig.torsions)
-    damping = sum(spring.damping for spring in rig.torsions)
-    joints = hinge("tilt", stiffness, damping)
-    if not body.pivoted:
-        slides = (("surge", "1 0 0"), ("heave", "0 1 0"))
-        joints = (
-            "".join(f'<joint name="{n}" type="slide" axis="{axis}"/>' for n, axis in slides)
-            + joints
-        )
-    sites = {f"mount{k}": mount.at for k, mount in enumerate(rig.mounts)} | {"gauge": rig.gauge}
-    marks = "".join(f'<site name="{n}" pos="{xy(at - body.origin)}"/>' for n, at in sites.items())
-    wheel = ""
-    if rig.flywheel:
-        wheel = link("wheel", 0j, Bar(LIGHT, 0j, rig.flywheel), "")
-    rows = "".join(tree(rig, number, row) for number, row in enumerate(rig.rows))
-    own = inertial(body.mass, body.center - body.origin, body.inertia - rig.flywheel)
-    return f"""
-    <mujoco>
-      <compiler angle="radian" boundmass="0" boundinertia="0" balanceinertia="false"
-                autolimits="false"/>
-      <option gravity="{xy(rig.gravity)}"/>
-      <worldbody>
-        <body name="base" pos="{xy(body.origin)}">{joints}{own}{marks}{wheel}{rows}</body>
-      </worldbody>
-    </mujoco>"""
+BARS = ("crank", "coupler", "rocker")
+"""Of each row, those in the tree first that follow the crank."""
 
 
 @dataclass(frozen=True)
@@ -142,16 +72,14 @@ class Engine:
     def __init__(self, rig: Rig) -> None:
         self.rig = rig
         self.speed_given = rig.drive is None
-        self.model = mujoco.MjModel.from_xml_string(mjcf(rig))
+        self.model = mujoco.MjModel.from_xml_string(made(Job(in_package(rig))))
+        count = len(rig.rows)
+        self.rows = [f" {k}" for k in range(1, count + 1)] if count > 1 else [""]
         flags = mujoco.mjtDisableBit  # no contacts, no limits: the tree is left to itself
         self.model.opt.disableflags |= flags.mjDSBL_CONTACT | flags.mjDSBL_CONSTRAINT
         self.data = mujoco.MjData(self.model)
         self.series = self._closed()
-        forces, moment = self._preloads()
-        self.preloads = forces
-        if rig.torsions:
-            joint = self.model.joint("tilt").id
-            self.model.qpos_spring[joint] = moment / float(self.model.jnt_stiffness[joint])
+        self.preloads, self.moment = self._preloads()
 
     # - geometry -
 
@@ -171,21 +99,19 @@ class Engine:
 
     def _closed(self) -> tuple[Series, Series]:
         """Close the first row at many crank angles; coupler against crank, and rocker."""
-        bar = self.rig.linkage
-        crank, *passive = (self._column(f"{name}0") for name in ("crank", "coupler", "rocker"))
+        crank, *passive = (self._column(f"{one}{self.rows[0]}") for one in BARS)
         self.data.qpos[:] = 0.0
-        found = []
+        found = [np.zeros(2)]
         for angle in np.linspace(0.0, TURN, PLACES, endpoint=False):
-            self.data.qpos[crank] = angle + bar.ground
-            start = self._newton(passive, found[-1]) if found else self._start(passive)
-            found.append(start)
-        return Series.through(np.array(found)[:, 0]), Series.through(np.array(found)[:, 1])
+            self.data.qpos[crank] = angle
+            found.append(self._newton(passive, found[-1]))
+        return Series.through(np.array(found)[1:, 0]), Series.through(np.array(found)[1:, 1])
 
     def _newton(self, passive: list[int], guess: Real) -> Real:
         for _ in range(30):
             self.data.qpos[passive] = guess
             self._forward_places()
-            (one, j_one), (two, j_two) = self._site("coupler_end0"), self._site("rocker_end0")
+            (one, j_one), (two, j_two) = (self._site(f"{bar}{self.rows[0]} C") for bar in BARS[1:])
             step = np.linalg.solve((j_two - j_one)[:, passive], one - two)
             guess = guess + step
             if np.max(np.abs(step)) < 1e-14:
@@ -193,42 +119,27 @@ class Engine:
         assert np.max(np.abs(step)) < 1e-12
         return guess
 
-    def _start(self, passive: list[int]) -> Real:
-        """Search a grid for a pose that closes on the side asked for."""
-        for turn in np.linspace(-np.pi, np.pi, 24):
-            for swing_ in np.linspace(-np.pi, np.pi, 24):
-                try:
-                    found = self._newton(passive, np.array([turn, swing_]))
-                except (AssertionError, np.linalg.LinAlgError):
-                    continue
-                end = self._site("coupler_end0")[0] @ [1, 1j]
-                b = self.data.xanchor[self.model.joint("coupler0").id][:2] @ [1, 1j]
-                d = self.data.xanchor[self.model.joint("rocker0").id][:2] @ [1, 1j]
-                if (np.conj(d - b) * (end - b)).imag * self.rig.linkage.side > 0:
-                    return (found + np.pi) % TURN - np.pi
-        raise AssertionError("the loop does not close at the first crank angle")
-
     def _pose(self, coordinates: Real, rates: Real, angle: float, rate: float) -> Real:
         """Set places and rates, and the accelerations at none of the free ones; return the lead.
 
         The lead (nv, n + 1) is the derivative of the joints by base coordinates and crank angle.
         """
-        bar, n = self.rig.linkage, self.rig.freedoms
+        n, first = self.rig.freedoms, self.rig.rows[0].phase
         lead = np.zeros((self.model.nv, n + 1))
         lead[:n, :n] = np.eye(n)
         self.data.qpos[:n], self.data.qacc[:] = coordinates, 0.0
-        for number, row in enumerate(self.rig.rows):
-            theta = angle + row.phase + bar.lead - bar.ground
-            follow = [(theta + bar.ground, 1.0, 0.0), *(one.at(theta) for one in self.series)]
-            for name, (place, first, second) in zip(
-                ("crank", "coupler", "rocker"), follow, strict=True
-            ):
-                column = self._column(f"{name}{number}")
+        for suffix, row in zip(self.rows, self.rig.rows, strict=True):
+            drawn = [one.at(row.phase - first)[0] for one in self.series]
+            turned = [one.at(angle + row.phase - first) for one in self.series]
+            follow = [(angle, 1.0, 0.0)]
+            follow += [
+                (at - start, *more) for (at, *more), start in zip(turned, drawn, strict=True)
+            ]
+            for bar, (place, rise, bend) in zip(BARS, follow, strict=True):
+                column = self._column(f"{bar}{suffix}")
                 self.data.qpos[column] = place
-                lead[column, n] = first
-                self.data.qacc[column] = second * rate**2
-        if self.rig.flywheel:
-            lead[self._column("wheel"), n] = 1.0
+                lead[column, n] = rise
+                self.data.qacc[column] = bend * rate**2
         self.data.qvel[:] = lead @ np.append(rates, rate)
         return lead
 
@@ -239,15 +150,12 @@ class Engine:
         rig, n = self.rig, self.rig.freedoms
         still = np.zeros(n)
         asked = np.zeros(n)
-        spring = self.model.jnt_stiffness.copy()
-        self.model.jnt_stiffness[:] = 0.0
         for angle in np.linspace(0.0, TURN, 360, endpoint=False):
             self._pose(still, still, angle, 0.0)
             mujoco.mj_inverse(self.model, self.data)
             asked += self.data.qfrc_inverse[:n] / 360
-        self.model.jnt_stiffness[:] = spring
         levers = [
-            np.array([m.direction.real, m.direction.imag]) @ self._site(f"mount{k}")[1][:, :n]
+            np.array([m.direction.real, m.direction.imag]) @ self._site(f"mount {k}")[1][:, :n]
             for k, m in enumerate(rig.mounts)
         ] + [np.eye(n)[-1]] * len(rig.torsions)
         known = np.array([part.preload or 0.0 for part in (*rig.mounts, *rig.torsions)])
@@ -264,7 +172,7 @@ class Engine:
         """Return the push of each mount and the generalized force of all on the joints."""
         found, total = [], np.zeros(self.model.nv)
         for k, (mount, preload) in enumerate(zip(self.rig.mounts, self.preloads, strict=True)):
-            place, jacobian = self._site(f"mount{k}")
+            place, jacobian = self._site(f"mount {k}")
             along = np.array([mount.direction.real, mount.direction.imag])
             drawn = np.array([mount.at.real, mount.at.imag])
             push = preload - mount.stiffness * float(along @ (place - drawn))
@@ -272,6 +180,11 @@ class Engine:
             push = max(push, 0.0) if mount.one_sided else push
             found.append(push)
             total += push * (along @ jacobian)
+        tilt = self.rig.freedoms - 1
+        for torsion in self.rig.torsions:
+            turned, turning = self.data.qpos[tilt], self.data.qvel[tilt]
+            total[tilt] -= torsion.stiffness * turned + torsion.damping * turning
+        total[tilt] += self.moment
         return np.array(found), total
 
     def solve(
@@ -315,7 +228,7 @@ class Engine:
         """Return gauge, pushes of the mounts and torque of the motor."""
         n, along = self.rig.freedoms, self.rig.gauge_direction
         torque = self.solve(state[:n], state[n : 2 * n], angle, state[2 * n])[2]
-        moved = self._site("gauge")[0] - [self.rig.gauge.real, self.rig.gauge.imag]
+        moved = self._site("gauge gauge")[0] - [self.rig.gauge.real, self.rig.gauge.imag]
         return float(moved @ [along.real, along.imag]), self.pushes()[0], torque
 
 

@@ -59,6 +59,13 @@ FORMATS: Mapping[str, Format] = {
             "springs, constant loads; C sources, and a library where a C compiler is found",
         ),
         Format(
+            "modelica",
+            ".mo",
+            "Modelica",
+            "one flat model: equations of motion of each link, pins, sliders, gears, springs, "
+            "constant loads, the drive at constant speed",
+        ),
+        Format(
             "dxf",
             ".dxf",
             "drawing (DXF)",

@@ -46,7 +46,7 @@ def control_of(one: keys.Key) -> Values:
     return {
         "key": one.name,
         "word": word_of(one),
-        "text": one.text.replace("`", ""),
+        "text": text_of(one),
         "required": one.required,
         "default": None if default in ([], {}) else default,
         "example": one.example,
@@ -57,6 +57,11 @@ def control_of(one: keys.Key) -> Values:
 def word_of(one: keys.Key) -> str:
     """What a key is called: as its number is, where that does not take in what is around it."""
     return say(one.word if one.word and "{" not in one.word else plain_word(one))
+
+
+def text_of(one: keys.Key) -> str:
+    """What a key means."""
+    return say(one.text).replace("`", "")
 
 
 def _control(kind: keys.Kind) -> Values:

@@ -15,7 +15,7 @@ from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
 from equipoise.schema.places import Place, written_place
 from equipoise.schema.writing import value_text
 from equipoise.web.design import Design, pin_of
-from equipoise.web.forms import Values, forms_of, word_of
+from equipoise.web.forms import Values, forms_of, text_of, word_of
 from equipoise.web.messages import Entry
 
 MOST_WORDS = 4
@@ -80,7 +80,7 @@ def _groups(
         assert inner is not None
         at = (*place, key)
         many = {Tables: "list", Named: "named"}.get(type(one.kind), "one")
-        words = {"word": word_of(one), "text": one.text.replace("`", ""), "of": name}
+        words = {"word": word_of(one), "text": text_of(one), "of": name}
         group = _group(at, inner.type, many, words)
         group["required"] = one.required and many == "one"
         if entry is None:

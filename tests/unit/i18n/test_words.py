@@ -78,7 +78,7 @@ def words_of_keys() -> set[str]:
 
 
 def words_of_forms() -> set[str]:
-    """What keys are called in the forms of the page, and the tables that these are of."""
+    """What keys are called in the forms of the page and mean, and the tables that these are of."""
     found: set[str] = set()
     waiting: list[type[Frozen]] = [document_of("linkage")]
     seen = set(waiting)
@@ -86,6 +86,7 @@ def words_of_forms() -> set[str]:
         of = waiting.pop()
         known = [*own_keys(of).values(), *tables_below(of).values()]
         found.update(plain_word(one) for one in known if not one.word or "{" in one.word)
+        found.update(one.text for one in known)
         inner = {table.type for one in known if (table := entry_of(one.kind)) is not None}
         waiting += inner - seen
         seen |= inner

@@ -90,7 +90,7 @@ class Imported:
             head = _header(name)
             text = text.replace(head, f"{head}{MASSES}", 1)
         if self.outline.drive is None:
-            start = text.index("[drive]")
+            start = text.index("\n[drive]\n") + 1
             end = text.index("\n\n", start) + 1
             names = " or ".join(self.outline.links)
             text = f"{text[:start]}{DRIVE.format(names=names)}{text[end:]}"

@@ -29,11 +29,12 @@ def gears(
     ModelError : there is none on a common carrier that does.
     """
     chains = {body: frozenset(_chain(space, link_of, body)) for body in outline.bodies}
+    around = _around(outline)
     moved = {crank, FRAME}
     for name, factors in space.sums:
         wanted = {joint: factor * float(np.sign(space.joints[joint].axis @ normal))
                   for joint, factor in factors.items()}  # fmt: skip
-        able = [one for one in _fitting(outline, chains, wanted) if one.driven not in moved]
+        able = [one for one in _fitting(around, chains, wanted) if one.driven not in moved]
         if not able:
             what = "it ties joints together otherwise than a pair of gears on a common carrier does"
             raise ModelError(name, f"{what}; leave it out")
@@ -56,18 +57,26 @@ def _chain(space: Space, link_of: Mapping[str, str], body: str) -> Iterator[str]
         body = link_of[joint.parent]
 
 
-def _fitting(outline: Outline, chains: Chains, wanted: Mapping[str, float]) -> Iterator[Gear]:
+def _around(outline: Outline) -> dict[str, list[str]]:
+    """Of every body those that share one pin with it, about which they can turn on it."""
+    bodies = outline.bodies
+    return {body: [other for other in bodies if other != body
+                   and len(bodies[body].keys() & bodies[other].keys()) == 1]
+            for body in bodies}  # fmt: skip
+
+
+def _fitting(
+    around: Mapping[str, list[str]], chains: Chains, wanted: Mapping[str, float]
+) -> Iterator[Gear]:
     """Pairs of gears that hold such a sum."""
-    for carrier in chains:
-        around = [body for body in chains if body != carrier and _pinned(outline, body, carrier)]
-        for driven, driver in permutations(around, 2):
-            ratio = _ratio(wanted, *(chains[body] for body in (driven, driver, carrier)))
+    for carrier, bodies in around.items():
+        for driven, driver in permutations(bodies, 2):
+            three = [chains[body] for body in (driven, driver, carrier)]
+            if frozenset().union(*three) - frozenset.intersection(*three) != wanted.keys():
+                continue
+            ratio = _ratio(wanted, *three)
             if driven != FRAME and ratio not in (None, 0.0, 1.0):
                 yield Gear(driver, driven, ratio=ratio, carrier=carrier)
-
-
-def _pinned(outline: Outline, one: str, other: str) -> bool:
-    return len(outline.bodies[one].keys() & outline.bodies[other].keys()) == 1
 
 
 def _ratio(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import pi
 from xml.etree.ElementTree import Element
 
@@ -22,15 +21,13 @@ ENDLESS = {"plane", "hfield"}
 """Shapes without a mass."""
 
 
-def lump(geom: Element, axes: Frame3, note: Callable[[str], None]) -> Lump | None:
-    """Mass of a shape in the axes of its body; `None` of one that has none, or is not read."""
-    kind = geom.get("type", "sphere")
-    if geom.get("mesh") is not None and kind in ("mesh", "sphere"):
-        kind = "mesh"
+def lumps(geom: Element, axes: Frame3) -> list[Lump | None]:
+    """Mass of a shape in the axes of its body: nothing of one that has none, `None` of a mesh or
+    another whose mass is not known here.
+    """
+    kind = geom.get("type", "mesh" if geom.get("mesh") else "sphere")
     if kind not in SIZES:
-        if kind not in ENDLESS:
-            note(f"the mass of shapes of type {kind} is left open")
-        return None
+        return [] if kind in ENDLESS else [None]
     if kind in ("box", "cylinder", "capsule", "ellipsoid") and geom.get("fromto"):
         axes, half = _between(geom)
         radius = (*numbers(geom, "size", "0"), 0.0)[0]
@@ -41,7 +38,7 @@ def lump(geom: Element, axes: Frame3, note: Callable[[str], None]) -> Lump | Non
         raise ModelError(called(geom), f"size: a {kind} needs {SIZES[kind]} numbers above 0")
     volume, squares = _solid(kind, sizes)
     mass = number(geom, "mass") if geom.get("mass") else volume * number(geom, "density", WATER)
-    return Lump(mass, np.zeros(3), mass * np.diag(squares)).placed(axes)
+    return [Lump(mass, np.zeros(3), mass * np.diag(squares)).placed(axes)]
 
 
 def toward(axis: Array) -> Array:

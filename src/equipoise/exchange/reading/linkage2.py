@@ -19,6 +19,8 @@ from equipoise.mechanism.model import FRAME
 
 UNIT = 0.0254 / 96
 """m, of its coordinates."""
+MOST = 2000
+"""Connectors and links; no linkage has so many."""
 DRAWN = 1
 """Layer of what is only drawn."""
 
@@ -47,6 +49,8 @@ class _File:
     def __init__(self, root: Element, unit: float) -> None:
         self.root, self.notes = root, list[str]()
         self.connectors: dict[str, _Connector] = {}
+        if len(root) > MOST:
+            raise ModelError("", f"it has more than {MOST} connectors and links; give a linkage")
         for one in root.findall("connector"):
             if _layer(one) == DRAWN:
                 continue

@@ -88,7 +88,7 @@ class _Model:
     # -- bodies --------------------------------------------------------------------------------
 
     def _inside(self, parent: Element, at: _Within) -> list[Lump | None]:
-        """What stands in a body or in axes of it; the masses of its shapes."""
+        """What stands in a body or in axes of it; the masses of its shapes, `None` of meshes."""
         lumps: list[Lump | None] = []
         for element in parent:
             if element.tag == "body":
@@ -100,8 +100,8 @@ class _Model:
                 self._site(element, at)
             elif element.tag == "geom":
                 one = self._with_defaults(element, at.kind)
-                found = geoms.lump(one, self._axes(one), self.space.note)
-                lumps += [] if found is None else [found.placed(at.axes)]
+                found = geoms.lumps(one, self._axes(one))
+                lumps += [None if own is None else own.placed(at.axes) for own in found]
         return lumps
 
     def _body(self, element: Element, outside: _Within) -> None:
@@ -113,10 +113,13 @@ class _Model:
         if element.find("freejoint") is not None:
             raise ModelError(called(element), "it moves freely in space; give a planar machine")
         self._hang(element, joints, outside.body, solid)
-        lumps = [one for one in self._inside(element, at) if one is not None]
+        shapes = self._inside(element, at)
+        lumps = [one for one in shapes if one is not None]
         inertial = element.find("inertial")
         if inertial is not None and self.from_geoms != "true":
             solid.lump = self._inertial(inertial).placed(solid.axes)
+        elif len(lumps) < len(shapes):
+            self.space.note("the masses of links with meshes and no inertial are left open")
         elif lumps and self.from_geoms != "false":
             solid.lump = together(lumps)
         elif not joints:

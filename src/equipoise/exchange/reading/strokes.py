@@ -13,8 +13,8 @@ from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.joined import Slot, free, outline_of
 from equipoise.mechanism.model import FRAME
 
-MOST = 2000
-"""Corners of lines, beyond which a drawing is none of a skeleton."""
+MOST = 1000
+"""Corners of lines, and circles, beyond which a drawing is none of a skeleton."""
 TOGETHER = 1e-6
 """Distance over the size of the drawing below which ends meet, where none is told."""
 PIVOT = 0.2
@@ -103,8 +103,6 @@ def skeleton(drawing: Drawing, marks: Marks) -> Read:
     """
     if not drawing.strokes:
         raise ModelError("", "there is no line in it that could be a link")
-    if sum(len(one.places) for one in drawing.strokes) > MOST:
-        raise ModelError("", f"its lines have more than {MOST} corners; give a skeleton")
     _check(drawing, marks)
     return _Skeleton(drawing, marks).read()
 
@@ -150,6 +148,11 @@ class _Skeleton:
             drawing.note(f"{len(beside)} lines of paths, parts, springs and gears are left out")
         taken |= {id(one) for one in beside}
         lines = [one for one in drawing.strokes if id(one) not in taken]
+        corners = sum(len(one.places) for one in (*lines, *self.grounds, *self.guides)
+                      if isinstance(one, Stroke))  # fmt: skip
+        if max(corners, len(drawing.rings)) > MOST:
+            what = f"it has more than {MOST} corners of lines, or circles"
+            raise ModelError("", f"{what}; give a skeleton")
         places = [place for one in drawing.strokes for place in one.places]
         xs, ys = zip(*((place.real, place.imag) for place in places), strict=True)
         self.size = max(max(xs) - min(xs), max(ys) - min(ys))

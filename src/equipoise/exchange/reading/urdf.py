@@ -133,6 +133,8 @@ def _hang(space: Space, joint: Element, parent: str, link: Element) -> None:
     if dynamics is not None and any(number(dynamics, one, "0") for one in ("damping", "friction")):
         space.note("damping and friction of joints are left out")
     if kind == "fixed":
+        solid = space.solids[child]
+        solid.lump = solid.lump or Lump(0.0, axes.origin, np.zeros((3, 3)))
         space.rigid.append((parent, child))
         space.solids[parent].points[child] = axes.origin
     elif kind in KINDS:

@@ -267,6 +267,21 @@ def test_joints_that_are_tied_are_gears(tmp_path: Path) -> None:
 WRIST = '<joint name="wrist"/>'
 
 
+def test_masses_that_are_not_told_stay_open(tmp_path: Path) -> None:
+    """Of a mesh without an inertial; what hangs fixed on a link of URDF weighs nothing then."""
+    rod = '</body>\n    <body name="rod"'
+    mesh = changed(rod, f'<body><geom mesh="m"/></body>{rod}')
+    found = imported(tmp_path / "a.xml", mesh)
+    assert found.massless == ["crank"]
+    assert any("meshes" in one for one in found.notes)
+    looks = "<visual><geometry><sphere radius='1'/></geometry></visual>"
+    seen = ROBOT.replace('<link name="rod_end"/>', f'<link name="rod_end">{looks}</link>')
+    assert imported(tmp_path / "a.urdf", seen).massless == []
+    bare = ROBOT.replace('<link name="rocker"><inertial>', f'<link name="rocker">{looks}<x>')
+    bare = bare.replace('ixz="1e-5" iyz="0"/></inertial>', 'ixz="1e-5" iyz="0"/></x>')
+    assert imported(tmp_path / "b.urdf", bare).massless == ["rocker"]
+
+
 def changed(old: str, new: str) -> str:
     assert old in SLIDER
     return SLIDER.replace(old, new, 1)

@@ -1,0 +1,91 @@
+"""Modelica text, of which no compiler is asked: its equations, read line by line, hold for the
+motion of the package and give its drive torque.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+
+START = 0.3
+LINE = re.compile(r"  (.+) = (.+);")
+SOLVED = [
+    *("yamashita-1", "quick-return", "scotch-yoke", "class-three", "geared-counterweight"),
+    *("planetary-planting-arm", "spring-balanced-crank", "stephenson-six-bar"),
+]
+
+
+def text_of(machine: eq.Machine, path: Path) -> str:
+    eq.export(machine, path, crank_angle=START)
+    return path.read_text("utf-8")
+
+
+def in_motion(machine: eq.Machine, time: float) -> dict[str, Any]:
+    """Every variable of position, speed and acceleration, by its name in the text."""
+    motion = eq.move(machine, [START + machine.drive.speed * time], acceleration=0.0)
+    known: dict[str, Any] = {"time": time, "cos": math.cos, "sin": math.sin, "sqrt": math.sqrt}
+    for number, link in enumerate(machine.links, 1):
+        name = f"{re.sub('[^A-Za-z0-9_]', '_', link)}_{number}"
+        center, turning = motion.mass_centers[link], motion.links[link]
+        told = {
+            "x": (center.x, center.vx, center.ax),
+            "y": (center.y, center.vy, center.ay),
+            "phi": (turning.angle, turning.angular_velocity, turning.angular_acceleration),
+        }
+        for key, (place, speed, change) in told.items():
+            known |= {f"{key}_{name}": place[0], f"v{key}_{name}": speed[0]}
+            known |= {f"d_{key}_{name}": speed[0], f"d_v{key}_{name}": change[0]}
+    return known
+
+
+@pytest.mark.parametrize("name", SOLVED)
+def test_equations_hold_and_give_the_drive_torque(name: str, tmp_path: Path) -> None:
+    """What is left of each line vanishes for some reactions, of which the lines are linear."""
+    machine = replace(eq.load(name), loads=(), balance=None)
+    text = text_of(machine, tmp_path / "x.mo")
+    declared = re.findall(r"Real (\w+)", text)
+    head, body = text.split("equation\n")
+    assert head.startswith("model Linkage_")
+    lines = [LINE.fullmatch(line) for line in body.splitlines()[:-1]]
+    assert all(lines)
+    assert len(lines) == len(declared) == len(set(declared))
+    time = 0.02
+    known = in_motion(machine, time)
+    unknown = [one for one in declared if one not in known]
+    for one in [one for one in unknown if one.startswith("L_")]:  # lengths of springs
+        (given,) = (line for line in lines if line and line[1] == one)
+        known[one] = left(given[2], known)
+        unknown.remove(one)
+
+    def rest(values: np.ndarray) -> np.ndarray:
+        given = known | dict(zip(unknown, values, strict=True))
+        return np.array([left(f"({one[1]}) - ({one[2]})", given) for one in lines if one])
+
+    nothing = rest(np.zeros(len(unknown)))
+    columns = np.array([rest(row) - nothing for row in np.eye(len(unknown))]).T
+    found, *_ = np.linalg.lstsq(columns, -nothing, rcond=None)
+    size = max(1.0, float(np.max(np.abs(nothing))))
+    np.testing.assert_allclose(columns @ found + nothing, 0.0, atol=1e-9 * size)
+    angle = [START + machine.drive.speed * time]
+    wanted = eq.forces(eq.move(machine, angle, acceleration=0.0)).drive_torque[0]
+    torques = eq.forces(eq.move(machine, acceleration=0.0)).drive_torque
+    assert found[unknown.index("tau")] == pytest.approx(wanted, abs=1e-8 * np.ptp(torques))
+
+
+def left(expression: str, known: dict[str, Any]) -> float:
+    """The value of an expression."""
+    plain = re.sub(r"der\((\w+)\)", r"d_\1", expression).replace("^", "**")
+    return float(eval(plain, {"__builtins__": {}}, known))
+
+
+def test_what_is_left_out(tmp_path: Path) -> None:
+    told = eq.export(eq.load("riding-transplanter"), tmp_path / "x.mo")
+    assert told == ("the support", "all rows but one")
