@@ -10,6 +10,8 @@ newer one took is answered by the frame of the newer one.
 Medians and 95th percentiles (ms) on two cores on which other programs ran too:
 
     linkage              keys       drag     of it the server's processor, a move
+    yamashita-1          41  79     33  52    6, on a quiet machine 32 46 and 36 48
+    quick-return         39  60     41  55   10
     yamashita-rig        29  54     30  42    8, was 34: more threads only waited for each other
     class-three          51  80     43  59   15, was 25: followed from the motion before
     sieve                45  99     42  64   11, was 18
