@@ -6,6 +6,18 @@ A Chromium without a window shows 720 crank angles and all charts of bundled lin
 are named, else of a four-bar, of one on its rig, and of the one that takes longest.  The page marks
 when an input came and when the frame that shows its answer was painted; an input whose place a
 newer one took is answered by the frame of the newer one.
+
+Medians and 95th percentiles (ms) on two cores on which other programs ran too:
+
+    linkage              keys       drag     of it the server's processor, a move
+    yamashita-1          41  79     33  52    6, on a quiet machine 32 46 and 36 48
+    quick-return         39  60     41  55   10
+    yamashita-rig        29  54     30  42    8, was 34: more threads only waited for each other
+    class-three          51  80     43  59   15, was 25: followed from the motion before
+    sieve                45  99     42  64   11, was 18
+    riding-transplanter  65 161     62 135   10, was 55; what gauges read, 20, five times a second
+
+So class-three is at the limit there, and riding-transplanter beyond it.
 """
 
 from __future__ import annotations

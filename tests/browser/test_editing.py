@@ -37,6 +37,34 @@ def test_a_joint_follows_the_mouse_and_all_others_stay(live: Live) -> None:
     live.comes_to(joint, at_start(live.machine(), "B"), SHOWN)
 
 
+MOVES = """([x, y]) => new Promise((done) => {
+    const grip = document.querySelector("[data-kind=point][data-name=B]");
+    const { send } = WebSocket.prototype, begun = grip.getAttribute("transform"), seen = [];
+    WebSocket.prototype.send = function (text) {
+        seen.push(grip.getAttribute("transform") === begun);
+        if (seen.length === 2) {
+            WebSocket.prototype.send = send;
+            done(seen);
+        }
+        send.call(this, text);
+    };
+    for (const by of [10, 20]) {
+        const at = { pointerId: 1, clientX: x - by, clientY: y };
+        grip.dispatchEvent(new PointerEvent("pointermove", at));
+    }
+})"""
+"""Two moves at once, and whether the first was drawn when either was asked of the server."""
+
+
+def test_the_next_move_is_asked_for_before_the_last_is_drawn(live: Live) -> None:
+    x, y = live.spot(live.joint("B"))
+    live.page.mouse.move(x, y)
+    live.page.mouse.down()
+    assert live.page.evaluate(MOVES, [x, y]) == [True, True]
+    live.page.mouse.up()
+    assert live.spot(live.joint("B")) == pytest.approx((x - 20, y), abs=1)
+
+
 def test_a_drag_goes_on_where_a_plate_becomes_a_bar(live: Live) -> None:
     joint = live.joint("B")
     x, y = live.spot(joint)

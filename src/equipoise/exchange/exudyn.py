@@ -40,8 +40,15 @@ def made(job: Job) -> str:
 
 
 def _model(job: Job) -> Data:
-    """Everything that the script builds, with names of rows behind those of links."""
+    """Everything that the script builds, with names of rows behind those of links.
+
+    Raises
+    ------
+    UsageError : it does not move, or something has no place in a planar model of Exudyn.
+    """
     machine, drawn = weighed(job.machine), trees(job.machine, job.crank_angle)
+    if not machine.drive.speed:
+        raise UsageError("the drive stands still, and a script runs for a turn; give it a speed")
     job.leave_out_motor()
     support, base = machine.support, "" if machine.support is None else BASE
     model: Data = {

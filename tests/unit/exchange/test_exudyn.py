@@ -84,4 +84,6 @@ def test_what_a_planar_model_cannot_hold(tmp_path: Path) -> None:
     path = tmp_path / "x.py"
     with pytest.raises(eq.EquipoiseError, match="support moves out of the plane"):
         eq.export(eq.load("riding-transplanter"), path)
+    with pytest.raises(eq.EquipoiseError, match="the drive stands still"):
+        eq.export(eq.load("yamashita-1").with_drive(speed=0.0), path)
     assert not path.exists()
