@@ -179,8 +179,8 @@ class _Skeleton:
             on = self._carrier(guide, links)
             own = frame if on == FRAME else links[on]
             start, end = guide.places[0], guide.places[-1]
-            sliding = [name for one, name in points.items()
-                       if guide.distance(self.joints[one]) <= self.near and name not in own]  # fmt: skip
+            near = (one for one in points if guide.distance(self.joints[one]) <= self.near)
+            sliding = [points[one] for one in near if points[one] not in own]
             if sliding:
                 through = free("G", places)
                 places[through] = start
