@@ -21,7 +21,7 @@ REFUSED = {
         "yamashita-1 -o x.csv": "--out: CSV is for designs of a store; give one of mjcf, exudyn,",
         "no.zarr -o x.csv": "no.zarr: there is no such store; make it by: equipoise sweep",
         ". -o x.xlsx": "--out: Excel is for machines; give one of csv, parquet",
-        "yamashita-1 -o x.mat --at '1 deg'": "--at: a file of MATLAB is the same at every crank angle",
+        "yamashita-1 -o x.mat --at '1 deg'": "--at: a file of MATLAB is the same at every",
         "brush-cutter -o x.xml": "brush-cutter.toml: this is the file of a tool",
         "no.toml -o x.xml": "no.toml: there is no such file",
     },

@@ -46,8 +46,8 @@ def export(
     kept
         Of a store, only designs that keep every limit.
     """
-    from equipoise.exchange.export import export as write
     from equipoise.exchange.export import check_kind, format_of
+    from equipoise.exchange.export import export as write
     from equipoise.schema.opening import bundled
 
     if out is None:

@@ -327,4 +327,5 @@ def check_result_file(
     ):
         raise UsageError(f"{option}: {path} is what is to be analysed; give another name")
     if path.endswith(".toml") and os.path.lexists(path):
-        raise UsageError(f"{option}: {path} is there already, and may be a model; give another name")
+        what = "is there already, and may be a model"
+        raise UsageError(f"{option}: {path} {what}; give another name")
