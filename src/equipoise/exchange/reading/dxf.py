@@ -23,6 +23,8 @@ DEEPEST, MOST = 6, 20_000
 """Blocks in blocks, and entities in all."""
 DAMAGED = "recovered invalid floating"
 """How ezdxf begins to tell that it has read a number otherwise than it is written."""
+SKEW = 1e-6
+"""How far a line may leave the plane over its distance from the origin: rounding."""
 CURVES = {"ARC", "ELLIPSE", "SPLINE", "LINE", "LWPOLYLINE", "POLYLINE"}
 
 
@@ -120,9 +122,19 @@ def _add(drawing: Drawing, entity: Any, scale: float) -> None:
         path = make_path(entity)
         if not len(path):
             return
+        _check_flat(path, entity.dxf.layer)
         places = [*_corners(path, scale)]
         closed = len(places) > 2 and abs(places[-1] - places[0]) < 1e-12 * scale
         drawing.strokes.append(Stroke(tuple(places[:-1] if closed else places), names, closed))
+
+
+def _check_flat(path: Any, layer: str) -> None:
+    """Links may lie above one another, each at its own height; none may lie askew."""
+    heights = [float(one.z) for one in path.control_vertices()]
+    low, high = min(heights), max(heights)
+    if high - low > SKEW * max(map(abs, path.control_vertices())):
+        what = f"a line of the layer {layer!r} leaves the plane xy: its z goes from {low:g} to"
+        raise ModelError("", f"{what} {high:g}; draw the machine flat, seen along its axes")
 
 
 def _corners(path: Any, scale: float) -> Iterator[complex]:
