@@ -40,6 +40,9 @@ def test_a_drawing_becomes_a_model_that_passes_check(
     assert done.err == "wrote four-bar.toml\n"
     assert "ready to be analysed" in succeeded(equipoise("check", "four-bar.toml"))
     assert "is there already" in refused(equipoise("import", "four-bar.svg"))
+    succeeded(equipoise("import", "four-bar.svg", "-o", "inch.toml", "--units", "length=in"))
+    assert '[units]\nlength = "in"\n' in Path("inch.toml").read_text()
+    Path("inch.toml").unlink()
     assert "no link is called 'crnk'; did you mean 'crank'" in refused(
         equipoise("import", "four-bar.svg", "-o", "b.toml", "--crank", "crnk")
     )

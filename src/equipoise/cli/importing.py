@@ -94,6 +94,8 @@ def import_file(
             pin=pin or (),
             unit=unit,
         )
+    if shown.units:
+        found = found.shown_in(shown.units)
     check_new(found.outline.machine(), path)
     text = found.text()
     with shown.showing(found.machine):

@@ -31,8 +31,10 @@ def made(job: Job) -> str:
             _joint(root, tree, link)
         _gears(root, tree, job)
         for loop in tree.loops:
+            one, other = (_end(root, tree, body, loop.pin) for body in (loop.one, loop.other))
             job.leave_out(
-                f"the pin {loop.pin} of {loop.one!r} and {loop.other!r}: it closes a loop"
+                f"the pin {loop.pin} of {loop.one!r} and {loop.other!r}, which closes a loop; told "
+                f'--pin "{one} = {other}", equipoise import joins them'
             )
     missing = {
         "springs": machine.springs,
@@ -65,6 +67,25 @@ def _link(root: ET.Element, tree: Tree, link: Hung) -> None:
     thin = size_of(body.points) / 40
     for place in body.points.values():
         _bar(part, _from(link, place), thin)
+
+
+def _end(root: ET.Element, tree: Tree, body: str, pin: str) -> str:
+    """Name of a link without mass that is fixed where a body has a pin that is left out."""
+    parent, across = FRAME, tree.row.lateral
+    place = complex(*tree.machine.bodies[body][pin])
+    if body == FRAME:
+        place += complex(*tree.row.offset)
+    else:
+        parent, across = f"{body}{tree.suffix}", 0.0
+        place -= complex(*tree.hung[body].at)
+    name = f"{body}{tree.suffix} {pin}"
+    if root.find(f"link[@name={name!r}]") is None:  # else another loop ends there too
+        ET.SubElement(root, "link", name=name)
+        joint = ET.SubElement(root, "joint", name=name, type="fixed")
+        ET.SubElement(joint, "origin", xyz=_row(place.real, place.imag, across), rpy="0 0 0")
+        ET.SubElement(joint, "parent", link=parent)
+        ET.SubElement(joint, "child", link=name)
+    return name
 
 
 def _from(link: Hung, place: Vector) -> Vector:

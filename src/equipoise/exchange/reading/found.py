@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import pi, remainder
 
@@ -11,6 +11,8 @@ from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import FRAME, Drive, Link, Machine
 from equipoise.mechanism.motion import move
 from equipoise.mechanism.outline import Outline
+from equipoise.mechanism.shown_units import ShownUnits
+from equipoise.quantities import Dimension
 from equipoise.results.blocks import Block, Column, Notes, Table, Text, Value
 
 USUAL_SPEED = 2 * pi
@@ -57,6 +59,13 @@ class Imported:
     def massless(self) -> list[str]:
         """Links whose masses are open."""
         return [name for name, link in self.outline.links.items() if not link.has_mass]
+
+    def shown_in(self, units: Mapping[Dimension, str]) -> Imported:
+        """With a file that asks for units, by what they are of."""
+        told = ShownUnits(**{one.replace(" ", "_"): unit for one, unit in units.items()})
+        outline = replace(self.outline, rest={**self.outline.rest, "units": told})
+        machine = self.machine and replace(self.machine, units=told)
+        return replace(self, machine=machine, outline=outline)
 
     def blocks(self) -> Iterator[Block]:
         """What was understood, what is missing, and what was assumed."""

@@ -59,8 +59,10 @@ def planar(space: Space, told: Told) -> Read:
     crank, speed = flat.drive()
     meshing = gears(space, flat.link_of, flat.normal, outline, crank)
     outline = replace(outline, gears=tuple(meshing))
-    hints = (f"{body!r} moves freely in the plane; --frame {body!r} holds it still"
-             for body in space.loose if body not in told.still)  # fmt: skip
+    hints = [f"{body!r} moves freely in the plane; --frame {body!r} holds it still"
+             for body in space.loose if body not in told.still]  # fmt: skip
+    if not space.loops:
+        hints.append('no loop is closed; --pin "A = B" pins two of its bodies or sites together')
     return Read(outline, crank, speed, tuple(space.notes), tuple(hints))
 
 

@@ -7,7 +7,8 @@ none.
 
 from __future__ import annotations
 
-from math import cos, radians, sin
+from itertools import product
+from math import cos, dist, radians, sin
 from pathlib import Path
 
 import mujoco
@@ -366,3 +367,26 @@ def test_a_support_that_is_not_held_still_is_told(tmp_path: Path) -> None:
     held = import_machine(tmp_path / "a.xml", frame=["support"])
     assert held.machine is not None
     assert told not in held.notes
+
+
+@pytest.mark.parametrize("name", ["slider-crank-engine", "yamashita-1"])
+def test_what_export_wrote_as_urdf_comes_back(name: str, tmp_path: Path) -> None:
+    """Told the pins that it leaves out, by the small links at their ends: all lengths to 1e-9."""
+    machine = load_linkage(name)
+    left = export(machine, tmp_path / "a.urdf", crank_angle=0.3)
+    cut = import_machine(tmp_path / "a.urdf")
+    assert any(one.startswith("no loop is closed; --pin") for one in cut.notes)
+    pins = [one.split('"')[1] for one in left if "--pin" in one]
+    found = import_machine(tmp_path / "a.urdf", pin=pins, crank=machine.drive.link).machine
+    assert found is not None
+    assert found.links.keys() == machine.links.keys()
+    assert found.mass == pytest.approx(machine.mass, rel=1e-12)
+    for link in found.links:
+        lengths, before = (_lengths(each, link) for each in (found, machine))
+        for length in lengths:
+            assert min(abs(length - one) for one in before) <= 1e-9 * max(before)
+
+
+def _lengths(machine: Machine, link: str) -> list[float]:
+    """Between points of a link, m; 0 is among them."""
+    return [dist(*pair) for pair in product(machine.links[link].points.values(), repeat=2)]
