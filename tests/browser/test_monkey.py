@@ -283,13 +283,15 @@ def test_a_monkey(new_page: Callable[..., Page], server: tuple[str, int], seed: 
     memory = Memory(page.context.new_cdp_session(page), server[1])
     end = time.monotonic() + 60 * MINUTES
     machines = cycle(MACHINES[seed:] + MACHINES[:seed])
+    told = SCREENSHOTS.parent / f"monkey-{seed}.txt"
+    told.parent.mkdir(exist_ok=True)
     while monkey.rounds < 1 or time.monotonic() < end:
         monkey.round(next(machines), ACTIONS)
         monkey.open(REST)
         memory.measure()
         lines = [f"{monkey.done} actions, {monkey.checked} checks; heap, nodes, server"]
         lines += [f"{heap:.2f} MB {nodes} {server:.0f} MB" for heap, nodes, server in memory.told]
-        (SCREENSHOTS.parent / f"monkey-{seed}.txt").write_text("\n".join(lines), encoding="utf-8")
+        told.write_text("\n".join(lines), encoding="utf-8")
     assert monkey.wrong == []
     assert monkey.checked
     if MINUTES >= LONG:
