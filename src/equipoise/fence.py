@@ -72,6 +72,12 @@ def may_be_read(path: str | os.PathLike[str]) -> bool:
     return fence is None or _lies_in(path, (fence.folder, *fence.read_too))
 
 
+def may_be_replaced() -> bool:
+    """Whether who named the files asked for those to be written anew that are there already."""
+    fence = _fence.get()
+    return fence is not None and fence.replaces
+
+
 def check_written(path: Path) -> None:
     """Note that a file or a folder is written, where it may be.
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from surface.running import command_lines, equipoise, refuses, succeeded
+from unit.schema.samples import FOUR_BAR
 
 REFUSED = {
     "export": {
@@ -14,8 +17,11 @@ REFUSED = {
         "yamashita-1 -o x.xml --format mjfc": "--format: no format is called 'mjfc'; did",
         "yamashita-1 -o no/x.xml": "--out: no/x.xml: there is no such folder; make it, or choose",
         "yamashita-1 -o x.xml --kept": "--kept: it goes with a store; leave it out",
-        "yamashita-1 -o x.csv --balanced": "--balanced: a file of CSV holds the designs of a store",
-        "yamashita-1 -o x.csv": "yamashita-1: there is no such store; make it by: equipoise sweep",
+        ". -o x.csv --balanced": "--balanced: a file of CSV holds the designs of a store",
+        "yamashita-1 -o x.csv": "--out: CSV is for designs of a store; give one of mjcf, exudyn,",
+        "no.zarr -o x.csv": "no.zarr: there is no such store; make it by: equipoise sweep",
+        ". -o x.xlsx": "--out: Excel is for machines; give one of csv, parquet",
+        "yamashita-1 -o x.mat --at '1 deg'": "--at: a file of MATLAB is the same at every",
         "brush-cutter -o x.xml": "brush-cutter.toml: this is the file of a tool",
         "no.toml -o x.xml": "no.toml: there is no such file",
     },
@@ -33,3 +39,27 @@ def test_a_format_by_name_and_a_note(tmp_path: Path) -> None:
     assert succeeded(done) == ""
     assert done.err == f"note: the file leaves out the soil's force\nwrote {path}\n"
     assert path.read_text("utf-8").startswith("<mujoco")
+
+
+def test_results_are_written_anew_and_models_never(tmp_path: Path) -> None:
+    path, other = tmp_path / "mine.xml", tmp_path / "other.toml"
+    path.write_text("something else", "utf-8")
+    succeeded(equipoise("export", "yamashita-1", "-o", path))
+    assert path.read_text("utf-8").startswith("<mujoco")
+    other.write_text(FOUR_BAR, "utf-8")
+    refused = equipoise("export", "yamashita-1", "-o", other, "--format", "mjcf")
+    assert "other.toml is there already, and may be a model; give another name" in refused.err
+    assert other.read_text("utf-8") == FOUR_BAR
+
+
+@pytest.mark.parametrize("ending", ["fmu", "xlsx", "mat"])
+def test_forces_that_are_left_out_are_told(ending: str, tmp_path: Path) -> None:
+    model = tmp_path / "m.toml"
+    model.write_text(FOUR_BAR, "utf-8")
+    told = equipoise("export", model, "-o", tmp_path / f"m.{ending}").err
+    assert "note: the file leaves out all forces: forces need mass, center_of_mass and" in told
+
+
+def test_a_tree_of_joints_lacks_the_soil(tmp_path: Path) -> None:
+    told = equipoise("export", "transplanter", "-o", tmp_path / "t.urdf").err
+    assert "note: the file leaves out the soil's force\n" in told

@@ -23,23 +23,25 @@ from surface.running import equipoise, refused
 from unit.schema.samples import FOUR_BAR
 
 Calls = dict[str, tuple[str, dict[str, Any]]]
+BALANCED = {
+    **{"file": "mine.toml", "objective": ["rms shaking_force"]},
+    **{"crank_counterweight": True, "at_most": "500 g"},
+}
 CALLS: Calls = {
     "made": ("new", {"file": "mine.toml"}),
     "analysed": ("analyze", {"file": "mine.toml", "speed": "250 rpm", "csv": "all.csv"}),
     "whole": ("analyze", {"file": "mine.toml", "json": True, "orders": 3, "angles": 90}),
-    "balanced": (
-        "balance",
-        {
-            **{"file": "mine.toml", "objective": ["rms shaking_force"], "out": "new.toml"},
-            **{"crank_counterweight": True, "at_most": "500 g"},
-        },
-    ),
+    "balanced": ("balance", {**BALANCED, "out": "new.toml"}),
     "drawn": ("plot", {"file": "new.toml", "only": ["linkage"]}),
     "animated": ("animate", {"file": "mine.toml", "out": "turns.svg"}),
     "exported": ("export", {"file": "mine.toml", "out": "mine.xml"}),
     "example": ("plant_fit", {"file": "transplanter", "targets": "none.toml"}),
     "again": ("analyze", {"file": "mine.toml", "csv": "all.csv"}),
     "anew": ("analyze", {"file": "mine.toml", "csv": "all.csv", "overwrite": True}),
+    "again balanced": ("balance", {**BALANCED, "out": "new.toml"}),
+    "anew balanced": ("balance", {**BALANCED, "out": "new.toml", "overwrite": True}),
+    "imported": ("import", {"file": "mine.xml", "out": "read.toml"}),
+    "anew imported": ("import", {"file": "mine.xml", "out": "read.toml", "overwrite": True}),
     "flag": ("check", {"file": "--help"}),
     "unknown": ("analyze", {"file": "mine.toml", "sped": "3 rpm"}),
     "no tool": ("analyse", {}),
@@ -120,6 +122,7 @@ def test_tools_are_the_commands_with_their_options(session: Session) -> None:
         "description": "Speed of the crank instead of the file's.",
     }
     assert given["split"]["type"] == "boolean"
+    assert session.tools["import"].input_schema["properties"]["unit"]["type"] == "string"
     assert given["output"]["items"] == {"type": "string"}
     assert analyze.input_schema["required"] == ["file"]
     assert session.tools["modes"].input_schema["properties"]["model"]["enum"][0] == "linear"
@@ -170,6 +173,10 @@ def test_a_format_that_is_none_of_pictures_is_left_to_the_command(session: Sessi
 def test_files_are_written_anew_where_it_is_asked_for(session: Session) -> None:
     assert "all.csv: is there already" in wrong(session, "again")
     assert values(session.answers["anew"])["files"] == ["all.csv"]
+    assert "new.toml: is there already" in wrong(session, "again balanced")
+    assert values(session.answers["anew balanced"])["files"] == ["new.toml"]
+    assert values(session.answers["imported"])["files"] == ["read.toml"]
+    assert values(session.answers["anew imported"])["files"] == ["read.toml"]
 
 
 def wrong(session: Session, key: str) -> str:
@@ -184,7 +191,7 @@ WRONG = {
     "flag": "--help: there is no such file",
     "unknown": "no parameter is called 'sped'; did you mean 'speed'?",
     "no tool": "no command is called 'analyse'; did you mean 'analyze'?",
-    "missing": "FILE",
+    "missing": "file: missing; analyze needs it",
 }
 
 

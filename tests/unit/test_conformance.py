@@ -32,11 +32,11 @@ why; {slips} are slips of the print. Another {drawn} are drawn in print without 
 numbers. Printed equations are held by {equations} tests, and {agreements} rows compare with other
 programs and second routes.
 
-Each digit of a computed number is held. A deviation is what is computed less what is printed; a
-dash says that the printed digits are met. Differences from other programs are parts of the largest
-value, or of a thousandth of all forces where an output vanishes. Names such as `lee-kim-a` are
-those of [bundled machines](examples.md), and such as `curve.height` those of figures that commands
-tell.
+Each digit of a computed number is held; where ± stands, it lies so near to the one in front. A
+deviation is what is computed less what is printed; a dash says that the printed digits are met.
+Differences from other programs are parts of the largest value, or of a thousandth of all forces
+where an output vanishes. Names such as `lee-kim-a` are those of [bundled machines](examples.md),
+and such as `curve.height` those of figures that commands tell.
 """
 CONTENTS = (
     "| source | met | explained | slips | drawn | tests of equations | comparisons |\n"
@@ -126,7 +126,8 @@ def number_line(row: Printed) -> str:
     """A printed number as a line of its table."""
     what = f"{row.what}, {row.unit}" if row.unit else row.what
     why = f"slip: {row.why}" if row.slip else row.why if row.differs else ""
-    told = row.told if row.computed or not row.within else f"± {power(row.within)}"
+    near = row.within and not row.computed
+    told = f"{row.told} ± {power(row.within)}" if near else row.told
     cells = (row.case, what, row.place, row.printed or "drawn", told, deviation(row), why)
     return f"| {' | '.join(cells)} |"
 

@@ -25,7 +25,7 @@ from equipoise.cli.outputs import Outputs, Printed, check_new, sources_of, write
 from equipoise.cli.plan import Freed, plan_of, read_objective
 from equipoise.cli.progress import counted
 from equipoise.errors import UsageError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, say
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
@@ -96,8 +96,12 @@ def _save(found: Balanced, out: str) -> None:
     """Write the new machine, with what was changed in its description."""
     from equipoise.balancing.workshop import sentences
 
-    changes = " ".join(f"{line}." for change in found.changes for line in sentences(change))
-    write_model(found.machine, out, Note(", balanced"), f"Changed by equipoise balance: {changes}")
+    def origin() -> str:
+        lines = (line for change in found.changes for line in sentences(change))
+        changes = " ".join(say("{sentence}.", sentence=line) for line in lines)
+        return say("Changed by equipoise balance: {changes}", changes=changes)
+
+    write_model(found.machine, out, Note(", balanced"), origin)
 
 
 @app.command

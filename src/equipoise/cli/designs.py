@@ -77,7 +77,7 @@ def best(
             lambda: found.blocks(outputs=opened.wishes, units=units),
         )
     if model is not None and chosen.out is not None:
-        _save(model, chosen.out, first, f'the study "{title}"')
+        _save(model, chosen.out, first, Note('the study "{title}"', title=title))
 
 
 def search(
@@ -134,7 +134,11 @@ def search(
         outputs.print(made_of, found.to_dict, lambda: found.blocks(units=units, own=own))
     if chosen.out is not None:
         number = chosen.design or 0
-        of = f'a search of the study "{found.study.title}", seed {found.seed}'
+        of = Note(
+            'a search of the study "{title}", seed {seed}',
+            title=found.study.title,
+            seed=found.seed,
+        )
         _save(found.machine(number), chosen.out, number, of)
 
 
@@ -147,8 +151,9 @@ def own_of(study: Study) -> tuple[Array, Array] | None:
     return (study.own, outcome.figures[0]) if outcome.reason[0] == COMPUTED else None
 
 
-def _save(model: Any, out: str, number: int, of: str) -> None:
-    write_model(model, out, Note(", design {number}", number=number), f"Design {number} of {of}.")
+def _save(model: Any, out: str, number: int, of: Note) -> None:
+    origin = Note("Design {number} of {of}.", number=number, of=of)
+    write_model(model, out, Note(", design {number}", number=number), origin.said)
 
 
 def _columns(

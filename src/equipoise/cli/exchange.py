@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from functools import partial
 from typing import TYPE_CHECKING, Annotated
@@ -45,18 +46,23 @@ def export(
     kept
         Of a store, only designs that keep every limit.
     """
+    from equipoise.exchange.export import check_kind, format_of
     from equipoise.exchange.export import export as write
-    from equipoise.exchange.export import format_of
+    from equipoise.schema.opening import bundled
 
     if out is None:
         raise UsageError("--out: missing; give the name of a file")
     with blaming("--out" if format is None else "--format"):
         one = format_of(out, format)
+        if os.path.exists(file) or file in bundled():
+            check_kind(one, of_store=os.path.isdir(file))
     if one.of_store:
         _check(f"a file of {one.title} holds the designs of a store", at=at, balanced=balanced)
         _designs(file, out, kept)
         return
     _check("it goes with a store", kept=kept)
+    if not one.posed:
+        _check(f"a file of {one.title} is the same at every crank angle", at=at)
     machine = linkage_of(file)
     check_result_file("--out", out, sources_of(machine, file))
     with naming(file):

@@ -337,8 +337,12 @@ def fit(
             population=given.search.population,
             progress=progress,
         )
-    origin = f"Geometry found by equipoise plant fit {Path(targets).name}, seed {fitted.seed}."
-    write_model(fitted.machine, new, Note(", fitted"), origin)
+    origin = Note(
+        "Geometry found by equipoise plant fit {file}, seed {seed}.",
+        file=Path(targets).name,
+        seed=fitted.seed,
+    )
+    write_model(fitted.machine, new, Note(", fitted"), origin.said)
     outputs.write(lambda: table(fitted.after))
     outputs.draw_result(fitted.after)
     outputs.show(fitted)

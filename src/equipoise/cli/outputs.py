@@ -14,7 +14,8 @@ from cyclopts import Parameter
 
 from equipoise.cli.options import NewFile, NewFolder, Out, ShownIn, check_belonging, count
 from equipoise.errors import UsageError
-from equipoise.i18n import Note, in_each, said
+from equipoise.fence import may_be_replaced
+from equipoise.i18n import Note, in_each, said, say
 from equipoise.partial import afterwards
 
 if TYPE_CHECKING:
@@ -234,22 +235,29 @@ def tell_pictures(number: int, folder: str) -> None:
 
 
 def write_model(
-    model: Machine | Tool, path: str, title: Note | str = "", origin: str = "", what_next: str = ""
+    model: Machine | Tool,
+    path: str,
+    title: Note | str = "",
+    origin: Callable[[], str] = str,
+    what_next: str = "",
 ) -> None:
     """Save a model and say so.
 
-    title : added to its own; origin : sentences in front of its description.
+    title : added to its own; origin : says sentences to stand in front of its description.
     """
     from equipoise.schema.documents import save
     from equipoise.schema.models import files_of
 
-    start = f"{origin} Started from: " if origin else ""
+    def described(before: str) -> str:
+        start, rest = origin(), before
+        if start and before:
+            rest = say("Started from: {before}", before=before)
+        return f"{start} {rest}".strip()
+
     made: Any = replace(
         model,
         title=in_each(model.title, lambda one: f"{one.removesuffix(said(title))}{said(title)}"),
-        description=in_each(
-            model.description, lambda one: f"{start}{one}".removesuffix(" Started from: ").strip()
-        ),
+        description=in_each(model.description, described),
     )
     save(made, path)
     wrote(" and ".join(map(os.fspath, files_of(made, path))) + what_next)
@@ -292,7 +300,7 @@ def check_new(model: Machine | Tool, path: str) -> None:
 
     _check_place("--out", path)
     for file in files_of(model, path):
-        if os.path.lexists(file):
+        if os.path.lexists(file) and not may_be_replaced():
             raise UsageError(f"{printable(file)}: is there already; choose another name by --out")
 
 
@@ -318,3 +326,6 @@ def check_result_file(
         os.path.exists(source) and os.path.samefile(source, path) for source in sources
     ):
         raise UsageError(f"{option}: {path} is what is to be analysed; give another name")
+    if path.endswith(".toml") and os.path.lexists(path):
+        what = "is there already, and may be a model"
+        raise UsageError(f"{option}: {path} {what}; give another name")

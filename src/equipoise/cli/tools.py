@@ -39,7 +39,7 @@ WRITTEN = {"FILE", "FOLDER", "PATH"}
 OVERWRITE = {
     "type": "boolean",
     "default": False,
-    "description": "Write files anew that are there already.",
+    "description": "Write files anew that are there already, model files too; never a store.",
 }
 USUAL = {"format": "png"}
 """Instead of what commands do by themselves: pictures that any program can show."""
@@ -131,7 +131,11 @@ class Tool:
 
     def line(self, given: Mapping[str, Any], fence: Fence) -> list[str]:
         """The words of the command line that means the same."""
-        known = self.schema()["properties"]
+        schema = self.schema()
+        known = schema["properties"]
+        for key in schema["required"]:
+            if key not in given:
+                raise UsageError(f"{key}: missing; {self.name} needs it")
         options, places = list[str](), list[str]()
         for key, value in {**self._usual(given), **given}.items():
             if key not in known:
@@ -204,6 +208,8 @@ def _value(one: Argument) -> Schema:
         return {"type": "string", "enum": [*choices]}
     if metavar.startswith('"'):
         return {"type": "string", "examples": [metavar.strip('"')]}
+    if one.parameter.converter and metavar != "NUMBER":
+        return {"type": "string"}
     kinds = {one.hint, *get_args(one.hint)}
     for kind, name in ((bool, "boolean"), (int, "integer"), (float, "number")):
         if kind in kinds:

@@ -45,12 +45,7 @@ def export(
     MassError, MotionError, ModelError : the machine cannot be computed as far as the format needs.
     """
     one = format_of(path, format)
-    if one.of_store != isinstance(what, Store):
-        holds = "designs of a store" if one.of_store else "machines"
-        wanted = ", ".join(
-            other.name for other in FORMATS.values() if other.of_store != one.of_store
-        )
-        raise UsageError(f"{one.title} is for {holds}; give one of {wanted}")
+    check_kind(one, of_store=isinstance(what, Store))
     if not isfinite(crank_angle):
         raise UsageError(f"crank_angle: got {crank_angle}; give an angle in rad")
     if isinstance(what, Store):
@@ -59,6 +54,14 @@ def export(
     job, data = made(what, one, crank_angle)
     write(path, data)
     return tuple(job.left_out)
+
+
+def check_kind(one: Format, *, of_store: bool) -> None:
+    """Refuse designs of a store in a format for machines, and the other way round."""
+    if one.of_store != of_store:
+        holds = "designs of a store" if one.of_store else "machines"
+        wanted = ", ".join(other.name for other in FORMATS.values() if other.of_store == of_store)
+        raise UsageError(f"{one.title} is for {holds}; give one of {wanted}")
 
 
 def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job, str | bytes]:

@@ -46,6 +46,7 @@ def made(job: Job) -> bytes:
     for what, given in (("the support", machine.support), ("all rows but one", machine.rows[1:])):
         if given:
             job.leave_out(what)
+    job.leave_out_forces()
     job.leave_out_motor()
     outputs = _outputs(analyze(machine, [job.crank_angle]))
     code = _code(machine, [one.name for one in outputs], job.crank_angle)

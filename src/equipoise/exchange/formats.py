@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from equipoise.mechanism.dynamics import massless
+
 if TYPE_CHECKING:
     from equipoise.balancing.workshop import Change
     from equipoise.mechanism.model import Machine
@@ -18,6 +20,7 @@ class Format:
     name : as `format` takes it; its module here has that name too, but for tables of stores.
     ending : of its files, with the dot.  holds : what is in it.  needs : a library of the extra
     `exchange`.  of_store : whether it is of the designs of a study, not of a machine.
+    posed : whether it shows the machine at a crank angle, or begins there.
     """
 
     name: str
@@ -26,6 +29,7 @@ class Format:
     holds: str
     needs: str = ""
     of_store: bool = False
+    posed: bool = True
 
 
 FORMATS: Mapping[str, Format] = {
@@ -78,6 +82,7 @@ FORMATS: Mapping[str, Format] = {
             ".svg",
             "parts (SVG)",
             "the same parts to be cut, at 1:1",
+            posed=False,
         ),
         Format(
             "xlsx",
@@ -86,12 +91,14 @@ FORMATS: Mapping[str, Format] = {
             "links and points, figures of every output, all signals over crank angle with their "
             "units, charts of them, and what to change where it was balanced",
             needs="xlsxwriter",
+            posed=False,
         ),
         Format(
             "mat",
             ".mat",
             "MATLAB",
             "a struct of links and points, figures of every output, and all signals with units",
+            posed=False,
         ),
         Format("csv", ".csv", "CSV", "all designs of a store", of_store=True),
         Format("parquet", ".parquet", "Parquet", "all designs of a store", of_store=True),
@@ -117,6 +124,17 @@ class Job:
         """Tell, once, what the file does not hold."""
         if what not in self.left_out:
             self.left_out.append(what)
+
+    def leave_out_forces(self) -> None:
+        """Tell that there are no forces where links lack masses."""
+        if missing := massless(self.machine):
+            self.leave_out(f"all forces: {missing}")
+
+    def leave_out_soil(self) -> None:
+        """Tell that the soil pushes nothing."""
+        planting = self.machine.planting
+        if planting is not None and planting.soil is not None:
+            self.leave_out("the soil's force")
 
     def leave_out_motor(self) -> None:
         """Tell that the drive has its speed, whatever turns it."""

@@ -26,6 +26,7 @@ def made(job: Job) -> bytes:
     from scipy.io import savemat
 
     machine, analysis = job.machine, analyze(job.machine)
+    job.leave_out_forces()
     angles = ("crank_angle", "rad", analysis.crank_angle)
     columns = [angles, *((one.name, one.unit, one.values) for one in analysis.outputs.arrays)]
     links = {

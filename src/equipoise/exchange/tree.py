@@ -164,9 +164,7 @@ def preloads(machine: Machine) -> Mapping[str, float]:
 
 def constant_loads(job: Job) -> Iterator[tuple[int, Load]]:
     """Loads that are always the same, by number; others, and soil, are told to be left out."""
-    planting = job.machine.planting
-    if planting is not None and planting.soil is not None:
-        job.leave_out("the soil's force")
+    job.leave_out_soil()
     for number, load in enumerate(job.machine.loads, 1):
         if load.jumps or load.table is not None:
             job.leave_out(f"load {number}, which is not the same all the time")

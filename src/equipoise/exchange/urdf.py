@@ -43,6 +43,7 @@ def made(job: Job) -> str:
     for what, given in missing.items():
         if given:
             job.leave_out(what)
+    job.leave_out_soil()
     ET.indent(root)
     return ET.tostring(root, encoding="unicode") + "\n"
 

@@ -31,6 +31,7 @@ def made(job: Job) -> bytes:
     book = needed("xlsxwriter", "Excel").Workbook(data, {"in_memory": True})
     book.set_properties({"title": str(job.machine.title)})
     analysis = analyze(job.machine)
+    job.leave_out_forces()
     _sheet(book, "Summary", _summary(analysis))
     _sheet(book, "Links", _links(job.machine))
     _sheet(book, "Points", _points(job.machine))

@@ -65,13 +65,20 @@ class Choice:
     def wrong(self) -> str:
         return "missing" if self.given is None else f"got {self.given!r}"
 
-    def lines(self) -> Iterator[str]:
-        """For the table of sides; both of them where nothing tells which."""
+    def lines(self, taken: str) -> Iterator[str]:
+        """For the table of sides; both of them where nothing tells which.
+
+        taken : entries of earlier joints on which what these sides give depends.
+        """
         yield f"# {self.meaning}"
         for k in (self.side,) if self.why else (0, 1):
-            told = "; ".join(filter(None, [self.gives[k], self.why]))
-            entry = f'{_key(self.joint)} = "{self.words[k]}"'
-            yield f"{'' if k == self.side else '# or '}{entry}{told and f'  # {told}'}"
+            given = self.gives[k] and f"{self.gives[k]}{taken and f', with {taken}'}"
+            told = "; ".join(filter(None, [given, self.why]))
+            yield f"{'' if k == self.side else '# or '}{self.entry(k)}{told and f'  # {told}'}"
+
+    def entry(self, k: int) -> str:
+        """In the table of sides, with one of the words."""
+        return f'{_key(self.joint)} = "{self.words[k]}"'
 
 
 def _key(name: str) -> str:
@@ -209,5 +216,10 @@ def missing(machine: Machine, choices: Sequence[Choice], idle: Iterable[str] = (
         hint = "; ".join(filter(None, ("is no inner joint of a dyad", meant(name, joints))))
         what += f" ({name!r} {hint})"
     table = [] if machine.assembly else ["[assembly]"]
-    paste = "\n".join([*table, *(line for one in choices for line in one.lines())])
+    taken: list[str] = []
+    for one in choices:
+        table += one.lines(", ".join(taken))
+        if not one.why:
+            taken.append(one.entry(one.side))
+    paste = "\n".join(table)
     return ModelError(where, f"{what}, such as{PASTE}{paste}")

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import UsageError
-from equipoise.fence import may_be_read
+from equipoise.fence import may_be_read, may_be_replaced
 from equipoise.partial import made, replaced
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def write(path: str | os.PathLike[str], text: str | bytes, *, replace: bool = Tr
     UsageError : it cannot be written, or is there already and `replace` is false.
     """
     shown = printable(path) or "''"
-    if not replace and os.path.lexists(path):
+    if not (replace or may_be_replaced()) and os.path.lexists(path):
         raise UsageError(f"{shown}: is there already; choose another name")
     data = text if isinstance(text, bytes) else text.encode("utf-8")
     try:

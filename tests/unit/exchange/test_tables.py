@@ -69,7 +69,8 @@ def test_what_balancing_changes(tmp_path: Path) -> None:
 
 
 def test_no_text_becomes_a_formula(tmp_path: Path) -> None:
-    link = eq.Link(points={"A": (0.0, 0.0), **dict.fromkeys(SIGNS, (0.1, 0.0))})
+    points = {"A": (0.0, 0.0), **dict.fromkeys(SIGNS, (0.1, 0.0))}
+    link = eq.Link(points=points, mass=0.0, center_of_mass=(0.0, 0.0), inertia=0.0)
     machine = eq.Machine(SIGNS[0], eq.Drive(SIGNS[0], 1.0), {"A": (0.0, 0.0)}, {SIGNS[0]: link})
     book = opened(machine, tmp_path / "x.xlsx")
     texts = [cell for sheet in book for row in sheet.iter_rows() for cell in row if cell.value]

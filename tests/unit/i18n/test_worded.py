@@ -61,11 +61,12 @@ def test_what_is_no_text_by_language_is_refused_in_python(given):
 
 def test_a_model_that_is_written_tells_what_was_done_in_each_language(tmp_path):
     machine = loads(BY_LANGUAGE)
+    origin = Note("Design {number} of {of}.", number=3, of="A").said
     for _ in range(2):
-        write_model(machine, str(tmp_path / "new.toml"), Note(", balanced"), "Changed.")
+        write_model(machine, str(tmp_path / "new.toml"), Note(", balanced"), origin)
         machine = eq.load(tmp_path / "new.toml")
     assert machine.title.texts == {"en": "Four-bar, balanced", "ja": "四節リンク、釣り合わせ後"}
-    assert str(machine.description).startswith("Changed. Started from: ")
+    assert machine.description.texts["ko"] == f"{'A의 설계 3. 원래 설명: ' * 2}설명"
     assert in_each("plain", str.upper) == "PLAIN"
 
 

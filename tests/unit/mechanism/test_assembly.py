@@ -347,6 +347,16 @@ def test_where_nothing_tells_both_sides_are_listed_with_their_places(name: str) 
         assert complex(x, y) == pytest.approx(place, rel=1e-3, abs=1e-3)
 
 
+def test_places_that_hang_on_a_side_before_name_it() -> None:
+    """With the other side of C, D is elsewhere."""
+    sieve = eq.load("sieve")
+    _, lines = asked(sieve)
+    first, second = [line for line in lines.splitlines() if "D = " in line]
+    assert first.endswith('at crank angle 0 deg, with C = "left"')
+    assert second.endswith('at crank angle 0 deg, with C = "left"')
+    assert "with" not in "".join(line for line in lines.splitlines() if line.startswith("C = "))
+
+
 def test_a_side_without_which_the_crank_cannot_turn() -> None:
     """With C on the other side no F closes for a whole turn; F itself is open."""
     sides, lines = asked(eq.load("watt-six-bar"))

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from cmath import phase
-from collections.abc import Iterable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import chain, combinations, pairwise
 from string import ascii_uppercase
 
 from equipoise.errors import ModelError, unknown
@@ -19,11 +20,15 @@ TOGETHER = 1e-6
 """Distance over the size of the drawing below which ends meet, where none is told."""
 PIVOT = 0.2
 """Radius over the size of the drawing above which a circle marks no pivot."""
+NEARLY = 0.01
+"""Distance over the size of the drawing below which ends that do not meet may be meant to."""
 FRAMES = ("frame", "ground", "fixed", "base")
 GUIDES = ("guide", "slider", "rail")
 """Names of what stands still, and of lines on which ends slide, where none are told."""
 BESIDE = ("path", "part", "springs", "gears", "names")
 """First words of layers of what `export` draws beside the links."""
+WORDS = "names"
+"""Layer of names of points, among them."""
 LINK = "link "
 """Before the name of a link in its layer there."""
 
@@ -143,21 +148,23 @@ class _Skeleton:
         self.grounds = [one for one in every if _named(one, frames)]
         self.guides = [one for one in drawing.strokes if _named(one, guides)]
         taken = {id(one) for one in (*self.grounds, *self.guides)}
-        beside = [one for one in drawing.strokes if _first((*one.names, "")[0]) in BESIDE]
+        beside = [one for one in every if _first((*one.names, "")[0]) in BESIDE]
         if beside:
-            drawing.note(f"{len(beside)} lines of paths, parts, springs and gears are left out")
+            left = "lines and circles of paths, parts, springs and gears are left out"
+            drawing.note(f"{len(beside)} {left}")
         taken |= {id(one) for one in beside}
         lines = [one for one in drawing.strokes if id(one) not in taken]
+        rings = [one for one in drawing.rings if one not in beside]
         corners = sum(len(one.places) for one in (*lines, *self.grounds, *self.guides)
                       if isinstance(one, Stroke))  # fmt: skip
-        if max(corners, len(drawing.rings)) > MOST:
+        if max(corners, len(rings)) > MOST:
             what = f"it has more than {MOST} corners of lines, or circles"
             raise ModelError("", f"{what}; give a skeleton")
         places = [place for one in drawing.strokes for place in one.places]
         xs, ys = zip(*((place.real, place.imag) for place in places), strict=True)
         self.size = max(max(xs) - min(xs), max(ys) - min(ys))
         self.near = marks.together or TOGETHER * self.size
-        self.pivots = [one for one in drawing.rings if 0 < one.radius < PIVOT * self.size]
+        self.pivots = self._pivots(rings, lines)
         self.joints: list[complex] = [one.center for one in self.pivots]
         self.bodies = [*self._bodies(lines)]
 
@@ -173,20 +180,66 @@ class _Skeleton:
         places = {name: self.joints[number] for number, name in points.items()}
         frame = [points[one] for one in points if self._still(one)]
         slots = []
-        for number, guide in enumerate(self.guides, 1):
+        for guide in self.guides:
+            on = self._carrier(guide, links)
+            own = frame if on == FRAME else links[on]
             start, end = guide.places[0], guide.places[-1]
-            places[f"G{number}"] = start
-            on = [
-                name
-                for one, name in points.items()
-                if guide.distance(self.joints[one]) <= self.near
-            ]
-            frame += [f"G{number}"] if on else []
-            slots += [Slot(point, FRAME, f"G{number}", phase(end - start)) for point in on]
+            near = (one for one in points if guide.distance(self.joints[one]) <= self.near)
+            sliding = [points[one] for one in near if points[one] not in own]
+            if sliding:
+                through = free("G", places)
+                places[through] = start
+                own.append(through)
+                slots += [Slot(point, on, through, phase(end - start)) for point in sliding]
         outline = outline_of(self.drawing.title, places, links, frame, slots)
-        return Read(outline, notes=tuple(self.drawing.notes))
+        return Read(
+            outline, notes=tuple(self.drawing.notes), hints=tuple(self._hints(links, frame))
+        )
+
+    def _hints(self, links: Mapping[str, Sequence[str]], frame: Sequence[str]) -> Iterator[str]:
+        """Ends that nearly meet, and links that are joined to nothing."""
+        ends = sorted({number for _, corners in self.bodies for number in corners})
+        gaps = (abs(self.joints[one] - self.joints[other]) for one, other in combinations(ends, 2))
+        near = min((gap for gap in gaps if self.near < gap < NEARLY * self.size), default=0.0)
+        if near:
+            wide = float(f"{2e3 * near:.1g}")
+            yield (f"two ends nearly meet, {1e3 * near:.2g} mm apart; --tolerance '{wide:g} mm' "
+                   "would join them")  # fmt: skip
+        holders = Counter(chain(frame, *links.values()))
+        for name, points in links.items():
+            if all(holders[point] == 1 for point in points):
+                yield f"{name!r} is joined to nothing; leave it out of the drawing, or join it"
+
+    def _carrier(self, guide: Stroke, links: Iterable[str]) -> str:
+        """What has a guide: the link that its name tells behind "on", else the frame."""
+        for name in guide.names:
+            _, word, on = name.rpartition(" on ")
+            if on in links:
+                return on
+            if word and on.casefold() not in (self.marks.frame or FRAMES):
+                self.drawing.note(f"{name!r} is taken to stand still: no link is called {on!r}")
+        return FRAME
 
     # -- lines and corners ---------------------------------------------------------------------
+
+    def _pivots(self, rings: Iterable[Ring], lines: Sequence[Stroke]) -> list[Ring]:
+        """Circles that mark pivots: small ones, the largest of those about one place, and none
+        about another pivot, such as a gear, or about a whole link that begins in its middle, such
+        as a flywheel.
+        """
+        found: list[Ring] = []
+        for ring in sorted(rings, key=lambda one: one.radius):
+            if not 0 < ring.radius < PIVOT * self.size:
+                continue
+            inside = [one for one in found if abs(one.center - ring.center) <= ring.radius]
+            apart = any(abs(one.center - ring.center) > self.near for one in inside)
+            if not apart and not any(self._swallows(ring, line) for line in lines):
+                found = [*(one for one in found if one not in inside), ring]
+        return found
+
+    def _swallows(self, ring: Ring, line: Stroke) -> bool:
+        off = [abs(place - ring.center) for place in line.places]
+        return min(off) <= self.near and max(off) <= max(1.01 * ring.radius, self.near)
 
     def _bodies(self, lines: Sequence[Stroke]) -> Iterator[tuple[list[Stroke], list[int]]]:
         """Strokes of each link, and the numbers of its corners; a line drawn twice is one."""
@@ -199,7 +252,9 @@ class _Skeleton:
             on = (number for number, ring in enumerate(self.pivots)
                   if any(one.distance(ring.center) <= self.near for one in group))  # fmt: skip
             corners = [*dict.fromkeys((*corners, *on))]
-            if len(corners) > 1 and frozenset(corners) not in seen:
+            if len(corners) < 2:
+                self.drawing.note("lines that lie wholly in a circle of a pivot are left out")
+            elif frozenset(corners) not in seen:
                 seen.add(frozenset(corners))
                 yield group, corners
 

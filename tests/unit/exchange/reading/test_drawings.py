@@ -16,6 +16,7 @@ from equipoise.exchange.reading.formats import import_machine
 from equipoise.exchange.reading.found import Imported
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.motion import move
+from equipoise.results.blocks import Table
 from equipoise.schema.models import load_linkage, loads_linkage
 
 Draw = Callable[[Path, Machine, dict[str, complex]], Path]
@@ -137,6 +138,57 @@ def test_circles_at_free_ends_are_pivots_where_nothing_marks_the_frame(tmp_path:
     assert found.machine is not None
 
 
+def test_a_circle_about_a_whole_link_is_no_pivot(tmp_path: Path) -> None:
+    """Nor is a gear; a hub about a pivot is one with it, and what only lies in one is told."""
+    border = '<rect width="200" height="100" y="-80"/>'
+    wheel = '<circle cx="0" cy="0" r="35"/>'
+    hub = '<circle cx="120" cy="0" r="4"/><circle cx="120" cy="0" r="2"/>'
+    mark = '<line x1="118" y1="0" x2="122" y2="0"/>'
+    rocker = '<line id="rocker" x1="120" y1="0" x2="150" y2="-60"/>'
+    gear = '<g id="gears rod"><circle cx="24" cy="-20" r="18"/></g>'
+    path = drawing(tmp_path / "a.svg", border, wheel, CRANK, ROD, PIVOT, rocker, hub, mark, gear)
+    found = import_machine(path)
+    assert [*found.outline.links][1:] == ["crank", "rod", "rocker"]
+    assert [len(link.points) for link in found.outline.links.values()][1:] == [2, 2, 2]
+    _, (length, _) = found.outline.links["crank"].points.values()
+    assert length == pytest.approx(0.02 * 2**0.5)
+    assert any("lie wholly in a circle" in one for one in found.notes)
+
+
+@pytest.mark.parametrize(("guide", "on"), [("guide on rod", "rod"), ("guide", FRAME)])
+def test_a_guide_moves_with_the_link_that_it_names(guide: str, on: str, tmp_path: Path) -> None:
+    """What ends on the other link slides on it; its own ends do not."""
+    slot = f'<line id="{guide}" x1="70" y1="-10" x2="120" y2="0"/>'
+    rocker = '<line id="rocker" x1="95" y1="-5" x2="90" y2="60"/>'
+    ground = '<circle id="ground" cx="90" cy="60" r="2"/>'
+    path = drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT, rocker, slot, ground)
+    outline = import_machine(path).outline
+    assert {slider.on for slider in outline.sliders} == {on}
+    assert outline.mobility == (2 if on == "rod" else 1)
+
+
+def test_a_guide_on_no_link_is_told(tmp_path: Path) -> None:
+    slot = '<line id="guide on rood" x1="90" y1="0" x2="150" y2="0"/>'
+    found = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT, slot))
+    assert "'guide on rood' is taken to stand still: no link is called 'rood'" in found.notes
+
+
+@pytest.mark.parametrize("end", [(80, 50, 40), (80, 50, 10)])
+def test_a_drawing_in_space_is_refused(end: tuple[float, ...], tmp_path: Path) -> None:
+    """But links may lie above one another, each at its own height."""
+    document = ezdxf.new(units=4)
+    space = document.modelspace()
+    space.add_line((0, 0, 0), (30, 0, 0), dxfattribs={"layer": "crank"})
+    space.add_line((30, 0, 10), end, dxfattribs={"layer": "rod"})
+    space.add_circle((0, 0), 1, dxfattribs={"layer": "frame"})
+    document.saveas(tmp_path / "a.dxf")
+    if end[2] == 10:
+        assert import_machine(tmp_path / "a.dxf").outline.mobility == 2
+        return
+    with pytest.raises(EquipoiseError, match=r"layer 'rod' leaves the plane xy: .* 10 to 40"):
+        import_machine(tmp_path / "a.dxf")
+
+
 def test_lines_under_one_name_are_one_link(tmp_path: Path) -> None:
     plate = ('<g id="plate"><line x1="20" y1="-20" x2="60" y2="-60"/>'
              '<line x1="60" y1="-60" x2="120" y2="0"/></g>')  # fmt: skip
@@ -153,10 +205,58 @@ def test_a_unit_can_be_told(unit: float | None, length: float, tmp_path: Path) -
     assert x == pytest.approx(20 * 2**0.5 * length, rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("more", "length"),
+    [
+        ("", 1e-3),
+        ('preserveAspectRatio="xMinYMin slice"', 1e-3),
+        ('height="50mm"', 0.5e-3),
+        ('height="50mm" preserveAspectRatio="xMidYMid slice"', 1e-3),
+        ('height="400mm"', 1e-3),
+    ],
+)
+def test_the_scale_of_an_svg_is_that_at_which_it_is_shown(
+    more: str, length: float, tmp_path: Path
+) -> None:
+    head = f'width="200mm" viewBox="0 0 200 100" {more}'
+    found = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT, head=head))
+    _, (x, _) = found.outline.links["crank"].points.values()
+    assert x == pytest.approx(20 * 2**0.5 * length, rel=1e-9)
+
+
+def test_a_stretched_svg_is_refused(tmp_path: Path) -> None:
+    head = 'width="200mm" height="50mm" viewBox="0 0 200 100" preserveAspectRatio="none"'
+    with pytest.raises(EquipoiseError, match="it is stretched"):
+        import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT, head=head))
+
+
+def test_only_texts_of_the_layer_names_are_names(tmp_path: Path) -> None:
+    document = ezdxf.new(units=4)
+    space = document.modelspace()
+    space.add_line((0, 0), (30, 0))
+    space.add_circle((0, 0), 1, dxfattribs={"layer": "frame"})
+    space.add_text("Four-bar").set_placement((0, 0))
+    space.add_text("tip", dxfattribs={"layer": "Names"}).set_placement((30, 0))
+    document.saveas(tmp_path / "a.dxf")
+    (link,) = import_machine(tmp_path / "a.dxf").outline.links.values()
+    assert [*link.points] == ["A", "tip"]
+
+
+def test_the_table_of_links_has_units_in_its_head(tmp_path: Path) -> None:
+    found = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT))
+    table = next(one for one in found.blocks() if isinstance(one, Table))
+    assert table.columns[-1].dimension == "mass"
+    assert [row[-1] for row in table.rows] == ["open", "open"]
+
+
 def test_ends_within_a_tolerance_meet(tmp_path: Path) -> None:
     sloppy = '<line id="rod" x1="20.05" y1="-20" x2="120" y2="0"/>'
     path = drawing(tmp_path / "a.svg", CRANK, sloppy, PIVOT)
-    assert import_machine(path).outline.mobility == 4
+    found = import_machine(path)
+    assert found.outline.mobility == 4
+    told = "two ends nearly meet, 0.05 mm apart; --tolerance '0.1 mm' would join them"
+    assert told in found.notes
+    assert any("'rod' is joined to nothing" in one for one in found.notes)
     assert import_machine(path, tolerance=0.1e-3).outline.mobility == 2
 
 
@@ -216,9 +316,14 @@ def test_unfinished_drawings_leave_lines_to_fill_in(tmp_path: Path) -> None:
     assert loads_linkage(whole).drive.link == "crank"
 
 
-@pytest.mark.parametrize("name", ["yamashita-1", "watt-six-bar", "slider-crank-engine"])
+@pytest.mark.parametrize(
+    "name",
+    ["yamashita-1", "watt-six-bar", "slider-crank-engine", "quick-return"],
+)
 def test_a_drawing_that_export_wrote_comes_back(name: str, tmp_path: Path) -> None:
-    """With its names, to 1e-9; a block is a link of its own there, and drawn as none."""
+    """With its names, to 1e-9; a block is a link of its own there, and drawn as none.  Guides move
+    with the link that has them.
+    """
     machine = load_linkage(name)
     export(machine, tmp_path / "a.dxf", crank_angle=AT)
     found = import_machine(tmp_path / "a.dxf", crank=machine.drive.link)
