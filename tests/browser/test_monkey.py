@@ -201,7 +201,7 @@ class Monkey:
         )
         for _ in range(3):
             page.keyboard.press("Escape")
-        expect(page.locator(".equipoise")).not_to_have_attribute("data-waiting", "")
+        self.live.settled()
 
     def open(self, name: str) -> None:
         """Open an example in the place of what there is, whatever that is."""
@@ -224,10 +224,10 @@ class Monkey:
         if live.page.locator(".tool:visible").count():
             return
         while live.page.locator(".equipoise.unfinished").count():
-            live.page.wait_for_timeout(200)
             if live.button("Undo").is_disabled():
                 return  # it was begun from nothing
             live.button("Undo").click()
+            live.settled()
         shown = self._download("csv")
         analysis = eq.analyze(eq.loads(self._download("model")))
         angles = (shown.count("\n") - 1) // analysis.motion.turns
