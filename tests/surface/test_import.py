@@ -14,8 +14,9 @@ SVG = ('<svg width="100mm" viewBox="0 0 100 100"><path id="crank" d="M0 0 20 -20
 REFUSED = {
     "import": {
         "no.dxf": "no.dxf: there is no such file",
-        "no.dxf --unit kg": "--unit: got '1 kg'; kg is the unit of a mass",
-        "no.dxf --unit '-3 mm'": "--unit: got",
+        "no.dxf --unit kg": "--unit: got 'kg'; give a unit such as mm",
+        "no.dxf --unit parsec": "--unit: got 'parsec'; give a unit such as mm",
+        "no.dxf --unit '-3 mm'": "--unit: got '-3 mm'; give a unit such as mm",
         "no.dxf --tolerance '0 mm'": "--tolerance: got '0 mm'; give more than 0",
     },
 }

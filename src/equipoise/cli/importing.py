@@ -16,7 +16,13 @@ def _unit(option: str, text: str) -> float:
     """A length, or the unit of one: m."""
     from equipoise.cli.options import quantity
 
-    value = quantity(option, text if text[:1].isdigit() else f"1 {text}", "length")
+    bare = not any(map(str.isdigit, text))
+    try:
+        value = quantity(option, f"1 {text}" if bare else text, "length")
+    except UsageError:
+        if not bare:
+            raise
+        value = 0.0
     if value <= 0:
         raise UsageError(
             f"{option}: got {text!r}; give a unit such as mm, or a length of more than 0"

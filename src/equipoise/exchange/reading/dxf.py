@@ -12,7 +12,7 @@ from typing import Any
 
 from equipoise.errors import ModelError, needed
 from equipoise.exchange.reading.found import Read
-from equipoise.exchange.reading.strokes import Drawing, Marks, Ring, Stroke, skeleton
+from equipoise.exchange.reading.strokes import WORDS, Drawing, Marks, Ring, Stroke, skeleton
 
 UNITS = {1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 8: 2.54e-8, 9: 2.54e-5, 10: 0.9144,
          13: 1e-6, 14: 0.1}  # fmt: skip
@@ -21,6 +21,7 @@ MILLIMETRE = 1e-3
 COLOURS = {1: "red", 2: "yellow", 3: "green", 4: "cyan", 5: "blue", 6: "magenta", 7: "white"}
 DEEPEST, MOST = 6, 20_000
 """Blocks in blocks, and entities in all."""
+NONE = "this is no DXF drawing that can be read; save it anew"
 DAMAGED = "recovered invalid floating"
 """How ezdxf begins to tell that it has read a number otherwise than it is written."""
 SKEW = 1e-6
@@ -38,6 +39,8 @@ def read(data: bytes, marks: Marks, unit: float | None) -> Read:
     ModelError : it cannot be read, or has no lines.
     """
     recover = needed("ezdxf.recover", "a DXF drawing")
+    if b"ENTITIES" not in data:
+        raise ModelError("", NONE)
     try:
         with _heard() as warnings:
             document, _ = recover.read(BytesIO(data))
@@ -45,7 +48,7 @@ def read(data: bytes, marks: Marks, unit: float | None) -> Read:
     except (ModelError, MemoryError):
         raise
     except Exception as error:  # of many kinds, where a file is damaged
-        raise ModelError("", "this is no DXF drawing that can be read; save it anew") from error
+        raise ModelError("", NONE) from error
     if damaged := next((one for one in warnings if one.startswith(DAMAGED)), ""):
         line = damaged.partition(" near line ")[2].partition(" ")[0]
         raise ModelError("", f"near line {line} of the drawing a number is damaged; save it anew")
@@ -88,13 +91,17 @@ def _entities(document: Any, entities: Iterable[Any]) -> Iterator[Any]:
         if not left:
             return
         entity, deep = left.popleft()
-        if count > MOST:
+        inserted = entity.dxftype() == "INSERT"
+        if count > MOST or (inserted and entity.mcount > MOST):
             raise ModelError("", f"the drawing has more than {MOST:,} entities; give a skeleton")
         if entity.dxf.layer.casefold() in hidden or entity.dxf.get("invisible", 0):
             continue
-        if entity.dxftype() != "INSERT":
+        if not inserted:
             yield entity
-        elif deep < DEEPEST and entity.mcount <= MOST:
+        elif deep == DEEPEST:
+            what = f"its blocks lie more than {DEEPEST} deep in each other"
+            raise ModelError("", f"{what}; take them apart")
+        else:
             single = entity.multi_insert() if entity.mcount > 1 else (entity,)
             parts = [(one, deep + 1) for part in single for one in part.virtual_entities()]
             left.extendleft(reversed(parts))
@@ -112,9 +119,11 @@ def _add(drawing: Drawing, entity: Any, scale: float) -> None:
     elif kind == "POINT":
         x, y, _ = entity.dxf.location
         drawing.rings.append(Ring(_place(x, y, scale), 0.0, names))
-    elif kind == "TEXT" and (word := entity.dxf.text.strip()).isprintable() and word:
+    elif kind == "TEXT" and entity.dxf.layer.casefold() == WORDS:
+        word = entity.dxf.text.strip()
         x, y, _ = entity.dxf.insert
-        drawing.words.append((_place(x, y, scale), word[:100]))
+        if word and word.isprintable():
+            drawing.words.append((_place(x, y, scale), word[:100]))
     elif kind == "HATCH":
         drawing.areas += [Stroke(tuple(_corners(path, scale)), names, True)
                           for path in from_hatch(entity) if len(path)]  # fmt: skip

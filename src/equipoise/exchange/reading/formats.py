@@ -157,12 +157,13 @@ def _opened(path: str | os.PathLike[str]) -> tuple[Format, Any]:
     """The kind of a file by its content and its ending, and what is in it."""
     ending = Path(os.fspath(path)).suffix.casefold()
     by_ending = next((one for one in FORMATS.values() if ending in one.endings), None)
-    if by_ending is FORMATS["dxf"]:
-        return by_ending, read_bytes(path, LARGE)
-    text = read_text(path, LARGE if by_ending is FORMATS["svg"] else SMALL)
+    drawn = by_ending in (FORMATS["dxf"], FORMATS["svg"])
+    if by_ending is FORMATS["dxf"] and not (data := read_bytes(path, LARGE)).startswith(b"<"):
+        return by_ending, data
+    text = read_text(path, LARGE if drawn else SMALL)
     if by_ending is FORMATS["pmks"] or re.match(r"\s*https?://\S+\?\S+\s*$", text):
         return FORMATS["pmks"], text
-    if not text.lstrip().startswith("<"):
+    if not by_ending and not text.lstrip().startswith("<"):
         known = ", ".join(one for kind in FORMATS.values() for one in kind.endings)
         raise ModelError("", f"it is of no kind that is read; give one of {known}")
     root: Element = tree_of(text)

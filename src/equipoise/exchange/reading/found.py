@@ -11,7 +11,7 @@ from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import FRAME, Drive, Link, Machine
 from equipoise.mechanism.motion import move
 from equipoise.mechanism.outline import Outline
-from equipoise.results.blocks import Block, Notes, Table, Text, Value
+from equipoise.results.blocks import Block, Column, Notes, Table, Text, Value
 
 USUAL_SPEED = 2 * pi
 """rad/s, where nobody tells one."""
@@ -28,12 +28,14 @@ class Read:
     outline : the machine, as far as it is known, as it is drawn.
     crank, speed : the driven link and how fast it turns, rad/s, where the file tells.
     notes : what was left out or assumed, a sentence each.
+    hints : what may help where the mobility is not 1, a sentence each.
     """
 
     outline: Outline
     crank: str = ""
     speed: float | None = None
     notes: tuple[str, ...] = ()
+    hints: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ class Imported:
                   "gear": len(outline.gears)}  # fmt: skip
         told = ", ".join(f"{n} {what}{'s' * (n != 1)}" for what, n in counts.items() if n)
         yield Text(f"{told}; mobility {outline.mobility}")
-        heads = ("link", "points", "mass")
+        heads = ("link", "points", Column("mass", "mass"))
         yield Table.of("", heads, (self._row(name, link) for name, link in outline.links.items()))
         if self.missing:
             yield Notes(tuple(f"missing: {one}" for one in self.missing))
@@ -75,7 +77,7 @@ class Imported:
     def _row(self, name: str, link: Link) -> Iterable[object]:
         pinned = self.outline.joints.pins
         points = (f"{one} (frame)" if FRAME in pinned.get(one, ()) else one for one in link.points)
-        mass = Value(link.mass, dimension="mass") if link.mass is not None else "open"
+        mass = Value(link.mass) if link.mass is not None else "open"
         return name, ", ".join(points), mass
 
     def text(self) -> str:
@@ -136,6 +138,8 @@ def finished(read: Read, crank: str = "", speed: float | None = None) -> Importe
             missing.append("the speed of the drive, for which 60 rpm stands in the file")
     if why:
         notes.append(why)
+    if outline.mobility != 1:
+        notes += read.hints
     machine: Machine | None = None
     try:
         machine = _meshed(outline) if name else None

@@ -69,6 +69,9 @@ class _Model:
     def __init__(self, root: Element) -> None:
         self.root = root
         compiler = _first(root, "compiler")
+        if compiler.get("coordinate", "local") != "local":
+            raise ModelError("compiler", "coordinate: got 'global', which MuJoCo has given up; "
+                             "give places and axes in those of the body around them")  # fmt: skip
         self.degrees = compiler.get("angle", "degree") != "radian"
         self.order = compiler.get("eulerseq", "xyz")
         if len(self.order) != 3 or not set(self.order) <= set("xyzXYZ"):
@@ -133,7 +136,8 @@ class _Model:
         if not joints:
             self.space.rigid.append((parent, solid.name))
         if sorted(one.kind for one in joints) == ["hinge", "slide", "slide"]:
-            return  # which leaves it free in the plane
+            self.space.loose.append(solid.name)
+            return
         for joint in joints:
             last = joint is joints[-1]
             child = solid.name if last else f"{joint.name} carrier"

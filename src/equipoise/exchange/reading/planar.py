@@ -59,7 +59,9 @@ def planar(space: Space, told: Told) -> Read:
     crank, speed = flat.drive()
     meshing = gears(space, flat.link_of, flat.normal, outline, crank)
     outline = replace(outline, gears=tuple(meshing))
-    return Read(outline, crank, speed, tuple(space.notes))
+    hints = (f"{body!r} moves freely in the plane; --frame {body!r} holds it still"
+             for body in space.loose if body not in told.still)  # fmt: skip
+    return Read(outline, crank, speed, tuple(space.notes), tuple(hints))
 
 
 def _closed(space: Space, pair: str) -> Loop3:

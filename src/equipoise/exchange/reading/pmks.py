@@ -40,7 +40,8 @@ def read(text: str, unit: float | None) -> Read:
     query = unquote(text.strip().rpartition("?")[2])
     body, sign = query[:-1], query[-1:]
     if not sign or PLAIN[len(body) % len(PLAIN)] != sign:
-        raise ModelError("", "its length is not what its last sign tells; export it anew by PMKS+")
+        what = "its last sign does not tell its length, as PMKS+ of 2024 writes it"
+        raise ModelError("", f"it is not whole: {what}; export it anew")
     settings, _, integers, choices, *others = (*body.split("."), "", "", "", "")
     joints, rest = _until_empty(others)
     links, rest = _until_empty(rest)

@@ -122,6 +122,7 @@ class Space:
 
     rigid : pairs of bodies that are one.  sums : of angles of hinges by name, each with a factor,
     that stay what they are.  driven : hinge that is driven.  speed : of its coordinate, rad/s.
+    loose : bodies that move freely in the plane.
     """
 
     title: str
@@ -135,6 +136,7 @@ class Space:
     driven: str = ""
     speed: float | None = None
     notes: list[str] = field(default_factory=list)
+    loose: list[str] = field(default_factory=list)
 
     def note(self, sentence: str) -> None:
         """Tell something once."""

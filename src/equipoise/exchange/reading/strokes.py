@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from cmath import phase
-from collections.abc import Iterable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import chain, combinations, pairwise
 from string import ascii_uppercase
 
 from equipoise.errors import ModelError, unknown
@@ -19,11 +20,15 @@ TOGETHER = 1e-6
 """Distance over the size of the drawing below which ends meet, where none is told."""
 PIVOT = 0.2
 """Radius over the size of the drawing above which a circle marks no pivot."""
+NEARLY = 0.01
+"""Distance over the size of the drawing below which ends that do not meet may be meant to."""
 FRAMES = ("frame", "ground", "fixed", "base")
 GUIDES = ("guide", "slider", "rail")
 """Names of what stands still, and of lines on which ends slide, where none are told."""
 BESIDE = ("path", "part", "springs", "gears", "names")
 """First words of layers of what `export` draws beside the links."""
+WORDS = "names"
+"""Layer of names of points, among them."""
 LINK = "link "
 """Before the name of a link in its layer there."""
 
@@ -187,7 +192,23 @@ class _Skeleton:
                 own.append(through)
                 slots += [Slot(point, on, through, phase(end - start)) for point in sliding]
         outline = outline_of(self.drawing.title, places, links, frame, slots)
-        return Read(outline, notes=tuple(self.drawing.notes))
+        return Read(
+            outline, notes=tuple(self.drawing.notes), hints=tuple(self._hints(links, frame))
+        )
+
+    def _hints(self, links: Mapping[str, Sequence[str]], frame: Sequence[str]) -> Iterator[str]:
+        """Ends that nearly meet, and links that are joined to nothing."""
+        ends = sorted({number for _, corners in self.bodies for number in corners})
+        gaps = (abs(self.joints[one] - self.joints[other]) for one, other in combinations(ends, 2))
+        near = min((gap for gap in gaps if self.near < gap < NEARLY * self.size), default=0.0)
+        if near:
+            wide = float(f"{2e3 * near:.1g}")
+            yield (f"two ends nearly meet, {1e3 * near:.2g} mm apart; --tolerance '{wide:g} mm' "
+                   "would join them")  # fmt: skip
+        holders = Counter(chain(frame, *links.values()))
+        for name, points in links.items():
+            if all(holders[point] == 1 for point in points):
+                yield f"{name!r} is joined to nothing; leave it out of the drawing, or join it"
 
     def _carrier(self, guide: Stroke, links: Iterable[str]) -> str:
         """What has a guide: the link that its name tells behind "on", else the frame."""

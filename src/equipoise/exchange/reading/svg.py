@@ -39,23 +39,37 @@ def read(root: Element, marks: Marks, unit: float | None) -> Read:
 
 
 def _scale(root: Element, drawing: Drawing) -> float:
-    """m in a unit of the drawing: width over that of its view box, else 96 units an inch."""
-    size = re.fullmatch(r"\s*([0-9.eE+-]+)\s*([a-z]*)\s*", root.get("width", ""))
-    if size is None or size[2] not in METRES:
+    """m in a unit of the drawing: its size over that of its view box, else 96 units an inch."""
+    box = numbers(root, "viewBox", "0 0 0 0", (4,))
+    across, up = _side(root, "width", box[2]), _side(root, "height", box[3])
+    if across is None:
         drawing.note(
             "the drawing tells no width with a unit: 96 of its units are taken for an inch"
         )
         return METRES[""]
-    box = numbers(root, "viewBox", "0 0 0 0", (4,))
+    if up is None or abs(up - across) <= 1e-3 * up:  # programs round sizes
+        return across
+    aspect = root.get("preserveAspectRatio", "")
+    if aspect.strip() == "none":
+        raise ModelError("svg", "it is stretched: width and height over those of its view box are "
+                         "not the same; tell its unit by --unit")  # fmt: skip
+    return max(across, up) if "slice" in aspect else min(across, up)
+
+
+def _side(root: Element, key: str, units: float) -> float | None:
+    """m in a unit along a side of the drawing; `None` where it tells no length of it."""
+    size = re.fullmatch(r"\s*([0-9.eE+-]+)\s*([a-z]*)\s*", root.get(key, ""))
+    if size is None or size[2] not in METRES:
+        return None
     try:
-        width = float(size[1])
+        length = float(size[1])
     except ValueError:
-        raise ModelError("svg", f"width: got {size[0]!r}; give a length such as 200mm") from None
-    if box[2] <= 0:
+        raise ModelError("svg", f"{key}: got {size[0]!r}; give a length such as 200mm") from None
+    if units <= 0:
         return METRES[size[2]]
-    if not width > 0:
-        raise ModelError("svg", f"width: got {size[0]!r}; give more than 0")
-    return METRES[size[2]] * width / box[2]
+    if not length > 0:
+        raise ModelError("svg", f"{key}: got {size[0]!r}; give more than 0")
+    return METRES[size[2]] * length / units
 
 
 class _Reader:

@@ -140,7 +140,7 @@ def _hang(space: Space, joint: Element, parent: str, link: Element) -> None:
     elif kind in KINDS:
         space.join(Joint3(name, KINDS[kind], parent, child, axes.origin, _axis(joint, axes)))
     elif kind == "planar":
-        pass  # which leaves it free in the plane
+        space.loose.append(child)
     else:
         known = ", ".join([*map(str, KINDS), "fixed", "planar"])
         raise ModelError(called(joint), f"it is of type {kind!r}; give {known}")

@@ -16,6 +16,7 @@ from equipoise.exchange.reading.formats import import_machine
 from equipoise.exchange.reading.found import Imported
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.motion import move
+from equipoise.results.blocks import Table
 from equipoise.schema.models import load_linkage, loads_linkage
 
 Draw = Callable[[Path, Machine, dict[str, complex]], Path]
@@ -204,10 +205,58 @@ def test_a_unit_can_be_told(unit: float | None, length: float, tmp_path: Path) -
     assert x == pytest.approx(20 * 2**0.5 * length, rel=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("more", "length"),
+    [
+        ("", 1e-3),
+        ('preserveAspectRatio="xMinYMin slice"', 1e-3),
+        ('height="50mm"', 0.5e-3),
+        ('height="50mm" preserveAspectRatio="xMidYMid slice"', 1e-3),
+        ('height="400mm"', 1e-3),
+    ],
+)
+def test_the_scale_of_an_svg_is_that_at_which_it_is_shown(
+    more: str, length: float, tmp_path: Path
+) -> None:
+    head = f'width="200mm" viewBox="0 0 200 100" {more}'
+    found = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT, head=head))
+    _, (x, _) = found.outline.links["crank"].points.values()
+    assert x == pytest.approx(20 * 2**0.5 * length, rel=1e-9)
+
+
+def test_a_stretched_svg_is_refused(tmp_path: Path) -> None:
+    head = 'width="200mm" height="50mm" viewBox="0 0 200 100" preserveAspectRatio="none"'
+    with pytest.raises(EquipoiseError, match="it is stretched"):
+        import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT, head=head))
+
+
+def test_only_texts_of_the_layer_names_are_names(tmp_path: Path) -> None:
+    document = ezdxf.new(units=4)
+    space = document.modelspace()
+    space.add_line((0, 0), (30, 0))
+    space.add_circle((0, 0), 1, dxfattribs={"layer": "frame"})
+    space.add_text("Four-bar").set_placement((0, 0))
+    space.add_text("tip", dxfattribs={"layer": "Names"}).set_placement((30, 0))
+    document.saveas(tmp_path / "a.dxf")
+    (link,) = import_machine(tmp_path / "a.dxf").outline.links.values()
+    assert [*link.points] == ["A", "tip"]
+
+
+def test_the_table_of_links_has_units_in_its_head(tmp_path: Path) -> None:
+    found = import_machine(drawing(tmp_path / "a.svg", CRANK, ROD, PIVOT))
+    table = next(one for one in found.blocks() if isinstance(one, Table))
+    assert table.columns[-1].dimension == "mass"
+    assert [row[-1] for row in table.rows] == ["open", "open"]
+
+
 def test_ends_within_a_tolerance_meet(tmp_path: Path) -> None:
     sloppy = '<line id="rod" x1="20.05" y1="-20" x2="120" y2="0"/>'
     path = drawing(tmp_path / "a.svg", CRANK, sloppy, PIVOT)
-    assert import_machine(path).outline.mobility == 4
+    found = import_machine(path)
+    assert found.outline.mobility == 4
+    told = "two ends nearly meet, 0.05 mm apart; --tolerance '0.1 mm' would join them"
+    assert told in found.notes
+    assert any("'rod' is joined to nothing" in one for one in found.notes)
     assert import_machine(path, tolerance=0.1e-3).outline.mobility == 2
 
 

@@ -130,13 +130,28 @@ def test_blocks_that_hold_themselves_and_endless_ones_come_to_an_end(tmp_path: P
         block.add_blockref("loop", (1, 0))
     document.modelspace().add_blockref("loop", (0, 0))
     document.saveas(tmp_path / "a.dxf")
-    with pytest.raises(eq.EquipoiseError, match=r"no DXF|more than 20,000 entities"):
+    with pytest.raises(eq.EquipoiseError, match="blocks lie more than 6 deep in each other"):
         eq.import_machine(tmp_path / "a.dxf")
+    document.modelspace().delete_all_entities()
+    many = {"row_count": 30000, "row_spacing": 1, "column_count": 30000, "column_spacing": 1}
+    document.modelspace().add_blockref("loop", (0, 0), dxfattribs=many)
+    document.saveas(tmp_path / "a.dxf")
+    with pytest.raises(eq.EquipoiseError, match="more than 20,000 entities"):
+        eq.import_machine(tmp_path / "a.dxf")
+
+
+def test_a_drawing_under_the_ending_of_another_is_read(tmp_path: Path) -> None:
+    (tmp_path / "a.dxf").write_text(SVG.strip())
+    assert eq.import_machine(tmp_path / "a.dxf").outline.links
 
 
 @pytest.mark.parametrize(
     ("name", "text", "sentence"),
     [
+        ("a.dxf", "", "this is no DXF drawing that can be read"),
+        ("a.dxf", "\x07\x12 7q", "this is no DXF drawing that can be read"),
+        ("a.svg", "", "line 1: no XML"),
+        ("a.urdf", "hello", "line 1: no XML"),
         ("a.txt", "hello", r"of no kind that is read; give one of \.dxf, \.svg"),
         (
             "a.xml",
@@ -162,7 +177,7 @@ def test_a_library_that_is_not_installed(
     for module in [one for one in sys.modules if one.partition(".")[0] == library]:
         monkeypatch.setitem(sys.modules, module, None)
     monkeypatch.setitem(sys.modules, library, None)
-    (tmp_path / name).write_text("<svg><g/></svg>")
+    (tmp_path / name).write_text("<svg/>" if name == "a.svg" else "ENTITIES")
     with pytest.raises(eq.EquipoiseError, match=rf"needs {library}, .*equipoise\[exchange\]"):
         eq.import_machine(tmp_path / name)
 

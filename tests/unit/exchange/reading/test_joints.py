@@ -146,11 +146,11 @@ def test_a_piston_of_pmks_slides_on_the_frame(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        (pmks()[:-9], "its length is not what its last sign tells"),
-        ("0.0.0.0.1.2.3", "its length is not"),
+        (pmks()[:-9], "it is not whole: its last sign does not tell"),
+        ("0.0.0.0.1.2.3", "it is not whole"),
         (pmks().replace("ku,", "k§,"), "'k§' is no number as PMKS"),
         (pmks().replace("B,ku", "BBku"), "is not written as by PMKS"),
-        ("", "its length is not"),
+        ("", "it is not whole"),
     ],
 )
 def test_a_damaged_file_of_pmks_is_refused(text: str, sentence: str, tmp_path: Path) -> None:

@@ -292,6 +292,7 @@ def changed(old: str, new: str) -> str:
     [
         (changed(WRIST, '<joint name="wrist" axis="0 1 1"/>'),
          "joint 'wrist': its axis is not parallel to that of 'crank'"),
+        (changed('angle="radian"', 'coordinate="global"'), "compiler: coordinate: got 'global'"),
         (changed('axis="2 0 0"', 'axis="1 0 1"'), "joint 'slide': it slides out of the plane"),
         (changed(WRIST, '<joint name="wrist" type="ball"/>'), "it is of type ball"),
         (changed(WRIST, "<freejoint/>"), "body 'rod': it moves freely in space"),
@@ -356,3 +357,12 @@ def test_a_support_can_be_held_still(tmp_path: Path) -> None:
     assert found is not None
     assert len(found.links) == 1 + len(machine.rows) * (len(machine.links) - 1)
     assert found.mass == pytest.approx(len(machine.rows) * machine.mass, rel=1e-9)
+
+
+def test_a_support_that_is_not_held_still_is_told(tmp_path: Path) -> None:
+    export(load_linkage("sieve"), tmp_path / "a.xml")
+    told = "'support' moves freely in the plane; --frame 'support' holds it still"
+    assert told in import_machine(tmp_path / "a.xml").notes
+    held = import_machine(tmp_path / "a.xml", frame=["support"])
+    assert held.machine is not None
+    assert told not in held.notes
