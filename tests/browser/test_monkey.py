@@ -201,7 +201,7 @@ class Monkey:
         )
         for _ in range(3):
             page.keyboard.press("Escape")
-        expect(page.locator(".equipoise")).not_to_have_attribute("data-waiting", "")
+        self.live.settled()
 
     def open(self, name: str) -> None:
         """Open an example in the place of what there is, whatever that is."""
@@ -224,10 +224,10 @@ class Monkey:
         if live.page.locator(".tool:visible").count():
             return
         while live.page.locator(".equipoise.unfinished").count():
-            live.page.wait_for_timeout(200)
             if live.button("Undo").is_disabled():
                 return  # it was begun from nothing
             live.button("Undo").click()
+            live.settled()
         shown = self._download("csv")
         analysis = eq.analyze(eq.loads(self._download("model")))
         angles = (shown.count("\n") - 1) // analysis.motion.turns
@@ -283,13 +283,15 @@ def test_a_monkey(new_page: Callable[..., Page], server: tuple[str, int], seed: 
     memory = Memory(page.context.new_cdp_session(page), server[1])
     end = time.monotonic() + 60 * MINUTES
     machines = cycle(MACHINES[seed:] + MACHINES[:seed])
+    told = SCREENSHOTS.parent / f"monkey-{seed}.txt"
+    told.parent.mkdir(exist_ok=True)
     while monkey.rounds < 1 or time.monotonic() < end:
         monkey.round(next(machines), ACTIONS)
         monkey.open(REST)
         memory.measure()
         lines = [f"{monkey.done} actions, {monkey.checked} checks; heap, nodes, server"]
         lines += [f"{heap:.2f} MB {nodes} {server:.0f} MB" for heap, nodes, server in memory.told]
-        (SCREENSHOTS.parent / f"monkey-{seed}.txt").write_text("\n".join(lines), encoding="utf-8")
+        told.write_text("\n".join(lines), encoding="utf-8")
     assert monkey.wrong == []
     assert monkey.checked
     if MINUTES >= LONG:

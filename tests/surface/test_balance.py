@@ -305,6 +305,7 @@ def test_the_new_model_does_what_was_printed(name: str) -> None:
     machine = eq.load("new.toml")
     assert machine.title.endswith(", balanced")
     assert machine.description.startswith("Changed by equipoise balance: ")
+    assert "Changed" not in machine.description.texts["ja"]  # type: ignore[attr-defined]
     assert machine.balance is None
     forces = eq.forces(eq.move(machine, 720, acceleration=0.0))
     for output, values in (
