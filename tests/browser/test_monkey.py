@@ -177,7 +177,8 @@ class Monkey:
             values = found.evaluate(
                 "one => [...one.options].map(({ value }) => value)", timeout=LONGEST
             )
-            found.select_option(self.chance.choice(values), timeout=LONGEST)
+            if values:  # a machine without joints has none to choose from
+                found.select_option(self.chance.choice(values), timeout=LONGEST)
 
     def _scroll(self) -> None:
         self.live.page.mouse.wheel(0, self.chance.choice((-400, 400)))
