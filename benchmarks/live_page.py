@@ -7,17 +7,20 @@ are named, else of a four-bar, of one on its rig, and of the one that takes long
 when an input came and when the frame that shows its answer was painted; an input whose place a
 newer one took is answered by the frame of the newer one.
 
-Medians and 95th percentiles (ms) on two cores on which other programs ran too:
+Medians and 95th percentiles (ms) on two quiet cores; the five slowest for the server are among them:
 
-    linkage              keys       drag     of it the server's processor, a move
-    yamashita-1          41  79     33  52    6, on a quiet machine 32 46 and 36 48
-    quick-return         39  60     41  55   10
-    yamashita-rig        29  54     30  42    8, was 34: more threads only waited for each other
-    class-three          51  80     43  59   15, was 25: followed from the motion before
-    sieve                45  99     42  64   11, was 18
-    riding-transplanter  65 161     62 135   10, was 55; what gauges read, 20, five times a second
+    linkage                      keys      drag     of it the server's processor, a move
+    yamashita-1                  26  41    26  41    6
+    stephenson-six-bar           31  51    33  50
+    quick-return                 33  50    33  49   10
+    four-row-transplanter        29  46    30  43
+    yamashita-rig                29  47    30  46    8, was 34: more threads only waited for each other
+    yamashita-rig-counterweight  30  50    33  49
+    riding-transplanter          35  58    37  59   10, was 55; what gauges read, 20, five times a second
+    sieve                        39  63    37  53   11, was 18
+    class-three                  45  65    44  63   15, was 25: followed from the motion before
 
-So class-three is at the limit there, and riding-transplanter beyond it.
+Beside other programs that keep both cores busy all of these are up to twice as long.
 """
 
 from __future__ import annotations
