@@ -7,16 +7,16 @@ are named, else of a four-bar, of one on its rig, and of the one that takes long
 when an input came and when the frame that shows its answer was painted; an input whose place a
 newer one took is answered by the frame of the newer one.
 
-Medians and 95th percentiles (ms) on two quiet cores; the five slowest for the server are among them:
+Medians and 95th percentiles (ms) on two quiet cores, the slowest among them:
 
     linkage                      keys      drag     of it the server's processor, a move
     yamashita-1                  26  41    26  41    6
     stephenson-six-bar           31  51    33  50
     quick-return                 33  50    33  49   10
     four-row-transplanter        29  46    30  43
-    yamashita-rig                29  47    30  46    8, was 34: more threads only waited for each other
+    yamashita-rig                29  47    30  46    8, was 34 by threads that waited
     yamashita-rig-counterweight  30  50    33  49
-    riding-transplanter          35  58    37  59   10, was 55; what gauges read, 20, five times a second
+    riding-transplanter          35  58    37  59   10, was 55; gauges 20, five times a second
     sieve                        39  63    37  53   11, was 18
     class-three                  45  65    44  63   15, was 25: followed from the motion before
 
