@@ -33,8 +33,8 @@ from equipoise.mechanism.steps import (
 class Group:
     """Links that are solved together.
 
-    kind : by a dyad's kernel, by their gear, by Newton's method on loop equations, or, of a link
-        that too many joints hold, by two of its pins.
+    kind : by a dyad's kernel, by their coupling, by Newton's method on loop equations, or, of a
+        link that too many joints hold, by two of its pins.
     motion : steps that find their position and derivatives.
     forces : steps that find the reactions in their joints, once all later groups are done.
     margin : name of the dyad's assembly margin, the squared sine of its transmission angle,
@@ -43,7 +43,7 @@ class Group:
     through : whether they go on through change points, where the margin is zero.
     """
 
-    kind: Literal["dyad", "geared", "loops", "pointed"]
+    kind: Literal["dyad", "coupled", "loops", "pointed"]
     links: tuple[str, ...]
     motion: tuple[Step, ...]
     forces: tuple[Step, ...]

@@ -24,7 +24,7 @@ from equipoise.mechanism.builder import Builder, Group
 from equipoise.mechanism.joints import Structure, no_motion
 from equipoise.mechanism.loop_forces import LoopForces
 from equipoise.mechanism.loopgroup import Maker
-from equipoise.mechanism.loops import GearLoop, Loop, Poses, SlideLoop
+from equipoise.mechanism.loops import CouplingLoop, Loop, Poses, SlideLoop
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.newton import LoopGroup, poses_in
 from equipoise.mechanism.steps import Array, State
@@ -193,7 +193,7 @@ class Shared(LoopForces):
 
     def gap(self, loop: Loop, poses: Poses) -> Any:
         """By how much a joint does not fit, m."""
-        if isinstance(loop, GearLoop):
+        if isinstance(loop, CouplingLoop):
             return 0.0
         first, second = loop.gaps(poses, 0)
         if isinstance(loop, SlideLoop):
@@ -256,7 +256,7 @@ def shared(
     links = tuple(body for body in builder.rank if body != FRAME)
     maker = Maker(builder, joints, links)
     maker.anchors = {link: builder.anchors[link] for link in links}
-    loops = [*maker.pinned_and_sliding(), *map(maker.gear, joints.gears)]
+    loops = [*maker.pinned_and_sliding(), *map(maker.coupling, joints.couplings)]
     loops.sort(key=lambda loop: (loop.name, loop.on.body) != (pivot, links[0]))
     anchors = tuple(maker.anchors.values())
     whole = LoopGroup(links, anchors, ((FRAME, pivot),), (), tuple(loops), (), builder.size())
