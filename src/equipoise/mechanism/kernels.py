@@ -127,7 +127,7 @@ def parallelogram(p, p1, p2, q, q1, q2, a, a1, a2, arm_p, arm_q, side):
     through the change points, where all four pins lie in line.
     Returns the same as `rrr`.
     """
-    z, z1, z2 = (value.conjugate() for value in (q - p, q1 - p1, q2 - p2))
+    z, z1, z2 = (q - p).conjugate(), (q1 - p1).conjugate(), (q2 - p2).conjugate()
     over = inverse_or_zero(z)
     span = dot(arm_p, arm_p) - dot(arm_q, arm_q)
     share, rest = 0.5 + 0.5 * side, (0.5 - 0.5 * side) * span

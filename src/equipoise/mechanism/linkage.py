@@ -35,6 +35,10 @@ from equipoise.mechanism.steps import (
     run,
 )
 
+NO_PARALLELS = Note(
+    "no two links of this linkage close a four-bar of equal opposite sides with known ones, so that "
+    "there are no change points to go on through; leave it out"
+)
 NOTHING: Mapping[str, tuple[int, str]] = {}
 
 
@@ -132,7 +136,7 @@ def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
         names = [name for name, _ in kept.named_reactions]
         for name in names:
             if names.count(name) > 1:  # outputs go by the names of joints
-                sentence = f"two joints would be called {name!r} in the output; rename one"
+                sentence = f"two joints would be called {name!r} in the output; rename one, or give a label"
                 raise ModelError("links", sentence)
         machine.__dict__["_linkage"] = kept
     return kept
@@ -153,12 +157,17 @@ def ordered(
 
     pivot = drive_pivot(joints, machine.drive.link)
     builder, groups, choices = _grouped(machine, joints, pivot, start or {}, assumed)
-    idle = [joint for joint in machine.assembly if joint not in builder.sides]
+    pointed_at = {point for group in groups if group.kind == "pointed"
+                  for link in group.links for point in machine.links[link].points}  # fmt: skip
+    asked = builder.sides | pointed_at  # of links that two pins hold lengths decide the side
+    idle = [joint for joint in machine.assembly if joint not in asked]
     if choices:
         if not assumed and (decided := sides.decided(machine, choices, _turns)):
             return ordered(machine, joints, start, decided)
         raise sides.missing(machine, choices, idle)
     for joint in idle:
+        if joint == MODE and machine.assembly[joint] in MODES:
+            raise ModelError(f"assembly.{joint}", NO_PARALLELS)
         dyads = ", ".join(sorted(builder.sides)) or "no point"
         hint = meant(joint, [*builder.sides]) or f"the dyads of this linkage meet at {dyads}"
         raise ModelError(

@@ -25,9 +25,9 @@ from equipoise.mechanism.joints import Structure, no_motion
 from equipoise.mechanism.loop_forces import LoopForces
 from equipoise.mechanism.loopgroup import Maker
 from equipoise.mechanism.loops import CouplingLoop, Loop, Poses, SlideLoop
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.newton import LoopGroup, poses_in
-from equipoise.mechanism.steps import Array, State
+from equipoise.mechanism.steps import Array, State, planar
 
 AGREES = 1e-9
 """Misfit, in sizes of the machine, that rounding of lengths explains."""
@@ -97,7 +97,8 @@ class Shared(LoopForces):
         self, state: State, poses: Poses, senses: Sequence[Any]
     ) -> tuple[Array, Array, Array]:
         """Equations (N, 3 n, m) of all free bodies without dimension, and the units (3 n,) of rows
-        and (m,) of unknowns: moments are counted as forces at the size of the machine.
+        and (m,) of unknowns: moments are counted as forces at the largest distance
+        of two points of a body.
 
         The last unknown is the torque of the drive.
         """
@@ -246,6 +247,12 @@ def _parts(matrix: Array) -> tuple[Array, Array, Array]:
     return right[..., :rank] * over[:, None] @ np.swapaxes(left, -1, -2), right[..., rank:], sizes
 
 
+def _largest_distance(machine: Machine) -> float:
+    """Between two points of a body, m, however its axes lie; 1 where all bodies are points."""
+    bodies = [[planar(place) for place in points.values()] for points in machine.bodies.values()]
+    return max((abs(a - b) for places in bodies for a in places for b in places)) or 1.0
+
+
 def shared(
     builder: Builder, joints: Structure, pivot: str, groups: tuple[Group, ...]
 ) -> Shared | None:
@@ -259,6 +266,7 @@ def shared(
     loops = [*maker.pinned_and_sliding(), *map(maker.coupling, joints.couplings)]
     loops.sort(key=lambda loop: (loop.name, loop.on.body) != (pivot, links[0]))
     anchors = tuple(maker.anchors.values())
-    whole = LoopGroup(links, anchors, ((FRAME, pivot),), (), tuple(loops), (), builder.size())
+    size = _largest_distance(builder.machine)
+    whole = LoopGroup(links, anchors, ((FRAME, pivot),), (), tuple(loops), (), size)
     reactions = tuple(map(maker.reaction, loops))
     return Shared(whole, tuple(loops), reactions, pivot, count, {}, groups)
