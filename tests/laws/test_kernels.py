@@ -16,13 +16,17 @@ import mpmath
 import numpy as np
 import pytest
 
-from equipoise.mechanism import kernels
+from equipoise.mechanism import joint_kernels, kernels
 from laws.formulas import FORMULAS, Formula, constants, evaluate
 
 ANGLES = np.array([0.1, 0.9, 1.7, 2.6, 3.5, 4.4, 5.8])
 SOURCE = Path(inspect.getfile(kernels))
+BOTH = (kernels, joint_kernels)
 FUNCTIONS = {
-    name: found for name, found in vars(kernels).items() if inspect.isfunction(found)
+    name: found
+    for one in BOTH
+    for name, found in vars(one).items()
+    if inspect.isfunction(found)
 }  # fmt: skip
 
 every_formula = pytest.mark.parametrize("name", FORMULAS)
@@ -31,17 +35,24 @@ every_formula = pytest.mark.parametrize("name", FORMULAS)
 # -- what a kernel may contain ---------------------------------------------------------------------
 
 
-def tree() -> ast.Module:
-    return ast.parse(SOURCE.read_text())
+def nodes(module: ModuleType) -> list[ast.stmt]:
+    return ast.parse(inspect.getsource(module)).body
 
 
 def bodies() -> Iterator[ast.FunctionDef]:
-    return (node for node in tree().body if isinstance(node, ast.FunctionDef))
+    return (node for one in BOTH for node in nodes(one) if isinstance(node, ast.FunctionDef))
 
 
-def test_kernels_import_nothing() -> None:
-    imports = [node for node in ast.walk(tree()) if isinstance(node, ast.Import | ast.ImportFrom)]
-    assert all(getattr(node, "module", None) == "__future__" for node in imports)
+def test_kernels_import_only_kernels() -> None:
+    imports = [
+        (one, node)
+        for one in BOTH
+        for part in nodes(one)
+        for node in ast.walk(part)
+        if isinstance(node, ast.Import | ast.ImportFrom)
+    ]
+    assert all(one is joint_kernels for one, _ in imports)
+    assert all(getattr(node, "module", None) == kernels.__name__ for _, node in imports)
 
 
 ARITHMETIC = (
@@ -121,7 +132,7 @@ def compiled() -> ModuleType:
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    for name in FUNCTIONS:
+    for name in FUNCTIONS.keys() & vars(module).keys():
         setattr(module, name, numba.njit(getattr(module, name)))
     return module
 
@@ -310,7 +321,7 @@ def test_rrr_forces(trial: int) -> None:
     columns = [on_first(1, p, p), on_first(1j, p, p), on_second(1, q, q), on_second(1j, q, q),
                between(1, c, (p, q)), between(1j, c, (p, q))]  # fmt: skip
     x = solve(columns, [*rows(force_p, moment_p), *rows(force_q, moment_q)])
-    got = kernels.rrr_forces(p, q, c, force_p, moment_p, force_q, moment_q)
+    got = joint_kernels.rrr_forces(p, q, c, force_p, moment_p, force_q, moment_q)
     close(got, [complex(*x[0:2]), complex(*x[2:4]), complex(*x[4:6])])
 
 
@@ -323,7 +334,7 @@ def test_rrp_forces(trial: int) -> None:
     columns = [on_first(1, p, p), on_first(1j, p, p), on_second(normal, c, c),
                on_second(0, c, c, 1.0), between(1, c, (p, c)), between(1j, c, (p, c))]  # fmt: skip
     x = solve(columns, [*rows(force_p, moment_p), *rows(force_s, moment_s)])
-    got = kernels.rrp_forces(p, c, u, force_p, moment_p, force_s, moment_s, along)
+    got = joint_kernels.rrp_forces(p, c, u, force_p, moment_p, force_s, moment_s, along)
     close(got, [complex(*x[0:2]), normal * x[2], x[3], complex(*x[4:6])])
 
 
@@ -337,7 +348,7 @@ def test_rpr_forces(trial: int) -> None:
     columns = [on_first(1, p, p), on_first(1j, p, p), on_second(1, q, q), on_second(1j, q, q),
                between(-normal, p, (p, q)), between(0, p, (p, q), -1.0)]  # fmt: skip
     x = solve(columns, [*rows(force_p, moment_p), *rows(force_q, moment_q)])
-    got = kernels.rpr_forces(p, q, u, force_p, moment_p, force_q, moment_q, back)
+    got = joint_kernels.rpr_forces(p, q, u, force_p, moment_p, force_q, moment_q, back)
     close(got, [complex(*x[0:2]), complex(*x[2:4]), normal * x[4], x[5]])
 
 
@@ -350,7 +361,7 @@ def test_prp_forces(trial: int) -> None:
     columns = [on_first(n, 0, 0), on_first(0, 0, 0, 1.0), on_second(m, 0, 0),
                on_second(0, 0, 0, 1.0), between(1, 0, (0, 0)), between(1j, 0, (0, 0))]  # fmt: skip
     x = solve(columns, [*rows(force_g, moment_g), *rows(force_h, moment_h)])
-    got = kernels.prp_forces(u, v, force_g, moment_g, force_h, moment_h, along_g, along_h)
+    got = joint_kernels.prp_forces(u, v, force_g, moment_g, force_h, moment_h, along_g, along_h)
     close(got, [n * x[0], x[1], m * x[2], x[3], complex(*x[4:6])])
 
 
@@ -364,7 +375,7 @@ def test_rpp_forces(trial: int) -> None:
     columns = [on_first(1, p, p), on_first(1j, p, p), on_second(n, s, s), on_second(0, s, s, 1.0),
                between(-m, p, (p, s)), between(0, p, (p, s), -1.0)]  # fmt: skip
     x = solve(columns, [*rows(force_p, moment_p), *rows(force_s, moment_s)])
-    got = kernels.rpp_forces(p, s, u, force_p, moment_p, force_s, moment_s, along, inner)
+    got = joint_kernels.rpp_forces(p, s, u, force_p, moment_p, force_s, moment_s, along, inner)
     close(got, [complex(*x[0:2]), n * x[2], x[3], m * x[4], x[5]])
 
 
@@ -374,18 +385,18 @@ def test_gear_forces(trial: int, radial: float) -> None:
     force, lever = vectors(2)
     (u,) = units(1)
     moment = float(RNG.normal())
-    (sense,) = kernels.flank(moment)
+    (sense,) = joint_kernels.flank(moment)
     assert sense == pytest.approx(np.sign(moment))
     outward = u * lever / abs(lever)
     line = 1j * outward + radial * sense * outward
     columns = [rows(1, 0.0), rows(1j, 0.0), rows(line, kernels.cross(u * lever, line))]
     x = np.linalg.solve(np.array(columns).T, rows(force, moment))
-    got = kernels.gear_forces(force, moment, u, sense, lever, radial)
+    got = joint_kernels.gear_forces(force, moment, u, sense, lever, radial)
     close(got, [complex(*x[0:2]), line * x[2], x[2]])
 
 
 def test_flank_without_load() -> None:
-    assert kernels.flank(0.0) == (0.0,)
+    assert joint_kernels.flank(0.0) == (0.0,)
 
 
 @repeated

@@ -24,8 +24,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.figures import KINDS
-from equipoise.codegen.source import Source
-from equipoise.mechanism import kernels
+from equipoise.codegen.source import CALLED, KERNELS, Source
 
 Array = np.ndarray[Any, Any]
 Loop = Callable[[Array, Array, Array], None]
@@ -80,7 +79,7 @@ def _loop_of(text: str) -> tuple[Loop | None, ModuleType]:
     path = _file_of(text)
     module = _imported(f"equipoise_{path.stem}", path)
     if engine() == "numpy":
-        vars(module).update(_kernels_of(kernels), **NUMPY_FUNCTIONS)
+        vars(module).update(CALLED, **NUMPY_FUNCTIONS)
         return None, module
     vars(module).update(_compiled_kernels(), **compiled_functions(), empty=np.empty)
     return _compile(module), module
@@ -103,14 +102,15 @@ def _compiled_kernels() -> dict[str, Any]:
     """The kernels, loaded a second time and compiled to be taken into loops."""
     import numba
 
-    module = _imported("equipoise_compiled_kernels", Path(inspect.getfile(kernels)))
-    for name, kernel in _kernels_of(module).items():
-        vars(module)[name] = numba.njit(**INLINE)(kernel)
-    return {name: vars(module)[name] for name in _kernels_of(kernels)}
-
-
-def _kernels_of(module: ModuleType) -> dict[str, Any]:
-    return {name: found for name, found in vars(module).items() if inspect.isfunction(found)}
+    found: dict[str, Any] = {}
+    for plain in KERNELS:
+        path = Path(inspect.getfile(plain))
+        module = _imported(f"equipoise_compiled_{path.stem}", path)
+        vars(module).update(found)
+        own = [name for name, kernel in CALLED.items() if kernel.__module__ == plain.__name__]
+        for name in own:
+            found[name] = vars(module)[name] = numba.njit(**INLINE)(vars(module)[name])
+    return found
 
 
 # -- files -----------------------------------------------------------------------------------------
@@ -119,7 +119,7 @@ def _kernels_of(module: ModuleType) -> dict[str, Any]:
 def _file_of(text: str) -> Path:
     """The file of a source, written whole or not at all."""
     here = sys.modules[__name__]
-    parts = (text, *map(inspect.getsource, (kernels, here)))
+    parts = (text, *map(inspect.getsource, (*KERNELS, here)))
     key = hashlib.sha256("\0".join(parts).encode()).hexdigest()[:20]
     for folder in _folders():
         path = folder / f"loop_{key}.py"

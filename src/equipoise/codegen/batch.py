@@ -32,7 +32,7 @@ from equipoise.codegen.figures import (
 from equipoise.codegen.loops import STEPS, March
 from equipoise.codegen.source import Source
 from equipoise.errors import UsageError
-from equipoise.mechanism import cycle
+from equipoise.mechanism import cycle, full_turn
 from equipoise.mechanism.family import linkage_of, with_columns, wrong
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import Machine
@@ -276,8 +276,8 @@ class Batch:
                     self.march.reasons(reason, found)
                 continue
             low, high = dyads.pop()
-            reason[low < cycle.CHANGE_POINT] = CHANGE_POINT
-            reason[low < -cycle.CHANGE_POINT] = NO_FULL_TURN
+            reason[low < full_turn.CHANGE_POINT] = CHANGE_POINT
+            reason[low < -full_turn.CHANGE_POINT] = NO_FULL_TURN
             reason[high <= 0] = NO_ASSEMBLY
         return reason
 
@@ -285,7 +285,7 @@ class Batch:
         """Find how low and high dyads' numbers come between the crank angles, near zero."""
         while True:
             reach = (self.slope * pi / count) ** 2
-            near = (weakest >= -cycle.CHANGE_POINT) & (weakest < reach)
+            near = (weakest >= -full_turn.CHANGE_POINT) & (weakest < reach)
             near |= (strongest <= 0) & (strongest > -reach)
             some = np.flatnonzero(near.any(axis=1))
             count *= DENSER

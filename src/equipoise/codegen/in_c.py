@@ -10,12 +10,12 @@ import ast
 import inspect
 from collections.abc import Iterator
 from functools import cache
+from itertools import chain
 
 import numpy as np
 
-from equipoise.codegen.source import Row, Source
+from equipoise.codegen.source import KERNELS, Row, Source
 from equipoise.errors import UsageError
-from equipoise.mechanism import kernels
 from equipoise.mechanism.linkage import Linkage
 
 OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
@@ -76,8 +76,8 @@ def _number(value: complex) -> str:
 @cache
 def _kernels() -> dict[str, ast.FunctionDef]:
     """Every kernel by name, those before that others call."""
-    tree = ast.parse(inspect.getsource(kernels))
-    return {one.name: one for one in tree.body if isinstance(one, ast.FunctionDef)}
+    lines = chain.from_iterable(ast.parse(inspect.getsource(one)).body for one in KERNELS)
+    return {one.name: one for one in lines if isinstance(one, ast.FunctionDef)}
 
 
 def _used(function: ast.FunctionDef, known: dict[str, ast.FunctionDef]) -> set[str]:

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.figures import KINDS, Gathered
-from equipoise.mechanism import kernels
+from equipoise.mechanism import joint_kernels, kernels
 from equipoise.mechanism.linkage import Linkage
 from equipoise.signals import ROUNDING
 
@@ -31,7 +31,13 @@ Read = Callable[[Linkage], Any]
 PLACE = {"highest": "{x} - {g} >", "lowest": "{g} - {x} >"}
 """An extreme has a new place where it grows by more than rounding, so that of equal ones the first
 is told; this takes a branch, which costs the loop its speed."""
-RESERVED = {name for name, found in vars(kernels).items() if inspect.isfunction(found)}
+KERNELS = (kernels, joint_kernels)
+"""Modules whose functions the lines call, those first that others are made of."""
+CALLED = {
+    name: found for one in KERNELS for name, found in vars(one).items() if inspect.isfunction(found)
+}
+"""These functions, by name."""
+RESERVED = {*CALLED}
 RESERVED |= {*keyword.kwlist, "smallest", "greatest", "angle_of", "rotation", "complex", "range"}
 RESERVED |= {"abs", "state", "loop", "table", "grid", "out", "i", "k"}
 LANES = 32

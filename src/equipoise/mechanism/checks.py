@@ -24,6 +24,7 @@ __all__ = [
     "positive",
     "too_many",
     "unknown",
+    "unknown_body",
     "unknown_link",
     "unknown_point",
     "wrong_range",
@@ -154,3 +155,9 @@ def unknown_point(where: str, point: str, body: str, bodies: Bodies) -> Iterator
     """Complain of a name that no point of a body has."""
     if point not in bodies[body]:
         yield ModelError(where, unknown(point, bodies[body], Note("point of {body}", body=body)))
+
+
+def unknown_body(where: str, name: str, bodies: Bodies) -> Iterator[ModelError]:
+    """Say that there is no such link, nor the frame, unless there is."""
+    if name not in bodies:
+        yield ModelError(where, unknown(name, bodies, "link"))

@@ -14,20 +14,16 @@ import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
-from equipoise.mechanism import kernels
+from equipoise.mechanism import joint_kernels, kernels
+from equipoise.mechanism.builder import Builder, Group, Guide, Outer, guide_reaction
 from equipoise.mechanism.joints import Structure, gear_pins
 from equipoise.mechanism.model import Gear, Slider
 from equipoise.mechanism.steps import (
-    Builder,
     Call,
-    Group,
-    Guide,
     Kernel,
-    Outer,
     Reaction,
     Rotation,
     demand_names,
-    guide_reaction,
     p,
     pin_reaction,
     run,
@@ -93,7 +89,7 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         (first, second),
         (first.reaction(), second.reaction(), pin_reaction(pin, other, link)),
         (kernels.rrr, (*arms, side)),
-        (kernels.rrr_forces, places, ()),
+        (joint_kernels.rrr_forces, places, ()),
         joint=pin,
         point=pin,
         dead=Note("{link!r} and {other!r} lie in line", link=link, other=other),
@@ -113,7 +109,7 @@ def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
         (pinned, sliding),
         (pinned.reaction(), sliding.reaction(pin), pin_reaction(pin, other, link)),
         (kernels.rrp, (arm, guide.along, shift, guide.turn, side)),
-        (kernels.rrp_forces, places, (guide.along,)),
+        (joint_kernels.rrp_forces, places, (guide.along,)),
         joint=pin,
         point=pin,
         dead=Note("{link!r} stands square to the line of {guide!r}", link=link, guide=guide.name),
@@ -135,7 +131,7 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
         (block, other),
         (block.reaction(), other.reaction(), guide_reaction(guide, link, on, block.point)),
         (kernels.rpr, (offset, guide.turn, back, (NEAR * builder.size()) ** 2, side)),
-        (kernels.rpr_forces, places, (guide.turn.conjugate(),)),
+        (joint_kernels.rpr_forces, places, (guide.turn.conjugate(),)),
         joint=slider.point,
         dead=Note(
             "{point} comes to {other}, or square to it across {slider!r}",
@@ -159,7 +155,7 @@ def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         (first, second),
         (first.reaction(pin), second.reaction(pin), pin_reaction(pin, second.link, first.link)),
         (kernels.prp, tuple(shapes)),
-        (kernels.prp_forces, turns, (near.along, far.along)),
+        (joint_kernels.prp_forces, turns, (near.along, far.along)),
         joint=pin,
         point=pin,
         dead=Note("the lines of {near!r} and {far!r} are parallel", near=near.name, far=far.name),
@@ -188,7 +184,7 @@ def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Grou
         (pinned, sliding),
         (pinned.reaction(), sliding.reaction(guide.point), on_inner),
         (kernels.rpp, (guide.along, guide.turn, line, turn, shift)),
-        (kernels.rpp_forces, places, (guide.along, line)),
+        (joint_kernels.rpp_forces, places, (guide.along, line)),
         joint=slider.point,
         point=guide.point,
     )
@@ -251,9 +247,9 @@ def geared(builder: Builder, joints: Structure, gear: Gear) -> Group:
     reaction = Reaction(gear.name, "gear", link, gear.driver, pitch, tooth)
     forces = (
         Call(kernels.point, (*p(pin), *u(carrier)), (mesh.lever,), p(pitch)),
-        Call(kernels.flank, (f"M({link})",), (), (sense,)),
+        Call(joint_kernels.flank, (f"M({link})",), (), (sense,)),
         Call(
-            kernels.gear_forces,
+            joint_kernels.gear_forces,
             (*demand_names(link), f"u({carrier})", sense),
             (mesh.lever, mesh.radial),
             (ground.force, tooth, f"T({gear.name})"),

@@ -18,15 +18,12 @@ import numpy as np
 from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism import groups
+from equipoise.mechanism.builder import Builder, Group, Guide, Outer
 from equipoise.mechanism.checks import meant
 from equipoise.mechanism.cycle import Cycle, close
 from equipoise.mechanism.joints import Structure, drive_pivot, structure, subsets
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.steps import (
-    Builder,
-    Group,
-    Guide,
-    Outer,
     Reaction,
     State,
     Step,

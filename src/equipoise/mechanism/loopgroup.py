@@ -10,8 +10,10 @@ import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
+from equipoise.mechanism.builder import Builder, Group
 from equipoise.mechanism.groups import Mesh
 from equipoise.mechanism.joints import Structure
+from equipoise.mechanism.loop_forces import LoopForces
 from equipoise.mechanism.loops import (
     End,
     Free,
@@ -25,16 +27,8 @@ from equipoise.mechanism.loops import (
     SlideLoop,
 )
 from equipoise.mechanism.model import FRAME, Gear, Position, Slider
-from equipoise.mechanism.newton import LoopForces, LoopGroup, poses_in
-from equipoise.mechanism.steps import (
-    Builder,
-    Group,
-    Reaction,
-    Step,
-    initial_state,
-    pin_reaction,
-    run,
-)
+from equipoise.mechanism.newton import LoopGroup, poses_in
+from equipoise.mechanism.steps import Reaction, Step, initial_state, pin_reaction, run
 
 STEPS_PER_TURN = 360
 """Crank angles in a turn at which a branch is followed from one to the next."""

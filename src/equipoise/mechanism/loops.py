@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from equipoise.mechanism import kernels
+from equipoise.mechanism import joint_kernels, kernels
 
 
 @dataclass(frozen=True)
@@ -144,7 +144,7 @@ class GearLoop:
     def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
         """The flank in contact, told by `sense`, sets the line of action."""
         turn = poses[self.carrier].turn[0]
-        return [(kernels.tooth(turn, sense, self.lever, self.radial), 0.0)]
+        return [(joint_kernels.tooth(turn, sense, self.lever, self.radial), 0.0)]
 
 
 Loop = PinLoop | SlideLoop | GearLoop

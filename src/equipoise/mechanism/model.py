@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note
 from equipoise.keys import (
     SCHEMA_VERSION,
     VERSION,
@@ -19,7 +19,6 @@ from equipoise.keys import (
     Keys,
     Listing,
     Named,
-    Point,
     Quantity,
     Table,
     Tables,
@@ -43,6 +42,7 @@ from equipoise.mechanism.checks import (
     wrong_speeds,
     wrong_text,
 )
+from equipoise.mechanism.drives import Drive
 from equipoise.mechanism.field import Planting, wrong_planting
 from equipoise.mechanism.force_elements import (
     Load,
@@ -52,6 +52,7 @@ from equipoise.mechanism.force_elements import (
     wrong_load,
     wrong_motor,
 )
+from equipoise.mechanism.gears import Gear, wrong_gear
 from equipoise.mechanism.links import (
     MASS_FIELDS,
     Link,
@@ -59,7 +60,8 @@ from equipoise.mechanism.links import (
     wrong_link,
     wrong_points,
 )
-from equipoise.mechanism.parts import Drive, Gear, Slider, wrong_gear, wrong_slider
+from equipoise.mechanism.parts import Slider, wrong_slider
+from equipoise.mechanism.places import Frame, Position
 from equipoise.mechanism.shown_units import ShownUnits
 from equipoise.mechanism.support import Row, Support, wrong_support
 
@@ -86,47 +88,6 @@ __all__ = [
 MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "loads": 500, "springs": 200}
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
-
-
-@declared
-class Position(Frozen):
-    """Where the machine is, roughly, at one crank angle: the start of Newton's method."""
-
-    crank_angle: float = key(
-        "angle", "at which it holds; 0 where gears are among these links", default=0.0
-    )
-    points: Mapping[str, Vector] = key(Named(Point()), "places in the frame", factory=dict)
-    angles: Mapping[str, float] = key(
-        Named(Quantity("angle")), "of links in the frame", factory=dict
-    )
-
-
-@declared
-class Frame(Frozen):
-    """The part that stands still; a machine has its points by name."""
-
-    called = to_say("{what} of the frame")
-    wanted = "a mapping of names to two numbers"
-
-    points: Mapping[str, Vector] = key(
-        Named(Point()),
-        "points that stand still, in the frame's axes; a link with a point of that name is pinned "
-        "there",
-        example={"A": ["0 mm", "0 mm"]},
-    )
-
-    @classmethod
-    def checked(cls, value: Any) -> Any:
-        return Named(Point()).check(value)
-
-    @classmethod
-    def from_table(cls, given: dict[str, Any]) -> Mapping[str, Vector]:
-        points: Mapping[str, Vector] = given["points"]
-        return points
-
-    @classmethod
-    def to_table(cls, value: Any) -> dict[str, Any]:
-        return {"points": value}
 
 
 @declared

@@ -12,11 +12,10 @@ neighbouring crank angles first, then any crank angle from the nearest one follo
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import islice
 from math import ceil, degrees, radians
 from typing import Any
 
@@ -24,9 +23,8 @@ import numpy as np
 
 from equipoise.errors import MotionError
 from equipoise.i18n import Note
-from equipoise.mechanism import kernels
-from equipoise.mechanism.loops import GearLoop, Loop, Place, Pose, Poses
-from equipoise.mechanism.steps import Array, Reaction, State, p, u
+from equipoise.mechanism.loops import Loop, Place, Pose, Poses
+from equipoise.mechanism.steps import Array, State, p, u
 
 ITERATIONS = 25
 SETTLED = 1e-11
@@ -274,77 +272,3 @@ def between(theta: Array, posts: Array, q: Array, q1: Array, q2: Array) -> Array
     ends = [(q, 1.0), (q1, width), (q2, width * width)]
     parts = [value[:, left + at] * scale for at in (0, 1) for value, scale in ends]
     return np.asarray(sum(part * weight for part, weight in zip(parts, weights, strict=True)))
-
-
-@dataclass(frozen=True)
-class LoopForces:
-    """Solves the free-body equations of a group: as many unknown joint forces as equations.
-
-    reactions : of each loop.
-    """
-
-    group: LoopGroup
-    loops: tuple[Loop, ...]
-    reactions: tuple[Reaction, ...]
-
-    def run(self, state: State) -> None:
-        group = self.group
-        own = zip(group.links, group.anchors, strict=True)
-        poses = poses_in(state, (*group.known, *own))
-        senses = self.senses(state, poses)
-        strengths = self.solve(state, poses, senses)
-        for loop, reaction, sense, parts in zip(
-            self.loops, self.reactions, senses, strengths, strict=True
-        ):
-            units = zip(*loop.wrenches(poses, sense), strict=True)  # of forces, then of couples
-            for name, unit in zip(reaction.outputs, units, strict=False):
-                state[name] = sum(part * one for part, one in zip(parts, unit, strict=True))
-            if isinstance(loop, GearLoop):
-                state[f"p({reaction.at})"] = loop.place(poses)
-                state[f"T({loop.name})"] = parts[0]
-
-    def senses(self, state: State, poses: Poses) -> list[Any]:
-        """Sign of each gear's tangential force, which does not depend on the pressure angle."""
-        names = [f"flank({loop.name})" if isinstance(loop, GearLoop) else "" for loop in self.loops]
-        if any(name and name not in state for name in names):
-            strengths = self.solve(state, poses, [0.0] * len(self.loops))
-            for name, parts in zip(names, strengths, strict=True):
-                if name:
-                    (state[name],) = kernels.flank(parts[0])
-        return [state[name] if name else 0.0 for name in names]
-
-    def solve(self, state: State, poses: Poses, senses: Sequence[Any]) -> list[list[Array]]:
-        """Strength (..., N) of every unknown of each loop."""
-        shape = np.shape(state["theta"])
-        columns = [
-            [np.broadcast_to(entry, shape) for entry in column]
-            for loop, sense in zip(self.loops, senses, strict=True)
-            for column in self.columns(loop, poses, sense)
-        ]
-        matrix = np.moveaxis(np.array(columns), (0, 1, 2), (2, 1, 0))
-        solved = np.linalg.solve(matrix, self.demand(state)[..., None])[..., 0]
-        strengths = iter(np.moveaxis(solved, -1, 0))
-        return [list(islice(strengths, loop.unknowns)) for loop in self.loops]
-
-    def columns(self, loop: Loop, poses: Poses, sense: Any) -> list[list[Any]]:
-        """Force and moment about the anchor on each link, for a unit of each of its unknowns."""
-        at = loop.place(poses)
-        result = []
-        for force, couple in loop.wrenches(poses, sense):
-            column: list[Any] = []
-            for link in self.group.links:
-                sign = (link == loop.on.body) - (link == loop.by.body)
-                moment = kernels.cross(at - poses[link].place[0], force) + couple
-                column += [sign * np.real(force), sign * np.imag(force), sign * moment]
-            result.append(column)
-        return result
-
-    def demand(self, state: State) -> Array:
-        """(..., N, 3 n): force and moment about the anchor that the joints of each link supply."""
-        parts = []
-        for link in self.group.links:
-            force, moment = state[f"F({link})"], state[f"M({link})"]
-            parts += [np.real(force), np.imag(force), moment]
-        count = np.shape(state["theta"])
-        full = [np.broadcast_to(part, np.broadcast_shapes(np.shape(part), count)) for part in parts]
-        return np.stack(np.broadcast_arrays(*full), axis=-1)

@@ -19,9 +19,10 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import PASTE, EquipoiseError, ModelError
+from equipoise.mechanism.builder import Builder, Group
 from equipoise.mechanism.checks import meant
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.steps import Builder, Call, Group, State, initial_state, run
+from equipoise.mechanism.steps import Call, State, initial_state, run
 from equipoise.quantities import number
 
 STEPS_PER_TURN = 360

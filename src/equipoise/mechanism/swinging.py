@@ -12,7 +12,8 @@ import numpy as np
 
 from equipoise.errors import ChangePointError, RangeError
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.cycle import CHANGE_POINT, POINTS_PER_TURN
+from equipoise.mechanism.cycle import POINTS_PER_TURN
+from equipoise.mechanism.full_turn import CHANGE_POINT
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.steps import Array, State, plain_angle, run
 

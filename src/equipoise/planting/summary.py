@@ -16,7 +16,8 @@ from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dynamics import Forces, forces, massless
 from equipoise.mechanism.field import Planting
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import MOST_ANGLES, Motion, PointMotion, move
+from equipoise.mechanism.motion import MOST_ANGLES, Motion, move
+from equipoise.mechanism.rates import PointMotion
 from equipoise.mechanism.tip import TipCurve
 from equipoise.planting.arms import SHARED, hills, of_arm
 from equipoise.planting.figures import tip_figures

@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import Any, Literal
 
 from equipoise.keys import Frozen, Kind, Point, Text, innermost, keys_of
+from equipoise.mechanism.gears import Gear
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.objectives import JOINTS
-from equipoise.mechanism.parts import Gear
 
 What = Literal["point", "link"]
 NAMING = {"point": {"point"}, "link": {"link", "body"}}

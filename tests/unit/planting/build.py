@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 import equipoise as eq
 from equipoise.mechanism.field import Planting
-from equipoise.mechanism.motion import PointMotion
+from equipoise.mechanism.rates import PointMotion
 from equipoise.planting.summary import PlantingFigures
 
 Array = NDArray[Any]

@@ -1,0 +1,154 @@
+"""Pairs of gears, as frozen values with their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from math import pi, radians
+from typing import Any, ClassVar, Literal
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import (
+    Conditions,
+    Frozen,
+    Key,
+    Keys,
+    Listing,
+    Number,
+    Text,
+    Whole,
+    declared,
+    inside,
+    key,
+)
+from equipoise.mechanism.checks import FRAME, Bodies, unknown_body
+
+MESHES = ("external", "internal")
+
+
+@declared
+class Gear(Frozen):
+    """A pair of gears, both pinned to the same carrier; either ratio or teeth."""
+
+    called = to_say("{what} of gear {number}")
+    beside: ClassVar[Keys] = {
+        "between": Key(
+            "between",
+            Listing(Text(of="body"), (2,)),
+            "driver and driven link; the driver is the one that is moved already, and may be "
+            '`"frame"` where the carrier turns',
+            example=["crank", "wheel"],
+        ),
+        "mesh": Key("mesh", Text(MESHES), "goes with `teeth`", default=None, shown="external"),
+    }
+    file_order = ("between", "ratio", "teeth", "mesh")
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [{"required": ["ratio"]}, {"required": ["teeth"]}],
+        "dependentRequired": {"mesh": ["teeth"]},
+    }
+
+    driver: str = inside(Text())
+    driven: str = inside(Text())
+    ratio: float | None = key(
+        Number(),
+        "speed of driven over driver, both relative to the carrier; negative for an external mesh",
+        default=None,
+        example=-2,
+    )
+    teeth: tuple[int, int] | None = key(
+        Listing(Whole(1), (2,)),
+        "of driver and driven, instead of `ratio`",
+        default=None,
+        example=[20, 40],
+        word=to_say("number of teeth"),
+    )
+    mesh: Literal["external", "internal"] = inside(Text(MESHES), default="external")
+    carrier: str = key(
+        Text(of="body"), "link to which both are pinned", default=FRAME, example="frame"
+    )
+    start: float = key(
+        "angle",
+        "of the driven link in the frame at crank angle 0",
+        default=0.0,
+        word=to_say("angle at the start"),
+    )
+    pressure_angle: float = key(
+        "angle",
+        "of the teeth; it sets the radial part of the tooth force",
+        default=radians(20),
+        at_least=0,
+        below=pi / 2,
+        why=Note("give an angle from 0 deg to less than 90 deg"),
+    )
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Gear:
+        if "mesh" in given and "teeth" not in given:
+            raise ModelError(
+                "mesh",
+                Note(
+                    "got {given!r} without teeth; leave it out, the sign of ratio tells: "
+                    "negative for external",
+                    given=given["mesh"],
+                ),
+            )
+        return cls(*given.pop("between"), **given)
+
+    @classmethod
+    def to_table(cls, value: Gear) -> dict[str, Any]:
+        mesh = {} if value.teeth is None else {"mesh": value.mesh}
+        return {"between": (value.driver, value.driven), **mesh, **super().to_table(value)}
+
+    @property
+    def name(self) -> str:
+        return f"{self.driver} to {self.driven}"
+
+    @property
+    def speed_ratio(self) -> float:
+        """Speed of driven over driver relative to the carrier."""
+        if self.teeth is None:
+            assert self.ratio is not None
+            return self.ratio
+        ratio = self.teeth[0] / self.teeth[1]
+        return ratio if self.mesh == "internal" else -ratio
+
+    @property
+    def exact_ratio(self) -> Fraction | None:
+        """The speed ratio as a fraction, or None if it is no ratio of whole numbers."""
+        if self.teeth is not None:
+            ratio = Fraction(*self.teeth)
+            return ratio if self.mesh == "internal" else -ratio
+        near = Fraction(self.speed_ratio).limit_denominator(100_000)
+        return near if abs(float(near) - self.speed_ratio) <= 1e-13 * abs(near) else None
+
+
+def wrong_gear(where: str, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:
+    """Everything that is wrong with a pair of gears."""
+    for between, name in (
+        ("between[1]", gear.driver),
+        ("between[2]", gear.driven),
+        ("carrier", gear.carrier),
+    ):
+        yield from unknown_body(f"{where}.{between}", name, bodies)
+    if len({gear.driver, gear.driven, gear.carrier}) < 3 and not (
+        gear.driver != gear.driven and gear.carrier not in (gear.driver, gear.driven)
+    ):
+        yield ModelError(
+            where, Note("driver, driven link and carrier must be three different bodies")
+        )
+    if (gear.ratio is None) == (gear.teeth is None):
+        yield ModelError(where, Note("give either ratio or teeth"))
+        return
+    if gear.teeth is not None and min(gear.teeth) < 1:
+        yield ModelError(
+            f"{where}.teeth", Note("got {teeth}; give two positive numbers", teeth=list(gear.teeth))
+        )
+    elif gear.speed_ratio in (0.0, 1.0):
+        yield ModelError(
+            where,
+            Note(
+                "the ratio is {speed_ratio:g}; no pair of gears has that, it would be rigid",
+                speed_ratio=gear.speed_ratio,
+            ),
+        )

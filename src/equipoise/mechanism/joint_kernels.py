@@ -1,0 +1,92 @@
+"""Force in the joints of dyads and gears, from what their links need: kernels like those of motion.
+
+They keep the rules of `mechanism.kernels`, and take no more from it than its plain vectors.
+"""
+
+# mypy: disable-error-code="no-untyped-def, no-untyped-call"
+
+from equipoise.mechanism.kernels import cross, dot, length
+
+
+def rrr_forces(p, q, c, force_p, moment_p, force_q, moment_q):
+    """Demands about the outer pins; returns force on link p at p, on link q at q, on q at c."""
+    to_p, to_q = c - p, c - q
+    inner = (moment_q * to_p + moment_p * to_q) * (-1 / cross(to_p, to_q))
+    return force_p + inner, force_q - inner, inner
+
+
+def rrp_forces(p, c, u, force_p, moment_p, force_s, moment_s, along):
+    """Demands about p and, for the sliding link, about c; u and `along` as in `rrp`.
+
+    Returns force on the pinned link at p, guide's force on the sliding link at c with its couple,
+    and the pinned link's force on the sliding link at c.
+    """
+    n = u * along
+    back = n.conjugate()
+    lever = (c - p) * back
+    tangential = (force_s * back).real
+    normal = (lever.imag * tangential - moment_p) / lever.real
+    inner = n * (tangential + 1j * normal)
+    return force_p + inner, force_s - inner, moment_s, inner
+
+
+def rpr_forces(p, q, u, force_p, moment_p, force_q, moment_q, back):
+    """Demands about the outer pins; block at p, guide at q.
+
+    u : rotation of the block; back : unit vector of the line in the block's axes.
+
+    Returns force on the block at p, force on the guide at q, the guide's force on the block at p
+    with its couple.
+    """
+    n = u * back
+    inner = -1j * n * ((moment_p + moment_q) / dot(n, p - q))
+    return force_p - inner, force_q + inner, inner, moment_p
+
+
+def prp_forces(u, v, force_g, moment_g, force_h, moment_h, along_g, along_h):
+    """Demands about the pin c; other arguments as in `prp`.
+
+    Returns the guides' forces at c with their couples, and the force of the first sliding link
+    on the second.
+    """
+    n, m = u * along_g, v * along_h
+    inner = 1j * (dot(m, force_h) * n + dot(n, force_g) * m) * (1 / cross(n, m))
+    return force_g + inner, moment_g, force_h - inner, moment_h, inner
+
+
+def rpp_forces(p, s, u, force_p, moment_p, force_s, moment_s, along, inner):
+    """Demands about p and about the second link's sliding point s; others as in `rpp`.
+
+    Returns force on the first link at p, the guide's force on the second link at s with its
+    couple, and the second link's force on the first at p with its couple.
+    """
+    n = u * along
+    m = n * inner
+    normal = 1j * m * (dot(n, force_s) / cross(n, m))
+    couple = moment_s + moment_p + cross(p - s, normal)
+    return force_p - normal, force_s + normal, couple, normal, moment_p
+
+
+def flank(moment):
+    """Sign of the moment that a driven gear needs: it tells which flank of the teeth is loaded."""
+    return (moment / (abs(moment) + 1e-300),)
+
+
+def tooth(u, sense, lever, radial):
+    """Tooth force on a driven gear, complex, for a unit of tangential force; see `gear_forces`."""
+    return (1j + radial * sense) * u * lever * (1 / length(lever))
+
+
+def gear_forces(force, moment, u, sense, lever, radial):
+    """Demand of a driven gear about its own pin.
+
+    u : rotation of the carrier.  sense : see `flank`.  lever : from the gear's pin to the pitch
+    point, in the carrier's axes.  radial : part of the tooth force along the lever, per unit of
+    tangential force: the tangent of the pressure angle, negative where the teeth push the gear
+    back towards its pin.
+    Returns force on the gear at its pin, tooth force on the gear at the pitch point, and the
+    tooth force's tangential part.
+    """
+    tangential = moment / length(lever)
+    mesh = tooth(u, sense, lever, radial) * tangential
+    return force - mesh, mesh, tangential

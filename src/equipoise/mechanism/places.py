@@ -1,0 +1,51 @@
+"""Points of the frame, and where the machine is roughly."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from equipoise.i18n import to_say
+from equipoise.keys import Frozen, Named, Point, Quantity, declared, key
+from equipoise.mechanism.checks import Vector
+
+
+@declared
+class Position(Frozen):
+    """Where the machine is, roughly, at one crank angle: the start of Newton's method."""
+
+    crank_angle: float = key(
+        "angle", "at which it holds; 0 where gears are among these links", default=0.0
+    )
+    points: Mapping[str, Vector] = key(Named(Point()), "places in the frame", factory=dict)
+    angles: Mapping[str, float] = key(
+        Named(Quantity("angle")), "of links in the frame", factory=dict
+    )
+
+
+@declared
+class Frame(Frozen):
+    """The part that stands still; a machine has its points by name."""
+
+    called = to_say("{what} of the frame")
+    wanted = "a mapping of names to two numbers"
+
+    points: Mapping[str, Vector] = key(
+        Named(Point()),
+        "points that stand still, in the frame's axes; a link with a point of that name is pinned "
+        "there",
+        example={"A": ["0 mm", "0 mm"]},
+    )
+
+    @classmethod
+    def checked(cls, value: Any) -> Any:
+        return Named(Point()).check(value)
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Mapping[str, Vector]:
+        points: Mapping[str, Vector] = given["points"]
+        return points
+
+    @classmethod
+    def to_table(cls, value: Any) -> dict[str, Any]:
+        return {"points": value}
