@@ -101,7 +101,7 @@ RELEASE = "crank angle at which the seedling is let go; the lowest point if left
 
 
 @declared
-class Arm(Frozen):
+class PlantingArm(Frozen):
     """A planting arm: a finger with its tip."""
 
     called = to_say("{what} of planting arm {tip}")
@@ -181,16 +181,16 @@ class Planting(Frozen):
         Table(Soil), "what the soil does to the tip below its surface", default=None
     )
 
-    arms: tuple[Arm, ...] = key(
-        Tables(Table(Arm)),
+    arms: tuple[PlantingArm, ...] = key(
+        Tables(Table(PlantingArm)),
         "further arms of the same drive, such as the second one of a rotary transplanter",
         default=(),
     )
 
     @property
-    def every_arm(self) -> tuple[Arm, ...]:
+    def every_arm(self) -> tuple[PlantingArm, ...]:
         """All arms; the first is that of `tip`."""
-        return (Arm(self.tip, self.finger_from, self.release), *self.arms)
+        return (PlantingArm(self.tip, self.finger_from, self.release), *self.arms)
 
     @property
     def hills_per_turn(self) -> int:

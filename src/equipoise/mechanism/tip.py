@@ -17,7 +17,7 @@ import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.mechanism.family import Family, Triple, column
-from equipoise.mechanism.field import Arm, Planting
+from equipoise.mechanism.field import Planting, PlantingArm
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.steps import Array, State
@@ -209,7 +209,7 @@ class TipCurve:
         for curve in self.arms:
             curve.arms = self.arms
 
-    def _of_arm(self, arm: Arm) -> TipCurve:
+    def _of_arm(self, arm: PlantingArm) -> TipCurve:
         """The curve of a further arm of the same machines."""
         other = copy(self)
         other.arm, other.link = arm, tip_link(self.machines[0], arm.tip)

@@ -50,7 +50,7 @@ class Page:
         """A title, with the tip where there are several."""
         if len(self.figures.curve.arms) == 1:
             return title
-        return say("{title} - tip {tip}", title=title, tip=self.figures.tip)
+        return say("Tip {tip}. {title}", title=title, tip=self.figures.tip)
 
     def cell(self, name: str, scale: float = 0.0) -> Value | None:
         """A figure with its dimension; None where there is none."""
@@ -262,7 +262,8 @@ def _limits(pages: Sequence[Page]) -> Iterator[Block]:
         limit, highest, forward = (page.cell(f"limits.{name}.{what}") for what in figures)
         if highest is not None:
             over = broken_if(speed > highest.value * (1 + 1e-9))
-            of = page.titled(say(label))
+            of = say(label)
+            of = say("{what}, tip {tip}", what=of, tip=page.figures.tip) if pages[1:] else of
             rows.append((of, limit, replace(highest, emphasis=over), forward))
     if rows:
         columns = (

@@ -101,9 +101,14 @@ TURNING = {"crank_angle", "direction", "attitude", "min_at", "max_at"}
 """Last parts of the names of angles that are the same after a turn."""
 
 
+def of_all_arms(figure: str) -> str:
+    """The name of a figure without that of its arm."""
+    return ARM.sub("", figure)
+
+
 def dimension_of(figure: str) -> Dimension | None:
     """Dimension of a figure such as ``curve.height``, or None for a plain number."""
-    figure = ARM.sub("", figure)
+    figure = of_all_arms(figure)
     first, _, rest = figure.partition(".")
     last = figure.rpartition(".")[2]
     if last in TURNING:

@@ -69,6 +69,14 @@ TOUCH = 1e-12
 """Share of the path's height within which the tip touches the surface and does not pass it."""
 
 
+def both_sides(curve: TipCurve) -> Array:
+    """Whether the tip both reaches and leaves the soil, (P,)."""
+    lowest, highest = curve.lowest[0], curve.highest[0]
+    touch = TOUCH * (highest - lowest)
+    both: Array = (curve.surface > lowest + touch) & (curve.surface < highest - touch)
+    return both
+
+
 @dataclass(frozen=True)
 class Visit:
     """A stay of the tip in the soil.
