@@ -179,7 +179,7 @@ def plant(machine: Machine, speed: float | None = None) -> PlantingFigures:
     notes = tuple(note for arm in (first, *further) for note in arm.notes)
     return replace(
         first,
-        figures=Named("figure", known),
+        figures=Named("figure", known.items()),
         further=tuple(further),
         notes=(*_machine_notes(curve, known), *notes),
     )
