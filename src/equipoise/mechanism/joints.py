@@ -223,8 +223,9 @@ def no_motion(joints: Structure) -> Note:
 def held_fast(joints: Structure, drive: str) -> MobilityError:
     """An error for joints that hold links whatever the lengths."""
     names = _names(held_too_often(joints, drive))
-    template = "{held}; too many joints hold {names}"
-    return MobilityError(Note(template, held=no_motion(joints), names=names))
+    return MobilityError(
+        Note("{held}; too many joints hold {names}", held=no_motion(joints), names=names)
+    )
 
 
 def subsets(joints: Structure, links: list[str]) -> Iterator[tuple[str, ...]]:

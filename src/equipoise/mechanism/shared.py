@@ -58,12 +58,14 @@ class Shared(LoopForces):
     def run(self, state: State) -> None:
         drive = self.group.links[0]
         force, moment = self.demanded(state)
-        torque = sum(
+        by_work = sum(
             kernels.drive_torque(state[f"p1({anchor})"], state[f"w({link})"],
                                  state[f"F({link})"], state[f"M({link})"])
             for link, anchor in zip(self.group.links, self.group.anchors, strict=True)
         )  # fmt: skip
         super().run(state)
+        turns_evenly = np.ndim(state[f"w({drive})"]) == 0  # else it may stand still, doing no work
+        torque = by_work if turns_evenly else state["drive torque"]
         state[f"F({drive})"], state[f"M({drive})"] = state[self.reactions[0].force], torque
         state[f"F({FRAME})"] = force - state[f"F({drive})"]
         state[f"M({FRAME})"] = moment - torque
@@ -90,7 +92,8 @@ class Shared(LoopForces):
         if self.compliance:
             inverse = self.by_stiffness(inverse, loose)
         right = (self.demand(state) / rows)[..., None]
-        strengths = iter(np.moveaxis((inverse @ right)[..., 0] * units, -1, 0))
+        found = np.moveaxis((inverse @ right)[..., 0] * units, -1, 0)
+        state["drive torque"], strengths = found[-1], iter(found)
         return [[next(strengths) for _ in range(loop.unknowns)] for loop in self.loops]
 
     def balance(
