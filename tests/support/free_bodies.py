@@ -161,7 +161,9 @@ def solved(system: System, joints: list[Contact], gears: list[Contact]) -> dict[
 
 def extent(machine: Machine) -> float:
     """Return the largest distance of two points of a body."""
-    pairs = (pair for points in machine.bodies.values() for pair in combinations(points.values(), 2))
+    pairs = (
+        pair for points in machine.bodies.values() for pair in combinations(points.values(), 2)
+    )
     return max(float(np.hypot(*np.subtract(*pair))) for pair in pairs)
 
 

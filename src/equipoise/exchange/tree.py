@@ -127,7 +127,9 @@ def trees(job: Job) -> tuple[Tree, ...]:
     machine, joints = job.machine, assemble(job.machine).joints
     for slider in joints.sliders:
         if slider not in joints.needed.sliders:
-            job.leave_out(f"the guide {slider.name}, beside which another one leads {slider.link!r}")
+            job.leave_out(
+                f"the guide {slider.name}, beside which another one leads {slider.link!r}"
+            )
     rows = rows_of(machine)
     return tuple(
         _tree(machine, job.crank_angle, row, f" {number}" if len(rows) > 1 else "")

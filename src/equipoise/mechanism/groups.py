@@ -16,6 +16,7 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism import joint_kernels, kernels, parallels
 from equipoise.mechanism.builder import Builder, Group, Guide, Outer, guide_reaction
+from equipoise.mechanism.checks import MODES
 from equipoise.mechanism.contacts import contact_of
 from equipoise.mechanism.couplings import Coupling
 from equipoise.mechanism.joints import Structure
@@ -84,9 +85,8 @@ def _dyad(
 def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
     """Two links and three pins."""
     link, other = first.link, second.link
-    closed = parallels.closed_by(builder, first, second, pin)
-    if words := parallels.words_of(builder, closed, pin):
-        return _through(builder, first, second, pin, closed, words)
+    if closed := parallels.parallel_by(builder, first, second, pin):
+        return _through(builder, first, second, pin, closed)
     meaning = f"{pin} lies left or right of the line from {first.point} to {second.point}"
     side = builder.side(pin, ("left", "right"), meaning)
     arms = (builder.arm(link, first.point, pin), builder.arm(other, second.point, pin))
@@ -104,17 +104,12 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
 
 
 def _through(
-    builder: Builder,
-    first: Outer,
-    second: Outer,
-    pin: str,
-    closed: parallels.Closed,
-    words: tuple[str, str],
+    builder: Builder, first: Outer, second: Outer, pin: str, closed: parallels.Closed
 ) -> Group:
     """Two links and three pins that close a four-bar of equal opposite sides."""
     link, other, pivot = first.link, second.link, closed.pivot
     meaning = f"opposite links at {pin} stay parallel, or the four-bar is crossed"
-    side = builder.side(pin, words, meaning)
+    side = builder.side(pin, MODES, meaning)
     arms = (builder.arm(link, first.point, pin), builder.arm(other, second.point, pin))
     reach = builder.reach(closed.carrier, pivot)
     places = (f"p({first.point})", f"p({second.point})", f"p({pin})")

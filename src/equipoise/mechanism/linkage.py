@@ -36,8 +36,8 @@ from equipoise.mechanism.steps import (
 )
 
 NO_PARALLELS = Note(
-    "no two links of this linkage close a four-bar of equal opposite sides with known ones, so that "
-    "there are no change points to go on through; leave it out"
+    "no two links of this linkage close a four-bar of equal opposite sides with known ones, so "
+    "that there are no change points to go on through; leave it out"
 )
 NOTHING: Mapping[str, tuple[int, str]] = {}
 
@@ -136,8 +136,11 @@ def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
         names = [name for name, _ in kept.named_reactions]
         for name in names:
             if names.count(name) > 1:  # outputs go by the names of joints
-                sentence = f"two joints would be called {name!r} in the output; rename one, or give a label"
-                raise ModelError("links", sentence)
+                raise ModelError(
+                    "links",
+                    f"two joints would be called {name!r} in the output; rename one, or give a "
+                    "second guide a label",
+                )
         machine.__dict__["_linkage"] = kept
     return kept
 
@@ -220,7 +223,9 @@ def _grouped(
     choices: list[sides.Choice] = []
     while unknown:
         try:
-            ready = [link for link in unknown if link not in surplus or _held(builder, joints, link)]
+            ready = [
+                link for link in unknown if link not in surplus or _held(builder, joints, link)
+            ]
             group = next_group(builder, joints, ready)
         except ModelError:
             if choices:  # sides come first: on a wrong one what hangs on it cannot be right

@@ -76,8 +76,9 @@ def closed_by(builder: Builder, first: Outer, second: Outer, pin: str) -> Closed
     return None
 
 
-def words_of(builder: Builder, closed: Closed | None, pin: str) -> tuple[str, str] | None:
-    """Sides of a dyad that goes on through change points, if that is what the file asks for.
+def parallel_by(builder: Builder, first: Outer, second: Outer, pin: str) -> Closed | None:
+    """The four-bar of equal opposite sides that two links close, if they are to go on through its
+    change points.
 
     Raises
     ------
@@ -85,11 +86,12 @@ def words_of(builder: Builder, closed: Closed | None, pin: str) -> tuple[str, st
     """
     given = builder.machine.assembly.get(pin)
     wanted = given in MODES or (given is None and builder.mode is not None)
-    if closed is None or not (wanted or given is None):
+    closed = closed_by(builder, first, second, pin) if wanted or given is None else None
+    if closed is None:
         return None
     apart = closed.apart()
     if np.all(apart <= SAME_LENGTH):
-        return MODES
+        return closed
     if wanted and (given in MODES or np.all(apart <= NEARLY)):
         where = pin if given in MODES else MODE
         raise ModelError(f"assembly.{where}", closed.misfit())

@@ -1,8 +1,8 @@
 """Forces that statics alone does not decide: all joints of a machine at once, by a stated rule.
 
 Where joints hold links more often than they need be held, the free bodies have fewer equations than
-unknowns.  Of all joint forces that hold the machine in balance, those are taken whose squares sum up
-to the least, or, where the file gives joints a stiffness, that store the least energy in them.
+unknowns.  Of all joint forces that hold the machine in balance, those are taken whose squares sum
+up to the least, or, where the file gives joints a stiffness, that store the least energy in them.
 The same free bodies serve a linkage that goes on through change points.
 
 Drive torque, and force and moment on the frame as a whole, follow from the demands alone.
@@ -45,7 +45,8 @@ BESIDE = 1e-3
 class Shared(LoopForces):
     """The free bodies of all links, whose joints share what statics leaves open.
 
-    group : all links and joints.  pivot : the drive's.  count : says why the joints hold too much; empty where they do not.
+    group : all links and joints.  pivot : the drive's.
+    count : says that the joints hold too much; empty where they do not.
     compliance : of each joint, m/N, by name of its force; empty where none is given.
     groups : how the motion is solved.
     """
@@ -138,7 +139,7 @@ class Shared(LoopForces):
                 "the stiffness given does not decide the forces that statics leaves open; give "
                 "that of further joints, or of none",
             )
-        return inverse - loose @ np.linalg.solve(energy, weighed @ inverse)
+        return np.asarray(inverse - loose @ np.linalg.solve(energy, weighed @ inverse))
 
     # -- what statics decides ----------------------------------------------------------------------
 
@@ -216,7 +217,10 @@ class Shared(LoopForces):
             off = np.abs(needed - abs(call.parameters[0]))
             at = int(np.argmax(off))
             found.append((off[at], at, group.links[0], first[2:-1], second[2:-1], needed, call))
-        if not found or (worst := max(found, key=lambda one: one[0]))[0] <= AGREES * self.group.size:
+        if (
+            not found
+            or (worst := max(found, key=lambda one: one[0]))[0] <= AGREES * self.group.size
+        ):
             return ""
         off, at, link, first, second, needed, call = worst
         low, high = float(np.min(needed)), float(np.max(needed))
@@ -228,12 +232,12 @@ class Shared(LoopForces):
 
 
 FIXED = to_say(
-    "{second} of {link!r} comes {misfit:.4g} mm beside its pin, at crank angle {angle:.4g} deg; its "
-    "points {first} and {second} are {given:.7g} mm apart, and {low:.7g} mm would fit"
+    "{second} of {link!r} comes {misfit:.4g} mm beside its pin, at crank angle {angle:.4g} deg; "
+    "its points {first} and {second} are {given:.7g} mm apart, and {low:.7g} mm would fit"
 )
 MOVING = to_say(
-    "{second} of {link!r} comes {misfit:.4g} mm beside its pin, at crank angle {angle:.4g} deg; its "
-    "points {first} and {second} are {given:.7g} mm apart, and the others bring the pins {low:.7g} "
+    "{second} of {link!r} comes {misfit:.4g} mm beside its pin, at crank angle {angle:.4g} deg; "
+    "its points {first} and {second} are {given:.7g} mm apart, and the others bring the pins {low:.7g} "
     "to {high:.7g} mm apart as the crank turns"
 )
 
@@ -253,7 +257,7 @@ def _parts(matrix: Array) -> tuple[Array, Array, Array]:
 def _largest_distance(machine: Machine) -> float:
     """Between two points of a body, m, however its axes lie; 1 where all bodies are points."""
     bodies = [[planar(place) for place in points.values()] for points in machine.bodies.values()]
-    return max((abs(a - b) for places in bodies for a in places for b in places)) or 1.0
+    return max(abs(a - b) for places in bodies for a in places for b in places) or 1.0
 
 
 def shared(
