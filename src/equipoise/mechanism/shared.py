@@ -237,8 +237,8 @@ FIXED = to_say(
 )
 MOVING = to_say(
     "{second} of {link!r} comes {misfit:.4g} mm beside its pin, at crank angle {angle:.4g} deg; "
-    "its points {first} and {second} are {given:.7g} mm apart, and the others bring the pins {low:.7g} "
-    "to {high:.7g} mm apart as the crank turns"
+    "its points {first} and {second} are {given:.7g} mm apart, and the others bring the pins "
+    "{low:.7g} to {high:.7g} mm apart as the crank turns"
 )
 
 
