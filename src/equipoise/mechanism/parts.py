@@ -45,6 +45,16 @@ class Slider(Frozen):
         return self.label or f"{self.link} on {self.on}"
 
 
+@declared
+class JointStiffness(Frozen):
+    """How stiff a joint is, where joints share a force that statics leaves open."""
+
+    called = to_say("{what} of stiff joint {number}")
+
+    joint: str = key(Text(), "its force, as outputs call it", example="joints.B")
+    stiffness: float = key("stiffness", "more than 0", example="20 kN/mm", above=0)
+
+
 class Mechanism(Protocol):
     """What a machine is to those who only look at its parts."""
 

@@ -25,6 +25,7 @@ from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, run
 from equipoise.mechanism.tip import surface_of, tip_link
+from equipoise.mechanism.undecided import hidden
 
 JOINTS = ("pin", "slider")
 """Kinds of reactions that are no push of a coupling."""
@@ -120,8 +121,9 @@ class Pass:
 
     @property
     def joints(self) -> dict[str, JointForce]:
-        """Pins and sliders, by name."""
-        named = self.motion.linkage.named_reactions
+        """Pins and sliders, by name, but those whose force has no bound."""
+        left_out = hidden(self.motion)
+        named = ((n, r) for n, r in self.motion.linkage.named_reactions if n not in left_out)
         return Named("joint", ((n, self._joint(r)) for n, r in named if r.kind in JOINTS))
 
     @property

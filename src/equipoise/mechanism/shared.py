@@ -35,7 +35,7 @@ OPEN = 1e-9
 """Share of a joint in forces that hold each other, up to which it has none."""
 ROUNDING = 1e-11
 """Share of a singular value in the largest that rounding explains."""
-WEAK = 1e-7
+WEAK = 1e-6
 """Smallest over largest stiffness against motion, up to which joints do not hold the machine."""
 BESIDE = 1e-3
 """rad: how far from a change point it is looked at which forces grow without bound there."""

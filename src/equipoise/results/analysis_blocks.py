@@ -13,6 +13,7 @@ from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.outputs import body_named, joint_named
 from equipoise.mechanism.reactions import JointForce, SliderForce
 from equipoise.mechanism.strokes import SHARE
+from equipoise.mechanism.undecided import undecided
 from equipoise.quantities import Dimension, angle, percent
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
 from equipoise.results.machine_blocks import (
@@ -49,7 +50,7 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
         yield Notes((massless(machine),))
         return
     yield from force_blocks(analysis)
-    yield joint_table(analysis)
+    yield from joint_blocks(analysis)
 
 
 # -- motion ----------------------------------------------------------------------------------------
@@ -231,6 +232,14 @@ def loud(sizes: list[Array], most: int = MOST_ORDERS) -> list[int]:
     relative = [size / (np.max(size[1:], initial=0.0) or 1.0) for size in sizes]
     top = np.max(relative, axis=0)
     return [k for k in range(1, len(top)) if top[k] > 1e-6][:most]
+
+
+def joint_blocks(analysis: Analysis) -> Iterator[Block]:
+    """Forces in joints, and of which of them statics does not tell."""
+    if analysis.forces.joints or analysis.forces.gears:
+        yield joint_table(analysis)
+    if told := tuple(undecided(analysis.motion.linkage).told()):
+        yield Notes(told)
 
 
 def joint_table(analysis: Analysis) -> Table:
