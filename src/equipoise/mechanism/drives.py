@@ -2,23 +2,42 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import copysign
+from typing import ClassVar
 
-from equipoise.i18n import to_say
-from equipoise.keys import NO_INERTIA, Frozen, Listing, Quantity, Table, Text, declared, key
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import (
+    NO_INERTIA,
+    Conditions,
+    Frozen,
+    Listing,
+    Quantity,
+    Table,
+    Text,
+    declared,
+    key,
+)
+from equipoise.mechanism.checks import Bodies, bodies_at, unknown
 from equipoise.mechanism.force_elements import Motor
+from equipoise.mechanism.laws import LengthLaw, wrong_law
 
 
 @declared
 class Drive(Frozen):
-    """The link that is driven."""
+    """The link that is driven, or that tells the pose of a machine that a cylinder drives."""
 
     called = to_say("{what} of the drive")
     file_order = ("link", "speed", "speeds")
+    conditions: ClassVar[Conditions] = {
+        "dependentRequired": {"between": ["stroke"], "slider": ["stroke"], "start": ["stroke"]}
+    }
 
     link: str = key(
         Text(of="link"),
-        "the driven link; it shares exactly one point with the frame, about which it turns",
+        "the driven link; it shares exactly one point with the frame, about which it turns; of a "
+        "machine that a cylinder drives a link that does so and whose angle tells the pose",
         example="crank",
     )
     speed: float = key("angular speed", "positive is counterclockwise", example="193 rpm")
@@ -41,6 +60,43 @@ class Drive(Frozen):
         example=["150 rpm", "240 rpm"],
         above=0,
     )
+    between: tuple[str, str] | None = key(
+        Listing(Text(of="point"), (2,)),
+        "points of two bodies that a cylinder without mass drives, by the length between them; at "
+        "a pin of several bodies it acts on the first of these",
+        default=None,
+        example=["A", "B"],
+    )
+    slider: str = key(
+        Text(),
+        "a sliding joint that is driven instead, by its travel, such as `rod on barrel`",
+        default="",
+        example="rod on barrel",
+    )
+    stroke: LengthLaw | None = key(
+        Table(LengthLaw, headed=True),
+        "length of the cylinder, or travel of the sliding joint, over the cycle; `speed` tells how "
+        "fast the cycle goes on",
+        default=None,
+    )
+    start: float | None = key(
+        "angle",
+        "of the link at crank angle 0, roughly, where a stroke can be had in several poses",
+        default=None,
+        word=to_say("angle at the start"),
+    )
+
+    @property
+    def pushes(self) -> bool:
+        """Whether a force drives the machine, and not a torque."""
+        return self.stroke is not None
+
+    def ends(self, bodies: Bodies) -> tuple[str, str]:
+        """The bodies between which a cylinder acts."""
+        assert self.between is not None
+        at = bodies_at(bodies)
+        first, second = (at[point] for point in self.between)
+        return first[0], next((body for body in second if body != first[0]), first[0])
 
     @property
     def range(self) -> tuple[float, float] | None:
@@ -49,3 +105,42 @@ class Drive(Frozen):
             return None
         slow, fast = self.speeds
         return copysign(slow, self.speed), copysign(fast, self.speed)
+
+
+# -- checks ----------------------------------------------------------------------------------------
+
+
+def wrong_drive(drive: Drive, bodies: Bodies, sliders: list[str]) -> Iterator[ModelError]:
+    """Everything that is wrong with what pushes a machine."""
+    law = drive.stroke
+    if law is None:
+        for name in ("between", "slider", "start"):
+            if getattr(drive, name) not in (None, ""):
+                told = Note("is given, but no stroke; say how long it is in [drive.stroke]")
+                yield ModelError(f"drive.{name}", told)
+        return
+    if (drive.between is None) == (not drive.slider):
+        yield ModelError("drive.stroke", Note("give either between or slider with it"))
+        return
+    for name in ("motor", "flywheel"):
+        if getattr(drive, name):
+            told = Note("goes with a link that is turned, not with a stroke; leave it out")
+            yield ModelError(f"drive.{name}", told)
+    yield from _wrong_ends(drive, bodies, sliders)
+    yield from wrong_law("drive.stroke", law)
+
+
+def _wrong_ends(drive: Drive, bodies: Bodies, sliders: list[str]) -> Iterator[ModelError]:
+    if drive.between is None:
+        if drive.slider not in sliders:
+            yield ModelError("drive.slider", unknown(drive.slider, sliders, "slider"))
+        return
+    known = bodies_at(bodies)
+    for number, point in enumerate(drive.between, 1):
+        if point not in known:
+            yield ModelError(f"drive.between[{number}]", unknown(point, known, "point"))
+            return
+    first, second = drive.ends(bodies)
+    if first == second:
+        told = Note("both points are of {body!r}; give points of two bodies", body=first)
+        yield ModelError("drive.between", told)

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
@@ -42,7 +44,7 @@ from equipoise.mechanism.checks import (
     wrong_speeds,
     wrong_text,
 )
-from equipoise.mechanism.drives import Drive
+from equipoise.mechanism.drives import Drive, wrong_drive
 from equipoise.mechanism.field import Planting, wrong_planting
 from equipoise.mechanism.force_elements import (
     Load,
@@ -85,6 +87,8 @@ __all__ = [
 ]
 
 
+MOVING = ("link", "motion", "between", "slider", "stroke", "start")
+"""What of the drive sets how the links move."""
 MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "loads": 500, "springs": 200}
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
@@ -164,6 +168,13 @@ class Machine(Frozen):
         """Points of the frame and of every link, in their own axes."""
         return {FRAME: self.frame} | {name: link.points for name, link in self.links.items()}
 
+    @cached_property
+    def turning(self) -> Any:
+        """What tells the angle of the drive's link over the crank angle; None where that is it."""
+        if not self.drive.pushes:
+            return None
+        return import_module("equipoise.mechanism.cylinders").commanded(self)  # which needs this
+
     @property
     def mass(self) -> float:
         """Mass of all links of one linkage together, kg; one without a mass adds nothing."""
@@ -199,7 +210,7 @@ class Machine(Frozen):
     def with_drive(self, **changes: Any) -> Machine:
         """Return the machine with fields of its drive changed."""
         changed = replace(self, drive=replace(self.drive, **changes))
-        return self._same_motion(changed, "link" not in changes)
+        return self._same_motion(changed, not {*changes} & {*MOVING})
 
     def with_number(self, steps: Sequence[str], number: float) -> Machine:
         """Return the machine with another number, by the keys and names on the way to it such as
@@ -246,6 +257,8 @@ class Machine(Frozen):
         """Hand on how the linkage is solved, where neither lengths nor joints have changed."""
         if same and "_linkage" in self.__dict__:
             changed.__dict__["_linkage"] = self.__dict__["_linkage"].of(changed)
+            if "turning" in self.__dict__:
+                changed.__dict__["turning"] = self.__dict__["turning"]
         return changed
 
     def points_of(self, body: str) -> Mapping[str, Vector]:
@@ -276,6 +289,7 @@ def _problems(machine: Machine) -> Iterator[ModelError]:
     for name, link in machine.links.items():
         yield from wrong_link(f"links.{name}", name, link)
     yield from unknown_link("drive.link", machine.drive.link, bodies)
+    yield from wrong_drive(machine.drive, bodies, [one.name for one in machine.sliders])
     for name, wrong in LISTS.items():
         for where, item in numbered(name, getattr(machine, name)):
             yield from wrong(where, item, bodies)
