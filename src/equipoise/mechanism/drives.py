@@ -91,6 +91,11 @@ class Drive(Frozen):
         """Whether a force drives the machine, and not a torque."""
         return self.stroke is not None
 
+    @property
+    def effort(self) -> str:
+        """The output that tells what the drive exerts."""
+        return "drive_force" if self.pushes else "drive_torque"
+
     def ends(self, bodies: Bodies) -> tuple[str, str]:
         """The bodies between which a cylinder acts."""
         assert self.between is not None

@@ -211,6 +211,11 @@ def _passed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) ->
     return Pass(motion, state)
 
 
+def pushed(found: Pass) -> Array | None:
+    """Force of a drive that pushes, None of any other."""
+    return found.drive_force if found.motion.machine.drive.pushes else None
+
+
 def full(motion: Motion, value: Any, kind: type) -> Array:
     """Give a value that is the same at all crank angles its axis (N,)."""
     count = len(motion.crank_angle)
