@@ -44,6 +44,7 @@ from equipoise.mechanism.checks import (
     wrong_speeds,
     wrong_text,
 )
+from equipoise.mechanism.couplings import Coupling
 from equipoise.mechanism.drives import Drive, wrong_drive
 from equipoise.mechanism.field import Planting, wrong_planting
 from equipoise.mechanism.force_elements import (
@@ -174,6 +175,11 @@ class Machine(Frozen):
         if not self.drive.pushes:
             return None
         return import_module("equipoise.mechanism.cylinders").commanded(self)  # which needs this
+
+    @property
+    def couplings(self) -> tuple[Coupling, ...]:
+        """Joints by which one body's angle tells another's, in the order of the file."""
+        return self.gears
 
     @property
     def mass(self) -> float:

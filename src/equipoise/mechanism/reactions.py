@@ -29,6 +29,8 @@ from equipoise.mechanism.tip import surface_of, tip_link
 
 PUSH = "D"
 """Name of the force of a drive that pushes, among the values of a pass."""
+JOINTS = ("pin", "slider")
+"""Kinds of reactions that are no push of a coupling."""
 Demand = tuple[Any, Any]
 """Force (complex) and moment about a link's anchor, each (..., N) or the same at all angles."""
 
@@ -128,7 +130,7 @@ class Pass:
     def joints(self) -> dict[str, JointForce]:
         """Pins and sliders, by name."""
         named = self.motion.linkage.named_reactions
-        return Named("joint", ((n, self._joint(r)) for n, r in named if r.kind != "gear"))
+        return Named("joint", ((n, self._joint(r)) for n, r in named if r.kind in JOINTS))
 
     @property
     def gears(self) -> dict[str, MeshForce]:
