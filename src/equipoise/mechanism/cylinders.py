@@ -136,9 +136,30 @@ def commanded(machine: Machine) -> Commanded:
     """
     shift = _shift(machine)
     found = _commanded(machine, shift)
-    if machine.gears:  # whose start angles hold at crank angle 0
-        found = _commanded(machine, float(found.value(0.0)[0]))
-    return found
+    if not machine.couplings:
+        return found
+    return _commanded(machine, _meshing(machine, float(found.value(0.0)[0])))
+
+
+def _meshing(machine: Machine, near: float) -> float:
+    """Angle of the link at crank angle 0, where couplings are as they start: by secants."""
+    drive, law = machine.drive, machine.drive.stroke
+    assert law is not None
+    wanted = float(law.value(0.0)[0])
+
+    def over(shift: float) -> float:
+        linkage = assemble(_turned(machine, shift))
+        at = Followed.over(linkage, -STEP, STEP, STEP)
+        return float(lengths(_motion(at, np.zeros(1)), drive)[0][0]) - wanted
+
+    old, new = near, near + STEP
+    gap, there = over(old), over(new)
+    for _ in range(ITERATIONS):
+        if gap == there or abs(new - old) <= SETTLED:
+            break
+        old, gap, new = new, there, new - there * (new - old) / (there - gap)
+        there = over(new)
+    return new
 
 
 def _shift(machine: Machine) -> float:
