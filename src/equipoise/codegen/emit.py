@@ -110,9 +110,11 @@ def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
 
 
 def can_emit(linkage: Linkage) -> bool:
-    """Whether the steps of a linkage can be written out: no soil, no gears beside loops."""
+    """Whether the steps of a linkage can be written out: no stroke that drives, no
+    soil, no gears beside loops.
+    """
     machine = linkage.machine
-    if machine.planting is not None and machine.planting.soil is not None:
+    if machine.drive.pushes or (machine.planting is not None and machine.planting.soil is not None):
         return False
     loops = [step for step in linkage.motion if isinstance(step, LoopGroup)]
     return all(map(can_write, loops)) and not (loops and machine.couplings)
@@ -127,13 +129,14 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     MassError : it needs masses, and the machine lacks some.
     """
     if not can_emit(linkage):
-        raise UsageError("large groups of loops, and fingers in soil, cannot be computed in a loop")
+        raise UsageError("large groups of loops, fingers in soil and drives that push cannot be computed in a loop")
     writer = Writer(linkage)
     write_motion(writer)
     wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]
     if any(one.needs == "masses" for one in wanted):
         write_demands(writer)
-    if any("{joint " in (one.loop or "") for one in wanted):
+    passed = ["{joint "] if linkage.machine.drive.motion is None else ["{joint ", "{drive torque"]
+    if any(value in (one.loop or "") for one in wanted for value in passed):
         if any(isinstance(step, LoopGroup) for step in linkage.motion):
             raise UsageError("joint forces of groups of loops cannot be computed in a loop")
         write_joints(writer)

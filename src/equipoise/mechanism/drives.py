@@ -1,10 +1,10 @@
-"""What drives a machine, as a frozen value."""
+"""What drives a machine, as frozen values: how driven links move over the crank angle."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from math import copysign
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
@@ -19,14 +19,19 @@ from equipoise.keys import (
     declared,
     key,
 )
-from equipoise.mechanism.checks import Bodies, bodies_at, unknown
-from equipoise.mechanism.force_elements import Motor
-from equipoise.mechanism.laws import LengthLaw, wrong_law
+from equipoise.mechanism.checks import Bodies, bodies_at, unknown, wrong_speeds
+from equipoise.mechanism.force_elements import Motor, wrong_motor
+from equipoise.mechanism.laws import AngleLaw, LengthLaw, wrong_law
 
 
 @declared
 class Drive(Frozen):
-    """The link that is driven, or that tells the pose of a machine that a cylinder drives."""
+    """The link that is driven, or that tells the pose of a machine that is pushed.
+
+    The crank angle is the phase of the cycle, and turns at `speed`.  Without a motion of its own
+    the driven link's angle is the crank angle; with one it follows that law.  A stroke is the
+    length of a cylinder between two points, or the travel of a sliding joint, whose force drives.
+    """
 
     called = to_say("{what} of the drive")
     file_order = ("link", "speed", "speeds")
@@ -42,7 +47,7 @@ class Drive(Frozen):
     )
     speed: float = key("angular speed", "positive is counterclockwise", example="193 rpm")
     acceleration: float = key(
-        "angular acceleration", "of the driven link, at every crank angle analysed", default=0.0
+        "angular acceleration", "of the crank, at every crank angle analysed", default=0.0
     )
     flywheel: float = key(
         "inertia",
@@ -59,6 +64,12 @@ class Drive(Frozen):
         default=(),
         example=["150 rpm", "240 rpm"],
         above=0,
+    )
+    motion: AngleLaw | None = key(
+        Table(AngleLaw, headed=True),
+        "how the driven link's angle goes with the crank angle, which turns at `speed`; they are "
+        "the same where it is left out",
+        default=None,
     )
     between: tuple[str, str] | None = key(
         Listing(Text(of="point"), (2,)),
@@ -111,12 +122,40 @@ class Drive(Frozen):
         slow, fast = self.speeds
         return copysign(slow, self.speed), copysign(fast, self.speed)
 
+    def turned(self, crank_angle: Any) -> tuple[Any, Any, Any]:
+        """Angle of the driven link at crank angles (...), and its two derivatives by them."""
+        return (crank_angle, 1.0, 0.0) if self.motion is None else self.motion.value(crank_angle)
+
+    @property
+    def turns(self) -> int:
+        """Turns of the crank after which the drive is back."""
+        return next((law.turns for law in (self.motion, self.stroke) if law), 1)
+
 
 # -- checks ----------------------------------------------------------------------------------------
 
 
 def wrong_drive(drive: Drive, bodies: Bodies, sliders: list[str]) -> Iterator[ModelError]:
-    """Everything that is wrong with what pushes a machine."""
+    """Everything that is wrong with the drive, but for its link."""
+    if drive.speeds:
+        yield from wrong_speeds("drive.speeds", drive.speeds)
+    if drive.motor is not None:
+        yield from wrong_motor("drive.motor", drive.motor)
+    yield from _wrong_push(drive, bodies, sliders)
+    if drive.motion is not None:
+        yield from wrong_law("drive.motion", drive.motion)
+    if drive.motion is None and drive.stroke is None:
+        return
+    for name, given in (("motor", drive.motor), ("flywheel", drive.flywheel)):
+        if given:
+            yield ModelError(
+                f"drive.{name}",
+                Note("turns with the crank, and here the drive has a motion; leave it out"),
+            )
+
+
+def _wrong_push(drive: Drive, bodies: Bodies, sliders: list[str]) -> Iterator[ModelError]:
+    """Everything that is wrong with a stroke and what has it."""
     law = drive.stroke
     if law is None:
         for name in ("between", "slider", "start"):
@@ -126,13 +165,11 @@ def wrong_drive(drive: Drive, bodies: Bodies, sliders: list[str]) -> Iterator[Mo
         return
     if (drive.between is None) == (not drive.slider):
         yield ModelError("drive.stroke", Note("give either between or slider with it"))
-        return
-    for name in ("motor", "flywheel"):
-        if getattr(drive, name):
-            told = Note("goes with a link that is turned, not with a stroke; leave it out")
-            yield ModelError(f"drive.{name}", told)
-    yield from _wrong_ends(drive, bodies, sliders)
-    yield from wrong_law("drive.stroke", law)
+    elif drive.motion is not None:
+        yield ModelError("drive.motion", Note("a stroke moves the link already; leave it out"))
+    else:
+        yield from _wrong_ends(drive, bodies, sliders)
+        yield from wrong_law("drive.stroke", law)
 
 
 def _wrong_ends(drive: Drive, bodies: Bodies, sliders: list[str]) -> Iterator[ModelError]:

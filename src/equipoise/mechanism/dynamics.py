@@ -114,7 +114,7 @@ class Forces:
 
     @property
     def drive_torque(self) -> Array:
-        """Torque of the drive on its link, N m; times speed it is the power fed in."""
+        """Torque of the drive on its link, N m; times that link's speed it is the power fed in."""
         return self.solved.drive_torque
 
     @property
@@ -125,9 +125,11 @@ class Forces:
     @property
     def power(self) -> Array:
         """Power fed in by the drive, W."""
-        if not self.motion.machine.drive.pushes:
-            return self.drive_torque * self.motion.speed
-        return self.drive_force * lengths(self.motion)[1] * self.motion.speed
+        motion = self.motion
+        drive = motion.machine.drive
+        if drive.pushes:
+            return self.drive_force * lengths(motion)[1] * motion.speed
+        return self.drive_torque * motion.links[drive.link].angular_velocity
 
     @cached_property
     def joints(self) -> Mapping[str, JointForce]:

@@ -41,7 +41,6 @@ from equipoise.mechanism.checks import (
     too_many,
     unknown,
     unknown_link,
-    wrong_speeds,
     wrong_text,
 )
 from equipoise.mechanism.couplings import Coupling
@@ -53,7 +52,6 @@ from equipoise.mechanism.force_elements import (
     Spring,
     wrong_ends,
     wrong_load,
-    wrong_motor,
 )
 from equipoise.mechanism.gears import Gear, wrong_gear
 from equipoise.mechanism.links import (
@@ -171,10 +169,15 @@ class Machine(Frozen):
 
     @cached_property
     def turning(self) -> Any:
-        """What tells the angle of the drive's link over the crank angle; None where that is it."""
+        """What tells the angle of the drive's link where a stroke does; None elsewhere."""
         if not self.drive.pushes:
             return None
         return import_module("equipoise.mechanism.cylinders").commanded(self)  # which needs this
+
+    def turned(self, crank_angle: Any) -> tuple[Any, Any, Any]:
+        """Angle of the drive's link at crank angles (...), and its two derivatives by them."""
+        law = self.turning
+        return self.drive.turned(crank_angle) if law is None else law.value(crank_angle)
 
     @property
     def couplings(self) -> tuple[Coupling, ...]:
@@ -286,7 +289,7 @@ LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
 
 def _problems(machine: Machine) -> Iterator[ModelError]:
     """Everything that is wrong with the values of a machine, the first things first."""
-    bodies, motor = machine.bodies, machine.drive.motor
+    bodies = machine.bodies
     yield from _too_much(machine)
     yield from wrong_values("", machine)
     yield from wrong_points("frame", machine.frame)
@@ -295,7 +298,6 @@ def _problems(machine: Machine) -> Iterator[ModelError]:
     for name, link in machine.links.items():
         yield from wrong_link(f"links.{name}", name, link)
     yield from unknown_link("drive.link", machine.drive.link, bodies)
-    yield from wrong_drive(machine.drive, bodies, [one.name for one in machine.sliders])
     for name, wrong in LISTS.items():
         for where, item in numbered(name, getattr(machine, name)):
             yield from wrong(where, item, bodies)
@@ -307,10 +309,7 @@ def _problems(machine: Machine) -> Iterator[ModelError]:
         for name in machine.position.angles:
             yield from unknown_link(f"position.angles.{name}", name, bodies)
     yield from wrong_planting(machine.planting, bodies)
-    if machine.drive.speeds:
-        yield from wrong_speeds("drive.speeds", machine.drive.speeds)
-    if motor is not None:
-        yield from wrong_motor("drive.motor", motor)
+    yield from wrong_drive(machine.drive, bodies, [one.name for one in machine.sliders])
     yield from wrong_support(machine.support, machine.rows)
     if machine.balance is not None:
         yield from machine.balance.problems(machine)
