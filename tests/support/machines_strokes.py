@@ -60,7 +60,7 @@ def law(rng: np.random.Generator, first: float, last: float) -> LengthLaw:
         return LengthLaw(between=(first, last), phase=float(rng.uniform(0, 6)))
     parts = 2 * np.pi * rng.dirichlet([20.0] * 4)
     ends = (last, last, first, first)
-    laws = ("cycloidal", "cycloidal", "4-5-6-7", "cycloidal")
+    laws = ("cycloidal", "cycloidal", "modified sine", "cycloidal")
     each = zip(parts.tolist(), ends, laws, strict=True)
     return LengthLaw(start=first, segments=tuple(LengthSegment(*one) for one in each))
 

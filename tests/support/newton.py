@@ -14,6 +14,8 @@ from functools import cached_property
 import numpy as np
 
 from equipoise.mechanism.model import FRAME, Gear, Machine, Slider, Vector
+from support.driving import driven
+from support.driving import followed as followed_law
 from support.poses import Array, Poses, cross, pins, quarter, turned
 
 
@@ -69,11 +71,10 @@ class Constraints:
 
     def commanded(self, crank_angle: float) -> tuple[float, float, float]:
         """Return what the drive commands, and its derivatives by crank angle."""
-        law = self.machine.drive.stroke
-        if law is None:
-            return crank_angle, 1.0, 0.0
-        value, first, second = map(float, law.value(crank_angle))
-        return value, first, second
+        drive = self.machine.drive
+        if drive.stroke is None:
+            return driven(drive, crank_angle)
+        return followed_law(drive.stroke, crank_angle)
 
     def _driven(self, q: Array, rate: Array, wanted: float) -> Row:
         """Return the equation of the drive: an angle, or the length that pushes."""

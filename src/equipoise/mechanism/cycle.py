@@ -127,7 +127,8 @@ class _Grid:
         self.done: list[Group] = []
         drive = machine.drive.link
         angle = self.state[f"phi({drive})"]
-        self.windings = {FRAME: 0, drive: round((angle[-1] - angle[0]) / (2 * pi))}
+        turned = round(float(angle[-1] - angle[0]) / (2 * pi))
+        self.windings: dict[str, int] = {FRAME: 0, drive: turned}
         self.tables: dict[str, Array] = {drive: angle}
         self.weakest: dict[str, tuple[float, float]] = {}
 

@@ -150,7 +150,7 @@ def wrong_drive(drive: Drive, bodies: Bodies, sliders: list[str]) -> Iterator[Mo
         if given:
             yield ModelError(
                 f"drive.{name}",
-                Note("turns with the crank, and here the drive has a motion; leave it out"),
+                Note("turns with the crank, and here the driven link has a motion; leave it out"),
             )
 
 
