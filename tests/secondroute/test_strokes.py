@@ -13,11 +13,10 @@ from secondroute.test_free_bodies import acting_on_the_later, same_forces
 from secondroute.test_motion import same_motion
 from support import newton
 from support.analyses import ANGLES, Subject
-from support.machines import KINDS
-from support.machines_strokes import SLIDING, stroked
+from support.machines_strokes import SLIDING, TURNING, stroked
 from support.poses import from_motion
 
-SUBJECTS = [(kind, False) for kind in KINDS] + [(kind, True) for kind in SLIDING]
+SUBJECTS = [(kind, False) for kind in TURNING] + [(kind, True) for kind in SLIDING]
 each = pytest.mark.parametrize(("kind", "by_slider"), SUBJECTS)
 SEEDS = (0, 1)
 

@@ -24,8 +24,8 @@ SHARES = 0.8, 0.3
 """Of the part of the turn over which the length rises or falls, what the stroke takes at most."""
 
 LEAST = 0.03
-"""Over the largest length, or the whole travel: by how much the length changes with the crank's angle, or the
-equations have lost digits.
+"""Over the largest length, or the whole travel: by how much the length changes with the crank's
+angle, or the equations have lost digits.
 """
 
 
@@ -119,4 +119,5 @@ def stroked(kind: str, seed: int, by_slider: bool = False) -> Case:
     raise AssertionError(f"{kind}:{seed} cannot be pushed")
 
 
-SLIDING = [kind for kind in KINDS if make(kind, 0).machine.sliders]
+TURNING = [kind for kind in KINDS if make(kind, 0).machine.drive.motion is None]
+SLIDING = [kind for kind in TURNING if make(kind, 0).machine.sliders]

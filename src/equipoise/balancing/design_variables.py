@@ -255,7 +255,11 @@ class FreeSpring(DesignVariables):
         """Effect (2, N) on what the drive exerts or on a joint's force."""
         choice = self.choice
         effort, joints = spring_columns(motion, choice.link, choice.point, choice.to)
-        found = effort if output == motion.machine.drive.effort else joints[output.removeprefix("joints.")]
+        found = (
+            effort
+            if output == motion.machine.drive.effort
+            else joints[output.removeprefix("joints.")]
+        )
         units = self._units * np.array([1.0, -1.0])  # the pull is towards the frame's point
         return np.asarray(found * units[:, None])
 

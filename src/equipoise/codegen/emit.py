@@ -129,7 +129,10 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     MassError : it needs masses, and the machine lacks some.
     """
     if not can_emit(linkage):
-        raise UsageError("large groups of loops, fingers in soil and drives that push cannot be computed in a loop")
+        raise UsageError(
+            "large groups of loops, fingers in soil, and drives that push cannot be computed in a "
+            "loop"
+        )
     writer = Writer(linkage)
     write_motion(writer)
     wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]

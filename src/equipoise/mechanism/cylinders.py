@@ -8,9 +8,10 @@ length, of which the linkage tells both derivatives.  See `docs/theory.md`, "Dri
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from math import pi
+from itertools import pairwise
+from math import ceil, pi
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from equipoise.i18n import Note, all_of
 from equipoise.mechanism.drives import Drive
 from equipoise.mechanism.followed import Followed
 from equipoise.mechanism.laws import LengthLaw
-from equipoise.mechanism.linkage import Linkage, assemble
+from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.pushing import Levels, lengths
@@ -34,6 +35,8 @@ INSIDE = 1e-7
 """rad: how far from where a dyad is stretched out."""
 ITERATIONS, SETTLED = 60, 1e-15
 """Of Newton's method; the last change in the angle, rad."""
+HALVINGS = 36
+"""Of the step in which a dead point lies."""
 DEAD = 1e-9
 """Of the length's range: how near to its end the stroke may come."""
 
@@ -123,7 +126,7 @@ class Commanded:
             change, at = np.max(np.abs(new - at), initial=0.0), new
             if change <= SETTLED * (1 + np.max(np.abs(at), initial=0.0)):
                 break
-        return at
+        return np.asarray(at)
 
 
 def commanded(machine: Machine) -> Commanded:
@@ -186,10 +189,9 @@ def _commanded(machine: Machine, shift: float) -> Commanded:
     linkage = assemble(bare)
     found = reach(linkage)
     low, high = (-pi, pi) if found is None else (found.low + INSIDE, found.high - INSIDE)
-    followed = Followed.over(linkage, low, high, STEP)
-    angles = np.linspace(low, high, max(3, round((high - low) / STEP) + 1))
-    here, slope, _ = lengths(_motion(followed, angles), drive)
-    branches = _branches(angles, here, slope, whole=found is None)
+    far = high if found is not None else high + 2 * pi  # a turn may begin anywhere
+    followed = Followed.over(linkage, low, far, STEP)
+    branches = _branches(lambda at: lengths(_motion(followed, at), drive), low, high, found is None)
     return Commanded(followed, drive, law, shift, _chosen(drive, law, branches, shift))
 
 
@@ -207,19 +209,38 @@ def _motion(bare: Followed, theta: Array) -> Motion:
     return Motion(bare.linkage, theta, 1.0, 0.0, False, bare.solve(theta))
 
 
-def _branches(angles: Array, here: Array, slope: Array, whole: bool) -> list[Branch]:
+def _branches(
+    known: Callable[[Array], Levels], low: float, high: float, whole: bool
+) -> list[Branch]:
     """Parts of the way over which the length only rises or only falls.
 
-    whole : whether the first angle is the last, a turn before.
+    known : length and its derivatives at angles (N,).
+    whole : whether the way is a turn, so that it may begin at any angle.
     """
-    if whole:  # begin at a dead point
-        turns = np.flatnonzero(np.sign(slope[:-1]) != np.sign(slope[1:]))
-        first = int(turns[0]) + 1 if len(turns) else 0
-        angles = np.concatenate([angles[first:], angles[1 : first + 1] + 2 * pi])
-        here, slope = (np.concatenate([a[first:], a[1 : first + 1]]) for a in (here, slope))
-    cuts = 1 + np.flatnonzero(np.sign(slope[:-1]) != np.sign(slope[1:]))
-    parts = np.split(np.arange(len(angles)), cuts)
-    return [Branch(angles[part], here[part]) for part in parts if len(part) > 1]
+    angles = np.linspace(low, high, max(3, round((high - low) / STEP) + 1))
+    turns = _dead_points(known, angles)
+    if whole and len(turns):
+        return _branches(known, float(turns[0]), float(turns[0]) + 2 * pi, whole=False)
+    ends = np.unique([low, *turns, high])
+    parts = [angles[(angles > one) & (angles < other)] for one, other in pairwise(ends)]
+    ways = [
+        np.array([one, *part, other])
+        for (one, other), part in zip(pairwise(ends), parts, strict=True)
+        if len(part)
+    ]
+    return [Branch(way, known(way)[0]) for way in ways]
+
+
+def _dead_points(known: Callable[[Array], Levels], angles: Array) -> Array:
+    """Angles at which the length turns back, (D,)."""
+    _, slope, _ = known(angles)
+    left = np.flatnonzero(np.sign(slope[:-1]) != np.sign(slope[1:]))
+    low, high = angles[left], angles[left + 1]
+    for _ in range(HALVINGS if len(left) else 0):
+        middle = 0.5 * (low + high)
+        before = np.sign(known(middle)[1]) == np.sign(slope[left])
+        low, high = np.where(before, middle, low), np.where(before, high, middle)
+    return np.asarray(high)
 
 
 def _chosen(drive: Drive, law: LengthLaw, branches: Sequence[Branch], shift: float) -> Branch:
@@ -260,7 +281,7 @@ def _chosen(drive: Drive, law: LengthLaw, branches: Sequence[Branch], shift: flo
 def _has(one: Branch, at: float) -> bool:
     """Whether an angle, or the same some turns on, is in a branch."""
     low, high = one.ends
-    return low <= at + 2 * pi * np.ceil((low - at) / (2 * pi)) <= high
+    return low <= at + 2 * pi * ceil((low - at) / (2 * pi)) <= high
 
 
 def _told(ends: tuple[float, float], shift: float) -> Note:

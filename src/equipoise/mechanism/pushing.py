@@ -22,7 +22,7 @@ def lengths(motion: Motion, drive: Drive | None = None) -> Levels:
     if drive.slider:
         slid = motion.sliders[drive.slider]
         return slid.travel, slid.travel_1, slid.travel_2
-    a, b = (motion.points[name] for name in drive.between)
+    a, b = (motion.points[name] for name in drive.between or ())
     d, d1, d2 = b.place - a.place, b.place_1 - a.place_1, b.place_2 - a.place_2
     length = np.abs(d)
     first = kernels.dot(d, d1) / length
@@ -38,7 +38,7 @@ def pushes(motion: Motion) -> list[tuple[str, Array, Array]]:
         at = motion.points[one.point].place
         turn = motion.state[f"u({one.on})"] * np.exp(1j * one.direction)
         return [(one.link, at, turn + 0 * at), (one.on, at, -turn + 0 * at)]
-    a, b = (motion.points[name].place for name in drive.between)
+    a, b = (motion.points[name].place for name in drive.between or ())
     way = (b - a) / np.abs(b - a)
     ends = drive.ends(machine.bodies)
     return [(ends[1], b, way), (ends[0], a, -way)]

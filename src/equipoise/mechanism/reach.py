@@ -6,7 +6,6 @@ dyad is stretched out or folded, or the loop equations of a group have no soluti
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from math import degrees, pi
 
@@ -62,15 +61,17 @@ def reach(linkage: Linkage) -> Reach | None:
         crank angle 0, where these start.
     MotionError : its motion does not repeat.
     """
+    stuck: MotionError | None = None
     try:
         _ = linkage.cycle
-        return None
     except (RangeError, ChangePointError) as error:
-        stuck: MotionError = error
+        stuck = error
     except MotionError as error:
         if not _has_loops(linkage):
             raise
         stuck = error
+    if stuck is None:
+        return None
     start, others = _start(linkage, stuck)
     low, first = _end(linkage, start, -1)
     high, second = _end(linkage, start, 1)
@@ -92,7 +93,7 @@ def _start(linkage: Linkage, stuck: MotionError) -> tuple[float, int]:
         return 0.0, begins - 1
     if not begins or linkage.needed_references:
         raise stuck
-    apart = np.minimum(theta, 2 * pi - theta)[good]
+    apart = np.round(np.minimum(theta, 2 * pi - theta)[good], 9)
     nearest = float(theta[good][np.argmin(apart)])
     return (nearest if nearest <= pi else nearest - 2 * pi), begins - 1
 
@@ -110,7 +111,7 @@ def _end(linkage: Linkage, start: float, side: int) -> tuple[float, Note | str]:
     """The crank angle up to which the linkage follows from a start, and what it does there."""
     way = start + side * np.linspace(0.0, 2 * pi, POINTS + 1)
     good = _followed(linkage, way)
-    for _ in range(ROUNDS):
+    for _ in range(ROUNDS if good < len(way) else 0):
         last = way[good - 1]
         way = np.append(way[: good - 1], np.linspace(last, way[good], FINER + 1))
         good = _followed(linkage, way)
@@ -119,12 +120,9 @@ def _end(linkage: Linkage, start: float, side: int) -> tuple[float, Note | str]:
 
 def _followed(linkage: Linkage, way: Array) -> int:
     """How many of the crank angles (N,) can be reached, one after the other."""
-    low, high = 0, len(way)
-    if _has_loops(linkage):
-        high = _solvable(linkage, way)
-    bad = np.flatnonzero(~_closed(linkage, way[:high])) if high else ()
-    low = int(bad[0]) if len(bad) else high
-    return max(low, 1)
+    count = _solvable(linkage, way) if _has_loops(linkage) else len(way)
+    bad = np.flatnonzero(~_closed(linkage, way[:count]))
+    return max(int(bad[0]), 1) if len(bad) else count
 
 
 def _solvable(linkage: Linkage, way: Array) -> int:
@@ -143,16 +141,16 @@ def _solvable(linkage: Linkage, way: Array) -> int:
 def _stop(linkage: Linkage, way: Array) -> Note | str:
     """What keeps the crank from the last of some crank angles (N,)."""
     group = _stopping(linkage, way)
-    if group is not None and group.margin is not None:
+    if group.margin is not None:
         return group.dead
-    links = [repr(link) for link in (group.links if group else ())]
+    links = [repr(link) for link in group.links]
     return Note("{links} can be moved no further", links=all_of(links))
 
 
-def _stopping(linkage: Linkage, way: Array) -> Group | None:
-    groups: Sequence[Group] = linkage.groups
+def _stopping(linkage: Linkage, way: Array) -> Group:
+    """The first group that cannot be had there; the last where rounding lets all be."""
     state = linkage.start(way)
-    for group in groups:
+    for group in linkage.groups:
         try:
             with np.errstate(all="ignore"):
                 run(group.motion, state)
@@ -160,7 +158,7 @@ def _stopping(linkage: Linkage, way: Array) -> Group | None:
             return group
         if group.margin is not None and not np.ravel(state[group.margin])[-1] > CHANGE_POINT:
             return group
-    return None
+    return linkage.groups[-1]
 
 
 def _told(angle: float) -> str:

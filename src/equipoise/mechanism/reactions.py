@@ -184,7 +184,7 @@ def _pushed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) ->
     drive = f"M({motion.machine.drive.link})"
     acting = ((body, at, way, 0.0) for body, at, way in pushes(motion))
     units = demands_of(motion, acting)
-    still = {link: (0j, 0.0) for link in motion.machine.links} | units
+    still = dict.fromkeys(motion.machine.links, (0j, 0.0)) | units
     force = -_passed(motion, demands, like).state[drive] / _passed(motion, still, like).state[drive]
     total = dict(demands)
     for body, (unit, turning) in units.items():
