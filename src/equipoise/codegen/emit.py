@@ -110,11 +110,13 @@ def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
 
 
 def can_emit(linkage: Linkage) -> bool:
-    """Whether the steps of a linkage can be written out: no stroke that drives, no
-    soil, no gears beside loops.
+    """Whether the steps of a linkage can be written out: no soil, no gears beside loops, no drive
+    that pushes, and no joints whose forces only all free bodies together tell.
     """
+    if linkage.shared is not None or linkage.machine.drive.pushes:
+        return False
     machine = linkage.machine
-    if machine.drive.pushes or (machine.planting is not None and machine.planting.soil is not None):
+    if machine.planting is not None and machine.planting.soil is not None:
         return False
     loops = [step for step in linkage.motion if isinstance(step, LoopGroup)]
     return all(map(can_write, loops)) and not (loops and machine.couplings)
@@ -130,8 +132,8 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     """
     if not can_emit(linkage):
         raise UsageError(
-            "large groups of loops, fingers in soil, and drives that push cannot be computed in a "
-            "loop"
+            "large groups of loops, fingers in soil, parallel cranks, double guides and drives "
+            "that push cannot be computed in a loop"
         )
     writer = Writer(linkage)
     write_motion(writer)

@@ -198,8 +198,10 @@ def _pushed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) ->
 def _passed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) -> Pass:
     """The run over the joints, which ends at a torque on the drive's link."""
     state = dict(motion.state)
-    state[f"F({FRAME})"], state[f"M({FRAME})"] = 0j, 0.0
-    for link, (force, moment) in demands.items():
+    of_links = dict(demands)
+    on_frame = of_links.pop(FRAME, (0j, 0.0))
+    of_links[FRAME] = 0j, 0.0
+    for link, (force, moment) in of_links.items():
         state[f"F({link})"], state[f"M({link})"] = force, moment
     known = {} if like is None else like.flanks
     state.update(known)
@@ -208,6 +210,8 @@ def _passed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) ->
         return isinstance(step, Call) and set(step.outputs) <= known.keys()
 
     run([step for step in motion.linkage.forces if not is_known(step)], state)
+    for name, more in zip((f"F({FRAME})", f"M({FRAME})"), on_frame, strict=True):
+        state[name] = state[name] + more
     drive = motion.machine.drive.link
     state[f"R({motion.linkage.pivot}/{drive})"] = state[f"F({drive})"]
     return Pass(motion, state)

@@ -78,7 +78,7 @@ def test_a_stroke_that_cannot_be_had() -> None:
 
 
 def test_a_stroke_that_can_be_had_in_two_ways() -> None:
-    with pytest.raises(ModelError, match="the stroke can be had with 'boom' from .* and from"):
+    with pytest.raises(ModelError, match=r"the stroke can be had with 'boom' from .* and from"):
         eq.move(boom(start=None))
 
 
