@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 import equipoise as eq
 from equipoise.mechanism.field import Soil, SoilTable
-from support.loads import force_and_torque, has_soil, soil_force, tip_of
+from support.loads import force_and_torque, has_soil, soil_force, tips_of
 from support.machines import KINDS, make
+from support.machines_redundant import REDUNDANT
 
 Array = NDArray[Any]
 IN_SOIL = "kim-chung-b in soil"
@@ -30,7 +31,7 @@ ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 @cache
 def names() -> tuple[str, ...]:
     """Names of all subjects: examples, one in soil, and kinds of random machines with a seed."""
-    random = (f"{kind}:{seed}" for kind in KINDS for seed in SEEDS)
+    random = (f"{kind}:{seed}" for kind in (*KINDS, *REDUNDANT) for seed in SEEDS)
     return (*sorted(eq.examples("linkage")), IN_SOIL, *random)
 
 
@@ -129,11 +130,11 @@ def acting(found: eq.mechanism.Forces) -> Iterator[tuple[str, str | None, Array,
         force, torque = force_and_torque(load, motion.crank_angle)
         yield load.link, load.point, force[:, 0] + 1j * force[:, 1], torque
     if has_soil(machine):
-        link, point, _ = tip_of(machine)
-        tip = motion.points[point]
-        place, velocity = (np.stack([z.real, z.imag], -1) for z in (tip.place, tip.velocity))
-        force = soil_force(machine, place, velocity, motion.speed)
-        yield link, point, force[:, 0] + 1j * force[:, 1], np.zeros(len(force))
+        for link, point, _ in tips_of(machine):
+            tip = motion.points[point]
+            place, velocity = (np.stack([z.real, z.imag], -1) for z in (tip.place, tip.velocity))
+            force = soil_force(machine, place, velocity, motion.speed)
+            yield link, point, force[:, 0] + 1j * force[:, 1], np.zeros(len(force))
 
 
 def along(a: Any, b: Any) -> Any:

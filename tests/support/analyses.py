@@ -11,17 +11,18 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MassError
-from equipoise.mechanism.field import Soil, SoilTable
+from equipoise.mechanism.field import PlantingArm, Soil, SoilTable
 from equipoise.mechanism.model import Machine
 from support.loads import springs_on_links
 from support.machines import KINDS, Case, make
+from support.machines_redundant import REDUNDANT
 from support.poses import Array, Poses, from_motion
 
 ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 """Crank angles of every comparison, off the round numbers at which loads may begin or end."""
 
 EXAMPLES = sorted(eq.examples("linkage"))
-RANDOM = [f"{kind}:{seed}" for kind in KINDS for seed in range(10)]
+RANDOM = [f"{kind}:{seed}" for kind in (*KINDS, *REDUNDANT) for seed in range(10)]
 PLANTED = [f"{kind} in soil:{seed}" for kind in KINDS for seed in range(2)]
 every_subject = pytest.mark.parametrize("name", [*EXAMPLES, *RANDOM, *PLANTED])
 """Bundled examples, and random machines by kind and seed, also with a point in the soil."""
@@ -68,7 +69,7 @@ def subject_of(name: str) -> Subject:
 
 
 def planted(machine: Machine, rng: np.random.Generator) -> Machine:
-    """Drive a point through soil that resists in every way, in some part of its path."""
+    """Drive one point, or two, through soil that resists in every way, in some part of a path."""
     moving = {label for link in machine.links.values() for label in link.points} - {*machine.frame}
     tip = str(rng.choice(sorted(moving)))
     path = eq.move(machine, 360).points[tip]
@@ -83,7 +84,9 @@ def planted(machine: Machine, rng: np.random.Generator) -> Machine:
     table = SoilTable((0.1 * size, 0.2 * size), (20.0, 70.0))
     soil = Soil(10.0, 100.0 / size, 20.0 / pace, 50.0 / (size * pace), table)
     way = str(rng.choice(["forward", "backward"]))
-    return machine.with_planting(tip=tip, travel=way, soil=soil, **level, **forward)
+    others = sorted(moving - {tip})
+    arms = (PlantingArm(str(rng.choice(others))),) if others and rng.random() < 0.5 else ()
+    return machine.with_planting(tip=tip, travel=way, soil=soil, arms=arms, **level, **forward)
 
 
 def vector(signal: Any) -> Array:
