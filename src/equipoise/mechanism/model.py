@@ -61,7 +61,7 @@ from equipoise.mechanism.links import (
     wrong_link,
     wrong_points,
 )
-from equipoise.mechanism.parts import Slider, wrong_slider
+from equipoise.mechanism.parts import JointStiffness, Slider, wrong_joint, wrong_slider
 from equipoise.mechanism.places import Frame, Position
 from equipoise.mechanism.shown_units import ShownUnits
 from equipoise.mechanism.support import Row, Support, wrong_support
@@ -88,7 +88,8 @@ __all__ = [
 
 MOVING = ("link", "motion", "between", "slider", "stroke", "start")
 """What of the drive sets how the links move."""
-MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "loads": 500, "springs": 200}
+MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "loads": 500,
+        "springs": 200, "joints": 500}  # fmt: skip
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 
@@ -99,8 +100,8 @@ class Machine(Frozen):
 
     beside: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "description", "units", "gravity", "drive", "frame", "links",
-                  "assembly", "sliders", "gears", "loads", "springs", "position", "planting",
-                  "support", "rows", "balance")  # fmt: skip
+                  "assembly", "sliders", "gears", "loads", "springs", "joints", "position",
+                  "planting", "support", "rows", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(Table(Drive), "the link that is driven")
@@ -145,6 +146,12 @@ class Machine(Frozen):
         Tables(Table(Spring)), "linear springs between links and frame", default=()
     )
 
+    joints: tuple[JointStiffness, ...] = key(
+        Tables(Table(JointStiffness)),
+        "stiffness of joints, by which they share forces that statics leaves open; those left out "
+        "are rigid",
+        default=(),
+    )
     units: ShownUnits | None = key(
         Table(ShownUnits), "in which values are shown, as by `--units`", default=None
     )
@@ -284,6 +291,7 @@ LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
     "gears": wrong_gear,
     "loads": wrong_load,
     "springs": wrong_ends,
+    "joints": wrong_joint,
 }
 """What is wrong with each of the lists."""
 

@@ -16,7 +16,7 @@ from equipoise.mechanism.shared import BESIDE, WEAK
 from equipoise.mechanism.steps import State, run
 
 ANGLES = 7
-"""In a cycle, at which it is looked for forces that hold each other: they are there at all or few."""
+"""In a cycle, at which it is looked for forces that hold each other."""
 
 
 LEAST_SQUARES = to_say(

@@ -275,7 +275,8 @@ def _split(found: Forces) -> Values:
 
 def _undecided(linkage: Linkage) -> Values:
     """Joints of which statics does not tell the force, where there are such."""
-    found, result = undecided(linkage), {}
+    found = undecided(linkage)
+    result: Values = {}
     if found.open:
         rule = "stiffness" if found.by_stiffness else "least squares"
         result["open"] = {"joints": [*found.open], "rule": rule}

@@ -14,7 +14,7 @@ import numpy as np
 
 from equipoise.errors import EquipoiseError, MotionError, UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.checks import ALTERNATIVES, unknown
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, Position, Vector
 from equipoise.mechanism.motion import Motion

@@ -53,6 +53,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         laws.AngleSegment, laws.LengthLaw, laws.LengthSegment, force_elements.Motor, Frame,
         links.Link,
         bodies.Body, bodies.Hole, parts.Slider, parts.Gear,
+        parts.JointStiffness,
         force_elements.Load, Spring, Position, field.Planting, field.PlantingArm,
         field.Soil, support.Support,
         mounts.Mount, support.Row, balance.Balance, weights.CenterMove,
