@@ -223,8 +223,8 @@ def test_what_statics_decides_does_not_depend_on_the_rule() -> None:
 def with_rocker(given: eq.Machine) -> eq.Machine:
     """A dyad that hangs on the body and on the frame."""
     body = given.links["body"]
-    links = {**given.links, "body": replace(body, points={**body.points, "P": (0.5, 0.6)}),
-             "rod": heavy(P=ORIGIN, Q=(0.8, 0.0)), "rocker": heavy(R=ORIGIN, Q=(0.7, 0.0))}  # fmt: skip
+    links = {**given.links, "body": replace(body, points={**body.points, "P": (0.5, 0.6)})}
+    links |= {"rod": heavy(P=ORIGIN, Q=(0.8, 0.0)), "rocker": heavy(R=ORIGIN, Q=(0.7, 0.0))}
     frame = {**given.frame, "R": (1.3, 1.2)}
     return replace(given, links=links, frame=frame, assembly={**given.assembly, "Q": "left"})
 
