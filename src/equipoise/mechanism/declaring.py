@@ -40,6 +40,7 @@ GROUPS = {
     "centers": to_say("instant centres"),
     "forces": to_say("frame and drive"),
     "joints": to_say("joints"),
+    "bearings": to_say("bearings"),
     "gears": to_say("gears"),
     "rows": to_say("all rows together"),
     "gauges": to_say("gauges"),

@@ -199,7 +199,7 @@ MEETING = 1e-12
 
 def load_demands(motion: Motion) -> dict[str, Demand]:
     """What holds the loads, for every link that has one."""
-    return demands_of(motion, _loads(motion))
+    return demands_of(motion, acting_loads(motion))
 
 
 def spring_demands(motion: Motion) -> dict[str, Demand]:
@@ -209,8 +209,18 @@ def spring_demands(motion: Motion) -> dict[str, Demand]:
     ------
     ModelError : the ends of a spring with a free length meet.
     """
-    springs = motion.machine.springs
-    return demands_of(motion, ((s.link, s.point, spring_force(motion, s), 0.0) for s in springs))
+    return demands_of(motion, acting_springs(motion))
+
+
+def acting_springs(motion: Motion) -> Iterator[Acting]:
+    """Link, point and force of each spring, which has no torque.
+
+    Raises
+    ------
+    ModelError : the ends of a spring with a free length meet.
+    """
+    for spring in motion.machine.springs:
+        yield spring.link, spring.point, spring_force(motion, spring), 0.0
 
 
 def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
@@ -225,7 +235,7 @@ def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
     return result
 
 
-def _loads(motion: Motion) -> Iterator[Acting]:
+def acting_loads(motion: Motion) -> Iterator[Acting]:
     """Link, point, force and torque of each load."""
     machine = motion.machine
     for load in machine.loads:

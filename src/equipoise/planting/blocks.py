@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.outputs import joint_named
+from equipoise.mechanism.spoken import joint_named
 from equipoise.planting.names import (
     EXTREMES,
     FIGURES,

@@ -14,10 +14,11 @@ from equipoise.mechanism import kernels
 from equipoise.mechanism.assessment import FourBar, four_bar
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dwell import Dwell
-from equipoise.mechanism.dynamics import CAUSES, Forces, forces, massless, place_of
+from equipoise.mechanism.dynamics import Forces, forces, massless, place_of
 from equipoise.mechanism.model import Machine, Vector
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
+from equipoise.mechanism.shares import CAUSES
 from equipoise.mechanism.strokes import Stroke, dwell, strokes
 from equipoise.quantities import Dimension
 from equipoise.results.outputs import Outputs

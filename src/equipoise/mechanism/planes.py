@@ -1,0 +1,267 @@
+"""Links beside each other: the plane of every joint, and which couples the joints then bear.
+
+With R the force and C the couple that a joint in the plane z exerts on a link, and Q the sum of
+z times the forces that the link needs, every link asks for sum(z R + C) = Q.  Forces are complex,
+x + i y, so that i times such a sum is the moment about x and y.
+
+A chain that closes has more couples than equations.  A pin in the frame is taken for as stiff as
+its bearings, which bear whatever its link needs; a link without one hands its couple on by its
+joints, in equal shares (least squares).  Where all that acts on such a link lies in one plane there
+is none to hand on, and nothing is open.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note
+from equipoise.mechanism.bodies import inertia_of
+from equipoise.mechanism.checks import FRAME, bodies_at, unknown
+from equipoise.mechanism.links import Link
+from equipoise.mechanism.parts import Bearing, Mechanism
+
+Array = np.ndarray[Any, Any]
+
+BEARING = ("pin", "slider")
+"""Kinds of joints that bear couples across the plane; teeth do not."""
+
+
+def beside(machine: Mechanism) -> bool:
+    """Whether a machine tells where its parts lie across the plane of its motion."""
+    return bool(machine.bearings) or any(
+        link.plane or link.planes or any(body.plane is not None for body in link.bodies)
+        for link in machine.links.values()
+    )
+
+
+def masses_of(link: Link) -> Iterator[tuple[float, complex, float]]:
+    """Mass (kg), centre (complex, m, in the link's axes) and plane (m) of each part of a link."""
+    for body in link.bodies:
+        mass, center, _ = inertia_of(body, link.points)
+        yield mass, center, link.plane if body.plane is None else body.plane
+    if not link.bodies and link.mass is not None and link.center_of_mass is not None:
+        x, y = link.center_of_mass
+        yield link.mass, x + 1j * y, link.plane
+
+
+def moments_across(link: Link, point: str | None = None) -> tuple[Any, Any]:
+    """Sums of mass times plane (kg m), and of that times the arm from a point, or from the origin
+    of the link's axes (kg m2, complex).
+    """
+    x, y = (0.0, 0.0) if point is None else link.points[point]
+    parts = [(mass * z, center - (x + 1j * y)) for mass, center, z in masses_of(link)]
+    return sum(m for m, _ in parts), sum((m * arm for m, arm in parts), start=0j)
+
+
+# -- joints ----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Where the body `by` exerts a force on the body `on`: in which plane (m), and whether it can
+    exert a couple across it, as pins and sliders can.
+    """
+
+    name: str
+    on: str
+    by: str
+    plane: float
+    bears: bool
+
+
+def contacts(linkage: Any) -> tuple[Contact, ...]:
+    """Every joint and mesh of a linkage, as `Pass.joints` and `Pass.gears` have them.
+
+    A joint lies in the plane of the link that no joint holds in the frame; one with the frame in
+    that of its link; one of two links that are alike midway between them.
+    """
+    machine, order = linkage.machine, linkage.joints.bodies.index
+    joints = [one for one in linkage.reactions if one.kind in BEARING]
+    held = {end for one in joints for end in _ends(one) if FRAME in _ends(one)}
+    found = []
+    for name, one in linkage.named_reactions:
+        if one.kind not in BEARING:
+            plane = machine.links[one.on].plane
+            found.append(Contact(name, one.on, one.by, plane, False))
+            continue
+        by, on = sorted(_ends(one), key=order)
+        points = {one.on: one.at, one.by: one.at}
+        if one.kind == "slider":
+            slider = next(s for s in machine.sliders if s.name == one.name)
+            points = {slider.link: slider.point, slider.on: slider.through}
+        found.append(Contact(name, on, by, _plane_between(machine, points, held), True))
+    return tuple(found)
+
+
+def _ends(reaction: Any) -> tuple[str, str]:
+    return reaction.on, reaction.by
+
+
+def _plane_between(machine: Mechanism, points: Mapping[str, str], held: set[str]) -> float:
+    """Plane of a joint of two bodies, each with its point there."""
+    ends = [(body, machine.links[body], point) for body, point in points.items() if body != FRAME]
+    told = [link.planes[point] for _, link, point in ends if point in link.planes]
+    loose = [link.plane for body, link, _ in ends if body not in held]
+    planes = told[:1] or (loose if len(loose) == 1 else [link.plane for _, link, _ in ends])
+    return sum(planes) / len(planes)
+
+
+@dataclass(frozen=True, eq=False)
+class Statics:
+    """Couples across the plane as sums of what the links need and of what the joints exert.
+
+    contacts : K of them, of which J bear couples.
+    by_needed : (J, L) of sums Q of each link.  by_force : (J, K) of each contact's force.
+    open : names of joints whose couples statics leaves open.
+    """
+
+    links: tuple[str, ...]
+    contacts: tuple[Contact, ...]
+    by_needed: Array
+    open: tuple[str, ...]
+
+    @cached_property
+    def bearing(self) -> tuple[Contact, ...]:
+        """Those that bear couples."""
+        return tuple(one for one in self.contacts if one.bears)
+
+    @cached_property
+    def by_force(self) -> Array:
+        """What is handed on of forces beside the links' own planes."""
+        return -self.by_needed @ (_signs(self.links, self.contacts) * self._planes)
+
+    @property
+    def _planes(self) -> Array:
+        return np.array([one.plane for one in self.contacts])
+
+    def couples(self, needed: Mapping[str, Array], exerted: Mapping[str, Array]) -> dict[str, Any]:
+        """Couple of each joint by name, as a sum of planes times forces, N m."""
+        names = [one.name for one in self.contacts]
+        found = {}
+        for row, other, one in zip(self.by_needed, self.by_force, self.bearing, strict=True):
+            terms = [factor * needed[link] for factor, link in _used(row, self.links)]
+            terms += [factor * exerted[name] for factor, name in _used(other, names)]
+            found[one.name] = sum(terms, start=0.0)
+        return found
+
+
+def _used(row: Array, names: Sequence[str]) -> Iterator[tuple[float, str]]:
+    """Factors that are not rounding, with what they belong to."""
+    least = 1e-12 * max(float(np.max(np.abs(row), initial=0.0)), 1e-300)
+    return ((float(f), name) for f, name in zip(row, names, strict=True) if abs(f) > least)
+
+
+def _signs(links: Sequence[str], joints: Sequence[Contact]) -> Array:
+    """(L, K): 1 where a joint acts on a link, -1 where the link is what acts."""
+    return np.array([[(one.on == k) - (one.by == k) for one in joints] for k in links], dtype=float)
+
+
+def statics(linkage: Any) -> Statics:
+    """How couples go from link to link in a linkage."""
+    machine, all_of = linkage.machine, contacts(linkage)
+    links, bearing = tuple(machine.links), [one for one in all_of if one.bears]
+    signs = _signs(links, bearing)
+    fixed = np.array([FRAME in (one.on, one.by) for one in bearing])
+    held = np.any(signs[:, fixed] != 0, axis=1)
+    found = np.zeros((len(bearing), len(links)))
+    # first what links without a joint in the frame hand on, then what all others bear
+    found[np.ix_(~fixed, ~held)] = np.linalg.pinv(signs[np.ix_(~held, ~fixed)])
+    rest = np.eye(len(links)) - signs[:, ~fixed] @ found[~fixed]
+    found[fixed] = np.linalg.pinv(signs[np.ix_(held, fixed)]) @ rest[held]
+    free = [link for link, one in zip(links, held, strict=True) if not one]
+    return Statics(links, all_of, found, tuple(_open(machine, all_of, free)))
+
+
+def _open(machine: Any, joints: Sequence[Contact], free: Sequence[str]) -> Iterator[str]:
+    """Joints by which links hand couples on that could go another way as well."""
+    bearing = [one for one in joints if one.bears]
+    for group in _chains(free, bearing):
+        own = [one for one in bearing if group & {one.on, one.by}]
+        if len(own) > len(group) and not all(_flat(machine, link, joints) for link in group):
+            yield from (one.name for one in own)
+
+
+def _chains(links: Iterable[str], joints: Sequence[Contact]) -> list[set[str]]:
+    """Links in sets that hang together by joints among themselves."""
+    groups = [{link} for link in links]
+    for one in joints:
+        met = [group for group in groups if group & {one.on, one.by}]
+        if len(met) == 2:
+            met[0].update(met[1])
+            groups.remove(met[1])
+    return groups
+
+
+def _flat(machine: Any, link: str, joints: Sequence[Contact]) -> bool:
+    """Whether all that acts on a link lies in one plane."""
+    body = machine.links[link]
+    planes = {one.plane for one in joints if link in (one.on, one.by)}
+    planes |= {plane for mass, _, plane in masses_of(body) if mass}
+    planes |= {body.plane_of(one.point) for one in machine.loads if one.link == link and one.point}
+    planes |= {body.plane_of(one.point) for one in machine.springs if one.link == link}
+    planting = machine.planting
+    if planting is not None and planting.soil is not None and planting.tip in body.points:
+        planes.add(body.plane_of(planting.tip))
+    return len(planes) <= 1
+
+
+# -- checks ----------------------------------------------------------------------------------------
+
+
+def wrong_planes(machine: Mechanism) -> Iterator[ModelError]:
+    """Everything that is wrong with planes of pins and with bearings."""
+    for point, bodies in bodies_at(machine.bodies).items():
+        told = [(k, machine.links[k].planes[point]) for k in bodies if _tells(machine, k, point)]
+        for (one, here), (other, there) in combinations(told, 2):
+            if here != there:
+                yield ModelError(
+                    f"links.{other}.planes.{point}",
+                    Note(
+                        "got {there:g} mm, and {here:g} mm in the {one}; a pin lies in one plane, "
+                        "give it once",
+                        there=1e3 * there,
+                        here=1e3 * here,
+                        one=one,
+                    ),
+                )
+    for name, bearing in machine.bearings.items():
+        yield from _wrong_bearing(f"bearings.{name}", bearing, machine)
+
+
+def _tells(machine: Mechanism, body: str, point: str) -> bool:
+    return body != FRAME and point in machine.links[body].planes
+
+
+def _wrong_bearing(where: str, bearing: Bearing, machine: Mechanism) -> Iterator[ModelError]:
+    if bearing.link not in machine.links:
+        yield ModelError(f"{where}.link", unknown(bearing.link, machine.links, "link"))
+        return
+    pins = [point for point in machine.links[bearing.link].points if point in machine.frame]
+    if len(pins) != 1:
+        yield ModelError(
+            f"{where}.link",
+            Note(
+                "{link!r} has {pins} pins in the frame; bearings hold a link that turns about one",
+                link=bearing.link,
+                pins=len(pins),
+            ),
+        )
+        return
+    planes = [one.plane for one in machine.bearings.values() if one.link == bearing.link]
+    if len(planes) != 2 or planes[0] == planes[1]:
+        yield ModelError(
+            where,
+            Note(
+                "{link!r} has {count} bearings in different planes; give it two, whose forces "
+                "statics can tell",
+                link=bearing.link,
+                count=len({*planes}),
+            ),
+        )
