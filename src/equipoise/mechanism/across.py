@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import Any
 
 from equipoise.mechanism import kernels
-from equipoise.mechanism.checks import FRAME, Named
+from equipoise.mechanism.checks import Named
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.planes import Statics, moments_across, statics
 from equipoise.mechanism.reactions import Acting, JointForce, VectorSignal, full
@@ -81,12 +81,11 @@ class Across:
     def bearings(self) -> Mapping[str, JointForce]:
         """Force of each bearing on its link, N."""
         given = self.motion.machine.bearings
-        pins = {one.on: one for one in self.statics.bearing if one.by == FRAME}
         found = {}
         for name, bearing in given.items():
             both = {at: one.plane for at, one in given.items() if one.link == bearing.link}
             other = sum(both.values()) - bearing.plane
-            pin = pins[bearing.link]
+            pin, *_ = self.statics.pin_of(bearing.link)
             force = self.exerted[pin.name]
             lever = (other - pin.plane) * force.value - self._couples[pin.name]
             found[name] = replace(force, value=lever / (other - bearing.plane))

@@ -39,8 +39,6 @@ from equipoise.mechanism.reactions import (
 from equipoise.mechanism.shares import CAUSES, Split
 from equipoise.mechanism.steps import Array, p, planar, u
 
-ACTING = (acting_loads, acting_springs)
-
 
 @dataclass(frozen=True, eq=False)
 class Forces:
@@ -135,9 +133,10 @@ class Forces:
     @cached_property
     def across(self) -> Across:
         """What links beside each other do across the plane."""
-        pushes = (pushes_across(self.motion, of(self.motion)) for of in ACTING)
-        masses = masses_across(self.motion)
-        return Across(self.motion, *masses, *pushes, {**self.joints, **self.gears})
+        motion = self.motion
+        loads = pushes_across(motion, acting_loads(motion))
+        springs = pushes_across(motion, acting_springs(motion))
+        return Across(motion, *masses_across(motion), loads, springs, self.solved.exerted)
 
     @cached_property
     def split(self) -> Split:
@@ -255,15 +254,17 @@ def split(whole: Forces) -> Split:
 def _across_apart(whole: Forces, solved: Pass, shape: tuple[int, ...]) -> Across:
     """What links do across the plane, by cause and link."""
     one = whole.across
-    parts = []
-    each = zip((0, 2, 3, 4), (one.inertia, one.weights, one.loads, one.springs), strict=True)
-    for number, needed in each:
-        apart = {}
+    parts = (one.inertia, one.weights, one.loads, one.springs)
+
+    def apart(cause: int, needed: Mapping[str, Any]) -> dict[str, Array]:
+        found = {}
         for k, link in enumerate(whole.inertia):
-            apart[link] = np.zeros(shape, complex)
-            apart[link][number, k] = needed.get(link, 0.0)
-        parts.append(apart)
-    return Across(whole.motion, *parts, {**solved.joints, **solved.gears})
+            found[link] = np.zeros(shape, complex)
+            found[link][cause, k] = needed.get(link, 0.0)
+        return found
+
+    inertia, weights, loads, springs = map(apart, (0, 2, 3, 4), parts)
+    return Across(whole.motion, inertia, weights, loads, springs, solved.exerted)
 
 
 def _causes(whole: Forces, link: str) -> list[Demand]:

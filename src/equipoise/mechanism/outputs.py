@@ -176,6 +176,7 @@ linear("frame_moment", "torque", to_say("moment on the frame"), about=True)
 of_space = _alike(
     "",
     lambda name, found: getattr(found.forces.across, name),
+    needs="planes",
     members=lambda machine: ("",) if beside(machine) else (),
     linear=True,
     loop=True,
@@ -259,12 +260,14 @@ of_joint(
     members=lambda machine: joint_names(machine) if beside(machine) else (),
     items=lambda found: found.forces.across.tilting_moments if beside(found.machine) else (),
     had="tilting_moments",
+    needs="planes",
     linear=True,
     summed=(True, False),
 )
 of_bearing = _alike(
     "bearings.{}",
     lambda _, found, bearing: found.forces.across.bearings[bearing],
+    needs="planes",
     members=lambda machine: machine.bearings,
 )
 of_bearing(

@@ -140,7 +140,8 @@ def _across(motion: Motion, solved: Pass) -> Across:
     count, width = len(machine.links), len(QUANTITIES) + len(ACROSS)
     size, angles = width * count, len(motion.crank_angle)
     gravity = complex(*machine.gravity)
-    inertia, weights = {}, {}
+    inertia: dict[str, Array] = {}
+    weights: dict[str, Array] = {}
     for k, (name, link) in enumerate(machine.links.items()):
         shift = complex(*link.points[motion.linkage.anchors[name]])
         unit = np.eye(len(ACROSS))[:, :, None]
@@ -155,7 +156,7 @@ def _across(motion: Motion, solved: Pass) -> Across:
             found[name][rows][: len(ACROSS)] = part
     exerted = {
         name: replace(one, value=np.pad(one.value, ((0, len(ACROSS) * count), (0, 0))))
-        for name, one in {**solved.joints, **solved.gears}.items()
+        for name, one in solved.exerted.items()
     }
     return Across(motion, inertia, weights, {}, {}, exerted)
 
@@ -290,10 +291,16 @@ def spring_columns(
         raise UsageError(unknown(point, points, Note("point of {body}", body=link)))
     if to not in frame:
         raise UsageError(unknown(to, frame, "point of the frame"))
-    units = np.stack([spring_vector(motion, point, to), spring_direction(motion, link, point, to)])
+    units = spring_units(motion, link, point, to)
     zero = np.zeros(units.shape)
     demands: dict[str, Demand] = dict.fromkeys(motion.machine.links, (zero + 0j, zero))
     demands |= demands_of(motion, [(link, point, units, 0.0)])
     like = forces(motion).solved if motion.machine.gears else None
     solved = reactions(motion, demands, like)
-    return solved.drive_torque, {name: joint.value for name, joint in solved.joints.items()}
+    return solved.drive_torque, {name: one.value for name, one in solved.exerted.items()}
+
+
+def spring_units(motion: Motion, link: str, point: str, to: str) -> Array:
+    """Force (2, N) on a link's point of these two springs, N, complex."""
+    along = spring_direction(motion, link, point, to)
+    return np.stack([spring_vector(motion, point, to), along])

@@ -20,6 +20,9 @@ from equipoise.mechanism.gears import Gear
 from equipoise.mechanism.links import Link
 from equipoise.mechanism.support import Row, Support
 
+JOINTS = ("pin", "slider")
+"""Kinds of what holds bodies together, which is no push of a coupling."""
+
 
 @declared
 class Slider(Frozen):

@@ -25,12 +25,9 @@ from equipoise.i18n import Note
 from equipoise.mechanism.bodies import inertia_of
 from equipoise.mechanism.checks import FRAME, bodies_at, unknown
 from equipoise.mechanism.links import Link
-from equipoise.mechanism.parts import Bearing, Mechanism
+from equipoise.mechanism.parts import JOINTS, Bearing, Mechanism
 
 Array = np.ndarray[Any, Any]
-
-BEARING = ("pin", "slider")
-"""Kinds of joints that bear couples across the plane; teeth do not."""
 
 
 def beside(machine: Mechanism) -> bool:
@@ -77,17 +74,17 @@ class Contact:
 
 
 def contacts(linkage: Any) -> tuple[Contact, ...]:
-    """Every joint and mesh of a linkage, as `Pass.joints` and `Pass.gears` have them.
+    """Every joint and push of a linkage, as `Pass.exerted` has them.
 
     A joint lies in the plane of the link that no joint holds in the frame; one with the frame in
     that of its link; one of two links that are alike midway between them.
     """
     machine, order = linkage.machine, linkage.joints.bodies.index
-    joints = [one for one in linkage.reactions if one.kind in BEARING]
+    joints = [one for one in linkage.reactions if one.kind in JOINTS]
     held = {end for one in joints for end in _ends(one) if FRAME in _ends(one)}
     found = []
     for name, one in linkage.named_reactions:
-        if one.kind not in BEARING:
+        if one.kind not in JOINTS:
             plane = machine.links[one.on].plane
             found.append(Contact(name, one.on, one.by, plane, False))
             continue
@@ -135,27 +132,40 @@ class Statics:
     @cached_property
     def by_force(self) -> Array:
         """What is handed on of forces beside the links' own planes."""
-        return -self.by_needed @ (_signs(self.links, self.contacts) * self._planes)
+        levers = _signs(self.links, self.contacts) * self._planes
+        return np.asarray(-self.by_needed @ levers)
 
     @property
     def _planes(self) -> Array:
         return np.array([one.plane for one in self.contacts])
 
+    def factors(self, number: int) -> tuple[dict[str, float], dict[str, float]]:
+        """Of the couple of one of `bearing`: those of what links need, and of forces, by name."""
+        needed = _used(self.by_needed[number], self.links)
+        return needed, _used(self.by_force[number], [one.name for one in self.contacts])
+
+    def pin_of(self, link: str) -> tuple[Contact, dict[str, float], dict[str, float]]:
+        """The joint by which a link turns in its bearings, with the factors of its couple."""
+        number, pin = next(
+            (k, one) for k, one in enumerate(self.bearing) if (one.on, one.by) == (link, FRAME)
+        )
+        return pin, *self.factors(number)
+
     def couples(self, needed: Mapping[str, Array], exerted: Mapping[str, Array]) -> dict[str, Any]:
         """Couple of each joint by name, as a sum of planes times forces, N m."""
-        names = [one.name for one in self.contacts]
         found = {}
-        for row, other, one in zip(self.by_needed, self.by_force, self.bearing, strict=True):
-            terms = [factor * needed[link] for factor, link in _used(row, self.links)]
-            terms += [factor * exerted[name] for factor, name in _used(other, names)]
+        for number, one in enumerate(self.bearing):
+            by_needed, by_force = self.factors(number)
+            terms = [factor * needed[link] for link, factor in by_needed.items()]
+            terms += [factor * exerted[name] for name, factor in by_force.items()]
             found[one.name] = sum(terms, start=0.0)
         return found
 
 
-def _used(row: Array, names: Sequence[str]) -> Iterator[tuple[float, str]]:
-    """Factors that are not rounding, with what they belong to."""
+def _used(row: Array, names: Sequence[str]) -> dict[str, float]:
+    """Factors that are not rounding, by what they belong to."""
     least = 1e-12 * max(float(np.max(np.abs(row), initial=0.0)), 1e-300)
-    return ((float(f), name) for f, name in zip(row, names, strict=True) if abs(f) > least)
+    return {name: float(f) for f, name in zip(row, names, strict=True) if abs(f) > least}
 
 
 def _signs(links: Sequence[str], joints: Sequence[Contact]) -> Array:

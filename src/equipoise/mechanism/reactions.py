@@ -23,11 +23,10 @@ from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.loads import load_at
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.parts import JOINTS
 from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, run
 from equipoise.mechanism.tip import surface_of, tip_link
 
-JOINTS = ("pin", "slider")
-"""Kinds of reactions that are no push of a coupling."""
 Demand = tuple[Any, Any]
 """Force (complex) and moment about a link's anchor, each (..., N) or the same at all angles."""
 
@@ -129,6 +128,16 @@ class Pass:
         """Pairs of gears, by name; the force is on the driven gear."""
         gears = (r for r in self.motion.linkage.reactions if r.kind == "gear")
         return Named("pair of gears", ((r.name, self._mesh(r)) for r in gears))
+
+    @cached_property
+    def exerted(self) -> dict[str, JointForce]:
+        """All of these, and whatever else bodies push each other with, by name."""
+        named = self.motion.linkage.named_reactions
+        pushes = {name: one for name, one in named if one.kind not in JOINTS}
+        return self.joints | {name: self._push(one) for name, one in pushes.items()}
+
+    def _push(self, one: Reaction) -> JointForce:
+        return JointForce(full(self.motion, self.state[one.force], complex), one.on, one.by)
 
     @property
     def flanks(self) -> State:
