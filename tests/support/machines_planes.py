@@ -17,7 +17,7 @@ from equipoise.mechanism.links import Link
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.parts import Bearing
 from support.free_bodies import FreeBodies
-from support.loads import has_soil, on_links, springs_on_links, tip_of
+from support.loads import has_soil, on_links, springs_on_links, tips_of
 from support.poses import Array, Poses
 
 
@@ -125,8 +125,7 @@ def _of_loads(machine: Machine) -> list[float]:
     """Planes of loads and of the soil."""
     found = [point_plane(machine, load.link, load.point or "") for load in machine.loads]
     if has_soil(machine):
-        link, point, _ = tip_of(machine)
-        found.append(point_plane(machine, link, point))
+        found += [point_plane(machine, link, point) for link, point, _ in tips_of(machine)]
     return found
 
 

@@ -157,7 +157,9 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]
     if any(one.is_of_row for one in wanted):
         write_demands(writer)
-    if any(one.loop and re.search(r"{(joint|bearing) ", one.loop) for one in wanted):
+    passed = ["{joint ", "{bearing "]
+    passed += [] if linkage.machine.drive.motion is None else ["{drive torque"]
+    if any(value in (one.loop or "") for one in wanted for value in passed):
         if any(isinstance(step, LoopGroup) for step in linkage.motion):
             raise UsageError("joint forces of groups of loops cannot be computed in a loop")
         write_joints(writer)

@@ -217,8 +217,8 @@ def _flat(machine: Any, link: str, joints: Sequence[Contact]) -> bool:
     planes |= {body.plane_of(one.point) for one in machine.loads if one.link == link and one.point}
     planes |= {body.plane_of(one.point) for one in machine.springs if one.link == link}
     planting = machine.planting
-    if planting is not None and planting.soil is not None and planting.tip in body.points:
-        planes.add(body.plane_of(planting.tip))
+    if planting is not None and planting.soil is not None:
+        planes |= {body.plane_of(arm.tip) for arm in planting.every_arm if arm.tip in body.points}
     return len(planes) <= 1
 
 
