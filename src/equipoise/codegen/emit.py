@@ -20,7 +20,8 @@ from equipoise.mechanism.model import Machine
 from equipoise.mechanism.newton import LoopGroup
 from equipoise.mechanism.outputs import DECLARED, Declared, declared
 from equipoise.mechanism.parts import JOINTS
-from equipoise.mechanism.planes import beside, statics
+from equipoise.mechanism.planes import beside
+from equipoise.mechanism.statics import statics
 
 _LOOKED_UP = re.compile(r"\{([^}:]+)(:name)?\}")
 """Values in the expression of an output: of the machine, or of the member of a family."""

@@ -14,8 +14,9 @@ from typing import Any
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.planes import Statics, moments_across, statics
+from equipoise.mechanism.planes import moments_across
 from equipoise.mechanism.reactions import Acting, JointForce, VectorSignal, full
+from equipoise.mechanism.statics import Statics, statics
 from equipoise.mechanism.steps import p, u
 
 Needed = Mapping[str, Any]
