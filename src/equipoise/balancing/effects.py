@@ -22,7 +22,6 @@ from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.objectives import balanced_names
 from equipoise.mechanism.outputs import Declared, Found, matches
-from equipoise.mechanism.planes import beside
 from equipoise.mechanism.reactions import JointForce, Pass, VectorSignal, reactions
 from equipoise.signals import Array
 
@@ -117,10 +116,9 @@ class Effects:
     def _declared(self, output: str) -> tuple[Declared, str]:
         joints, bearings = self.start.joints, self.machine.bearings
         for one, item in matches(output):
-            if one.needs == "planes" and not beside(self.machine):
-                continue
-            known = bearings if one.group == "bearings" else joints
-            if one.is_of_row and not one.reason and (not item or item in known):
+            forces = bearings if one.group == "bearings" else joints
+            known = item in forces if item else "" in one.members(self.machine)
+            if one.is_of_row and not one.reason and known:
                 return one, item
         if output.startswith("joints."):
             raise UsageError(unknown(output.removeprefix("joints."), joints, "joint"))
@@ -258,6 +256,10 @@ class Present:
         return self.effects.start.drive_torque
 
     @property
+    def drive_force(self) -> Array:
+        return self.effects.start.drive_force
+
+    @property
     def joints(self) -> Mapping[str, JointForce]:
         return self.solved.joints
 
@@ -298,6 +300,10 @@ class Unit:
     @property
     def drive_torque(self) -> Array:
         return self.effects.with_springs(self.effects.solved.drive_torque, "drive_torque")
+
+    @property
+    def drive_force(self) -> Array:
+        return self.effects.with_springs(self.effects.solved.drive_force, "drive_force")
 
     @property
     def joints(self) -> Mapping[str, JointForce]:

@@ -20,21 +20,20 @@ from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.across import Across, masses_across, pushes_across
+from equipoise.mechanism.acting import acting_loads, acting_springs, load_demands, spring_demands
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.planes import beside
+from equipoise.mechanism.pushing import lengths
 from equipoise.mechanism.reactions import (
     Demand,
     JointForce,
     MeshForce,
     Pass,
     VectorSignal,
-    acting_loads,
-    acting_springs,
     full,
-    load_demands,
+    pushed,
     reactions,
-    spring_demands,
 )
 from equipoise.mechanism.shares import CAUSES, Split
 from equipoise.mechanism.steps import Array, p, planar, u
@@ -116,10 +115,18 @@ class Forces:
         return self.solved.drive_torque
 
     @property
+    def drive_force(self) -> Array:
+        """Force with which a drive pushes its ends apart, N; of one that does."""
+        return self.solved.drive_force
+
+    @property
     def power(self) -> Array:
         """Power fed in by the drive, W."""
-        drive = self.motion.machine.drive.link
-        return self.drive_torque * self.motion.links[drive].angular_velocity
+        motion = self.motion
+        drive = motion.machine.drive
+        if drive.pushes:
+            return self.drive_force * lengths(motion)[1] * motion.speed
+        return self.drive_torque * motion.links[drive.link].angular_velocity
 
     @cached_property
     def joints(self) -> Mapping[str, JointForce]:
@@ -249,6 +256,7 @@ def split(whole: Forces) -> Split:
         solved.gears,
         _across_apart(whole, solved, shape) if beside(motion.machine) else None,
         links,
+        drive_force=pushed(solved),
     )
 
 

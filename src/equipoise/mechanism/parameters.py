@@ -23,6 +23,7 @@ from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.across import Across, needed_by_inertia
+from equipoise.mechanism.acting import spring_direction, spring_vector
 from equipoise.mechanism.dynamics import (
     Forces,
     demand_of_inertia,
@@ -33,14 +34,7 @@ from equipoise.mechanism.dynamics import (
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.planes import beside, moments_across
-from equipoise.mechanism.reactions import (
-    Demand,
-    Pass,
-    demands_of,
-    reactions,
-    spring_direction,
-    spring_vector,
-)
+from equipoise.mechanism.reactions import Demand, Pass, demands_of, pushed, reactions
 from equipoise.mechanism.shares import Shares
 from equipoise.mechanism.steps import Array, planar
 
@@ -129,6 +123,7 @@ def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Re
         _across(motion, solved) if beside(machine) else None,
         parameter_names(machine),
         values,
+        drive_force=pushed(solved),
     )
 
 
@@ -272,7 +267,7 @@ def independent_columns(matrix: Array, tolerance: float = 1e-9) -> tuple[list[in
 def spring_columns(
     motion: Motion, link: str, point: str, to: str
 ) -> tuple[Array, dict[str, Array]]:
-    """Drive torque (2, N) and the force in each joint by name (2, N), complex.
+    """Drive torque or force (2, N) and the force in each joint by name (2, N), complex.
 
     First row: of a spring of 1 N/m without a free length; second row: of a pull of 1 N towards the
     frame's point; each alone.  Shaking force and moment, and force and moment on the frame, have
@@ -297,7 +292,9 @@ def spring_columns(
     demands |= demands_of(motion, [(link, point, units, 0.0)])
     like = forces(motion).solved if motion.machine.gears else None
     solved = reactions(motion, demands, like)
-    return solved.drive_torque, {name: one.value for name, one in solved.exerted.items()}
+    effort = pushed(solved)
+    effort = solved.drive_torque if effort is None else effort
+    return effort, {name: one.value for name, one in solved.exerted.items()}
 
 
 def spring_units(motion: Motion, link: str, point: str, to: str) -> Array:

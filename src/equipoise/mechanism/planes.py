@@ -46,6 +46,14 @@ def moments_across(link: Link, point: str | None = None) -> tuple[Any, Any]:
 
 def wrong_planes(machine: Mechanism) -> Iterator[ModelError]:
     """Everything that is wrong with planes of pins and with bearings."""
+    if machine.drive.pushes and beside(machine):
+        yield ModelError(
+            "drive",
+            Note(
+                "a drive that pushes is computed with in one plane; leave out plane and planes of "
+                "links and bodies, and bearings"
+            ),
+        )
     for point, bodies in bodies_at(machine.bodies).items():
         told = [(k, machine.links[k].planes[point]) for k in bodies if _tells(machine, k, point)]
         for (one, here), (other, there) in combinations(told, 2):

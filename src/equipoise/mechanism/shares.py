@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
@@ -23,6 +23,7 @@ class Shares:
     """Outputs told apart: arrays (..., N), whose first axes are what they are shares of.
 
     shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
+    drive_force : N, of a drive that pushes.
     joints, gears : name -> force whose arrays have those axes.
     across : what links beside each other do; None where they all lie in one plane.
     """
@@ -35,6 +36,7 @@ class Shares:
     joints: Mapping[str, JointForce]
     gears: Mapping[str, MeshForce]
     across: Across | None
+    drive_force: Array | None = field(default=None, kw_only=True)
 
     @property
     def of_machine(self) -> dict[str, Array]:
