@@ -7,6 +7,8 @@ from fractions import Fraction
 from math import pi, radians
 from typing import Any, ClassVar, Literal
 
+import numpy as np
+
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
@@ -16,6 +18,7 @@ from equipoise.keys import (
     Keys,
     Listing,
     Number,
+    Table,
     Text,
     Whole,
     declared,
@@ -23,6 +26,8 @@ from equipoise.keys import (
     key,
 )
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body
+from equipoise.mechanism.gear_shapes import GearShape, wrong_shape
+from equipoise.mechanism.rolling import Relation
 
 MESHES = ("external", "internal")
 
@@ -81,6 +86,11 @@ class Gear(Frozen):
         below=pi / 2,
         why=Note("give an angle from 0 deg to less than 90 deg"),
     )
+    shape: GearShape | None = key(
+        Table(GearShape, headed=True),
+        "pitch curves, where the ratio varies; `ratio` or `teeth` then tell its mean",
+        default=None,
+    )
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Gear:
@@ -122,6 +132,13 @@ class Gear(Frozen):
         near = Fraction(self.speed_ratio).limit_denominator(100_000)
         return near if abs(float(near) - self.speed_ratio) <= 1e-13 * abs(near) else None
 
+    def relation(self, centres: Any) -> Relation:
+        """How far the driven gear turns by the driver's angle, both against the carrier, where the
+        ratio varies; centres : from the driven gear's pin to the driver's, in the carrier's axes.
+        """
+        assert self.shape is not None
+        return self.shape.relation(self.speed_ratio, self.shape.phase - np.angle(-centres))
+
 
 def wrong_gear(where: str, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:
     """Everything that is wrong with a pair of gears."""
@@ -152,3 +169,19 @@ def wrong_gear(where: str, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:
                 speed_ratio=gear.speed_ratio,
             ),
         )
+    elif gear.shape is not None:
+        centres = centres_of(gear, bodies)
+        distance = None if centres is None else abs(centres)
+        yield from wrong_shape(f"{where}.shape", gear.shape, gear, distance)
+
+
+def centres_of(gear: Gear, bodies: Bodies) -> complex | None:
+    """From the driven gear's pin to the driver's in the carrier's axes, m; None where either does
+    not share exactly one point with the carrier.
+    """
+    points = bodies.get(gear.carrier, {})
+    pins = [points.keys() & bodies.get(body, {}).keys() for body in (gear.driver, gear.driven)]
+    if any(len(shared) != 1 for shared in pins):
+        return None
+    driver, driven = (complex(*points[next(iter(shared))]) for shared in pins)
+    return driver - driven

@@ -1,0 +1,322 @@
+"""Pitch curves of gears whose ratio varies, as frozen values with their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from functools import lru_cache
+from math import degrees, pi
+from typing import Any, ClassVar, Literal, Protocol
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import (
+    Conditions,
+    Frozen,
+    Listing,
+    Number,
+    Quantity,
+    Text,
+    Whole,
+    declared,
+    key,
+    lacks,
+    needs,
+)
+from equipoise.mechanism import kernels
+from equipoise.mechanism.rolling import (
+    EccentricCircle,
+    HalfAngle,
+    PitchCurve,
+    RatioCurve,
+    Relation,
+    Summed,
+    Tabled,
+    Waves,
+)
+
+KINDS: Mapping[str, tuple[str, ...]] = {
+    "elliptic": ("eccentricity",),
+    "eccentric": ("eccentricity",),
+    "limacon": ("eccentricity",),
+    "ratio": ("angle", "ratio", "cosines", "sines"),
+    "radius": ("angle", "radius", "cosines", "sines"),
+}
+"""Kinds of shape with the keys that go with each, beside those that go with all."""
+OWN = ("eccentricity", "angle", "ratio", "radius", "cosines", "sines")
+TABLED = ("angle", "ratio", "radius")
+LEAST_ROWS, MOST_ROWS, MOST_WAVES = 3, 720, 50
+MISFIT = 1e-4
+"""Share by which a table may miss that its curves close; it is spread over all of it."""
+PIECES = 32
+"""Pieces of a period over which a ratio is summed, for each of its waves."""
+
+
+def _of_kind(kind: str) -> dict[str, Any]:
+    """JSON Schema of what goes with a kind."""
+    own = KINDS[kind]
+    then = {**lacks(*(one for one in OWN if one not in own))}
+    if kind in TABLED:
+        table, series = needs("angle", kind), {"anyOf": [needs("cosines"), needs("sines")]}
+        then |= {"oneOf": [table, series]}
+    else:
+        then |= needs(*own)
+    return {"if": {"properties": {"kind": {"const": kind}}, **needs("kind")}, "then": then}
+
+
+@declared
+class GearShape(Frozen):
+    """Pitch curves of gears in external mesh whose ratio varies about that of the pair.
+
+    The driver's curve repeats `lobes` times a turn, and the driven gear's follows from it.  A
+    circle, a limacon, a table or a series of the ratio has the driven curve that rolls on it.
+    """
+
+    called = to_say("{what} of the shape of the gears")
+    conditions: ClassVar[Conditions] = {"allOf": [*map(_of_kind, KINDS)]}
+
+    kind: Literal["elliptic", "eccentric", "limacon", "ratio", "radius"] = key(
+        Text((*KINDS,)),
+        "`elliptic` about a focus; `eccentric`, a circle with a driven gear that fits it; "
+        "`limacon`, a limaçon of Pascal; `ratio` or `radius`: free, by a table or a Fourier "
+        "series of the ratio or of the driver's pitch radius",
+        example="elliptic",
+    )
+    eccentricity: float | None = key(
+        Number(),
+        "of the driver: of an ellipse; of the axis over the radius of a circle; share by which "
+        "the radius of a limaçon swings",
+        default=None,
+        example=0.4,
+        at_least=0,
+        below=1,
+    )
+    lobes: int = key(Whole(1), "how often the driver's curve repeats in its turn", default=1)
+    phase: float = key(
+        "angle",
+        "direction, in the driver's axes, that is 0 for its curve: of an ellipse, a circle and a "
+        "limaçon that of the shortest radius; where it points to the driven gear, a ratio begins",
+        default=0.0,
+    )
+    angle: tuple[float, ...] = key(
+        Listing(Quantity("angle")),
+        "rising, of the rows of a table over one lobe: how far the driver has turned (`ratio`), "
+        "or the direction in its axes (`radius`)",
+        default=(),
+        example=["0 deg", "120 deg", "240 deg"],
+    )
+    ratio: tuple[float, ...] = key(
+        Listing(Number()),
+        "size of the ratio at these angles",
+        default=(),
+        example=[0.7, 1.2, 1.2],
+        above=0,
+    )
+    radius: tuple[float, ...] = key(
+        Listing(Quantity("length")),
+        "pitch radius of the driver at these angles",
+        default=(),
+        example=["30 mm", "24 mm", "24 mm"],
+        above=0,
+    )
+    cosines: tuple[float, ...] = key(
+        Listing(Number()),
+        "of 1, 2, ... waves a lobe, over the mean, instead of a table",
+        default=(),
+        example=[0.3, 0.05],
+        word=to_say("cosine"),
+    )
+    sines: tuple[float, ...] = key(
+        Listing(Number()), "likewise", default=(), example=[0.1], word=to_say("sine")
+    )
+
+    @property
+    def period(self) -> float:
+        """Angle of a lobe, rad."""
+        return 2 * pi / self.lobes
+
+    @property
+    def waves(self) -> int:
+        """About how many waves of its ratio a lobe has."""
+        return max(1, len(self.angle), 2 * len(self.cosines), 2 * len(self.sines))
+
+    def relation(self, mean: float, zero: Any = 0.0) -> Relation:
+        """The driven gear's angle by the driver's, against the carrier.
+
+        mean : ratio.  zero : what the driver's angle lacks of that at which 0 of its curve points
+        to the driven gear.
+        """
+        if self.kind in ("elliptic", "limacon"):
+            make = HalfAngle.ellipses if self.kind == "elliptic" else HalfAngle.limacon
+            return replace(make(self.eccentricity, mean, self.lobes), zero=zero)
+        return replace(_summed(replace(self, phase=0.0), mean), zero=zero)
+
+    @property
+    def curve(self) -> EccentricCircle | Tabled | Waves:
+        """Over an angle: the ratio or the driver's radius, as far as it is told by the shape."""
+        if self.kind == "eccentric":
+            assert self.eccentricity is not None
+            return EccentricCircle(self.eccentricity)
+        if self.angle:
+            return Tabled.through(self.angle, self.ratio or self.radius, self.period)
+        return Waves(self.cosines, self.sines, self.lobes)
+
+
+@lru_cache(maxsize=32)
+def _summed(shape: GearShape, mean: float) -> Summed:
+    """The relation of a shape whose phase is 0."""
+    curve = shape.curve
+    knots = np.linspace(0.0, shape.period, PIECES * shape.waves + 1)
+    if isinstance(curve, Tabled):
+        knots = curve.knots if shape.kind == "ratio" else -curve.knots[::-1]
+    make = RatioCurve if shape.kind == "ratio" else PitchCurve
+    return Summed.of(mean, make.closing(curve, mean, knots), knots)
+
+
+# -- checks ----------------------------------------------------------------------------------------
+
+
+class Pair(Protocol):
+    """What a shape has to know of its gears."""
+
+    @property
+    def speed_ratio(self) -> float: ...
+    @property
+    def exact_ratio(self) -> Fraction | None: ...
+    @property
+    def pressure_angle(self) -> float: ...
+
+
+def wrong_shape(
+    where: str, shape: GearShape, gears: Pair, distance: float | None
+) -> Iterator[ModelError]:
+    """Everything that is wrong with the shape of gears; distance : between the axes, if known, m."""
+    problems = [*_wrong_keys(shape), *_wrong_table(shape), *_wrong_lobes(shape, gears)]
+    if not problems:
+        problems = [*_wrong_curve(shape, gears, distance)]
+    for name, told in problems:
+        yield ModelError(f"{where}.{name}".rstrip("."), told)
+
+
+Told = tuple[str, Note]
+
+
+def _wrong_keys(shape: GearShape) -> Iterator[Told]:
+    own = KINDS[shape.kind]
+    given = [one for one in OWN if getattr(shape, one) not in (None, ())]
+    for one in given:
+        if one not in own:
+            yield one, Note("goes with another kind of shape; leave it out")
+    if shape.kind not in TABLED:
+        if shape.eccentricity is None:
+            yield "eccentricity", Note("missing; give a number from 0 to less than 1")
+        if shape.kind == "eccentric" and shape.lobes != 1:
+            yield "lobes", Note("a circle has one lobe; leave it out")
+        return
+    if bool(shape.angle) == bool(shape.cosines or shape.sines):
+        told = Note("give either a table (angle, {kind}) or cosines and sines", kind=shape.kind)
+        yield "", told
+    elif bool(shape.angle) != bool(getattr(shape, shape.kind)):
+        yield "", Note("give both angle and {kind}, or neither", kind=shape.kind)
+
+
+def _wrong_table(shape: GearShape) -> Iterator[Told]:
+    rows, values = len(shape.angle), len(shape.ratio or shape.radius)
+    waves = max(len(shape.cosines), len(shape.sines))
+    if waves > MOST_WAVES:
+        yield "cosines", Note("got {waves} waves; give at most {most}", waves=waves, most=MOST_WAVES)
+    if not rows:
+        return
+    if not LEAST_ROWS <= rows <= MOST_ROWS:
+        told = Note(
+            "got {rows} rows; give from {least} to {most}",
+            rows=rows, least=LEAST_ROWS, most=MOST_ROWS,
+        )  # fmt: skip
+        yield "angle", told
+    elif values and rows != values:
+        yield "angle", Note("got {rows} angles for {values} values", rows=rows, values=values)
+    elif np.min(np.diff(shape.angle)) <= 0:
+        yield "angle", Note("give angles that rise from row to row")
+    elif shape.angle[-1] - shape.angle[0] >= shape.period * (1 - 1e-9):
+        told = Note(
+            "the rows cover {span:.6g} deg; a lobe has {period:.6g} deg, and begins anew behind "
+            "its last row: leave that out which is the first again",
+            span=degrees(shape.angle[-1] - shape.angle[0]),
+            period=degrees(shape.period),
+        )
+        yield "angle", told
+
+
+def _wrong_lobes(shape: GearShape, gears: Pair) -> Iterator[Told]:
+    ratio, exact = gears.speed_ratio, gears.exact_ratio
+    if ratio >= 0:
+        told = Note(
+            "the ratio is {ratio:g}; gears with a shape mesh from outside, give them a negative "
+            "ratio, or teeth without an internal mesh",
+            ratio=ratio,
+        )
+        yield "", told
+    elif exact is None or (shape.lobes / exact).denominator != 1:
+        told = Note(
+            "the pitch curves do not close: with {lobes} of the driver and a mean ratio of "
+            "{ratio:.6g} the driven gear would have {count:.6g} lobes, which have to be whole",
+            lobes=shape.lobes,
+            ratio=ratio,
+            count=shape.lobes / abs(ratio),
+        )
+        yield "lobes", told
+
+
+def _wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterator[Told]:
+    at = np.linspace(0.0, shape.period, 8 * PIECES * shape.waves)
+    if shape.kind in TABLED and (lowest := float(np.min(shape.curve(at)[0]))) <= 0:
+        told = Note(
+            "goes down to {lowest:.4g}; a pitch curve needs it above 0 all the way round",
+            lowest=lowest,
+        )
+        yield shape.kind if shape.angle else "cosines", told
+        return
+    ratio = gears.speed_ratio
+    relation = shape.relation(ratio)
+    yield from _misfits(shape, relation, ratio, distance)
+    _, first, second = relation(at)
+    steepest = float(np.max(np.abs(kernels.pitch_slope(first, second))))
+    most = degrees(np.arctan(steepest) + gears.pressure_angle)
+    if not most < 90:
+        told = Note(
+            "the teeth would push at {most:.4g} deg from where the gear turns to, and jam; give a "
+            "smaller eccentricity, a flatter curve or a smaller pressure angle",
+            most=most,
+        )
+        yield "", told
+
+
+def _misfits(
+    shape: GearShape, relation: Relation, ratio: float, distance: float | None
+) -> Iterator[Told]:
+    """Tables whose curves do not close to a share of `MISFIT`."""
+    if not shape.angle or not isinstance(relation, Summed):
+        return
+    factor = abs(relation.rate.factor)
+    if shape.kind == "ratio" and abs(factor - 1) > MISFIT:
+        told = Note(
+            "the pitch curves do not close: the mean of the table is {mean:.7g}, and that of the "
+            "gears {ratio:.7g}; multiply the table by {factor:.7g}",
+            mean=abs(ratio) / factor,
+            ratio=abs(ratio),
+            factor=factor,
+        )
+        yield "ratio", told
+    if shape.kind == "radius" and distance and abs(factor * distance - 1) > MISFIT:
+        told = Note(
+            "the pitch curves do not close: the driven gear's does at {closing:.7g} mm between "
+            "the axes, and the carrier has {distance:.7g} mm; move a pin, or multiply the table "
+            "by {factor:.7g}",
+            closing=1e3 / factor,
+            distance=1e3 * distance,
+            factor=factor * distance,
+        )
+        yield "radius", told
