@@ -32,7 +32,7 @@ from equipoise.mechanism.rolling import (
     HalfAngle,
     PitchCurve,
     RatioCurve,
-    Relation,
+    Rolling,
     Summed,
     Tabled,
     Waves,
@@ -97,14 +97,14 @@ class GearShape(Frozen):
     lobes: int = key(Whole(1), "how often the driver's curve repeats in its turn", default=1)
     phase: float = key(
         "angle",
-        "direction, in the driver's axes, that is 0 for its curve: of an ellipse, a circle and a "
-        "limaçon that of the shortest radius; where it points to the driven gear, a ratio begins",
+        "angle of the driver, seen from the carrier, at which 0 of its curve points to the driven "
+        "gear: of an ellipse, a circle and a limaçon the shortest radius",
         default=0.0,
     )
     angle: tuple[float, ...] = key(
         Listing(Quantity("angle")),
         "rising, of the rows of a table over one lobe: how far the driver has turned (`ratio`), "
-        "or the direction in its axes (`radius`)",
+        "or the direction from 0 of its curve (`radius`)",
         default=(),
         example=["0 deg", "120 deg", "240 deg"],
     )
@@ -143,16 +143,12 @@ class GearShape(Frozen):
         """About how many waves of its ratio a lobe has."""
         return max(1, len(self.angle), 2 * len(self.cosines), 2 * len(self.sines))
 
-    def relation(self, mean: float, zero: Any = 0.0) -> Relation:
-        """The driven gear's angle by the driver's, against the carrier.
-
-        mean : ratio.  zero : what the driver's angle lacks of that at which 0 of its curve points
-        to the driven gear.
-        """
+    def law(self, mean: float) -> Rolling:
+        """The driven gear's angle by the driver's, both seen from the carrier; mean : ratio."""
         if self.kind in ("elliptic", "limacon"):
             make = HalfAngle.ellipses if self.kind == "elliptic" else HalfAngle.limacon
-            return replace(make(self.eccentricity, mean, self.lobes), zero=zero)
-        return replace(_summed(replace(self, phase=0.0), mean), zero=zero)
+            return replace(make(self.eccentricity, mean, self.lobes), zero=self.phase)
+        return replace(_summed(replace(self, phase=0.0), mean), zero=self.phase)
 
     @property
     def curve(self) -> EccentricCircle | Tabled | Waves:
@@ -167,7 +163,7 @@ class GearShape(Frozen):
 
 @lru_cache(maxsize=32)
 def _summed(shape: GearShape, mean: float) -> Summed:
-    """The relation of a shape whose phase is 0."""
+    """The law of a shape whose phase is 0."""
     curve = shape.curve
     knots = np.linspace(0.0, shape.period, PIECES * shape.waves + 1)
     if isinstance(curve, Tabled):
@@ -280,9 +276,9 @@ def _wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Itera
         yield shape.kind if shape.angle else "cosines", told
         return
     ratio = gears.speed_ratio
-    relation = shape.relation(ratio)
-    yield from _misfits(shape, relation, ratio, distance)
-    _, first, second = relation(at)
+    law = shape.law(ratio)
+    yield from _misfits(shape, law, ratio, distance)
+    _, first, second = law(at)
     steepest = float(np.max(np.abs(kernels.pitch_slope(first, second))))
     most = degrees(np.arctan(steepest) + gears.pressure_angle)
     if not most < 90:
@@ -295,12 +291,12 @@ def _wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Itera
 
 
 def _misfits(
-    shape: GearShape, relation: Relation, ratio: float, distance: float | None
+    shape: GearShape, law: Rolling, ratio: float, distance: float | None
 ) -> Iterator[Told]:
     """Tables whose curves do not close to a share of `MISFIT`."""
-    if not shape.angle or not isinstance(relation, Summed):
+    if not shape.angle or not isinstance(law, Summed):
         return
-    factor = abs(relation.rate.factor)
+    factor = abs(law.rate.factor)
     if shape.kind == "ratio" and abs(factor - 1) > MISFIT:
         told = Note(
             "the pitch curves do not close: the mean of the table is {mean:.7g}, and that of the "

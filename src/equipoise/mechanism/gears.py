@@ -7,8 +7,6 @@ from fractions import Fraction
 from math import pi, radians
 from typing import Any, ClassVar, Literal
 
-import numpy as np
-
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
@@ -25,9 +23,10 @@ from equipoise.keys import (
     inside,
     key,
 )
+from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body
+from equipoise.mechanism.couplings import Law, Relation, coupled
 from equipoise.mechanism.gear_shapes import GearShape, wrong_shape
-from equipoise.mechanism.rolling import Relation
 
 MESHES = ("external", "internal")
 
@@ -52,6 +51,9 @@ class Gear(Frozen):
         "oneOf": [{"required": ["ratio"]}, {"required": ["teeth"]}],
         "dependentRequired": {"mesh": ["teeth"]},
     }
+
+    table: ClassVar[str] = "gears"
+    kind: ClassVar[str] = "gear"
 
     driver: str = inside(Text())
     driven: str = inside(Text())
@@ -124,6 +126,17 @@ class Gear(Frozen):
         return ratio if self.mesh == "internal" else -ratio
 
     @property
+    def relation(self) -> Relation:
+        if self.law is not None:
+            return coupled, (self.law,)
+        return kernels.gear, (self.speed_ratio,)
+
+    @property
+    def law(self) -> Law | None:
+        """The driven gear's angle by the driver's, seen from the carrier, where the ratio varies."""
+        return None if self.shape is None else self.shape.law(self.speed_ratio)
+
+    @property
     def exact_ratio(self) -> Fraction | None:
         """The speed ratio as a fraction, or None if it is no ratio of whole numbers."""
         if self.teeth is not None:
@@ -131,13 +144,6 @@ class Gear(Frozen):
             return ratio if self.mesh == "internal" else -ratio
         near = Fraction(self.speed_ratio).limit_denominator(100_000)
         return near if abs(float(near) - self.speed_ratio) <= 1e-13 * abs(near) else None
-
-    def relation(self, centres: Any) -> Relation:
-        """How far the driven gear turns by the driver's angle, both against the carrier, where the
-        ratio varies; centres : from the driven gear's pin to the driver's, in the carrier's axes.
-        """
-        assert self.shape is not None
-        return self.shape.relation(self.speed_ratio, self.shape.phase - np.angle(-centres))
 
 
 def wrong_gear(where: str, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:

@@ -1,6 +1,6 @@
 """Gears whose ratio varies: how far the driven one turns for the driver, both against the carrier.
 
-A relation takes the driver's angle x, counted on through the turns, and returns the driven gear's
+A law takes the driver's angle x, counted on through the turns, and returns the driven gear's
 angle y with its first and second derivative by x.  The first is the ratio i; the pitch point
 divides the line of centres by it, and both pitch curves roll on each other there.  With the vector
 c from the driven gear's axis to the driver's, that point is at c / (1 - i) from the first and at
@@ -86,7 +86,7 @@ class Tabled:
 
 @dataclass(frozen=True)
 class HalfAngle:
-    """y = mean x + (2 share / lobes) arg(1 + depth exp(i lobes x)), with x counted from -zero.
+    """y = mean x + (2 share / lobes) arg(1 + depth exp(i lobes x)), with x counted from zero.
 
     Of a pair of ellipses that is the tangent of half an angle times a factor, as of anomalies.
     """
@@ -116,7 +116,7 @@ class HalfAngle:
         return cls(mean, 1 - mean, wave / (1 + (1 - wave * wave) ** 0.5), lobes)
 
     def __call__(self, x: Any) -> tuple[Any, Any, Any]:
-        x = x + self.zero
+        x = x - self.zero
         z = self.depth * np.exp(1j * self.lobes * x)
         part = 1 / (1 + z)
         y = self.mean * x + (2 / self.lobes) * self.share * np.angle(1 + z)
@@ -202,7 +202,7 @@ class Summed:
         return cls(mean, rate, knots, np.append(0.0, np.cumsum(_pieces(rate, knots))))
 
     def __call__(self, x: Any) -> tuple[Any, Any, Any]:
-        x = np.asarray(x + self.zero)
+        x = np.asarray(x - self.zero)
         begin, period = self.knots[0], self.knots[-1] - self.knots[0]
         rounds = np.floor((x - begin) / period)
         at = x - rounds * period
@@ -213,7 +213,8 @@ class Summed:
         return (y, *self.rate(at))
 
 
-Relation = HalfAngle | Summed
+Rolling = HalfAngle | Summed
+"""How far the driven gear turns by the driver's angle."""
 
 
 def _nodes(knots: Array) -> tuple[Array, Array]:

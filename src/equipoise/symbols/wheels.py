@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from equipoise.mechanism.checks import Bodies
+from equipoise.mechanism.couplings import Law
 from equipoise.mechanism.gears import Gear
-from equipoise.mechanism.joints import Structure, gear_pins
+from equipoise.mechanism.joints import Structure, coupling_pins
 from equipoise.mechanism.model import FRAME
 from equipoise.symbols.shapes import Array
 
@@ -38,12 +39,14 @@ def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) ->
 
     angles : of the links in one pose, rad, which tell how curves lie that are no circles.
     """
-    for gear in joints.gears:
-        pins = gear_pins(joints, gear)
+    for gear in joints.couplings:
+        if not isinstance(gear, Gear):
+            continue
+        pins = coupling_pins(joints, gear)
         driver, driven = (complex(*bodies[gear.carrier][pin]) for pin in pins)
         links = zip((gear.driver, gear.driven), pins, strict=True)
-        if gear.shape is not None:
-            curves = _curves(gear, driver - driven, angles)
+        if gear.law is not None:
+            curves = _curves(gear, gear.law, driver - driven, angles)
             for (link, pin), curve in zip(links, curves, strict=True):
                 yield Wheel(link, pin, float(np.max(np.abs(curve))), gear.name, curve)
             continue
@@ -52,13 +55,15 @@ def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) ->
             yield Wheel(link, pin, radius * share, gear.name)
 
 
-def _curves(gear: Gear, centres: complex, angles: Mapping[str, float]) -> Iterator[Array]:
+def _curves(
+    gear: Gear, law: Law, centres: complex, angles: Mapping[str, float]
+) -> Iterator[Array]:
     """Corners of driver's and driven gear's curve, in their axes: where the pitch point comes to."""
-    relation, turned = gear.relation(centres), {FRAME: 0.0, **angles}
-    here = turned[gear.driver] - turned[gear.carrier]
-    offset = turned[gear.driven] - turned[gear.carrier] - float(relation(here)[0])
+    turned = {FRAME: 0.0, **angles}
+    driver, driven = (turned[one] - turned[gear.carrier] for one in (gear.driver, gear.driven))
+    offset = driven - law(driver)[0]
     for turns, of_driver in ((1.0, True), (1 / abs(gear.speed_ratio), False)):
         x = np.linspace(0.0, 2 * np.pi * turns, CORNERS, endpoint=False)
-        y, ratio, _ = relation(x)
+        y, ratio, _ = law(x)
         angle, share = (x, ratio) if of_driver else (y + offset, 1.0)
         yield centres * share / (1 - ratio) * np.exp(-1j * angle)
