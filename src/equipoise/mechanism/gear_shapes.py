@@ -27,6 +27,7 @@ from equipoise.keys import (
     needs,
 )
 from equipoise.mechanism import kernels
+from equipoise.mechanism.curves import Array
 from equipoise.mechanism.rolling import (
     EccentricCircle,
     HalfAngle,
@@ -139,6 +140,11 @@ class GearShape(Frozen):
         return 2 * pi / self.lobes
 
     @property
+    def fine(self) -> Array:
+        """Angles of the driver over a lobe (n,), between which its ratio hardly changes, rad."""
+        return self.phase + np.linspace(0.0, self.period, 8 * PIECES * self.waves + 1)
+
+    @property
     def waves(self) -> int:
         """About how many waves of its ratio a lobe has."""
         return max(1, len(self.angle), 2 * len(self.cosines), 2 * len(self.sines))
@@ -167,7 +173,8 @@ def _summed(shape: GearShape, mean: float) -> Summed:
     curve = shape.curve
     knots = np.linspace(0.0, shape.period, PIECES * shape.waves + 1)
     if isinstance(curve, Tabled):
-        knots = curve.knots if shape.kind == "ratio" else -curve.knots[::-1]
+        rows = curve.knots if shape.kind == "ratio" else -curve.knots[::-1]
+        knots = np.interp(np.arange(8 * len(rows) - 7) / 8, np.arange(len(rows)), rows)
     make = RatioCurve if shape.kind == "ratio" else PitchCurve
     return Summed.of(mean, make.closing(curve, mean, knots), knots)
 
@@ -267,8 +274,7 @@ def _wrong_lobes(shape: GearShape, gears: Pair) -> Iterator[Told]:
 
 
 def _wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterator[Told]:
-    at = np.linspace(0.0, shape.period, 8 * PIECES * shape.waves)
-    if shape.kind in TABLED and (lowest := float(np.min(shape.curve(at)[0]))) <= 0:
+    if shape.kind in TABLED and (lowest := float(np.min(shape.curve(shape.fine)[0]))) <= 0:
         told = Note(
             "goes down to {lowest:.4g}; a pitch curve needs it above 0 all the way round",
             lowest=lowest,
@@ -278,7 +284,7 @@ def _wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Itera
     ratio = gears.speed_ratio
     law = shape.law(ratio)
     yield from _misfits(shape, law, ratio, distance)
-    _, first, second = law(at)
+    _, first, second = law(shape.fine)
     steepest = float(np.max(np.abs(kernels.pitch_slope(first, second))))
     most = degrees(np.arctan(steepest) + gears.pressure_angle)
     if not most < 90:

@@ -7,6 +7,8 @@ from fractions import Fraction
 from math import pi, radians
 from typing import Any, ClassVar, Literal
 
+import numpy as np
+
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
@@ -135,6 +137,15 @@ class Gear(Frozen):
     def law(self) -> Law | None:
         """The driven gear's angle by the driver's, seen from the carrier, where the ratio varies."""
         return None if self.shape is None else self.shape.law(self.speed_ratio)
+
+    @property
+    def ratios(self) -> tuple[float, float]:
+        """The smallest and the largest size of the ratio, with its sign."""
+        if self.law is None:
+            return self.speed_ratio, self.speed_ratio
+        assert self.shape is not None
+        _, ratio, _ = self.law(self.shape.fine)
+        return float(np.max(ratio)), float(np.min(ratio))
 
     @property
     def exact_ratio(self) -> Fraction | None:

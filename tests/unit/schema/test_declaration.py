@@ -20,6 +20,7 @@ from equipoise.mechanism import (
     counterweights,
     field,
     force_elements,
+    gear_shapes,
     links,
     mounts,
     objectives,
@@ -49,7 +50,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
     of.__name__: of
     for of in (
         Machine, shown_units.ShownUnits, parts.Drive, force_elements.Motor, Frame, links.Link,
-        bodies.Body, bodies.Hole, parts.Slider, parts.Gear,
+        bodies.Body, bodies.Hole, parts.Slider, parts.Gear, gear_shapes.GearShape,
         force_elements.Load, Spring, Position, field.Planting, field.Soil, support.Support,
         mounts.Mount, support.Row, balance.Balance, weights.CenterMove,
         weights.AddedMass, weights.Weight, counterweights.GearedWeight,
