@@ -208,7 +208,9 @@ def centre_line(gear: Gear, machine: Machine, poses: Poses) -> tuple[Array, Arra
     if gear.shape is not None:
         ratio = Rolling(gear).ratio(seen_from_carrier(gear, poses))
     part = ratio / (ratio - 1)
-    return axes[0] + part[..., None] * between, between / np.linalg.norm(between, axis=-1, keepdims=True)
+    return axes[0] + part[..., None] * between, between / np.linalg.norm(
+        between, axis=-1, keepdims=True
+    )
 
 
 def seen_from_carrier(gear: Gear, poses: Poses) -> Array:

@@ -26,6 +26,7 @@ from equipoise.mechanism.model import (
     Spring,
     Vector,
 )
+from support.machines_drives import moved
 from support.newton import Side, assembled
 from support.poses import Array, Poses, turned
 
@@ -710,6 +711,7 @@ def _more() -> Iterable[Callable[[np.random.Generator], Case]]:
     return (ratio.rolling_counterweight, ratio.rolling_coupler, ratio.rolling_planet)
 
 
+MOVED = [moved(maker) for maker in (slider_crank, watt, geared_counterweight)]
 KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
     maker.__name__: maker
     for maker in (
@@ -733,6 +735,7 @@ KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
         slider_on_rocker,
         guide_on_dyad,
         crossed_guides,
+        *MOVED,
     )
 }
 

@@ -29,9 +29,7 @@ def _shape(rng: np.random.Generator, lobes: int, ratio: float) -> GearShape:
     return GearShape(kind, cosines=waves[0], sines=waves[1], lobes=lobes, phase=phase)
 
 
-def _rolling(
-    rng: np.random.Generator, driver: str, driven: str, carrier: str = FRAME
-) -> Gear:
+def _rolling(rng: np.random.Generator, driver: str, driven: str, carrier: str = FRAME) -> Gear:
     """Draw a pair of few lobes."""
     lobes, others = int(rng.integers(1, 3)), int(rng.integers(1, 3))
     ratio = Fraction(-lobes, others)

@@ -72,7 +72,7 @@ def total(function: Callable[[Any], Any], end: float, shape: GearShape) -> float
 
 @lru_cache(maxsize=64)
 def ratio_of(shape: GearShape, mean: float) -> Callable[[Any], Any]:
-    """Return the ratio by the driver's angle from where 0 of its curve points to the driven gear."""
+    """Return the ratio by the driver's angle, from where 0 of its curve points across."""
     period = 2 * np.pi / shape.lobes
     if shape.kind == "ratio":
         curve = tabled(shape, shape.ratio) if shape.angle else (lambda x: waves(shape, x))

@@ -112,7 +112,8 @@ def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
 
 def can_emit(linkage: Linkage) -> bool:
     """Whether the steps of a linkage can be written out: no soil, no gears beside loops or
-    of varying ratio."""
+    of varying ratio.
+    """
     machine = linkage.machine
     if machine.planting is not None and machine.planting.soil is not None:
         return False
@@ -136,7 +137,8 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]
     if any(one.needs == "masses" for one in wanted):
         write_demands(writer)
-    if any("{joint " in (one.loop or "") for one in wanted):
+    passed = ["{joint "] if linkage.machine.drive.motion is None else ["{joint ", "{drive torque"]
+    if any(value in (one.loop or "") for one in wanted for value in passed):
         if any(isinstance(step, LoopGroup) for step in linkage.motion):
             raise UsageError("joint forces of groups of loops cannot be computed in a loop")
         write_joints(writer)

@@ -79,7 +79,9 @@ def _linkage(space: Any, scene: Scene) -> None:
         if wheel.curve is None:
             space.add_circle(center, MM * abs(wheel.radius), dxfattribs=layer)
         else:
-            turned = wheel.curve * np.exp(1j * (scene.angles[wheel.link][0] if wheel.link in scene.angles else 0.0))
+            turned = wheel.curve * np.exp(
+                1j * (scene.angles[wheel.link][0] if wheel.link in scene.angles else 0.0)
+            )
             space.add_lwpolyline(_points(at[wheel.center] + turned), close=True, dxfattribs=layer)
     for name, spot in zip(at, _points(at.values()), strict=True):
         held = FRAME if name in scene.frame else "points"

@@ -13,6 +13,7 @@ from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import (
     Tree,
     constant_loads,
+    even_ratio,
     mass_of,
     moment_of,
     preloads,

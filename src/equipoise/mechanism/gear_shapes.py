@@ -196,7 +196,7 @@ class Pair(Protocol):
 def wrong_shape(
     where: str, shape: GearShape, gears: Pair, distance: float | None
 ) -> Iterator[ModelError]:
-    """Everything that is wrong with the shape of gears; distance : between the axes, if known, m."""
+    """Everything that is wrong with the shape of gears; distance : of the axes, if known, m."""
     problems = [*_wrong_keys(shape), *_wrong_table(shape), *_wrong_lobes(shape, gears)]
     if not problems:
         problems = [*_wrong_curve(shape, gears, distance)]
@@ -230,7 +230,10 @@ def _wrong_table(shape: GearShape) -> Iterator[Told]:
     rows, values = len(shape.angle), len(shape.ratio or shape.radius)
     waves = max(len(shape.cosines), len(shape.sines))
     if waves > MOST_WAVES:
-        yield "cosines", Note("got {waves} waves; give at most {most}", waves=waves, most=MOST_WAVES)
+        yield (
+            "cosines",
+            Note("got {waves} waves; give at most {most}", waves=waves, most=MOST_WAVES),
+        )
     if not rows:
         return
     if not LEAST_ROWS <= rows <= MOST_ROWS:

@@ -135,7 +135,7 @@ class Gear(Frozen):
 
     @property
     def law(self) -> Law | None:
-        """The driven gear's angle by the driver's, seen from the carrier, where the ratio varies."""
+        """The driven gear's angle by the driver's, seen from the carrier, if the ratio varies."""
         return None if self.shape is None else self.shape.law(self.speed_ratio)
 
     @property

@@ -170,7 +170,7 @@ class PitchCurve:
 
         def missing(one: float) -> float:
             rest = 1 + one * radius
-            return float(np.sum(weights * one * radius / rest)) / period - mean
+            return float(np.sum(weights * one * radius / rest) / period - mean)
 
         factor = max(factor, 0.5 * most)
         while missing(factor) > 0:
@@ -192,13 +192,13 @@ class Summed:
     """
 
     mean: float
-    rate: Callable[[Array], tuple[Array, Array]]
+    rate: RatioCurve | PitchCurve
     knots: Array
     sums: Array
     zero: Any = 0.0
 
     @classmethod
-    def of(cls, mean: float, rate: Callable[[Array], tuple[Array, Array]], knots: Array) -> Summed:
+    def of(cls, mean: float, rate: RatioCurve | PitchCurve, knots: Array) -> Summed:
         return cls(mean, rate, knots, np.append(0.0, np.cumsum(_pieces(rate, knots))))
 
     def __call__(self, x: Any) -> tuple[Any, Any, Any]:

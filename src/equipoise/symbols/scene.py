@@ -12,7 +12,6 @@ import numpy as np
 from equipoise.errors import EquipoiseError
 from equipoise.mechanism.bodies import place_of
 from equipoise.mechanism.body_checks import Outline, outlines
-from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.model import FRAME, Link
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.tip import surface_of
@@ -278,7 +277,8 @@ def _field(motion: Motion) -> Field | None:
         surface = surface_of(motion.machine)
     except EquipoiseError:  # it cannot turn all the way round
         return None
-    lowest = float(motion.points[planting.tip].place.imag.min())
+    places = [motion.points[arm.tip].place.imag for arm in planting.every_arm]
+    lowest = float(np.min(places))
     depth = surface - lowest if planting.depth is None else planting.depth
     return Field(surface, max(depth, 0.0), tuple(complex(*end) for end in planting.tray or ()))
 

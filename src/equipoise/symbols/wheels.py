@@ -16,6 +16,7 @@ from equipoise.symbols.shapes import Array
 
 CORNERS = 180
 """Of a pitch curve that is no circle."""
+Curves = Iterator[Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,10 +56,8 @@ def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) ->
             yield Wheel(link, pin, radius * share, gear.name)
 
 
-def _curves(
-    gear: Gear, law: Law, centres: complex, angles: Mapping[str, float]
-) -> Iterator[Array]:
-    """Corners of driver's and driven gear's curve, in their axes: where the pitch point comes to."""
+def _curves(gear: Gear, law: Law, centres: complex, angles: Mapping[str, float]) -> Curves:
+    """Corners of driver's and driven gear's curve, in their axes: where the pitch point comes."""
     turned = {FRAME: 0.0, **angles}
     driver, driven = (turned[one] - turned[gear.carrier] for one in (gear.driver, gear.driven))
     offset = driven - law(driver)[0]

@@ -159,7 +159,8 @@ def parameters(linkage: Linkage) -> Iterable[tuple[str, Any]]:
     """Every number of the steps, by the outputs of its step."""
     for step in (*linkage.motion, *linkage.forces):
         for k, value in enumerate(getattr(step, "parameters", ())):
-            yield f"{step.outputs} {k}", value  # type: ignore[attr-defined]
+            if not callable(value):  # the law of a coupling
+                yield f"{step.outputs} {k}", value  # type: ignore[attr-defined]
 
 
 def row_of(value: Any, k: int) -> Any:
