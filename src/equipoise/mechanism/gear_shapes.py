@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from fractions import Fraction
-from functools import lru_cache
+from itertools import pairwise
 from math import degrees, pi
-from typing import Any, ClassVar, Literal, Protocol
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
@@ -26,18 +23,9 @@ from equipoise.keys import (
     lacks,
     needs,
 )
-from equipoise.mechanism import kernels
-from equipoise.mechanism.curves import Array
-from equipoise.mechanism.rolling import (
-    EccentricCircle,
-    HalfAngle,
-    PitchCurve,
-    RatioCurve,
-    Rolling,
-    Summed,
-    Tabled,
-    Waves,
-)
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.rolling import Rolling
 
 KINDS: Mapping[str, tuple[str, ...]] = {
     "elliptic": ("eccentricity",),
@@ -50,10 +38,6 @@ KINDS: Mapping[str, tuple[str, ...]] = {
 OWN = ("eccentricity", "angle", "ratio", "radius", "cosines", "sines")
 TABLED = ("angle", "ratio", "radius")
 LEAST_ROWS, MOST_ROWS, MOST_WAVES = 3, 720, 50
-MISFIT = 1e-4
-"""Share by which a table may miss that its curves close; it is spread over all of it."""
-PIECES = 32
-"""Pieces of a period over which a ratio is summed, for each of its waves."""
 
 
 def _of_kind(kind: str) -> dict[str, Any]:
@@ -140,43 +124,15 @@ class GearShape(Frozen):
         return 2 * pi / self.lobes
 
     @property
-    def fine(self) -> Array:
-        """Angles of the driver over a lobe (n,), between which its ratio hardly changes, rad."""
-        return self.phase + np.linspace(0.0, self.period, 8 * PIECES * self.waves + 1)
-
-    @property
     def waves(self) -> int:
         """About how many waves of its ratio a lobe has."""
         return max(1, len(self.angle), 2 * len(self.cosines), 2 * len(self.sines))
 
     def law(self, mean: float) -> Rolling:
         """The driven gear's angle by the driver's, both seen from the carrier; mean : ratio."""
-        if self.kind in ("elliptic", "limacon"):
-            make = HalfAngle.ellipses if self.kind == "elliptic" else HalfAngle.limacon
-            return replace(make(self.eccentricity, mean, self.lobes), zero=self.phase)
-        return replace(_summed(replace(self, phase=0.0), mean), zero=self.phase)
+        from equipoise.mechanism.pitch_curves import law_of
 
-    @property
-    def curve(self) -> EccentricCircle | Tabled | Waves:
-        """Over an angle: the ratio or the driver's radius, as far as it is told by the shape."""
-        if self.kind == "eccentric":
-            assert self.eccentricity is not None
-            return EccentricCircle(self.eccentricity)
-        if self.angle:
-            return Tabled.through(self.angle, self.ratio or self.radius, self.period)
-        return Waves(self.cosines, self.sines, self.lobes)
-
-
-@lru_cache(maxsize=32)
-def _summed(shape: GearShape, mean: float) -> Summed:
-    """The law of a shape whose phase is 0."""
-    curve = shape.curve
-    knots = np.linspace(0.0, shape.period, PIECES * shape.waves + 1)
-    if isinstance(curve, Tabled):
-        rows = curve.knots if shape.kind == "ratio" else -curve.knots[::-1]
-        knots = np.interp(np.arange(8 * len(rows) - 7) / 8, np.arange(len(rows)), rows)
-    make = RatioCurve if shape.kind == "ratio" else PitchCurve
-    return Summed.of(mean, make.closing(curve, mean, knots), knots)
+        return law_of(self, mean)
 
 
 # -- checks ----------------------------------------------------------------------------------------
@@ -199,7 +155,9 @@ def wrong_shape(
     """Everything that is wrong with the shape of gears; distance : of the axes, if known, m."""
     problems = [*_wrong_keys(shape), *_wrong_table(shape), *_wrong_lobes(shape, gears)]
     if not problems:
-        problems = [*_wrong_curve(shape, gears, distance)]
+        from equipoise.mechanism.pitch_curves import wrong_curve
+
+        problems = [*wrong_curve(shape, gears, distance)]
     for name, told in problems:
         yield ModelError(f"{where}.{name}".rstrip("."), told)
 
@@ -244,7 +202,7 @@ def _wrong_table(shape: GearShape) -> Iterator[Told]:
         yield "angle", told
     elif values and rows != values:
         yield "angle", Note("got {rows} angles for {values} values", rows=rows, values=values)
-    elif np.min(np.diff(shape.angle)) <= 0:
+    elif any(b <= a for a, b in pairwise(shape.angle)):
         yield "angle", Note("give angles that rise from row to row")
     elif shape.angle[-1] - shape.angle[0] >= shape.period * (1 - 1e-9):
         told = Note(
@@ -274,54 +232,3 @@ def _wrong_lobes(shape: GearShape, gears: Pair) -> Iterator[Told]:
             count=shape.lobes / abs(ratio),
         )
         yield "lobes", told
-
-
-def _wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterator[Told]:
-    if shape.kind in TABLED and (lowest := float(np.min(shape.curve(shape.fine)[0]))) <= 0:
-        told = Note(
-            "goes down to {lowest:.4g}; a pitch curve needs it above 0 all the way round",
-            lowest=lowest,
-        )
-        yield shape.kind if shape.angle else "cosines", told
-        return
-    ratio = gears.speed_ratio
-    law = shape.law(ratio)
-    yield from _misfits(shape, law, ratio, distance)
-    _, first, second = law(shape.fine)
-    steepest = float(np.max(np.abs(kernels.pitch_slope(first, second))))
-    most = degrees(np.arctan(steepest) + gears.pressure_angle)
-    if not most < 90:
-        told = Note(
-            "the teeth would push at {most:.4g} deg from where the gear turns to, and jam; give a "
-            "smaller eccentricity, a flatter curve or a smaller pressure angle",
-            most=most,
-        )
-        yield "", told
-
-
-def _misfits(
-    shape: GearShape, law: Rolling, ratio: float, distance: float | None
-) -> Iterator[Told]:
-    """Tables whose curves do not close to a share of `MISFIT`."""
-    if not shape.angle or not isinstance(law, Summed):
-        return
-    factor = abs(law.rate.factor)
-    if shape.kind == "ratio" and abs(factor - 1) > MISFIT:
-        told = Note(
-            "the pitch curves do not close: the mean of the table is {mean:.7g}, and that of the "
-            "gears {ratio:.7g}; multiply the table by {factor:.7g}",
-            mean=abs(ratio) / factor,
-            ratio=abs(ratio),
-            factor=factor,
-        )
-        yield "ratio", told
-    if shape.kind == "radius" and distance and abs(factor * distance - 1) > MISFIT:
-        told = Note(
-            "the pitch curves do not close: the driven gear's does at {closing:.7g} mm between "
-            "the axes, and the carrier has {distance:.7g} mm; move a pin, or multiply the table "
-            "by {factor:.7g}",
-            closing=1e3 / factor,
-            distance=1e3 * distance,
-            factor=factor * distance,
-        )
-        yield "radius", told

@@ -7,8 +7,6 @@ from fractions import Fraction
 from math import pi, radians
 from typing import Any, ClassVar, Literal
 
-import numpy as np
-
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
@@ -141,11 +139,11 @@ class Gear(Frozen):
     @property
     def ratios(self) -> tuple[float, float]:
         """The smallest and the largest size of the ratio, with its sign."""
-        if self.law is None:
+        if self.shape is None:
             return self.speed_ratio, self.speed_ratio
-        assert self.shape is not None
-        _, ratio, _ = self.law(self.shape.fine)
-        return float(np.max(ratio)), float(np.min(ratio))
+        from equipoise.mechanism.pitch_curves import ratios_of
+
+        return ratios_of(self.shape, self.speed_ratio)
 
     @property
     def exact_ratio(self) -> Fraction | None:
