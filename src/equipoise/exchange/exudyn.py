@@ -56,9 +56,7 @@ def _model(job: Job) -> Data:
         "crank_angle": job.crank_angle,
         "gravity": list(machine.gravity),
         "bodies": {} if support is None else {BASE: _support(machine, support)},
-        **{
-            kind: [] for kind in ("pins", "sliders", "geared", "springs", "loads", "mounts", "held")
-        },
+        **{kind: [] for kind in LISTS},
     }
     for tree in drawn:
         _row(model, tree, job, machine.drive.flywheel if tree is drawn[0] else 0.0)
