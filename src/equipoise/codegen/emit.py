@@ -111,8 +111,9 @@ def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
 
 
 def can_emit(linkage: Linkage) -> bool:
-    """Whether the steps of a linkage can be written out: no soil, no gears beside loops or of varying
-    ratio, no drive that pushes, and no joints whose forces only all free bodies together tell.
+    """Whether the steps of a linkage can be written out: no soil, no gears beside loops or of
+    varying ratio, no drive that pushes, and no joints whose forces only all free bodies
+    together tell.
     """
     if linkage.shared is not None or linkage.machine.drive.pushes:
         return False
