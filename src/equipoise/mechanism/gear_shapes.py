@@ -6,9 +6,8 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from itertools import pairwise
 from math import degrees, pi
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
+from typing import Any, ClassVar, Literal, Protocol
 
-from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     Conditions,
@@ -23,9 +22,6 @@ from equipoise.keys import (
     lacks,
     needs,
 )
-
-if TYPE_CHECKING:
-    from equipoise.mechanism.rolling import Rolling
 
 KINDS: Mapping[str, tuple[str, ...]] = {
     "elliptic": ("eccentricity",),
@@ -128,12 +124,6 @@ class GearShape(Frozen):
         """About how many waves of its ratio a lobe has."""
         return max(1, len(self.angle), 2 * len(self.cosines), 2 * len(self.sines))
 
-    def law(self, mean: float) -> Rolling:
-        """The driven gear's angle by the driver's, both seen from the carrier; mean : ratio."""
-        from equipoise.mechanism.pitch_curves import law_of
-
-        return law_of(self, mean)
-
 
 # -- checks ----------------------------------------------------------------------------------------
 
@@ -149,20 +139,13 @@ class Pair(Protocol):
     def pressure_angle(self) -> float: ...
 
 
-def wrong_shape(
-    where: str, shape: GearShape, gears: Pair, distance: float | None
-) -> Iterator[ModelError]:
-    """Everything that is wrong with the shape of gears; distance : of the axes, if known, m."""
-    problems = [*_wrong_keys(shape), *_wrong_table(shape), *_wrong_lobes(shape, gears)]
-    if not problems:
-        from equipoise.mechanism.pitch_curves import wrong_curve
-
-        problems = [*wrong_curve(shape, gears, distance)]
-    for name, told in problems:
-        yield ModelError(f"{where}.{name}".rstrip("."), told)
-
-
 Told = tuple[str, Note]
+"""A key, and what is wrong with it."""
+
+
+def wrong_shape(shape: GearShape, gears: Pair) -> list[Told]:
+    """Everything that is wrong with the shape of gears, whatever curves follow from it."""
+    return [*_wrong_keys(shape), *_wrong_table(shape), *_wrong_lobes(shape, gears)]
 
 
 def _wrong_keys(shape: GearShape) -> Iterator[Told]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from math import pi, radians
+from math import dist, pi, radians
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
@@ -134,7 +134,11 @@ class Gear(Frozen):
     @property
     def law(self) -> Law | None:
         """The driven gear's angle by the driver's, seen from the carrier, if the ratio varies."""
-        return None if self.shape is None else self.shape.law(self.speed_ratio)
+        if self.shape is None:
+            return None
+        from equipoise.mechanism.pitch_curves import law_of
+
+        return law_of(self.shape, self.speed_ratio)
 
     @property
     def ratios(self) -> tuple[float, float]:
@@ -185,18 +189,26 @@ def wrong_gear(where: str, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:
             ),
         )
     elif gear.shape is not None:
-        centres = centres_of(gear, bodies)
-        distance = None if centres is None else abs(centres)
-        yield from wrong_shape(f"{where}.shape", gear.shape, gear, distance)
+        yield from _wrong_shape(f"{where}.shape", gear.shape, gear, bodies)
 
 
-def centres_of(gear: Gear, bodies: Bodies) -> complex | None:
-    """From the driven gear's pin to the driver's in the carrier's axes, m; None where either does
-    not share exactly one point with the carrier.
+def _wrong_shape(where: str, shape: GearShape, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:
+    problems = wrong_shape(shape, gear)
+    if not problems:
+        from equipoise.mechanism.pitch_curves import wrong_curve
+
+        problems = [*wrong_curve(shape, gear, _distance(gear, bodies))]
+    for name, told in problems:
+        yield ModelError(f"{where}.{name}".rstrip("."), told)
+
+
+def _distance(gear: Gear, bodies: Bodies) -> float | None:
+    """Between the axes of a pair, m; None where either does not share exactly one point with the
+    carrier.
     """
     points = bodies.get(gear.carrier, {})
     pins = [points.keys() & bodies.get(body, {}).keys() for body in (gear.driver, gear.driven)]
     if any(len(shared) != 1 for shared in pins):
         return None
-    driver, driven = (complex(*points[next(iter(shared))]) for shared in pins)
-    return driver - driven
+    driver, driven = (points[next(iter(shared))] for shared in pins)
+    return dist(driver, driven)
