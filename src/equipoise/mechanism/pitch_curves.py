@@ -81,7 +81,7 @@ def wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterat
         yield shape.kind if shape.angle else "cosines", told
         return
     ratio = gears.speed_ratio
-    law = shape.law(ratio)
+    law = law_of(shape, ratio)
     yield from _misfits(shape, law, ratio, distance)
     _, first, second = law(fine(shape))
     steepest = float(np.max(np.abs(kernels.pitch_slope(first, second))))
