@@ -4,14 +4,16 @@ The general form of the nine equations that Lee and Kim write for a four-bar.  W
 are 3 n equations (two forces and the moment about the centre of mass of each link).  A pin brings
 two unknowns, a sliding joint a force across its line and a couple, a gear pair the tangential
 force at the pitch point, and the drive its torque.  A linkage with one free motion and no
-redundant constraint has as many unknowns as equations.
+redundant constraint has as many unknowns as equations.  Where joints hold too much, the forces of
+least squares are those of the rule that the package states: couples count as forces at the
+largest distance of two points of a body.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import chain, combinations
 
 import numpy as np
 
@@ -53,11 +55,13 @@ class Reaction:
 
 @dataclass(frozen=True)
 class FreeBodies:
-    """Everything that the free bodies tell, one value a crank angle."""
+    """Everything that the free bodies tell, one value a crank angle; `drive` is the torque of the
+    drive, or its force.
+    """
 
     joints: Mapping[str, Reaction]
     gears: Mapping[str, Reaction]
-    drive_torque: Array
+    drive: Array
     frame_force: Array
     frame_moment: Array
 
@@ -143,13 +147,51 @@ def solved(system: System, joints: list[Contact], gears: list[Contact]) -> dict[
         if contact.couple:
             columns.append(system.pair(contact, np.zeros_like(contact.at), 1.0))
         owners += [contact.name] * contact.size
-    torque = np.zeros_like(system.known)
-    torque[:, system.rows[system.machine.drive.link] + 2] = 1.0
-    columns, owners = [*columns, torque], [*owners, ""]
+    columns, owners = [*columns, driving(system)], [*owners, ""]
     matrix = np.stack(columns, -1)
-    assert matrix.shape[1] == matrix.shape[2], "as many unknowns as equations"
-    found = np.linalg.solve(matrix, system.known[..., None])[..., 0]
+    if matrix.shape[1] == matrix.shape[2]:
+        found = np.linalg.solve(matrix, system.known[..., None])[..., 0]
+    else:
+        couples = [k == len(one.directions) for one in (*joints, *gears) for k in range(one.size)]
+        units = np.where([*couples, False], extent(system.machine), 1.0)
+        pairs = zip(matrix * units, system.known, strict=True)
+        found = units * np.array([np.linalg.lstsq(*pair)[0] for pair in pairs])
     return {name: found[:, [o == name for o in owners]] for name in dict.fromkeys(owners)}
+
+
+def driving(system: System) -> Array:
+    """Return the column of the drive: a torque on its link, or a force between two bodies."""
+    machine = system.machine
+    if machine.drive.stroke is not None:
+        push = cylinder(machine, system.poses)
+        return system.pair(push, push.directions[0], 0.0)
+    torque = np.zeros_like(system.known)
+    torque[:, system.rows[machine.drive.link] + 2] = 1.0
+    return torque
+
+
+def cylinder(machine: Machine, poses: Poses) -> Contact:
+    """Return where a drive that pushes acts, and along which line."""
+    drive = machine.drive
+    if drive.slider:
+        one = next(one for one in machine.sliders if one.name == drive.slider)
+        at = poses.place(one.link, machine.links[one.link].points[one.point])
+        line = (float(np.cos(one.direction)), float(np.sin(one.direction)))
+        return Contact("", one.link, one.on, at, (poses.turned(one.on, line),))
+    assert drive.between is not None
+    bodies = drive.ends(machine.bodies)
+    ends = zip(bodies, drive.between, strict=True)
+    a, b = (poses.place(body, machine.points_of(body)[point]) for body, point in ends)
+    along = (b - a) / np.linalg.norm(b - a, axis=-1, keepdims=True)
+    return Contact("", bodies[1], bodies[0], b, (along,))
+
+
+def extent(machine: Machine) -> float:
+    """Return the largest distance of two points of a body."""
+    pairs = (
+        pair for points in machine.bodies.values() for pair in combinations(points.values(), 2)
+    )
+    return max(float(np.hypot(*np.subtract(*pair))) for pair in pairs)
 
 
 # -- contacts --------------------------------------------------------------------------------------
@@ -245,10 +287,14 @@ def gathered(
         apart = separating(gear, machine, poses, unknowns[contact.name][:, 0])
         force = tangential.force + apart
         meshed[gear.name] = Reaction(contact.on, contact.by, contact.at, force, tangential.couple)
-    torque = unknowns[""][:, 0]
+    drive, torque = unknowns[""][:, 0], 0.0
     pulls = [pull_on_frame(*acting) for acting in springs_on_links(machine, poses)]
+    if machine.drive.stroke is None:
+        torque = drive
+    else:
+        pulls.append(reaction(cylinder(machine, poses), unknowns[""]))
     force, moment = on_frame(machine, [*held.values(), *meshed.values(), *pulls])
-    return FreeBodies(held, meshed, torque, force, moment - torque)
+    return FreeBodies(held, meshed, drive, force, moment - torque)
 
 
 def reaction(contact: Contact, unknowns: Array) -> Reaction:

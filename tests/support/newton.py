@@ -15,6 +15,7 @@ import numpy as np
 
 from equipoise.mechanism.model import FRAME, Gear, Machine, Slider, Vector
 from support.driving import driven
+from support.driving import followed as followed_law
 from support.poses import Array, Poses, cross, pins, quarter, turned
 
 
@@ -61,13 +62,55 @@ class Constraints:
         ]
         rows += [row for slider in self.machine.sliders for row in self._slider(q, rate, slider)]
         rows += [self._gear(q, gear) for gear in self.machine.gears]
-        drive = self.machine.drive
-        rows.append(self._turn({drive.link: 1.0}, q, -driven(drive, crank_angle)[0]))
+        rows.append(self._driven(q, rate, self.commanded(crank_angle)[0]))
         return Row(
             np.concatenate([row.residual for row in rows]),
             np.concatenate([row.jacobian for row in rows]),
             np.concatenate([row.bend for row in rows]),
         )
+
+    def commanded(self, crank_angle: float) -> tuple[float, float, float]:
+        """Return what the drive commands, and its derivatives by crank angle."""
+        drive = self.machine.drive
+        if drive.stroke is None:
+            return driven(drive, crank_angle)
+        return followed_law(drive.stroke, crank_angle)
+
+    def _driven(self, q: Array, rate: Array, wanted: float) -> Row:
+        """Return the equation of the drive: an angle, or the length that pushes."""
+        drive = self.machine.drive
+        if drive.stroke is None:
+            return self._turn({drive.link: 1.0}, q, -wanted)
+        if drive.slider:
+            one = next(one for one in self.machine.sliders if one.name == drive.slider)
+            return self._travel(q, rate, one, wanted)
+        assert drive.between is not None
+        ends = zip(drive.ends(self.machine.bodies), drive.between, strict=True)
+        a, b = (self._place(q, rate, body, self.machine.points_of(body)[at]) for body, at in ends)
+        way, jacobian = b.residual - a.residual, b.jacobian - a.jacobian
+        length = float(np.hypot(*way))
+        along, drift = way / length, jacobian @ rate
+        turning = (drift @ drift - (along @ drift) ** 2) / length
+        bend = along @ (b.bend - a.bend) + turning
+        return Row(np.array([length - wanted]), (along @ jacobian)[None], np.array([-bend]))
+
+    def _travel(self, q: Array, rate: Array, slider: Slider, wanted: float) -> Row:
+        """Return the equation of the way along a guide, which may turn."""
+        point = self.machine.links[slider.link].points[slider.point]
+        a = self._place(q, rate, slider.on, self.machine.points_of(slider.on)[slider.through])
+        b = self._place(q, rate, slider.link, point)
+        k = None if slider.on == FRAME else self.columns[slider.on] + 2
+        angle, spin = (0.0, 0.0) if k is None else (q[k], rate[k])
+        line = turned(angle, (np.cos(slider.direction), np.sin(slider.direction)))
+        across, way = quarter(line), b.residual - a.residual
+        jacobian = line @ (b.jacobian - a.jacobian)
+        drift = (b.jacobian - a.jacobian) @ rate
+        bend = line @ (b.bend - a.bend)
+        if k is not None:
+            jacobian[k] += across @ way
+            bend += 2 * spin * (across @ drift) - spin**2 * (line @ way)
+        residual = line @ way - wanted
+        return Row(np.array([residual]), jacobian[None], np.array([-bend]))
 
     def _place(self, q: Array, rate: Array, body: str, local: Vector) -> Row:
         """Return position, its Jacobian and centripetal acceleration of a point."""
@@ -137,18 +180,28 @@ def closed(constraints: Constraints, q: Array, crank_angle: float, steps: int = 
     small = 0
     for _ in range(steps):
         row = constraints.at(q, rest, crank_angle)
-        try:
-            step = np.linalg.solve(row.jacobian, -row.residual)
-        except np.linalg.LinAlgError:
-            break
+        step = solved(row.jacobian, -row.residual)
         q = q + step
         change = float(np.max(np.abs(step / scale)))
         if not change < 1e6:
             break
         small += change < 1e-13
         if change < 1e-15 or small > 1:
+            if np.max(np.abs(row.residual)) > 1e-9 * max(size, 1.0):
+                break  # the nearest to what joints that hold too much ask for, and no pose
             return q
     raise NotAssembledError(f"no pose at crank angle {crank_angle:g}")
+
+
+def solved(matrix: Array, right: Array) -> Array:
+    """Solve a square system, NaN where it is singular, or more equations that go together."""
+    if len(matrix) > matrix.shape[1]:
+        scale = np.linalg.norm(matrix, axis=0)
+        return np.asarray(np.linalg.lstsq(matrix / scale, right, rcond=1e-13)[0] / scale)
+    try:
+        return np.asarray(np.linalg.solve(matrix, right))
+    except np.linalg.LinAlgError:
+        return np.full(len(right), np.nan)
 
 
 def reach(machine: Machine) -> float:
@@ -210,22 +263,22 @@ def followed(constraints: Constraints, q: Array, here: float, there: float) -> A
 def slope(constraints: Constraints, q: Array, crank_angle: float) -> Array:
     """Return the derivative of the coordinates with respect to the crank angle."""
     row = constraints.at(q, np.zeros_like(q), crank_angle)
-    rate = driven(constraints.machine.drive, crank_angle)[1]
-    return np.linalg.solve(row.jacobian, np.eye(q.size)[-1] * rate)
+    rate = constraints.commanded(crank_angle)[1]
+    return solved(row.jacobian, np.eye(len(row.jacobian))[-1] * rate)
 
 
 def moving(constraints: Constraints, angles: Array | list[float], found: list[Array]) -> Poses:
     """Return poses with the velocities and accelerations that the drive forces on them."""
     drive = constraints.machine.drive
-    last = np.eye(found[0].size)[-1]
+    last = np.eye(len(constraints.at(found[0], 0 * found[0], 0.0).residual))[-1]
     rates, changes = [], []
     for angle, q in zip(angles, found, strict=True):
         rate = slope(constraints, q, angle) * drive.speed
         row = constraints.at(q, rate, angle)
         rates.append(rate)
-        _, first, second = driven(drive, angle)
+        _, first, second = constraints.commanded(angle)
         asked = first * drive.acceleration + second * drive.speed**2
-        changes.append(np.linalg.solve(row.jacobian, row.bend + last * asked))
+        changes.append(solved(row.jacobian, row.bend + last * asked))
     q, v, a = np.array(found), np.array(rates), np.array(changes)
     columns = constraints.columns.items()
     return Poses(

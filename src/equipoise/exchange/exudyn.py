@@ -46,7 +46,7 @@ def _model(job: Job) -> Data:
     ------
     UsageError : it does not move, or something has no place in a planar model of Exudyn.
     """
-    machine, drawn = weighed(job.machine), trees(job.machine, job.crank_angle)
+    machine, drawn = weighed(job.machine), trees(job)
     if not machine.drive.speed:
         raise UsageError("the drive stands still, and a script runs for a turn; give it a speed")
     job.leave_out_motor()
@@ -55,9 +55,7 @@ def _model(job: Job) -> Data:
         "crank_angle": job.crank_angle,
         "gravity": list(machine.gravity),
         "bodies": {} if support is None else {BASE: _support(machine, support)},
-        **{
-            kind: [] for kind in ("pins", "sliders", "geared", "springs", "loads", "mounts", "held")
-        },
+        **{kind: [] for kind in LISTS},
     }
     for tree in drawn:
         _row(model, tree, job, machine.drive.flywheel if tree is drawn[0] else 0.0)

@@ -65,6 +65,8 @@ class Family:
         """Steps that solve all machines at once; None where a running angle has to be counted on
         from a machine's own cycle.
         """
+        if any(one.machine.drive.pushes for one in self.linkages):
+            return None
         known = (FRAME, self.first.machine.drive.link)
         steps: list[Step] = []
         for same in zip(*(k.motion for k in self.linkages), strict=True):
