@@ -7,8 +7,10 @@ from importlib import import_module
 from math import isfinite
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.errors import UsageError, needed, unknown
+from equipoise.errors import ChangePointError, RangeError, UsageError, needed, unknown
 from equipoise.exchange.formats import FORMATS, Format, Job
+from equipoise.i18n import Note
+from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.schema.files import printable, write
 from equipoise.studies.selection import write_designs
@@ -69,9 +71,38 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
     if one.needs:
         needed(one.needs, f"a file of {one.title}")
     machine, changes = (what.machine, what.changes) if isinstance(what, Balanced) else (what, ())
+    if one.turns:
+        check_turning(machine, one.title)
     job = Job(machine, crank_angle, changes)
+    if machine.drive.pushes:
+        job.leave_out("what pushes the machine, and its stroke")
     data: str | bytes = import_module(f"equipoise.exchange.{one.name}").made(job)
     return job, data
+
+
+def check_turning(machine: Machine, title: str) -> None:
+    """Refuse a machine whose driven link does not turn evenly, all the way round.
+
+    Raises
+    ------
+    UsageError : it does not; the sentence tells why.
+    """
+    drive, why = machine.drive, Note("")
+    if drive.pushes or drive.motion is not None:
+        why = Note("this drive has a motion of its own")
+    else:
+        try:
+            _ = assemble(machine).cycle
+        except (RangeError, ChangePointError) as error:
+            why = error.note
+    if str(why):
+        raise UsageError(
+            Note(
+                "a file of {title} turns the driven link all the way round at constant speed: {why}",
+                title=title,
+                why=why,
+            )
+        )
 
 
 def format_of(path: str | os.PathLike[str], name: str | None = None) -> Format:

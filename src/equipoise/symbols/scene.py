@@ -80,11 +80,27 @@ class Guide:
 
 @dataclass(frozen=True)
 class Drive:
-    """The link that is driven, the point that it turns about, and its sense: 1, -1, or 0."""
+    """The link that is driven, the point that it turns about, and its sense: 1, -1, or 0.
+
+    swings : angles of the link between which it goes to and fro, rad, where it does not turn.
+    between : points that a cylinder pushes apart, where one drives.
+    """
 
     link: str
     pivot: str
     sense: int
+    swings: tuple[float, float] | None = None
+    between: tuple[str, str] | None = None
+
+    @classmethod
+    def of(cls, motion: Motion) -> Drive:
+        """That of a machine in motion."""
+        drive, angle = motion.machine.drive, motion.links[motion.machine.drive.link].angle
+        law = drive.stroke or drive.motion
+        if law is None or law.windings:
+            return cls(drive.link, motion.linkage.pivot, int(np.sign(motion.speed)))
+        swings = None if drive.pushes else (float(angle.min()), float(angle.max()))
+        return cls(drive.link, motion.linkage.pivot, 0, swings, drive.between)
 
 
 @dataclass(frozen=True)
@@ -159,7 +175,7 @@ class Scene:
             tuple(_guides(motion)),
             springs := tuple((spring.point, spring.to) for spring in machine.springs),
             {name: link.angle for name, link in motion.links.items()},
-            Drive(machine.drive.link, motion.linkage.pivot, int(np.sign(motion.speed))),
+            Drive.of(motion),
             tuple((one.point, one.to) for one in planned if (one.point, one.to) not in springs),
             _field(motion),
             Carrier.of(machine),
@@ -175,6 +191,7 @@ class Scene:
     def standing(self) -> tuple[str, ...]:
         """Points of the frame at which something is held."""
         held = {to for _, to in (*self.springs, *self.planned)} | self.pins
+        held |= {*(self.drive.between or ())}
         return tuple(name for name in self.frame if name in held)
 
     def ground(self, point: str) -> complex:
