@@ -9,7 +9,7 @@ from math import isfinite
 from equipoise.balancing.balanced import Balanced
 from equipoise.errors import ChangePointError, RangeError, UsageError, needed, unknown
 from equipoise.exchange.formats import FORMATS, Format, Job
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.schema.files import printable, write
@@ -87,22 +87,14 @@ def check_turning(machine: Machine, title: str) -> None:
     ------
     UsageError : it does not; the sentence tells why.
     """
-    drive, why = machine.drive, Note("")
-    if drive.pushes or drive.motion is not None:
+    refusal = to_say("a file of {title} turns the driven link evenly all the way round: {why}")
+    if machine.drive.pushes or machine.drive.motion is not None:
         why = Note("this drive has a motion of its own")
-    else:
-        try:
-            _ = assemble(machine).cycle
-        except (RangeError, ChangePointError) as error:
-            why = error.note
-    if str(why):
-        raise UsageError(
-            Note(
-                "a file of {title} turns the driven link all the way round at constant speed: {why}",
-                title=title,
-                why=why,
-            )
-        )
+        raise UsageError(Note(refusal, title=title, why=why))
+    try:
+        _ = assemble(machine).cycle
+    except (RangeError, ChangePointError) as error:
+        raise UsageError(Note(refusal, title=title, why=error.note)) from error
 
 
 def format_of(path: str | os.PathLike[str], name: str | None = None) -> Format:

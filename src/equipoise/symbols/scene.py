@@ -19,6 +19,7 @@ from equipoise.mechanism.model import FRAME, Link
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.tip import surface_of
 from equipoise.symbols.carrier import MOUNT, Carrier, Swing
+from equipoise.symbols.drives import Drive
 from equipoise.symbols.rows import ONE, Rows, rows_of
 from equipoise.symbols.shapes import Array, hull
 
@@ -76,31 +77,6 @@ class Guide:
     on: str
     behind: Array
     ahead: Array
-
-
-@dataclass(frozen=True)
-class Drive:
-    """The link that is driven, the point that it turns about, and its sense: 1, -1, or 0.
-
-    swings : angles of the link between which it goes to and fro, rad, where it does not turn.
-    between : points that a cylinder pushes apart, where one drives.
-    """
-
-    link: str
-    pivot: str
-    sense: int
-    swings: tuple[float, float] | None = None
-    between: tuple[str, str] | None = None
-
-    @classmethod
-    def of(cls, motion: Motion) -> Drive:
-        """That of a machine in motion."""
-        drive, angle = motion.machine.drive, motion.links[motion.machine.drive.link].angle
-        law = drive.stroke or drive.motion
-        if law is None or law.windings:
-            return cls(drive.link, motion.linkage.pivot, int(np.sign(motion.speed)))
-        swings = None if drive.pushes else (float(angle.min()), float(angle.max()))
-        return cls(drive.link, motion.linkage.pivot, 0, swings, drive.between)
 
 
 @dataclass(frozen=True)
