@@ -13,6 +13,7 @@ from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import (
     Tree,
     constant_loads,
+    even_ratio,
     mass_of,
     moment_of,
     preloads,
@@ -130,7 +131,7 @@ def _geared(tree: Tree) -> list[Data]:
     """
     shares: dict[str, dict[str, float]] = {}
     for gear in tree.machine.gears:
-        ratio, total = gear.speed_ratio, dict[str, float]()
+        ratio, total = even_ratio(gear), dict[str, float]()
         for body, share in ((gear.driver, ratio), (gear.carrier, 1 - ratio)):
             for root, factor in shares.get(body, {body: 1.0}).items():
                 total[root] = total.get(root, 0.0) + share * factor

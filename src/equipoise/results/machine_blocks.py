@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.bodies import inertia_of, together
-from equipoise.mechanism.outputs import body_named, joint_named
+from equipoise.mechanism.spoken import body_named, joint_named
 from equipoise.quantities import PER_RPM, Dimension, Display, angle, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
 from equipoise.signals import Array, Figures, figures
@@ -189,13 +189,22 @@ def _parts(machine: Machine) -> Iterator[str]:
             angle=angle(slider.direction),
         )
     for gear in machine.gears:
-        yield say(
-            "Gears: {driver} drives {driven} on {carrier} with the speed ratio {ratio}",
-            driver=gear.driver,
-            driven=gear.driven,
-            carrier=body_named(gear.carrier),
-            ratio=number(gear.speed_ratio),
-        )
+        named = {"driver": gear.driver, "driven": gear.driven, "carrier": body_named(gear.carrier)}
+        if gear.shape is None:
+            yield say(
+                "Gears: {driver} drives {driven} on {carrier} with the speed ratio {ratio}",
+                ratio=number(gear.speed_ratio),
+                **named,
+            )
+        else:
+            low, high = gear.ratios
+            yield say(
+                "Gears: {driver} drives {driven} on {carrier} with a speed ratio from {low} to "
+                "{high}",
+                low=number(low),
+                high=number(high),
+                **named,
+            )
     for spring in machine.springs:
         yield say(
             "Spring: {stiffness} from {point} of {link} to {to}",

@@ -127,7 +127,7 @@ def test_everything_is_shown_of_it() -> None:
     blocks = [getattr(one, "title", "") for one in found.analysis.blocks()]
     assert "Drive force by cause" in blocks
     told = " ".join(str(one) for one in found.analysis.blocks())
-    assert "cylinder A to B from 550 to 800 mm and back, 19.10 cycles a minute" in told
+    assert "cylinder A to B from 550.0 to 800.0 mm and back, 19.10 cycles a minute" in told
 
 
 def test_the_page_draws_barrel_and_rod_which_keep_their_lengths() -> None:
