@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say
-from equipoise.mechanism.outputs import body_named, joint_named
 from equipoise.mechanism.reactions import JointForce, SliderForce
+from equipoise.mechanism.spoken import body_named, joint_named
 from equipoise.mechanism.undecided import undecided
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest
