@@ -57,7 +57,7 @@ class FreeBodies:
 
     joints: Mapping[str, Reaction]
     gears: Mapping[str, Reaction]
-    drive_torque: Array
+    drives: Mapping[str, Array]
     frame_force: Array
     frame_moment: Array
 
@@ -136,16 +136,17 @@ def equations(machine: Machine, poses: Poses) -> System:
 
 
 def solved(system: System, joints: list[Contact], gears: list[Contact]) -> dict[str, Array]:
-    """Solve for all unknowns, (N, how many) for each contact and for the drive, named ''."""
+    """Solve for all unknowns, (N, how many) for each contact and for each drive, by its link."""
     columns, owners = [], []
     for contact in (*joints, *gears):
         columns += [system.pair(contact, direction, 0.0) for direction in contact.directions]
         if contact.couple:
             columns.append(system.pair(contact, np.zeros_like(contact.at), 1.0))
         owners += [contact.name] * contact.size
-    torque = np.zeros_like(system.known)
-    torque[:, system.rows[system.machine.drive.link] + 2] = 1.0
-    columns, owners = [*columns, torque], [*owners, ""]
+    for drive in system.machine.driven:
+        torque = np.zeros_like(system.known)
+        torque[:, system.rows[drive.link] + 2] = 1.0
+        columns, owners = [*columns, torque], [*owners, drive]
     matrix = np.stack(columns, -1)
     assert matrix.shape[1] == matrix.shape[2], "as many unknowns as equations"
     found = np.linalg.solve(matrix, system.known[..., None])[..., 0]
@@ -245,10 +246,10 @@ def gathered(
         apart = separating(gear, machine, poses, unknowns[contact.name][:, 0])
         force = tangential.force + apart
         meshed[gear.name] = Reaction(contact.on, contact.by, contact.at, force, tangential.couple)
-    torque = unknowns[""][:, 0]
+    torques = {drive.link: unknowns[drive][:, 0] for drive in machine.driven}
     pulls = [pull_on_frame(*acting) for acting in springs_on_links(machine, poses)]
     force, moment = on_frame(machine, [*held.values(), *meshed.values(), *pulls])
-    return FreeBodies(held, meshed, torque, force, moment - torque)
+    return FreeBodies(held, meshed, torques, force, moment - sum(torques.values()))
 
 
 def reaction(contact: Contact, unknowns: Array) -> Reaction:

@@ -61,8 +61,8 @@ class Constraints:
         ]
         rows += [row for slider in self.machine.sliders for row in self._slider(q, rate, slider)]
         rows += [self._gear(q, gear) for gear in self.machine.gears]
-        drive = self.machine.drive
-        rows.append(self._turn({drive.link: 1.0}, q, -driven(drive, crank_angle)[0]))
+        for drive in self.machine.driven:
+            rows.append(self._turn({drive.link: 1.0}, q, -driven(drive, crank_angle)[0]))
         return Row(
             np.concatenate([row.residual for row in rows]),
             np.concatenate([row.jacobian for row in rows]),
@@ -210,22 +210,26 @@ def followed(constraints: Constraints, q: Array, here: float, there: float) -> A
 def slope(constraints: Constraints, q: Array, crank_angle: float) -> Array:
     """Return the derivative of the coordinates with respect to the crank angle."""
     row = constraints.at(q, np.zeros_like(q), crank_angle)
-    rate = driven(constraints.machine.drive, crank_angle)[1]
-    return np.linalg.solve(row.jacobian, np.eye(q.size)[-1] * rate)
+    drives = constraints.machine.driven
+    asked = np.zeros_like(q)
+    asked[-len(drives) :] = [driven(drive, crank_angle)[1] for drive in drives]
+    return np.linalg.solve(row.jacobian, asked)
 
 
 def moving(constraints: Constraints, angles: Array | list[float], found: list[Array]) -> Poses:
     """Return poses with the velocities and accelerations that the drive forces on them."""
     drive = constraints.machine.drive
-    last = np.eye(found[0].size)[-1]
+    drives = constraints.machine.driven
     rates, changes = [], []
     for angle, q in zip(angles, found, strict=True):
         rate = slope(constraints, q, angle) * drive.speed
         row = constraints.at(q, rate, angle)
         rates.append(rate)
-        _, first, second = driven(drive, angle)
-        asked = first * drive.acceleration + second * drive.speed**2
-        changes.append(np.linalg.solve(row.jacobian, row.bend + last * asked))
+        asked = np.zeros_like(q)
+        for number, one in enumerate(drives, -len(drives)):
+            _, first, second = driven(one, angle)
+            asked[number] = first * drive.acceleration + second * drive.speed**2
+        changes.append(np.linalg.solve(row.jacobian, row.bend + asked))
     q, v, a = np.array(found), np.array(rates), np.array(changes)
     columns = constraints.columns.items()
     return Poses(

@@ -4,14 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import copysign
-from typing import Any
+from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import NO_INERTIA, Frozen, Listing, Quantity, Table, Text, declared, key
-from equipoise.mechanism.checks import wrong_speeds
+from equipoise.keys import (
+    NO_INERTIA,
+    Conditions,
+    Frozen,
+    Listing,
+    Number,
+    Quantity,
+    Table,
+    Text,
+    declared,
+    key,
+)
+from equipoise.mechanism.checks import Bodies, unknown_link, wrong_speeds
+from equipoise.mechanism.couplings import as_fraction
 from equipoise.mechanism.force_elements import Motor, wrong_motor
-from equipoise.mechanism.laws import AngleLaw, wrong_law
+from equipoise.mechanism.laws import MOST_TURNS, AngleLaw, wrong_law
 
 
 @declared
@@ -75,7 +87,70 @@ class Drive(Frozen):
         return 1 if self.motion is None else self.motion.turns
 
 
+@declared
+class FurtherDrive(Frozen):
+    """Another driven link, whose motion has a common period with the crank angle."""
+
+    called = to_say("{what} of the drive of the {link}")
+    conditions: ClassVar[Conditions] = {
+        "dependentSchemas": {"motion": {"properties": {"ratio": False, "start": False}}}
+    }
+
+    link: str = key(
+        Text(of="link"),
+        "the driven link; it shares exactly one point with the frame, about which it turns",
+        example="second crank",
+    )
+    ratio: float = key(
+        Number(),
+        "turns in a turn of the crank; negative turns the other way",
+        default=1.0,
+        word=to_say("turns in a turn of the crank"),
+    )
+    start: float = key(
+        "angle", "in the frame at crank angle 0", default=0.0, word=to_say("angle at the start")
+    )
+    motion: AngleLaw | None = key(
+        Table(AngleLaw, headed=True),
+        "how its angle goes with the crank angle, instead of `ratio` and `start`",
+        default=None,
+    )
+
+    def turned(self, crank_angle: Any) -> tuple[Any, Any, Any]:
+        """Its angle at crank angles (...), and its two derivatives by them."""
+        if self.motion is not None:
+            return self.motion.value(crank_angle)
+        return self.ratio * crank_angle + self.start, self.ratio, 0.0
+
+    @property
+    def turns(self) -> int:
+        """Turns of the crank after which it moves as before."""
+        if self.motion is not None:
+            return self.motion.turns
+        exact = as_fraction(self.ratio)
+        return 1 if exact is None else exact.denominator
+
+
 # -- checks ----------------------------------------------------------------------------------------
+
+
+def wrong_further(where: str, drive: FurtherDrive, bodies: Bodies) -> Iterator[ModelError]:
+    """Everything that is wrong with a further drive."""
+    yield from unknown_link(f"{where}.link", drive.link, bodies)
+    if drive.motion is not None:
+        yield from wrong_law(f"{where}.motion", drive.motion)
+        if drive.ratio != 1 or drive.start:
+            yield ModelError(where, Note("give either motion, or ratio and start"))
+    elif as_fraction(drive.ratio) is None or drive.turns > MOST_TURNS:
+        yield ModelError(
+            f"{where}.ratio",
+            Note(
+                "got {ratio!r}, with which the motion does not repeat within {most} turns of the "
+                "crank; give a fraction of small whole numbers",
+                ratio=drive.ratio,
+                most=MOST_TURNS,
+            ),
+        )
 
 
 def wrong_drive(drive: Drive) -> Iterator[ModelError]:

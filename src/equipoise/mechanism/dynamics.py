@@ -112,14 +112,30 @@ class Forces:
 
     @property
     def drive_torque(self) -> Array:
-        """Torque of the drive on its link, N m; times that link's speed it is the power fed in."""
+        """Torque of the first drive on its link, N m; times that link's speed it is its power."""
         return self.solved.drive_torque
 
     @property
+    def drives(self) -> Mapping[str, Array]:
+        """Torque of each drive on its link, N m, by the name of the link."""
+        return self.solved.drives
+
+    @property
     def power(self) -> Array:
-        """Power fed in by the drive, W."""
-        drive = self.motion.machine.drive.link
-        return self.drive_torque * self.motion.links[drive].angular_velocity
+        """Power fed in by all drives, W."""
+        links = self.motion.links
+        parts = [torque * links[link].angular_velocity for link, torque in self.drives.items()]
+        return np.asarray(sum(parts))
+
+    @property
+    def work(self) -> dict[str, float]:
+        """Work of each drive in a cycle, J; crank angles have to be those of a whole cycle."""
+        angle = 2 * np.pi * self.motion.turns * np.sign(self.motion.speed)
+        links = self.motion.links
+        return {
+            link: float(np.mean(torque * links[link].angle_1) * angle)
+            for link, torque in self.drives.items()
+        }
 
     @cached_property
     def joints(self) -> Mapping[str, JointForce]:
@@ -159,6 +175,7 @@ class Forces:
 class Shares:
     """Outputs told apart: arrays (..., N), whose first axes are what they are shares of.
 
+    drives : link -> torque of its drive, N m, of which `drive_torque` is the first.
     shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
     joints, gears : name -> force whose arrays have those axes.
     """
@@ -168,6 +185,7 @@ class Shares:
     frame_force: Array
     frame_moment: Array
     drive_torque: Array
+    drives: Mapping[str, Array]
     joints: Mapping[str, JointForce]
     gears: Mapping[str, MeshForce]
 
@@ -201,6 +219,7 @@ class Split(Shares):
             found[f"joints.{name}"] = joint.value
             if isinstance(joint, SliderForce):
                 found[f"joints.{name}.moment"] = joint.moment
+        found |= {f"drives.{name}.torque": torque for name, torque in self.drives.items()}
         found |= {f"gears.{name}": mesh.value for name, mesh in self.gears.items()}
         if output not in found:
             raise UsageError(unknown(output, found, "output"))
@@ -289,6 +308,7 @@ def split(whole: Forces) -> Split:
         np.broadcast_to(on_frame * solved.frame_force, shape),
         np.broadcast_to(on_frame * solved.frame_moment(whole.about), shape),
         solved.drive_torque,
+        solved.drives,
         solved.joints,
         solved.gears,
         links,

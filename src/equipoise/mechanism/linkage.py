@@ -69,9 +69,9 @@ class Linkage:
 
     @cached_property
     def reactions(self) -> tuple[Reaction, ...]:
-        """Every joint, the drive's pin first."""
-        drive = pin_reaction(self.pivot, self.machine.drive.link, FRAME)
-        return (drive, *(reaction for group in self.groups for reaction in group.reactions))
+        """Every joint, the pins of the drives first."""
+        drives = (pin_reaction(self.anchors[d.link], d.link, FRAME) for d in self.machine.driven)
+        return (*drives, *(reaction for group in self.groups for reaction in group.reactions))
 
     @cached_property
     def named_reactions(self) -> tuple[tuple[str, Reaction], ...]:
@@ -95,7 +95,7 @@ class Linkage:
         return same
 
     def start(self, theta: np.ndarray) -> State:
-        """State in which only the frame and the drive link are known."""
+        """State in which only the frame and the driven links are known."""
         return initial_state(self.machine, theta)
 
     def solve(self, theta: np.ndarray) -> State:
@@ -142,8 +142,7 @@ def ordered(
     """
     from equipoise.mechanism import sides
 
-    pivot = drive_pivot(joints, machine.drive.link)
-    builder, groups, choices = _grouped(machine, joints, pivot, start or {}, assumed)
+    builder, groups, choices = _grouped(machine, joints, start or {}, assumed)
     idle = [joint for joint in machine.assembly if joint not in builder.sides]
     if choices:
         if not assumed and (decided := sides.decided(machine, choices, _turns)):
@@ -159,7 +158,7 @@ def ordered(
                 hint=hint,
             ),
         )
-    return Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
+    return Linkage(machine, joints, builder.anchors[FRAME], builder.anchors, tuple(groups))
 
 
 def sides_at_position(machine: Machine) -> dict[str, str]:
@@ -172,24 +171,25 @@ def sides_at_position(machine: Machine) -> dict[str, str]:
     """
     bare = replace(machine, assembly={})
     joints = structure(bare)
-    _, _, choices = _grouped(bare, joints, drive_pivot(joints, bare.drive.link), {}, NOTHING)
+    _, _, choices = _grouped(bare, joints, {}, NOTHING)
     return {one.joint: one.words[one.side] for one in choices}
 
 
 def _grouped(
     machine: Machine,
     joints: Structure,
-    pivot: str,
     start: State,
     assumed: Mapping[str, tuple[int, str]],
 ) -> tuple[Builder, list[Group], list[Any]]:
-    """What the drive determines, group by group, and the sides that the file leaves out."""
+    """What the drives determine, group by group, and the sides that the file leaves out."""
     from equipoise.mechanism import sides
 
-    drive = machine.drive.link
-    builder = Builder(machine, points=set(machine.frame), running={FRAME, drive}, told=start)
-    builder.add({FRAME: pivot, drive: pivot})
-    unknown = [link for link in machine.links if link != drive]
+    drives = {machine.drive.link: drive_pivot(joints, machine.drive.link)}
+    for number, one in enumerate(machine.drives, 1):
+        drives[one.link] = drive_pivot(joints, one.link, f"drives[{number}].link")
+    builder = Builder(machine, points=set(machine.frame), running={FRAME, *drives}, told=start)
+    builder.add({FRAME: drives[machine.drive.link], **drives})
+    unknown = [link for link in machine.links if link not in drives]
     groups: list[Group] = []
     choices: list[sides.Choice] = []
     while unknown:

@@ -42,7 +42,7 @@ from equipoise.mechanism.checks import (
     wrong_text,
 )
 from equipoise.mechanism.couplings import Coupling
-from equipoise.mechanism.drives import Drive, wrong_drive
+from equipoise.mechanism.drives import Drive, FurtherDrive, wrong_drive, wrong_further
 from equipoise.mechanism.field import Planting, wrong_planting
 from equipoise.mechanism.force_elements import (
     Load,
@@ -70,6 +70,7 @@ if TYPE_CHECKING:
 __all__ = [
     "FRAME",
     "Drive",
+    "FurtherDrive",
     "Gear",
     "Link",
     "Load",
@@ -84,7 +85,8 @@ __all__ = [
 ]
 
 
-MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "loads": 500, "springs": 200}
+MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "loads": 500, "springs": 200,
+        "drives": 20}  # fmt: skip
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 
@@ -94,9 +96,9 @@ class Machine(Frozen):
     """A planar linkage with its drive, loads, springs and gravity."""
 
     beside: ClassVar[Keys] = {"schema": VERSION}
-    file_order = ("schema", "title", "description", "units", "gravity", "drive", "frame", "links",
-                  "assembly", "sliders", "gears", "loads", "springs", "position", "planting",
-                  "support", "rows", "balance")  # fmt: skip
+    file_order = ("schema", "title", "description", "units", "gravity", "drive", "drives", "frame",
+                  "links", "assembly", "sliders", "gears", "loads", "springs", "position",
+                  "planting", "support", "rows", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(Table(Drive), "the link that is driven")
@@ -139,6 +141,9 @@ class Machine(Frozen):
     springs: tuple[Spring, ...] = key(
         Tables(Table(Spring)), "linear springs between links and frame", default=()
     )
+    drives: tuple[FurtherDrive, ...] = key(
+        Tables(Table(FurtherDrive)), "links that are driven besides", default=()
+    )
 
     units: ShownUnits | None = key(
         Table(ShownUnits), "in which values are shown, as by `--units`", default=None
@@ -162,6 +167,16 @@ class Machine(Frozen):
     def bodies(self) -> Bodies:
         """Points of the frame and of every link, in their own axes."""
         return {FRAME: self.frame} | {name: link.points for name, link in self.links.items()}
+
+    @property
+    def driven(self) -> tuple[Drive | FurtherDrive, ...]:
+        """All drives; the crank angle is that of the first."""
+        return (self.drive, *self.drives)
+
+    @property
+    def has_crank(self) -> bool:
+        """Whether one link alone is driven and turns with the crank angle."""
+        return not self.drives and self.drive.motion is None
 
     @property
     def couplings(self) -> tuple[Coupling, ...]:
@@ -263,6 +278,7 @@ class Machine(Frozen):
 LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
     "sliders": wrong_slider,
     "gears": wrong_gear,
+    "drives": wrong_further,
     "loads": wrong_load,
     "springs": wrong_ends,
 }
@@ -280,6 +296,10 @@ def _problems(machine: Machine) -> Iterator[ModelError]:
     for name, link in machine.links.items():
         yield from wrong_link(f"links.{name}", name, link)
     yield from unknown_link("drive.link", machine.drive.link, bodies)
+    for number, one in enumerate(machine.drives, 1):
+        if one.link in [before.link for before in machine.driven[:number]]:
+            told = Note("{link!r} has a drive already; leave one of them out", link=one.link)
+            yield ModelError(f"drives[{number}].link", told)
     for name, wrong in LISTS.items():
         for where, item in numbered(name, getattr(machine, name)):
             yield from wrong(where, item, bodies)

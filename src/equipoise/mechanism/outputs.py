@@ -58,6 +58,11 @@ def slider_names(machine: Any) -> list[str]:
     return [slider.name for slider in machine.sliders]
 
 
+def driven_links(machine: Any) -> list[str]:
+    """Links with a drive, where the crank angle does not tell all of the one there is."""
+    return [] if machine.has_crank else [drive.link for drive in machine.driven]
+
+
 def body_named(name: str) -> str:
     """A link, or the frame, in words."""
     return say("frame") if name == FRAME else name
@@ -240,6 +245,21 @@ of_center(
     "acceleration",
     to_say("acceleration of the common centre of mass"),
     ("ax", "ay"),
+)
+
+
+def _of_drive(name: str, found: Any, link: str) -> Any:
+    torque = found.forces.drives[link]
+    return torque * found.motion.links[link].angular_velocity if name == "power" else torque
+
+
+of_drive = _alike("drives.{}.", _of_drive, members=driven_links, linear=True)
+of_drive("torque", "torque", to_say("drive torque of {name}"), loop="{drive torque:name}")
+of_drive(
+    "power",
+    "power",
+    to_say("drive power of {name}"),
+    loop="{drive torque:name} * {angular velocity:name}",
 )
 
 # -- joints ----------------------------------------------------------------------------------------

@@ -184,6 +184,8 @@ class Analysis(Result):
                 ends = {name: {"on": one.on, "by": one.by} for name, one in joints.items()}
                 result[family] = ends
             result["about"] = {"x": found.about.real, "y": found.about.imag}
+            if not self.machine.has_crank and self.motion.whole_cycle:
+                result["drives"] = {link: {"work": work} for link, work in found.work.items()}
         for one in self.outputs.arrays:
             *keys, last = one.path
             values = result

@@ -138,7 +138,7 @@ def advantages_table(analysis: Analysis) -> Table:
 
 def force_blocks(analysis: Analysis) -> Iterator[Block]:
     """Forces on frame and drive; what they come from; their orders."""
-    ones = [one for one in analysis.outputs.summed if one.group == "forces"]
+    ones = [one for one in analysis.outputs.summed if one.group in ("forces", "drives")]
     rows: list[tuple[Cell, ...]] = []
     for one in ones:
         found, kind = one.figures, one.dimension
@@ -156,6 +156,10 @@ def force_blocks(analysis: Analysis) -> Iterator[Block]:
     )
     labels = (say("mean"), say("RMS"), say("largest"), say("smallest"), say("peak to peak"))
     yield Table.of(title, ("", *labels), rows)
+    if not analysis.machine.has_crank and analysis.motion.whole_cycle:
+        columns = (say("drive"), Column(say("work"), "energy"))
+        work = ((link, Value(one)) for link, one in analysis.forces.work.items())
+        yield Table.of(say("Work of the drives in a cycle"), columns, work)
     yield _by_link(analysis)
     yield _causes(analysis)
     if analysis.has_orders:

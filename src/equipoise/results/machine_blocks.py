@@ -9,6 +9,7 @@ import numpy as np
 
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.bodies import inertia_of, together
+from equipoise.mechanism.drives import Drive, FurtherDrive
 from equipoise.mechanism.outputs import body_named
 from equipoise.quantities import PER_RPM, Dimension, Display, angle, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
@@ -224,12 +225,30 @@ def _support(machine: Machine) -> Iterator[str]:
 
 def driven(machine: Machine, speed: float) -> str:
     """How the drive runs."""
+    if not machine.has_crank:
+        return say(
+            "crank angle at {speed} rpm ({rate} rad/s): {drives}",
+            speed=number(speed / PER_RPM),
+            rate=number(speed),
+            drives=say(", ").join(map(drive_told, machine.driven)),
+        )
     return say(
         "{link} driven at {speed} rpm ({rate} rad/s)",
         link=machine.drive.link,
         speed=number(speed / PER_RPM),
         rate=number(speed),
     )
+
+
+def drive_told(drive: Drive | FurtherDrive) -> str:
+    """How a driven link goes with the crank angle."""
+    if drive.motion is None:
+        ratio = number(getattr(drive, "ratio", 1.0))
+        return say("{link} turns {ratio} times as fast", link=drive.link, ratio=ratio)
+    low, high = map(angle, drive.motion.extremes)
+    if turns := drive.motion.windings:
+        return say("{link} makes {turns} turns in a cycle by a law", link=drive.link, turns=turns)
+    return say("{link} moves from {low} to {high} by a law", link=drive.link, low=low, high=high)
 
 
 def angles_told(analysis: Analysis) -> str:
