@@ -137,18 +137,28 @@ def closed(constraints: Constraints, q: Array, crank_angle: float, steps: int = 
     small = 0
     for _ in range(steps):
         row = constraints.at(q, rest, crank_angle)
-        try:
-            step = np.linalg.solve(row.jacobian, -row.residual)
-        except np.linalg.LinAlgError:
-            break
+        step = solved(row.jacobian, -row.residual)
         q = q + step
         change = float(np.max(np.abs(step / scale)))
         if not change < 1e6:
             break
         small += change < 1e-13
         if change < 1e-15 or small > 1:
+            if np.max(np.abs(row.residual)) > 1e-9 * max(size, 1.0):
+                break  # the nearest to what joints that hold too much ask for, and no pose
             return q
     raise NotAssembledError(f"no pose at crank angle {crank_angle:g}")
+
+
+def solved(matrix: Array, right: Array) -> Array:
+    """Solve a square system, NaN where it is singular, or more equations that go together."""
+    if len(matrix) > matrix.shape[1]:
+        scale = np.linalg.norm(matrix, axis=0)
+        return np.asarray(np.linalg.lstsq(matrix / scale, right, rcond=1e-13)[0] / scale)
+    try:
+        return np.asarray(np.linalg.solve(matrix, right))
+    except np.linalg.LinAlgError:
+        return np.full(len(right), np.nan)
 
 
 def reach(machine: Machine) -> float:
@@ -211,9 +221,9 @@ def slope(constraints: Constraints, q: Array, crank_angle: float) -> Array:
     """Return the derivative of the coordinates with respect to the crank angle."""
     row = constraints.at(q, np.zeros_like(q), crank_angle)
     drives = constraints.machine.driven
-    asked = np.zeros_like(q)
+    asked = np.zeros(len(row.jacobian))
     asked[-len(drives) :] = [driven(drive, crank_angle)[1] for drive in drives]
-    return np.linalg.solve(row.jacobian, asked)
+    return solved(row.jacobian, asked)
 
 
 def moving(constraints: Constraints, angles: Array | list[float], found: list[Array]) -> Poses:
@@ -225,11 +235,11 @@ def moving(constraints: Constraints, angles: Array | list[float], found: list[Ar
         rate = slope(constraints, q, angle) * drive.speed
         row = constraints.at(q, rate, angle)
         rates.append(rate)
-        asked = np.zeros_like(q)
+        asked = np.zeros(len(row.jacobian))
         for number, one in enumerate(drives, -len(drives)):
             _, first, second = driven(one, angle)
             asked[number] = first * drive.acceleration + second * drive.speed**2
-        changes.append(np.linalg.solve(row.jacobian, row.bend + asked))
+        changes.append(solved(row.jacobian, row.bend + asked))
     q, v, a = np.array(found), np.array(rates), np.array(changes)
     columns = constraints.columns.items()
     return Poses(
