@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
-from equipoise.mechanism.laws import AngleLaw
+from equipoise.mechanism.laws import AngleLaw, LengthLaw
 from equipoise.mechanism.model import Drive, FurtherDrive
 
 Rates = tuple[float, float, float]
@@ -53,7 +53,7 @@ def driven(drive: Drive | FurtherDrive, crank_angle: float) -> Rates:
     return drive.start + drive.ratio * crank_angle, drive.ratio, 0.0
 
 
-def followed(law: AngleLaw, crank_angle: float) -> Rates:
+def followed(law: AngleLaw | LengthLaw, crank_angle: float) -> Rates:
     """Return what a motion law tells at a crank angle, segment by segment."""
     period = 2 * pi * law.turns
     cycles, since = divmod(crank_angle - law.phase, period)

@@ -17,7 +17,7 @@ from itertools import chain, combinations
 
 import numpy as np
 
-from equipoise.mechanism.model import FRAME, Gear, Machine
+from equipoise.mechanism.model import FRAME, Drive, FurtherDrive, Gear, Machine
 from support.loads import on_links, springs_on_links
 from support.poses import Array, Poses, cross, drive_pivot, pin_between, pins, quarter
 
@@ -55,7 +55,9 @@ class Reaction:
 
 @dataclass(frozen=True)
 class FreeBodies:
-    """Everything that the free bodies tell, one value a crank angle."""
+    """Everything that the free bodies tell, one value a crank angle; `drive` is the torque of the
+    drive, or its force.
+    """
 
     joints: Mapping[str, Reaction]
     gears: Mapping[str, Reaction]
@@ -146,9 +148,7 @@ def solved(system: System, joints: list[Contact], gears: list[Contact]) -> dict[
             columns.append(system.pair(contact, np.zeros_like(contact.at), 1.0))
         owners += [contact.name] * contact.size
     for drive in system.machine.driven:
-        torque = np.zeros_like(system.known)
-        torque[:, system.rows[drive.link] + 2] = 1.0
-        columns, owners = [*columns, torque], [*owners, drive]
+        columns, owners = [*columns, driving(system, drive)], [*owners, drive]
     matrix = np.stack(columns, -1)
     if matrix.shape[1] == matrix.shape[2]:
         found = np.linalg.solve(matrix, system.known[..., None])[..., 0]
@@ -158,6 +158,33 @@ def solved(system: System, joints: list[Contact], gears: list[Contact]) -> dict[
         pairs = zip(matrix * units, system.known, strict=True)
         found = units * np.array([np.linalg.lstsq(*pair)[0] for pair in pairs])
     return {name: found[:, [o == name for o in owners]] for name in dict.fromkeys(owners)}
+
+
+def driving(system: System, drive: Drive | FurtherDrive) -> Array:
+    """Return the column of a drive: a torque on its link, or a force between two bodies."""
+    machine = system.machine
+    if machine.drive.stroke is not None:
+        push = cylinder(machine, system.poses)
+        return system.pair(push, push.directions[0], 0.0)
+    torque = np.zeros_like(system.known)
+    torque[:, system.rows[drive.link] + 2] = 1.0
+    return torque
+
+
+def cylinder(machine: Machine, poses: Poses) -> Contact:
+    """Return where a drive that pushes acts, and along which line."""
+    drive = machine.drive
+    if drive.slider:
+        one = next(one for one in machine.sliders if one.name == drive.slider)
+        at = poses.place(one.link, machine.links[one.link].points[one.point])
+        line = (float(np.cos(one.direction)), float(np.sin(one.direction)))
+        return Contact("", one.link, one.on, at, (poses.turned(one.on, line),))
+    assert drive.between is not None
+    bodies = drive.ends(machine.bodies)
+    ends = zip(bodies, drive.between, strict=True)
+    a, b = (poses.place(body, machine.points_of(body)[point]) for body, point in ends)
+    along = (b - a) / np.linalg.norm(b - a, axis=-1, keepdims=True)
+    return Contact("", bodies[1], bodies[0], b, (along,))
 
 
 def extent(machine: Machine) -> float:
@@ -261,10 +288,14 @@ def gathered(
         apart = separating(gear, machine, poses, unknowns[contact.name][:, 0])
         force = tangential.force + apart
         meshed[gear.name] = Reaction(contact.on, contact.by, contact.at, force, tangential.couple)
-    torques = {drive.link: unknowns[drive][:, 0] for drive in machine.driven}
+    drives = {drive.link: unknowns[drive][:, 0] for drive in machine.driven}
     pulls = [pull_on_frame(*acting) for acting in springs_on_links(machine, poses)]
+    torque = sum(drives.values())
+    if machine.drive.stroke is not None:
+        torque = 0.0
+        pulls.append(reaction(cylinder(machine, poses), unknowns[machine.drive]))
     force, moment = on_frame(machine, [*held.values(), *meshed.values(), *pulls])
-    return FreeBodies(held, meshed, torques, force, moment - sum(torques.values()))
+    return FreeBodies(held, meshed, drives, force, moment - torque)
 
 
 def reaction(contact: Contact, unknowns: Array) -> Reaction:

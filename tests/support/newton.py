@@ -13,8 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
-from equipoise.mechanism.model import FRAME, Gear, Machine, Slider, Vector
+from equipoise.mechanism.model import FRAME, Drive, FurtherDrive, Gear, Machine, Slider, Vector
 from support.driving import driven
+from support.driving import followed as followed_law
 from support.poses import Array, Poses, cross, pins, quarter, turned
 
 
@@ -61,13 +62,55 @@ class Constraints:
         ]
         rows += [row for slider in self.machine.sliders for row in self._slider(q, rate, slider)]
         rows += [self._gear(q, gear) for gear in self.machine.gears]
-        for drive in self.machine.driven:
-            rows.append(self._turn({drive.link: 1.0}, q, -driven(drive, crank_angle)[0]))
+        rows += [self._driven(q, rate, one, self.commanded(one, crank_angle)[0])
+                 for one in self.machine.driven]  # fmt: skip
         return Row(
             np.concatenate([row.residual for row in rows]),
             np.concatenate([row.jacobian for row in rows]),
             np.concatenate([row.bend for row in rows]),
         )
+
+    def commanded(
+        self, drive: Drive | FurtherDrive, crank_angle: float
+    ) -> tuple[float, float, float]:
+        """Return what a drive commands, and its derivatives by crank angle."""
+        stroke = getattr(drive, "stroke", None)
+        return driven(drive, crank_angle) if stroke is None else followed_law(stroke, crank_angle)
+
+    def _driven(self, q: Array, rate: Array, drive: Drive | FurtherDrive, wanted: float) -> Row:
+        """Return the equation of a drive: an angle, or the length that pushes."""
+        if not isinstance(drive, Drive) or drive.stroke is None:
+            return self._turn({drive.link: 1.0}, q, -wanted)
+        if drive.slider:
+            one = next(one for one in self.machine.sliders if one.name == drive.slider)
+            return self._travel(q, rate, one, wanted)
+        assert drive.between is not None
+        ends = zip(drive.ends(self.machine.bodies), drive.between, strict=True)
+        a, b = (self._place(q, rate, body, self.machine.points_of(body)[at]) for body, at in ends)
+        way, jacobian = b.residual - a.residual, b.jacobian - a.jacobian
+        length = float(np.hypot(*way))
+        along, drift = way / length, jacobian @ rate
+        turning = (drift @ drift - (along @ drift) ** 2) / length
+        bend = along @ (b.bend - a.bend) + turning
+        return Row(np.array([length - wanted]), (along @ jacobian)[None], np.array([-bend]))
+
+    def _travel(self, q: Array, rate: Array, slider: Slider, wanted: float) -> Row:
+        """Return the equation of the way along a guide, which may turn."""
+        point = self.machine.links[slider.link].points[slider.point]
+        a = self._place(q, rate, slider.on, self.machine.points_of(slider.on)[slider.through])
+        b = self._place(q, rate, slider.link, point)
+        k = None if slider.on == FRAME else self.columns[slider.on] + 2
+        angle, spin = (0.0, 0.0) if k is None else (q[k], rate[k])
+        line = turned(angle, (np.cos(slider.direction), np.sin(slider.direction)))
+        across, way = quarter(line), b.residual - a.residual
+        jacobian = line @ (b.jacobian - a.jacobian)
+        drift = (b.jacobian - a.jacobian) @ rate
+        bend = line @ (b.bend - a.bend)
+        if k is not None:
+            jacobian[k] += across @ way
+            bend += 2 * spin * (across @ drift) - spin**2 * (line @ way)
+        residual = line @ way - wanted
+        return Row(np.array([residual]), jacobian[None], np.array([-bend]))
 
     def _place(self, q: Array, rate: Array, body: str, local: Vector) -> Row:
         """Return position, its Jacobian and centripetal acceleration of a point."""
@@ -222,7 +265,7 @@ def slope(constraints: Constraints, q: Array, crank_angle: float) -> Array:
     row = constraints.at(q, np.zeros_like(q), crank_angle)
     drives = constraints.machine.driven
     asked = np.zeros(len(row.jacobian))
-    asked[-len(drives) :] = [driven(drive, crank_angle)[1] for drive in drives]
+    asked[-len(drives) :] = [constraints.commanded(one, crank_angle)[1] for one in drives]
     return solved(row.jacobian, asked)
 
 
@@ -237,7 +280,7 @@ def moving(constraints: Constraints, angles: Array | list[float], found: list[Ar
         rates.append(rate)
         asked = np.zeros(len(row.jacobian))
         for number, one in enumerate(drives, -len(drives)):
-            _, first, second = driven(one, angle)
+            _, first, second = constraints.commanded(one, angle)
             asked[number] = first * drive.acceleration + second * drive.speed**2
         changes.append(solved(row.jacobian, row.bend + asked))
     q, v, a = np.array(found), np.array(rates), np.array(changes)

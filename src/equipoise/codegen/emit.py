@@ -112,10 +112,10 @@ def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
 
 
 def can_emit(linkage: Linkage) -> bool:
-    """Whether the steps of a linkage can be written out: no soil, no gears beside loops, and no
-    joints whose forces only all free bodies together tell.
+    """Whether the steps of a linkage can be written out: no soil, no gears beside loops, no drive
+    that pushes, and no joints whose forces only all free bodies together tell.
     """
-    if linkage.shared is not None:
+    if linkage.shared is not None or linkage.machine.drive.pushes:
         return False
     machine = linkage.machine
     if machine.planting is not None and machine.planting.soil is not None:
@@ -134,8 +134,8 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     """
     if not can_emit(linkage):
         raise UsageError(
-            "large groups of loops, fingers in soil, parallel cranks and double guides cannot be "
-            "computed in a loop"
+            "large groups of loops, fingers in soil, parallel cranks, double guides and drives "
+            "that push cannot be computed in a loop"
         )
     writer = Writer(linkage)
     write_motion(writer)

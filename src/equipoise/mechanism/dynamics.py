@@ -21,6 +21,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.pushing import lengths
 from equipoise.mechanism.reactions import (
     Demand,
     JointForce,
@@ -30,6 +31,7 @@ from equipoise.mechanism.reactions import (
     VectorSignal,
     full,
     load_demands,
+    pushed,
     reactions,
     spring_demands,
 )
@@ -121,21 +123,28 @@ class Forces:
         return self.solved.drives
 
     @property
+    def drive_force(self) -> Array:
+        """Force with which a drive pushes its ends apart, N; of one that does."""
+        return self.solved.drive_force
+
+    @property
     def power(self) -> Array:
         """Power fed in by all drives, W."""
-        links = self.motion.links
-        parts = [torque * links[link].angular_velocity for link, torque in self.drives.items()]
-        return np.asarray(sum(parts))
+        return np.asarray(sum(self._work_by_angle.values()) * self.motion.speed)
 
     @property
     def work(self) -> dict[str, float]:
         """Work of each drive in a cycle, J; crank angles have to be those of a whole cycle."""
         angle = 2 * np.pi * self.motion.turns * np.sign(self.motion.speed)
-        links = self.motion.links
-        return {
-            link: float(np.mean(torque * links[link].angle_1) * angle)
-            for link, torque in self.drives.items()
-        }
+        return {link: float(np.mean(one) * angle) for link, one in self._work_by_angle.items()}
+
+    @cached_property
+    def _work_by_angle(self) -> dict[str, Array]:
+        """Work of each drive by crank angle (N,), N m, by the name of its link."""
+        motion, links = self.motion, self.motion.links
+        if motion.machine.drive.pushes:
+            return {motion.machine.drive.link: self.drive_force * lengths(motion)[1]}
+        return {link: torque * links[link].angle_1 for link, torque in self.drives.items()}
 
     @cached_property
     def joints(self) -> Mapping[str, JointForce]:
@@ -177,6 +186,7 @@ class Shares:
 
     drives : link -> torque of its drive, N m, of which `drive_torque` is the first.
     shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
+    drive_force : N, of a drive that pushes.
     joints, gears : name -> force whose arrays have those axes.
     """
 
@@ -188,6 +198,7 @@ class Shares:
     drives: Mapping[str, Array]
     joints: Mapping[str, JointForce]
     gears: Mapping[str, MeshForce]
+    drive_force: Array | None = field(default=None, kw_only=True)
 
     @property
     def of_machine(self) -> dict[str, Array]:
@@ -312,6 +323,7 @@ def split(whole: Forces) -> Split:
         solved.joints,
         solved.gears,
         links,
+        drive_force=pushed(solved),
     )
 
 

@@ -49,7 +49,8 @@ class Family:
             for name in self.first.machine.frame
         }
         self.steps: list[Step] | None = None
-        if all(isinstance(step, Call) for step in self.first.motion):
+        pushed = any(one.machine.drive.pushes for one in self.linkages)
+        if not pushed and all(isinstance(step, Call) for step in self.first.motion):
             self.steps = [
                 _stacked(calls) for calls in zip(*(k.motion for k in linkages), strict=True)
             ]

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
@@ -42,7 +44,13 @@ from equipoise.mechanism.checks import (
     wrong_text,
 )
 from equipoise.mechanism.couplings import Coupling
-from equipoise.mechanism.drives import Drive, FurtherDrive, wrong_drive, wrong_further
+from equipoise.mechanism.drives import (
+    Drive,
+    FurtherDrive,
+    wrong_drive,
+    wrong_further,
+    wrong_together,
+)
 from equipoise.mechanism.field import Planting, wrong_planting
 from equipoise.mechanism.force_elements import (
     Load,
@@ -85,6 +93,8 @@ __all__ = [
 ]
 
 
+MOVING = ("link", "motion", "between", "slider", "stroke", "start")
+"""What of the drive sets how the links move."""
 MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "loads": 500, "springs": 200,
         "drives": 20}  # fmt: skip
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
@@ -169,6 +179,20 @@ class Machine(Frozen):
         """Points of the frame and of every link, in their own axes."""
         return {FRAME: self.frame} | {name: link.points for name, link in self.links.items()}
 
+    @cached_property
+    def turning(self) -> Any:
+        """What tells the angle of the drive's link where a stroke does; None elsewhere."""
+        if not self.drive.pushes:
+            return None
+        return import_module("equipoise.mechanism.cylinders").commanded(self)  # which needs this
+
+    def moved(self, crank_angle: Any) -> dict[str, tuple[Any, Any, Any]]:
+        """Angle of each driven link at crank angles (...), and its two derivatives by them."""
+        found = {drive.link: drive.turned(crank_angle) for drive in self.driven}
+        if self.turning is not None:
+            found[self.drive.link] = self.turning.value(crank_angle)
+        return found
+
     @property
     def driven(self) -> tuple[Drive | FurtherDrive, ...]:
         """All drives; the crank angle is that of the first."""
@@ -177,7 +201,7 @@ class Machine(Frozen):
     @property
     def has_crank(self) -> bool:
         """Whether one link alone is driven and turns with the crank angle."""
-        return not self.drives and self.drive.motion is None
+        return not (self.drives or self.drive.motion or self.drive.pushes)
 
     @property
     def couplings(self) -> tuple[Coupling, ...]:
@@ -219,7 +243,7 @@ class Machine(Frozen):
     def with_drive(self, **changes: Any) -> Machine:
         """Return the machine with fields of its drive changed."""
         changed = replace(self, drive=replace(self.drive, **changes))
-        return self._same_motion(changed, "link" not in changes)
+        return self._same_motion(changed, not {*changes} & {*MOVING})
 
     def with_number(self, steps: Sequence[str], number: float) -> Machine:
         """Return the machine with another number, by the keys and names on the way to it such as
@@ -266,6 +290,8 @@ class Machine(Frozen):
         """Hand on how the linkage is solved, where neither lengths nor joints have changed."""
         if same and "_linkage" in self.__dict__:
             changed.__dict__["_linkage"] = self.__dict__["_linkage"].of(changed)
+            if "turning" in self.__dict__:
+                changed.__dict__["turning"] = self.__dict__["turning"]
         return changed
 
     def points_of(self, body: str) -> Mapping[str, Vector]:
@@ -297,10 +323,7 @@ def _problems(machine: Machine) -> Iterator[ModelError]:
     for name, link in machine.links.items():
         yield from wrong_link(f"links.{name}", name, link)
     yield from unknown_link("drive.link", machine.drive.link, bodies)
-    for number, one in enumerate(machine.drives, 1):
-        if one.link in [before.link for before in machine.driven[:number]]:
-            told = Note("{link!r} has a drive already; leave one of them out", link=one.link)
-            yield ModelError(f"drives[{number}].link", told)
+    yield from wrong_together(machine.drive, machine.drives)
     for name, wrong in LISTS.items():
         for where, item in numbered(name, getattr(machine, name)):
             yield from wrong(where, item, bodies)
@@ -312,7 +335,7 @@ def _problems(machine: Machine) -> Iterator[ModelError]:
         for name in machine.position.angles:
             yield from unknown_link(f"position.angles.{name}", name, bodies)
     yield from wrong_planting(machine.planting, bodies)
-    yield from wrong_drive(machine.drive)
+    yield from wrong_drive(machine.drive, bodies, [one.name for one in machine.sliders])
     yield from wrong_support(machine.support, machine.rows)
     if machine.balance is not None:
         yield from machine.balance.problems(machine)

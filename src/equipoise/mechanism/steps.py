@@ -173,8 +173,7 @@ def initial_state(machine: Machine, theta: Array) -> State:
         state.update({f"p({name})": here, f"p1({name})": 0j, f"p2({name})": 0j})
     state.update({f"u({FRAME})": 1 + 0j, f"w({FRAME})": 0.0, f"a({FRAME})": 0.0})
     state[f"phi({FRAME})"] = np.zeros_like(theta)
-    for drive in machine.driven:
-        angle, w, a = drive.turned(theta)
-        state.update(zip(u(drive.link), (np.exp(1j * angle), w, a), strict=True))
-        state[f"phi({drive.link})"] = angle
+    for link, (angle, w, a) in machine.moved(theta).items():
+        state.update(zip(u(link), (np.exp(1j * angle), w, a), strict=True))
+        state[f"phi({link})"] = angle
     return state

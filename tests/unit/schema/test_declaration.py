@@ -51,7 +51,8 @@ DOCUMENTED: dict[str, type[Frozen]] = {
     of.__name__: of
     for of in (
         Machine, shown_units.ShownUnits, parts.Drive, drives.FurtherDrive, laws.AngleLaw,
-        laws.AngleSegment, force_elements.Motor, Frame, links.Link,
+        laws.AngleSegment, laws.LengthLaw, laws.LengthSegment, force_elements.Motor, Frame,
+        links.Link,
         bodies.Body, bodies.Hole, parts.Slider, parts.Gear,
         force_elements.Load, Spring, Position, field.Planting, field.PlantingArm,
         field.Soil, support.Support,
