@@ -242,6 +242,11 @@ def driven(machine: Machine, speed: float) -> str:
 
 def drive_told(drive: Drive | FurtherDrive) -> str:
     """How a driven link goes with the crank angle."""
+    if isinstance(drive, Drive) and drive.stroke is not None:
+        low, high = (told(one, "length", "mm") for one in drive.stroke.extremes)
+        return say(
+            "{link} moves by a stroke from {low} to {high}", link=drive.link, low=low, high=high
+        )
     if drive.motion is None:
         ratio = number(getattr(drive, "ratio", 1.0))
         return say("{link} turns {ratio} times as fast", link=drive.link, ratio=ratio)
