@@ -77,7 +77,11 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
             for s in machine.sliders
         ),
         gears=tuple(
-            replace(g, start=float(start.links[g.driven].angle[0]) + angle) for g in machine.gears
+            put_off(
+                replace(g, start=float(start.links[g.driven].angle[0]) + angle),
+                angle * ((g.carrier == FRAME) - (g.driver == FRAME)),
+            )
+            for g in machine.gears
         ),
         loads=tuple(turned_load(load, angle) for load in machine.loads),
         position=None if machine.position is None else turned_position(machine.position, angle),
@@ -90,6 +94,12 @@ def later_drive(drive: FurtherDrive, angle: float) -> FurtherDrive:
     if drive.motion is None:
         return replace(drive, start=drive.start + angle * (1 - drive.ratio))
     return swung(drive, lambda value: value + angle, lambda phase: phase + angle)
+
+
+def put_off(gear: eq.Gear, later: float) -> eq.Gear:
+    """A pair whose driver, seen from the carrier, comes to the same pitch points so much later."""
+    shape = gear.shape
+    return gear if shape is None else replace(gear, shape=replace(shape, phase=shape.phase + later))
 
 
 def swung(
@@ -176,11 +186,20 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
         sliders=tuple(
             replace(s, direction=-s.direction, angle=-s.angle) for s in machine.sliders
         ),
-        gears=tuple(replace(g, start=-g.start) for g in machine.gears),
+        gears=tuple(mirrored_gear(gear) for gear in machine.gears),
         loads=tuple(mirrored_load(load) for load in machine.loads),
         gravity=vector(np.conj, machine.gravity),
         position=position,
     )  # fmt: skip
+
+
+def mirrored_gear(gear: eq.Gear) -> eq.Gear:
+    shape = gear.shape
+    if shape is not None:
+        values = {key: getattr(shape, key)[::-1] for key in ("ratio", "radius")}
+        sines, angles = tuple(-b for b in shape.sines), tuple(-a for a in shape.angle[::-1])
+        shape = replace(shape, phase=-shape.phase, sines=sines, angle=angles, **values)
+    return replace(gear, start=-gear.start, shape=shape)
 
 
 def mirrored_link(link: eq.Link) -> eq.Link:
@@ -335,7 +354,13 @@ def with_axes(machine: eq.Machine, link: str, angle: float, shift: complex) -> e
             )
             for s in machine.sliders
         ),
-        gears=tuple(replace(g, start=g.start + angle * (g.driven == link)) for g in machine.gears),
+        gears=tuple(
+            put_off(
+                replace(g, start=g.start + angle * (g.driven == link)),
+                angle * (int(g.driver == link) - (g.carrier == link)),
+            )
+            for g in machine.gears
+        ),
         position=position,
     )
 

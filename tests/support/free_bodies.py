@@ -20,6 +20,7 @@ import numpy as np
 from equipoise.mechanism.model import FRAME, Drive, FurtherDrive, Gear, Machine
 from support.loads import on_links, springs_on_links
 from support.poses import Array, Poses, cross, drive_pivot, pin_between, pins, quarter
+from support.rolling_reference import Rolling
 
 
 @dataclass(frozen=True)
@@ -238,15 +239,26 @@ def centre_line(gear: Gear, machine: Machine, poses: Poses) -> tuple[Array, Arra
     """Return pitch point and unit vector from the driver's to the driven gear's axis.
 
     On the carrier the pitch point, at the part s of the centre distance from the driver's axis,
-    has the speed s w of the driver and (s - 1) r w of the driven gear; hence s = r / (r - 1).
+    has the speed s w of the driver and (s - 1) r w of the driven gear; hence s = r / (r - 1).  Here
+    r is the ratio at each crank angle.
     """
     axes = []
     for body in (gear.driver, gear.driven):
         label = pin_between(machine, body, gear.carrier)
         axes.append(poses.place(gear.carrier, machine.points_of(gear.carrier)[label]))
     between = axes[1] - axes[0]
-    part = gear.speed_ratio / (gear.speed_ratio - 1)
-    return axes[0] + part * between, between / np.linalg.norm(between, axis=-1, keepdims=True)
+    ratio = np.asarray(gear.speed_ratio)
+    if gear.shape is not None:
+        ratio = Rolling(gear).ratio(seen_from_carrier(gear, poses))
+    part = ratio / (ratio - 1)
+    return axes[0] + part[..., None] * between, between / np.linalg.norm(
+        between, axis=-1, keepdims=True
+    )
+
+
+def seen_from_carrier(gear: Gear, poses: Poses) -> Array:
+    """Return the driver's angle, as one on the carrier sees it."""
+    return poses.angle_of(gear.driver) - poses.angle_of(gear.carrier)
 
 
 def gear_contact(gear: Gear, machine: Machine, poses: Poses) -> Contact:
@@ -262,12 +274,27 @@ def separating(gear: Gear, machine: Machine, poses: Poses, tangential: Array) ->
     pair have such teeth, and of an internal pair the smaller one.
     """
     unit = centre_line(gear, machine, poses)[1]
+    if gear.shape is not None:
+        return leaning(gear, poses, tangential, unit)
     size = np.abs(tangential) * np.tan(gear.pressure_angle)
     # External: from the pitch point the driven gear's axis lies along +unit.  Internal with a
     # small driven gear: along -unit.  Internal with a small driver: its axis lies along +unit,
     # so it is pushed that way and the driven ring the other way.
     towards = 1.0 if gear.speed_ratio < 0 else -1.0
     return towards * size[:, None] * unit
+
+
+def leaning(gear: Gear, poses: Poses, tangential: Array, unit: Array) -> Array:
+    """Return the same where the pitch curves lean: the tooth pushes along their tangent, turned by
+    the pressure angle towards the driven gear.
+    """
+    tilt = Rolling(gear).tilt(seen_from_carrier(gear, poses))
+    way = np.where(tangential < 0, -1.0, 1.0)
+    push = way * (unit[:, 0] + 1j * unit[:, 1]) * 1j * np.exp(1j * tilt)
+    push *= np.exp(-1j * way * gear.pressure_angle)
+    toward = unit[:, 0] - 1j * unit[:, 1]
+    along, across = (push * toward).real, (push * toward).imag
+    return (along / across * tangential)[:, None] * unit
 
 
 # -- results ---------------------------------------------------------------------------------------

@@ -17,6 +17,7 @@ from equipoise.mechanism.model import FRAME, Drive, FurtherDrive, Gear, Machine,
 from support.driving import driven
 from support.driving import followed as followed_law
 from support.poses import Array, Poses, cross, pins, quarter, turned
+from support.rolling_reference import Rolling
 
 
 class NotAssembledError(RuntimeError):
@@ -61,7 +62,7 @@ class Constraints:
             for body in bodies[1:]
         ]
         rows += [row for slider in self.machine.sliders for row in self._slider(q, rate, slider)]
-        rows += [self._gear(q, gear) for gear in self.machine.gears]
+        rows += [self._gear(q, rate, gear) for gear in self.machine.gears]
         rows += [self._driven(q, rate, one, self.commanded(one, crank_angle)[0])
                  for one in self.machine.driven]  # fmt: skip
         return Row(
@@ -150,12 +151,25 @@ class Constraints:
         distance = Row(np.array([across @ apart]), jacobian[None], np.array([-bend]))
         return [distance, self._turn(weights, q, -slider.direction - slider.angle)]
 
-    def _gear(self, q: Array, gear: Gear) -> Row:
-        ratio = gear.speed_ratio
+    def _gear(self, q: Array, rate: Array, gear: Gear) -> Row:
         if gear.name not in self.gear_constants:
             return self._turn({gear.driven: 1.0}, q, -gear.start)
+        constant = self.gear_constants[gear.name]
+        if gear.shape is not None:
+            return self._rolling(q, rate, gear, constant)
+        ratio = gear.speed_ratio
         weights = {gear.driven: 1.0, gear.driver: -ratio, gear.carrier: ratio - 1.0}
-        return self._turn(weights, q, -self.gear_constants[gear.name])
+        return self._turn(weights, q, -constant)
+
+    def _rolling(self, q: Array, rate: Array, gear: Gear, constant: float) -> Row:
+        """A pair whose ratio varies with the driver's angle seen from the carrier."""
+        pair = Rolling(gear)
+        slip = {gear.driver: 1.0, gear.carrier: -1.0}
+        seen = self._turn(slip, q, 0.0)
+        x, speed = float(seen.residual[0]), float(seen.jacobian[0] @ rate)
+        rest = self._turn({gear.driven: 1.0, gear.carrier: -1.0}, q, -constant - pair.angle(x))
+        jacobian = rest.jacobian - float(pair.ratio(x)) * seen.jacobian
+        return Row(rest.residual, jacobian, np.array([float(pair.bend(x)) * speed**2]))
 
     def _turn(self, weights: dict[str, float], q: Array, constant: float) -> Row:
         """Return an equation of angles alone."""
@@ -168,9 +182,9 @@ class Constraints:
     def mesh(self, q: Array) -> None:
         """Let the gears mesh as they stand at `q`."""
         for gear in self.machine.gears:
-            weights = {gear.driven: 1.0, gear.driver: -gear.speed_ratio}
-            weights[gear.carrier] = gear.speed_ratio - 1.0
-            self.gear_constants[gear.name] = float(self._turn(weights, q, 0.0).residual[0])
+            self.gear_constants[gear.name] = 0.0
+            row = self._gear(q, np.zeros_like(q), gear)
+            self.gear_constants[gear.name] = float(row.residual[0])
 
 
 def closed(constraints: Constraints, q: Array, crank_angle: float, steps: int = 40) -> Array:
