@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
+from importlib import import_module
 from math import copysign
 from typing import Any, ClassVar
 
@@ -176,6 +178,42 @@ class FurtherDrive(Frozen):
             return self.motion.turns
         exact = as_fraction(self.ratio)
         return 1 if exact is None else exact.denominator
+
+
+class Driven:
+    """What is driven of a machine."""
+
+    drive: Drive
+    drives: tuple[FurtherDrive, ...]
+
+    @cached_property
+    def turning(self) -> Any:
+        """What tells the angle of the drive's link where a stroke does; None elsewhere."""
+        if not self.drive.pushes:
+            return None
+        return import_module("equipoise.mechanism.cylinders").commanded(self)  # which needs this
+
+    def moved(self, crank_angle: Any) -> dict[str, tuple[Any, Any, Any]]:
+        """Angle of each driven link at crank angles (...), and its two derivatives by them."""
+        found = {drive.link: drive.turned(crank_angle) for drive in self.driven}
+        if self.turning is not None:
+            found[self.drive.link] = self.turning.value(crank_angle)
+        return found
+
+    @property
+    def driven(self) -> tuple[Drive | FurtherDrive, ...]:
+        """All drives; the crank angle is that of the first."""
+        return (self.drive, *self.drives)
+
+    @property
+    def told_drives(self) -> list[str]:
+        """Links that a torque drives, where there is more to tell than of one crank."""
+        return [] if self.has_crank or self.drive.pushes else [one.link for one in self.driven]
+
+    @property
+    def has_crank(self) -> bool:
+        """Whether one link alone is driven and turns with the crank angle."""
+        return not (self.drives or self.drive.motion or self.drive.pushes)
 
 
 # -- checks ----------------------------------------------------------------------------------------

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
@@ -46,6 +44,7 @@ from equipoise.mechanism.checks import (
 from equipoise.mechanism.couplings import Coupling
 from equipoise.mechanism.drives import (
     Drive,
+    Driven,
     FurtherDrive,
     wrong_drive,
     wrong_further,
@@ -68,7 +67,7 @@ from equipoise.mechanism.links import (
     wrong_points,
 )
 from equipoise.mechanism.parts import Bearing, Slider, wrong_slider
-from equipoise.mechanism.places import Frame, Position
+from equipoise.mechanism.places import Frame, Position, wrong_position
 from equipoise.mechanism.planes import wrong_planes
 from equipoise.mechanism.shown_units import ShownUnits
 from equipoise.mechanism.support import Row, Support, wrong_support
@@ -107,7 +106,7 @@ STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 
 
 @declared
-class Machine(Frozen):
+class Machine(Driven, Frozen):
     """A planar linkage with its drive, loads, springs and gravity."""
 
     beside: ClassVar[Keys] = {"schema": VERSION}
@@ -189,30 +188,6 @@ class Machine(Frozen):
     def bodies(self) -> Bodies:
         """Points of the frame and of every link, in their own axes."""
         return {FRAME: self.frame} | {name: link.points for name, link in self.links.items()}
-
-    @cached_property
-    def turning(self) -> Any:
-        """What tells the angle of the drive's link where a stroke does; None elsewhere."""
-        if not self.drive.pushes:
-            return None
-        return import_module("equipoise.mechanism.cylinders").commanded(self)  # which needs this
-
-    def moved(self, crank_angle: Any) -> dict[str, tuple[Any, Any, Any]]:
-        """Angle of each driven link at crank angles (...), and its two derivatives by them."""
-        found = {drive.link: drive.turned(crank_angle) for drive in self.driven}
-        if self.turning is not None:
-            found[self.drive.link] = self.turning.value(crank_angle)
-        return found
-
-    @property
-    def driven(self) -> tuple[Drive | FurtherDrive, ...]:
-        """All drives; the crank angle is that of the first."""
-        return (self.drive, *self.drives)
-
-    @property
-    def has_crank(self) -> bool:
-        """Whether one link alone is driven and turns with the crank angle."""
-        return not (self.drives or self.drive.motion or self.drive.pushes)
 
     @property
     def couplings(self) -> tuple[Coupling, ...]:
@@ -338,13 +313,7 @@ def _problems(machine: Machine) -> Iterator[ModelError]:
     for name, wrong in LISTS.items():
         for where, item in numbered(name, getattr(machine, name)):
             yield from wrong(where, item, bodies)
-    if machine.position is not None:
-        known = dict.fromkeys(point for link in machine.links.values() for point in link.points)
-        for point in machine.position.points:
-            if point not in known:
-                yield ModelError(f"position.points.{point}", unknown(point, known, "point"))
-        for name in machine.position.angles:
-            yield from unknown_link(f"position.angles.{name}", name, bodies)
+    yield from wrong_position(machine.position, bodies)
     yield from wrong_planting(machine.planting, bodies)
     yield from wrong_drive(machine.drive, bodies, [one.name for one in machine.sliders])
     yield from wrong_planes(machine)

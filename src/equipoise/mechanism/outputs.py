@@ -38,12 +38,6 @@ XY, FORCES = (".x", ".y"), (".force_x", ".force_y")
 """Components of vectors, behind their names."""
 
 
-def driven_links(machine: Any) -> list[str]:
-    """Links with a drive, where the crank angle does not tell all of the one there is."""
-    told = machine.has_crank or machine.drive.pushes
-    return [] if told else [drive.link for drive in machine.driven]
-
-
 def _alike(where: str, read: Callable[..., Any], **shared: Any) -> Callable[..., None]:
     """A way to declare outputs whose names begin alike, and that are read alike.
 
@@ -240,7 +234,7 @@ def _of_drive(name: str, found: Any, link: str) -> Any:
     return torque * found.motion.links[link].angular_velocity if name == "power" else torque
 
 
-of_drive = _alike("drives.{}.", _of_drive, members=driven_links, linear=True)
+of_drive = _alike("drives.{}.", _of_drive, members=lambda m: m.told_drives, linear=True)
 of_drive("torque", "torque", to_say("drive torque of {name}"), loop="{drive torque:name}")
 of_drive(
     "power",

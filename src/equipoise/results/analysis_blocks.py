@@ -18,6 +18,7 @@ from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Ta
 from equipoise.results.machine_blocks import (
     angles_told,
     driven,
+    drives_table,
     four_bar_facts,
     four_bar_table,
     largest,
@@ -156,10 +157,7 @@ def force_blocks(analysis: Analysis) -> Iterator[Block]:
     )
     labels = (say("mean"), say("RMS"), say("largest"), say("smallest"), say("peak to peak"))
     yield Table.of(title, ("", *labels), rows)
-    if not analysis.machine.has_crank and analysis.motion.whole_cycle:
-        columns = (say("drive"), Column(say("work"), "energy"))
-        work = ((link, Value(one)) for link, one in analysis.forces.work.items())
-        yield Table.of(say("Work of the drives in a cycle"), columns, work)
+    yield from drives_table(analysis)
     yield _by_link(analysis)
     yield _causes(analysis)
     if analysis.has_orders:
