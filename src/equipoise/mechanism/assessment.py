@@ -187,6 +187,7 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
     yield from _turned_axes(machine)
     used = {slider.through for slider in machine.sliders if slider.on == FRAME}
     used |= {spring.to for spring in machine.springs} | linkage.joints.pins.keys()
+    used |= {*(machine.drive.between or ())}
     for point in machine.frame:
         if point not in used:
             yield f"frame.points.{point} is not used by any joint or spring"

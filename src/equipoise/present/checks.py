@@ -16,7 +16,8 @@ from equipoise.mechanism.loads import work_in_cycle
 from equipoise.mechanism.support import idle_parts
 from equipoise.quantities import PER_RPM, SI, Dimension, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
-from equipoise.results.machine_blocks import bodies_tables, driven, place_told
+from equipoise.results.drive_blocks import driven
+from equipoise.results.machine_blocks import bodies_tables, place_told
 from equipoise.vibration.body import Body, at_rest
 from equipoise.vibration.linear import Excitation as Shaking
 
@@ -45,7 +46,8 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     yield from map(Text, _build_up(linkage))
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
     repeats = "motion repeats" if turns_given(machine) == 1 else "motion and loads repeat"
-    yield Text(f"the crank turns fully; the {repeats} after {turns}")
+    fully = "" if drive.pushes or drive.motion is not None else "the crank turns fully; "
+    yield Text(f"{fully}the {repeats} after {turns}")
     yield from bodies_tables(machine)
     yield from map(Text, (*_springs(machine), *_drive_train(machine), *_support(machine)))
     if machine.loads:

@@ -15,10 +15,9 @@ from equipoise.mechanism.spoken import body_named, joint_named
 from equipoise.mechanism.strokes import SHARE
 from equipoise.quantities import Dimension, angle, percent
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
+from equipoise.results.drive_blocks import driven, drives_table
 from equipoise.results.machine_blocks import (
     angles_told,
-    driven,
-    drives_table,
     four_bar_facts,
     four_bar_table,
     largest,
@@ -192,17 +191,19 @@ def shares(parts: Mapping[str, Array]) -> dict[str, float]:
 
 
 def _causes(analysis: Analysis) -> Table:
-    scale, forces = analysis.summary["drive_torque"].peak, analysis.forces
+    drive, forces = analysis.machine.drive, analysis.forces
+    scale = analysis.summary[drive.effort].peak
     given = {"load": forces.loads, "spring": forces.springs}
     rows: list[tuple[Cell, ...]] = []
-    for cause, values in forces.split.by_cause("drive_torque").items():
+    for cause, values in forces.split.by_cause(drive.effort).items():
         if given.get(cause, True):
             found = figures(analysis.crank_angle, values)
             told = (found.mean, found.rms, found.max, found.min)
             rows.append((say(CAUSES[cause]), *(Value(value, scale) for value in told)))
     labels = (say("mean"), say("RMS"), say("largest"), say("smallest"))
-    columns = (Column(label, "torque") for label in labels)
-    return Table.of(say("Drive torque by cause"), ("", *columns), rows)
+    columns = (Column(label, drive.effort_in) for label in labels)
+    title = say("Drive force by cause") if drive.pushes else say("Drive torque by cause")
+    return Table.of(title, ("", *columns), rows)
 
 
 def orders_table(analysis: Analysis) -> Table:

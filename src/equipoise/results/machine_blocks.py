@@ -9,9 +9,8 @@ import numpy as np
 
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.bodies import inertia_of, together
-from equipoise.mechanism.drives import Drive, FurtherDrive
 from equipoise.mechanism.spoken import body_named
-from equipoise.quantities import PER_RPM, Dimension, Display, angle, display, number, told
+from equipoise.quantities import Dimension, Display, angle, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
 from equipoise.signals import Array, Figures, figures
 
@@ -230,47 +229,6 @@ def _support(machine: Machine) -> Iterator[str]:
 
 
 # -- motion ----------------------------------------------------------------------------------------
-
-
-def driven(machine: Machine, speed: float) -> str:
-    """How the drive runs."""
-    if not machine.has_crank:
-        return say(
-            "crank angle at {speed} rpm ({rate} rad/s): {drives}",
-            speed=number(speed / PER_RPM),
-            rate=number(speed),
-            drives=say(", ").join(map(drive_told, machine.driven)),
-        )
-    return say(
-        "{link} driven at {speed} rpm ({rate} rad/s)",
-        link=machine.drive.link,
-        speed=number(speed / PER_RPM),
-        rate=number(speed),
-    )
-
-
-def drives_table(analysis: Analysis) -> Iterator[Table]:
-    """What each drive does in a cycle, where there is more to it than one crank."""
-    if not analysis.machine.has_crank and analysis.motion.whole_cycle:
-        columns = (say("drive"), Column(say("work"), "energy"))
-        work = ((link, Value(one)) for link, one in analysis.forces.work.items())
-        yield Table.of(say("Work of the drives in a cycle"), columns, work)
-
-
-def drive_told(drive: Drive | FurtherDrive) -> str:
-    """How a driven link goes with the crank angle."""
-    if isinstance(drive, Drive) and drive.stroke is not None:
-        low, high = (told(one, "length", "mm") for one in drive.stroke.extremes)
-        return say(
-            "{link} moves by a stroke from {low} to {high}", link=drive.link, low=low, high=high
-        )
-    if drive.motion is None:
-        ratio = number(getattr(drive, "ratio", 1.0))
-        return say("{link} turns {ratio} times as fast", link=drive.link, ratio=ratio)
-    low, high = map(angle, drive.motion.extremes)
-    if turns := drive.motion.windings:
-        return say("{link} makes {turns} turns in a cycle by a law", link=drive.link, turns=turns)
-    return say("{link} moves from {low} to {high} by a law", link=drive.link, low=low, high=high)
 
 
 def angles_told(analysis: Analysis) -> str:
