@@ -69,7 +69,10 @@ def _uncarried(machine: Machine) -> Iterator[str]:
         yield f"{error}; respond and modes need that"
 
 
-HOW = {"loops": "by Newton's method on the loop equations"}
+HOW = {
+    "loops": "by Newton's method on the loop equations",
+    "pointed": "where its pins are brought",
+}
 """How a group of links is solved, where that is not its kind."""
 
 
