@@ -16,7 +16,8 @@ from equipoise.balancing.design_variables import DesignVariables, FreeSpring, Li
 from equipoise.errors import UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics import Forces, demand_of_inertia, forces, place_of
+from equipoise.mechanism.demands import demand_of_inertia
+from equipoise.mechanism.dynamics import Forces, forces, place_of
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.objectives import balanced_names
@@ -178,7 +179,7 @@ class Effects:
     @cached_property
     def flanks(self) -> Pass:
         """A run whose gears are in contact on the flanks that count."""
-        if self.like is None or not self.machine.gears:
+        if self.like is None or not self.machine.couplings:
             return self.start.solved
         return forces(move(self.like, ANGLES, acceleration=0.0).at(self.motion.speed)).solved
 

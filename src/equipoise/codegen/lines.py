@@ -17,7 +17,8 @@ from equipoise.codegen.loops import write_loops
 from equipoise.codegen.source import Read, Sheet
 from equipoise.errors import MassError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.dynamics import inertia_about, massless
+from equipoise.mechanism.demands import inertia_about
+from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.loads import load_at
 from equipoise.mechanism.model import FRAME, Load, Spring

@@ -41,6 +41,8 @@ GROUPS = {
     "forces": to_say("frame and drive"),
     "joints": to_say("joints"),
     "gears": to_say("gears"),
+    "racks": to_say("racks"),
+    "belts": to_say("belts"),
     "rows": to_say("all rows together"),
     "gauges": to_say("gauges"),
 }
@@ -128,9 +130,10 @@ class Declared:
     def is_split(self) -> bool:
         """Whether it can be told by cause and by link: it is linear, and a force of one row.
 
-        Gears are too, on the flank that the whole load decides.
+        Couplings are too, on the flank or the strand that the whole load decides.
         """
-        return self.needs == "masses" and (not self.reason or self.name == "gears.{}")
+        decided = self.group == "belts" or self.name in ("gears.{}", "racks.{}")
+        return self.needs == "masses" and (not self.reason or decided)
 
     def named(self, item: str) -> str:
         """The name of a member."""

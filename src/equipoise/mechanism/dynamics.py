@@ -19,25 +19,32 @@ import numpy as np
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism import kernels
-from equipoise.mechanism.model import Link, Machine, Vector, unknown
+from equipoise.mechanism.belts import Belt
+from equipoise.mechanism.checks import Named
+from equipoise.mechanism.demands import (
+    Demand,
+    demand_of_inertia,
+    inertia_about,
+    load_demands,
+    spring_demands,
+)
+from equipoise.mechanism.model import Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import (
-    Demand,
+    BeltForce,
     JointForce,
     MeshForce,
     Pass,
     SliderForce,
     VectorSignal,
     full,
-    load_demands,
     reactions,
-    spring_demands,
 )
-from equipoise.mechanism.steps import Array, p, planar, u
+from equipoise.mechanism.steps import Array
 
 CAUSES = ("translation", "rotation", "weight", "load", "spring")
 """Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside, and
-springs to the frame."""
+springs to the frame and the tension of belts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,6 +138,22 @@ class Forces:
         return self.solved.gears
 
     @cached_property
+    def racks(self) -> Mapping[str, MeshForce]:
+        """Force between the teeth of each rack and its pinion, on the driven of them."""
+        return self.solved.racks
+
+    @cached_property
+    def belts(self) -> Mapping[str, BeltForce]:
+        """Pull and tensions of each belt on its driven link."""
+        belts = ((one, self.solved.belts[one.name]) for one in self.motion.machine.belts)
+        return Named("belt", ((k.name, force.with_tension(k.tension or 0.0)) for k, force in belts))
+
+    @property
+    def contacts(self) -> dict[str, JointForce]:
+        """Force in every joint and between all teeth."""
+        return self.solved.contacts
+
+    @cached_property
     def split(self) -> Split:
         """Every output by cause and by link."""
         return split(self)
@@ -159,7 +182,7 @@ class Shares:
     """Outputs told apart: arrays (..., N), whose first axes are what they are shares of.
 
     shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
-    joints, gears : name -> force whose arrays have those axes.
+    joints, gears, racks, belts : name -> force whose arrays have those axes.
     """
 
     shaking_force: Array
@@ -169,10 +192,12 @@ class Shares:
     drive_torque: Array
     joints: Mapping[str, JointForce]
     gears: Mapping[str, MeshForce]
+    racks: Mapping[str, MeshForce]
+    belts: Mapping[str, BeltForce]
 
     @property
     def of_machine(self) -> dict[str, Array]:
-        """All but the forces in joints and gears, by name."""
+        """All but the forces in joints and couplings, by name."""
         known = {one.name: getattr(self, one.name) for one in fields(Shares)}
         return {name: value for name, value in known.items() if isinstance(value, np.ndarray)}
 
@@ -181,7 +206,8 @@ class Shares:
 class Split(Shares):
     """Outputs by cause and link: arrays (5, L, N), causes as in `CAUSES`, links in file order.
 
-    Gears are taken with the flank in contact that the whole load gives.
+    Gears are taken with the flank in contact that the whole load gives, and chains with the strand
+    that pulls.
     """
 
     links: tuple[str, ...]
@@ -201,6 +227,11 @@ class Split(Shares):
             if isinstance(joint, SliderForce):
                 found[f"joints.{name}.moment"] = joint.moment
         found |= {f"gears.{name}": mesh.value for name, mesh in self.gears.items()}
+        found |= {f"racks.{name}": mesh.value for name, mesh in self.racks.items()}
+        for name, belt in self.belts.items():
+            found |= {
+                f"belts.{name}.{key}": getattr(belt, key) for key in ("pull", "left", "right")
+            }
         if output not in found:
             raise UsageError(unknown(output, found, "output"))
         return found[output]
@@ -245,32 +276,9 @@ def massless(machine: Machine) -> Note | str:
     )
 
 
-def inertia_about(body: Link, point: str) -> tuple[float, complex, float]:
-    """Mass, first moment (complex) and moment of inertia of a link about one of its points.
-
-    Columns where the numbers of the link are.
-    """
-    assert body.mass is not None and body.center_of_mass is not None and body.inertia is not None
-    shift = planar(body.points[point]) - planar(body.center_of_mass)
-    mass, moment, inertia = kernels.about(body.mass, 0.0, body.inertia, shift)
-    return mass, moment, inertia
-
-
-def demand_of_inertia(
-    motion: Motion, link: str, speed2: float, mass: Any, moment: Any, inertia: Any
-) -> Demand:
-    """What moves a link with these inertial parameters about its anchor."""
-    _, p1, p2 = (motion.state[name] for name in p(motion.linkage.anchors[link]))
-    rotation, w, a = (motion.state[name] for name in u(link))
-    force, turning = kernels.inertia_demand(
-        p1, p2, rotation, w, a, speed2, motion.acceleration, mass, moment, inertia
-    )
-    return force, turning
-
-
 def split(whole: Forces) -> Split:
     """Run the joints once for every cause and link."""
-    motion, links = whole.motion, tuple(whole.inertia)
+    motion, links, belts = whole.motion, tuple(whole.inertia), whole.motion.machine.belts
     shape = (len(CAUSES), len(links), len(motion.crank_angle))
     demands = {}
     for k, link in enumerate(links):
@@ -290,8 +298,19 @@ def split(whole: Forces) -> Split:
         solved.drive_torque,
         solved.joints,
         solved.gears,
+        solved.racks,
+        {one.name: _with_tension(one, solved.belts[one.name], shape, links) for one in belts},
         links,
     )
+
+
+def _with_tension(
+    belt: Belt, force: BeltForce, shape: tuple[int, ...], links: tuple[str, ...]
+) -> BeltForce:
+    """Shares of what a belt does; its tension is one of springs, told with the driven link."""
+    own = np.zeros(shape)
+    own[CAUSES.index("spring"), links.index(belt.driven)] = belt.tension or 0.0
+    return force.with_tension(own)
 
 
 def _causes(whole: Forces, link: str) -> list[Demand]:

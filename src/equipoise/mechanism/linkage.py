@@ -23,6 +23,8 @@ from equipoise.mechanism.checks import meant
 from equipoise.mechanism.cycle import Cycle, close
 from equipoise.mechanism.joints import Structure, drive_pivot, structure, subsets
 from equipoise.mechanism.model import FRAME, Machine
+from equipoise.mechanism.rack_groups import racked
+from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.steps import (
     Reaction,
     State,
@@ -254,7 +256,8 @@ def _coupled(builder: Builder, joints: Structure, unknown: list[str]) -> Group |
     for one in joints.couplings:
         ready = one.driven in unknown and {one.driver, one.carrier} <= known.keys()
         if ready and joints.freedom([one.driven], known) == 0:
-            return groups.coupled(builder, joints, one)
+            build = racked if isinstance(one, Rack) else groups.coupled
+            return build(builder, joints, one)
     return None
 
 

@@ -29,6 +29,7 @@ from equipoise.keys import (
     key,
     wrong_values,
 )
+from equipoise.mechanism.belts import Belt, wrong_belt
 from equipoise.mechanism.checks import (
     FRAME,
     SIDES,
@@ -63,6 +64,7 @@ from equipoise.mechanism.links import (
 )
 from equipoise.mechanism.parts import Slider, wrong_slider
 from equipoise.mechanism.places import Frame, Position
+from equipoise.mechanism.racks import Rack, wrong_rack
 from equipoise.mechanism.shown_units import ShownUnits
 from equipoise.mechanism.support import Row, Support, wrong_support
 
@@ -86,7 +88,16 @@ __all__ = [
 ]
 
 
-MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "loads": 500, "springs": 200}
+MOST = {
+    "links": 100,
+    "points": 2000,
+    "sliders": 200,
+    "gears": 200,
+    "belts": 200,
+    "racks": 200,
+    "loads": 500,
+    "springs": 200,
+}
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 
@@ -97,8 +108,8 @@ class Machine(Frozen):
 
     beside: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "description", "units", "gravity", "drive", "frame", "links",
-                  "assembly", "sliders", "gears", "loads", "springs", "position", "planting",
-                  "support", "rows", "balance")  # fmt: skip
+                  "assembly", "sliders", "gears", "belts", "racks", "loads", "springs", "position",
+                  "planting", "support", "rows", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(Table(Drive), "the link that is driven")
@@ -145,6 +156,8 @@ class Machine(Frozen):
     units: ShownUnits | None = key(
         Table(ShownUnits), "in which values are shown, as by `--units`", default=None
     )
+    belts: tuple[Belt, ...] = key(Tables(Table(Belt)), "toothed belts and chains", default=())
+    racks: tuple[Rack, ...] = key(Tables(Table(Rack)), "racks with their pinions", default=())
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Machine:
@@ -168,7 +181,7 @@ class Machine(Frozen):
     @property
     def couplings(self) -> tuple[Coupling, ...]:
         """Joints by which one body's angle tells another's, in the order of the file."""
-        return self.gears
+        return (*self.gears, *self.belts, *self.racks)
 
     @property
     def mass(self) -> float:
@@ -265,6 +278,8 @@ class Machine(Frozen):
 LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
     "sliders": wrong_slider,
     "gears": wrong_gear,
+    "belts": wrong_belt,
+    "racks": wrong_rack,
     "loads": wrong_load,
     "springs": wrong_ends,
 }

@@ -22,23 +22,17 @@ import numpy as np
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism import kernels
-from equipoise.mechanism.dynamics import (
-    Forces,
-    Shares,
-    demand_of_inertia,
-    forces,
-    massless,
-    place_of,
-)
-from equipoise.mechanism.model import Link, Machine, Vector, unknown
-from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.reactions import (
+from equipoise.mechanism.demands import (
     Demand,
+    demand_of_inertia,
     demands_of,
-    reactions,
     spring_direction,
     spring_vector,
 )
+from equipoise.mechanism.dynamics import Forces, Shares, forces, massless, place_of
+from equipoise.mechanism.model import Link, Machine, Vector, unknown
+from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.reactions import reactions
 from equipoise.mechanism.steps import Array, planar
 
 QUANTITIES = ("mass", "moment_x", "moment_y", "inertia")
@@ -120,6 +114,8 @@ def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Re
         solved.drive_torque,
         solved.joints,
         solved.gears,
+        solved.racks,
+        solved.belts,
         parameter_names(machine),
         values,
     )
@@ -248,6 +244,6 @@ def spring_columns(
     zero = np.zeros(units.shape)
     demands: dict[str, Demand] = dict.fromkeys(motion.machine.links, (zero + 0j, zero))
     demands |= demands_of(motion, [(link, point, units, 0.0)])
-    like = forces(motion).solved if motion.machine.gears else None
+    like = forces(motion).solved if motion.machine.couplings else None
     solved = reactions(motion, demands, like)
     return solved.drive_torque, {name: joint.value for name, joint in solved.joints.items()}

@@ -1,35 +1,29 @@
 """Joint forces: the pass that turns what each link needs into the force in every joint.
 
 The groups are run in reverse order; each hands what its outer joints must supply to the bodies
-that carry them, and the pass ends at drive and frame.  It is linear in the demands.  Loads, soil
-and springs make demands of their own.
+that carry them, and the pass ends at drive and frame.  It is linear in the demands.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
-from math import degrees
 from typing import Any
 
 import numpy as np
 
-from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
+from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.checks import Named
-from equipoise.mechanism.field import Soil
-from equipoise.mechanism.force_elements import Spring
-from equipoise.mechanism.loads import load_at
+from equipoise.mechanism.demands import Demand
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, run
-from equipoise.mechanism.tip import surface_of, tip_link
 
 JOINTS = ("pin", "slider")
 """Kinds of reactions that are no push of a coupling."""
-Demand = tuple[Any, Any]
-"""Force (complex) and moment about a link's anchor, each (..., N) or the same at all angles."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,12 +76,32 @@ class MeshForce(JointForce):
     """Force between teeth, N, along the line of action at the pitch point.
 
     tangential : part that transmits torque, positive where it turns the gear `on`
-        counterclockwise.  radial : part along the line of centres, positive towards the pin of
-        the gear `on`.
+        counterclockwise, or moves a rack ahead.  radial : part along the line of centres, positive
+        towards the pin of the gear `on`; of racks, positive where it pushes them apart.
     """
 
     tangential: Array
     radial: Array
+
+
+@dataclass(frozen=True, eq=False)
+class BeltForce:
+    """What a belt does to its driven link `on`; arrays (..., N), N.
+
+    pull : what turns the link, at the pitch radius; positive counterclockwise.
+    left, right : tension of the strands that leave the driver left and right of the way to the
+        driven link; below 0 where a belt would have to push.
+    """
+
+    on: str
+    by: str
+    pull: Array
+    left: Array
+    right: Array
+
+    def with_tension(self, tension: Any) -> BeltForce:
+        """The same with so much more in both strands."""
+        return replace(self, left=self.left + tension, right=self.right + tension)
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,8 +145,26 @@ class Pass:
         return Named("pair of gears", ((r.name, self._mesh(r)) for r in gears))
 
     @property
+    def racks(self) -> dict[str, MeshForce]:
+        """Racks, by name; the force is on the driven of rack and pinion."""
+        racks = self.motion.machine.racks
+        return Named("rack", ((rack.name, self._teeth(rack)) for rack in racks))
+
+    @property
+    def belts(self) -> dict[str, BeltForce]:
+        """Belts, by name, without the tension that they have anyway."""
+        return Named("belt", ((belt.name, self._belt(belt)) for belt in self.motion.machine.belts))
+
+    @property
+    def contacts(self) -> dict[str, JointForce]:
+        """Force in every joint and between all teeth, by name."""
+        return {**self.joints, **self.gears, **self.racks}
+
+    @property
     def flanks(self) -> State:
-        """Which flank of each pair of gears is in contact, by name in the state."""
+        """Which flank of each pair of gears is in contact, and which strand of each belt pulls, by
+        name in the state.
+        """
         return {name: value for name, value in self.state.items() if name.startswith("flank(")}
 
     def _joint(self, reaction: Reaction) -> JointForce:
@@ -149,6 +181,19 @@ class Pass:
         moment = sign * self.state[reaction.couple] + kernels.cross(at, force)
         normal = kernels.cross(direction, force)
         return SliderForce(force, on, by, normal, full(self.motion, moment, float))
+
+    def _belt(self, belt: Belt) -> BeltForce:
+        pull = full(self.motion, self.state[f"T({belt.name})"], float)
+        half = 0.5 * pull
+        mean = 0.0 * half if belt.tension else self.state[f"flank({belt.name})"] * half
+        left = -half if belt.crossed else half
+        return BeltForce(belt.driven, belt.driver, pull, mean + left, mean - left)
+
+    def _teeth(self, rack: Rack) -> MeshForce:
+        force = full(self.motion, self.state[f"R({rack.name}/{rack.driven})"], complex)
+        push = full(self.motion, self.state[f"T({rack.name})"], float)
+        apart = np.tan(rack.pressure_angle) * self.state[f"flank({rack.name})"] * push
+        return MeshForce(force, rack.driven, rack.driver, push, apart)
 
     def _mesh(self, reaction: Reaction) -> MeshForce:
         force = full(self.motion, self.state[reaction.force], complex)
@@ -190,116 +235,3 @@ def full(motion: Motion, value: Any, kind: type) -> Array:
     if np.ndim(value) == 0:
         return np.full(count, value, dtype=kind)
     return np.broadcast_to(value, (*np.shape(value)[:-1], count))
-
-
-Acting = tuple[str, str | None, Array, Any]
-"""Link, its point or None for a torque, force and torque."""
-
-MEETING = 1e-12
-"""Of the coordinates of its ends: where they are closer, rounding decides where a spring points."""
-
-
-def load_demands(motion: Motion) -> dict[str, Demand]:
-    """What holds the loads, for every link that has one."""
-    return demands_of(motion, _loads(motion))
-
-
-def spring_demands(motion: Motion) -> dict[str, Demand]:
-    """What holds the springs, for every link that has one.
-
-    Raises
-    ------
-    ModelError : the ends of a spring with a free length meet.
-    """
-    springs = motion.machine.springs
-    return demands_of(motion, ((s.link, s.point, spring_force(motion, s), 0.0) for s in springs))
-
-
-def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
-    """What holds forces (complex, N) and torques (N m), for every link that has one."""
-    result: dict[str, Demand] = {}
-    for link, point, force, torque in acting:
-        anchor = motion.state[f"p({motion.linkage.anchors[link]})"]
-        at = anchor if point is None else motion.points[point].place
-        f, m = kernels.load_demand(anchor, at, force, torque)
-        before = result.get(link, (0.0, 0.0))
-        result[link] = (before[0] + f, before[1] + m)
-    return result
-
-
-def _loads(motion: Motion) -> Iterator[Acting]:
-    """Link, point, force and torque of each load."""
-    machine = motion.machine
-    for load in machine.loads:
-        yield load.link, load.point, *load_at(load, motion.crank_angle)
-    if machine.planting is not None and machine.planting.soil is not None:
-        yield tip_link(machine), machine.planting.tip, soil_force(motion), 0.0
-
-
-def soil_force(motion: Motion) -> Array:
-    """Force of the soil on the tip (N,), N, complex; 0 above the surface.
-
-    Raises
-    ------
-    ModelError : the machine has no `[planting]`.
-    MotionError : its crank cannot turn fully, so that no lowest point tells where the surface is.
-    """
-    planting = motion.machine.planting
-    if planting is None or planting.soil is None:
-        return np.zeros(len(motion.crank_angle), complex)
-    tip = motion.points[planting.tip]
-    depth = surface_of(motion.machine) - tip.y
-    over_ground = tip.velocity + planting.forward(motion.speed)
-    speed = np.abs(over_ground)
-    size = np.where(depth > 0, resistance(planting.soil, depth, speed), 0.0)
-    against = np.divide(-over_ground, speed, out=np.zeros_like(over_ground), where=speed > 0)
-    return size * against
-
-
-def resistance(soil: Soil, depth: Array, speed: Array) -> Array:
-    """Size of the force (N,), N, at depths (N,), m, and speeds over ground (N,), m/s."""
-    size = soil.resistance + soil.per_depth * depth + soil.per_speed * speed
-    size = size + soil.per_depth_and_speed * depth * speed
-    if soil.table is not None:
-        size = size + np.interp(depth, soil.table.depth, soil.table.resistance)
-    return size
-
-
-def spring_force(motion: Motion, spring: Spring) -> Any:
-    """Force of a spring on its link's point (N,), N, complex; minus this on the frame's.
-
-    Raises
-    ------
-    ModelError : its ends meet, so that a spring with a free length points nowhere.
-    """
-    if spring.free_length:
-        spring_direction(motion, spring.link, spring.point, spring.to)
-    to = complex(*motion.machine.frame[spring.to])
-    place = motion.points[spring.point].place
-    return kernels.spring(place, to, spring.stiffness, spring.free_length)
-
-
-def spring_vector(motion: Motion, point: str, to: str) -> Any:
-    """From a moving point to a point of the frame (N,), m, complex."""
-    return complex(*motion.machine.frame[to]) - motion.points[point].place
-
-
-def spring_direction(motion: Motion, link: str, point: str, to: str) -> Any:
-    """Unit vector from a moving point to a point of the frame (N,), complex.
-
-    Raises
-    ------
-    ModelError : they meet.
-    """
-    along = spring_vector(motion, point, to)
-    length = abs(along)
-    coordinates = abs(motion.points[point].place) + abs(complex(*motion.machine.frame[to]))
-    meeting = length <= MEETING * coordinates
-    if meeting.any():
-        angle = degrees(motion.crank_angle[meeting.argmax()])
-        raise ModelError(
-            "springs",
-            f"{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a spring "
-            "with a free length points nowhere; give another point, or a free_length of 0",
-        )
-    return along / length

@@ -11,9 +11,10 @@ from equipoise.i18n import say
 from equipoise.mechanism.dwell import Dwell
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.outputs import body_named, joint_named
-from equipoise.mechanism.reactions import JointForce, SliderForce
+from equipoise.mechanism.reactions import SliderForce
 from equipoise.mechanism.strokes import SHARE
 from equipoise.quantities import Dimension, angle, percent
+from equipoise.results.belt_blocks import belt_blocks
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
 from equipoise.results.machine_blocks import (
     angles_told,
@@ -50,6 +51,8 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
         return
     yield from force_blocks(analysis)
     yield joint_table(analysis)
+    if machine.belts:
+        yield from belt_blocks(analysis.forces)
 
 
 # -- motion ----------------------------------------------------------------------------------------
@@ -236,7 +239,7 @@ def loud(sizes: list[Array], most: int = MOST_ORDERS) -> list[int]:
 def joint_table(analysis: Analysis) -> Table:
     """The force in every joint and mesh."""
     forces = analysis.forces
-    joints: dict[str, JointForce] = {**forces.joints, **forces.gears}
+    joints = forces.contacts
     scale = analysis.summary["frame_moment"].peak
     rows: list[tuple[Cell, ...]] = []
     for name, joint in joints.items():
@@ -244,7 +247,7 @@ def joint_table(analysis: Analysis) -> Table:
         couple = None
         if isinstance(joint, SliderForce):
             couple = Value(float(np.max(np.abs(joint.moment))), scale)
-        named = say("teeth") if name in forces.gears else joint_named(name)
+        named = joint_named(name) if name in forces.joints else say("teeth")
         ends = f"{body_named(joint.by)} → {body_named(joint.on)}"
         rows.append((named, ends, Value(found.mean), Value(found.rms), largest(found), couple))
     labels = (say("mean"), say("RMS"), say("largest"))

@@ -11,9 +11,9 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError, MotionError, UsageError
 from equipoise.mechanism.assessment import remarks
+from equipoise.mechanism.demands import resistance, soil_force, spring_force
 from equipoise.mechanism.field import Planting, Soil, SoilTable
 from equipoise.mechanism.parameters import spring_columns
-from equipoise.mechanism.reactions import resistance, soil_force, spring_force
 from equipoise.mechanism.tip import surface_of
 from support.machines import make
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, refused

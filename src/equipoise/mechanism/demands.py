@@ -1,0 +1,171 @@
+"""Demands: what joints must supply to links for their inertia, loads, soil, springs and belts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import chain
+from math import degrees
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.mechanism import kernels
+from equipoise.mechanism.field import Soil
+from equipoise.mechanism.force_elements import Spring
+from equipoise.mechanism.joints import coupling_pins
+from equipoise.mechanism.loads import load_at
+from equipoise.mechanism.model import FRAME, Link
+from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.steps import Array, p, planar, u
+from equipoise.mechanism.tip import surface_of, tip_link
+
+Demand = tuple[Any, Any]
+"""Force (complex) and moment about a link's anchor, each (..., N) or the same at all angles."""
+
+Acting = tuple[str, str | None, Array, Any]
+"""Link, its point or None for a torque, force and torque."""
+
+MEETING = 1e-12
+"""Of the coordinates of its ends: where they are closer, rounding decides where a spring points."""
+
+
+def inertia_about(body: Link, point: str) -> tuple[float, complex, float]:
+    """Mass, first moment (complex) and moment of inertia of a link about one of its points.
+
+    Columns where the numbers of the link are.
+    """
+    assert body.mass is not None and body.center_of_mass is not None and body.inertia is not None
+    shift = planar(body.points[point]) - planar(body.center_of_mass)
+    mass, moment, inertia = kernels.about(body.mass, 0.0, body.inertia, shift)
+    return mass, moment, inertia
+
+
+def demand_of_inertia(
+    motion: Motion, link: str, speed2: float, mass: Any, moment: Any, inertia: Any
+) -> Demand:
+    """What moves a link with these inertial parameters about its anchor."""
+    _, p1, p2 = (motion.state[name] for name in p(motion.linkage.anchors[link]))
+    rotation, w, a = (motion.state[name] for name in u(link))
+    force, turning = kernels.inertia_demand(
+        p1, p2, rotation, w, a, speed2, motion.acceleration, mass, moment, inertia
+    )
+    return force, turning
+
+
+def load_demands(motion: Motion) -> dict[str, Demand]:
+    """What holds the loads, for every link that has one."""
+    return demands_of(motion, _loads(motion))
+
+
+def spring_demands(motion: Motion) -> dict[str, Demand]:
+    """What holds the springs and the tension of belts, for every link that has one.
+
+    Raises
+    ------
+    ModelError : the ends of a spring with a free length meet.
+    """
+    springs = motion.machine.springs
+    acting = ((s.link, s.point, spring_force(motion, s), 0.0) for s in springs)
+    return demands_of(motion, chain(acting, _tensions(motion)))
+
+
+def _tensions(motion: Motion) -> Iterator[Acting]:
+    """What the tension of belts does to their links, whether or not they pass a torque on."""
+    for belt in motion.machine.belts:
+        if belt.tension is not None:
+            driver, driven = coupling_pins(motion.linkage.joints, belt)
+            apart = motion.points[driven].place - motion.points[driver].place
+            pull = belt.tension * belt.strands(apart).toward
+            ends = (belt.driver, driver, pull), (belt.driven, driven, -pull)
+            yield from ((*end, 0.0) for end in ends if end[0] != FRAME)
+
+
+def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
+    """What holds forces (complex, N) and torques (N m), for every link that has one."""
+    result: dict[str, Demand] = {}
+    for link, point, force, torque in acting:
+        anchor = motion.state[f"p({motion.linkage.anchors[link]})"]
+        at = anchor if point is None else motion.points[point].place
+        f, m = kernels.load_demand(anchor, at, force, torque)
+        before = result.get(link, (0.0, 0.0))
+        result[link] = (before[0] + f, before[1] + m)
+    return result
+
+
+def _loads(motion: Motion) -> Iterator[Acting]:
+    """Link, point, force and torque of each load."""
+    machine = motion.machine
+    for load in machine.loads:
+        yield load.link, load.point, *load_at(load, motion.crank_angle)
+    if machine.planting is not None and machine.planting.soil is not None:
+        yield tip_link(machine), machine.planting.tip, soil_force(motion), 0.0
+
+
+def soil_force(motion: Motion) -> Array:
+    """Force of the soil on the tip (N,), N, complex; 0 above the surface.
+
+    Raises
+    ------
+    ModelError : the machine has no `[planting]`.
+    MotionError : its crank cannot turn fully, so that no lowest point tells where the surface is.
+    """
+    planting = motion.machine.planting
+    if planting is None or planting.soil is None:
+        return np.zeros(len(motion.crank_angle), complex)
+    tip = motion.points[planting.tip]
+    depth = surface_of(motion.machine) - tip.y
+    over_ground = tip.velocity + planting.forward(motion.speed)
+    speed = np.abs(over_ground)
+    size = np.where(depth > 0, resistance(planting.soil, depth, speed), 0.0)
+    against = np.divide(-over_ground, speed, out=np.zeros_like(over_ground), where=speed > 0)
+    return size * against
+
+
+def resistance(soil: Soil, depth: Array, speed: Array) -> Array:
+    """Size of the force (N,), N, at depths (N,), m, and speeds over ground (N,), m/s."""
+    size = soil.resistance + soil.per_depth * depth + soil.per_speed * speed
+    size = size + soil.per_depth_and_speed * depth * speed
+    if soil.table is not None:
+        size = size + np.interp(depth, soil.table.depth, soil.table.resistance)
+    return size
+
+
+def spring_force(motion: Motion, spring: Spring) -> Any:
+    """Force of a spring on its link's point (N,), N, complex; minus this on the frame's.
+
+    Raises
+    ------
+    ModelError : its ends meet, so that a spring with a free length points nowhere.
+    """
+    if spring.free_length:
+        spring_direction(motion, spring.link, spring.point, spring.to)
+    to = complex(*motion.machine.frame[spring.to])
+    place = motion.points[spring.point].place
+    return kernels.spring(place, to, spring.stiffness, spring.free_length)
+
+
+def spring_vector(motion: Motion, point: str, to: str) -> Any:
+    """From a moving point to a point of the frame (N,), m, complex."""
+    return complex(*motion.machine.frame[to]) - motion.points[point].place
+
+
+def spring_direction(motion: Motion, link: str, point: str, to: str) -> Any:
+    """Unit vector from a moving point to a point of the frame (N,), complex.
+
+    Raises
+    ------
+    ModelError : they meet.
+    """
+    along = spring_vector(motion, point, to)
+    length = abs(along)
+    coordinates = abs(motion.points[point].place) + abs(complex(*motion.machine.frame[to]))
+    meeting = length <= MEETING * coordinates
+    if meeting.any():
+        angle = degrees(motion.crank_angle[meeting.argmax()])
+        raise ModelError(
+            "springs",
+            f"{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a spring "
+            "with a free length points nowhere; give another point, or a free_length of 0",
+        )
+    return along / length
