@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Literal
 
@@ -11,17 +10,7 @@ import numpy as np
 from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.racks import Rack
-from support.machines import (
-    Case,
-    Draft,
-    _draft,
-    _four_bar,
-    _scaled,
-    _spot,
-    _unit,
-    geared_five_bar,
-    slider_crank,
-)
+from support import machines  # which has these kinds among its own, and is imported first
 
 
 def _belt(
@@ -54,88 +43,88 @@ def _belt(
     return belt
 
 
-def _apart(draft: Draft, body: str, one: str, other: str) -> float:
+def _apart(draft: machines.Draft, body: str, one: str, other: str) -> float:
     points = draft.frame if body == FRAME else draft.links[body].points
     return float(np.hypot(*np.subtract(points[one], points[other])))
 
 
-def _with(case: Case, *belts: Belt, racks: tuple[Rack, ...] = ()) -> Case:
+def _with(case: machines.Case, *belts: Belt, racks: tuple[Rack, ...] = ()) -> machines.Case:
     return replace(case, machine=replace(case.machine, belts=belts, racks=racks))
 
 
-def belted_counterweight(rng: np.random.Generator) -> Case:
+def belted_counterweight(rng: np.random.Generator) -> machines.Case:
     """Four-bar whose rocker, or crank, drives a counterweight by a belt."""
-    four = _four_bar(rng)
+    four = machines._four_bar(rng)
     draft = four.draft
-    draft.ground("W", rng.uniform(1, 4) * draft.size * _unit(rng.uniform(-np.pi, np.pi)))
+    draft.ground("W", rng.uniform(1, 4) * draft.size * machines._unit(rng.uniform(-np.pi, np.pi)))
     draft.add("weight", W=(0, 0))
     driver, pin = ("rocker", "D") if rng.random() < 0.5 else ("crank", "A")
     belt = _belt(rng, driver, "weight", _apart(draft, FRAME, pin, "W"))
     return _with(draft.case(), belt)
 
 
-def belted_coupler(rng: np.random.Generator) -> Case:
+def belted_coupler(rng: np.random.Generator) -> machines.Case:
     """Four-bar whose crank drives a wheel on the coupler by a belt."""
-    four = _four_bar(rng, _spot(rng))
-    four.draft.add("wheel", P=(0, 0), T=_scaled(rng, four.draft))
+    four = machines._four_bar(rng, machines._spot(rng))
+    four.draft.add("wheel", P=(0, 0), T=machines._scaled(rng, four.draft))
     distance = _apart(four.draft, "coupler", "B", "P")
     return _with(four.draft.case(), _belt(rng, "crank", "wheel", distance, "coupler"))
 
 
-def belted_five_bar(rng: np.random.Generator) -> Case:
+def belted_five_bar(rng: np.random.Generator) -> machines.Case:
     """Two cranks that a belt lets turn alike, or against each other, carry a dyad."""
-    case = geared_five_bar(rng)
+    case = machines.geared_five_bar(rng)
     machine = replace(case.machine, gears=())
     distance = float(np.hypot(*np.subtract(machine.frame["A"], machine.frame["E"])))
     belt = _belt(rng, "crank", "follower", distance, equal=True)
     return _with(replace(case, machine=machine), belt)
 
 
-def belted_arm(rng: np.random.Generator) -> Case:
+def belted_arm(rng: np.random.Generator) -> machines.Case:
     """A driven arm carries two links, each by a belt from the one before, the first from a pulley
     that stands still.
     """
-    draft = _draft(rng)
+    draft = machines._draft(rng)
     a = draft.size
     draft.ground("A", (0, 0))
     draft.add_shuffled(
         arm={"A": (0, 0), "B": (a, 0), "C": np.array([2 * a, 0]) + rng.normal(size=2) * a / 3},
         idler={"B": (0, 0)},
-        planet={"C": (0, 0), "P": _scaled(rng, draft)},
+        planet={"C": (0, 0), "P": machines._scaled(rng, draft)},
     )
     first = _belt(rng, FRAME, "idler", _apart(draft, "arm", "A", "B"), "arm")
     second = _belt(rng, "idler", "planet", _apart(draft, "arm", "B", "C"), "arm")
     return _with(draft.case("arm"), first, second)
 
 
-def rack_on_frame(rng: np.random.Generator) -> Case:
+def rack_on_frame(rng: np.random.Generator) -> machines.Case:
     """Four-bar whose rocker, as a pinion, moves a rack on the frame."""
-    four = _four_bar(rng)
+    four = machines._four_bar(rng)
     draft = four.draft
     draft.ground("H", rng.uniform(-3, 3, 2) * draft.size)
-    draft.add("rack", S=(0, 0), T=_scaled(rng, draft))
+    draft.add("rack", S=(0, 0), T=machines._scaled(rng, draft))
     draft.slide("rack", "S", FRAME, "H", float(rng.uniform(-np.pi, np.pi)))
     return _with(draft.case(), racks=(_rack(rng, draft, "rocker", "rack", "pinion"),))
 
 
-def rack_on_coupler(rng: np.random.Generator) -> Case:
+def rack_on_coupler(rng: np.random.Generator) -> machines.Case:
     """Four-bar whose rocker, turning in the coupler, moves a rack along it."""
-    four = _four_bar(rng, _spot(rng))
+    four = machines._four_bar(rng, machines._spot(rng))
     draft = four.draft
-    draft.add("rack", S=(0, 0), T=_scaled(rng, draft))
+    draft.add("rack", S=(0, 0), T=machines._scaled(rng, draft))
     draft.slide("rack", "S", "coupler", "P", float(rng.uniform(-np.pi, np.pi)))
     return _with(draft.case(), racks=(_rack(rng, draft, "rocker", "rack", "pinion", "coupler"),))
 
 
-def pinion_on_frame(rng: np.random.Generator) -> Case:
+def pinion_on_frame(rng: np.random.Generator) -> machines.Case:
     """Slider-crank whose block, as a rack, turns a pinion, which drives a weight by a belt."""
-    case = slider_crank(rng)
-    draft = Draft(rng, 1.0, (0.0, 0.0), dict(case.machine.frame), dict(case.machine.links))
+    case = machines.slider_crank(rng)
+    draft = machines.Draft(rng, 1.0, (0.0, 0.0), dict(case.machine.frame), dict(case.machine.links))
     size = _apart(draft, "crank", "A", "B")
     draft.size = size
     for name in ("W", "V"):
         draft.frame[name] = tuple(float(c) for c in rng.uniform(-3, 3, 2) * size)  # type: ignore[assignment]
-    draft.add("pinion", W=(0, 0), T=_scaled(rng, draft))
+    draft.add("pinion", W=(0, 0), T=machines._scaled(rng, draft))
     draft.add("weight", V=(0, 0))
     machine = replace(case.machine, frame=draft.frame, links=draft.links)
     rack = _rack(rng, draft, "pinion", "block", "rack")
@@ -145,7 +134,7 @@ def pinion_on_frame(rng: np.random.Generator) -> Case:
 
 def _rack(
     rng: np.random.Generator,
-    draft: Draft,
+    draft: machines.Draft,
     pinion: str,
     rack: str,
     drives: Literal["pinion", "rack"],
@@ -165,15 +154,12 @@ def _rack(
     )
 
 
-BELTED: dict[str, Callable[[np.random.Generator], Case]] = {
-    maker.__name__: maker
-    for maker in (
-        belted_counterweight,
-        belted_coupler,
-        belted_five_bar,
-        belted_arm,
-        rack_on_frame,
-        rack_on_coupler,
-        pinion_on_frame,
-    )
-}
+MAKERS = (
+    belted_counterweight,
+    belted_coupler,
+    belted_five_bar,
+    belted_arm,
+    rack_on_frame,
+    rack_on_coupler,
+    pinion_on_frame,
+)
