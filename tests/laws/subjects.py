@@ -18,6 +18,7 @@ import equipoise as eq
 from equipoise.mechanism.field import Soil, SoilTable
 from support.loads import force_and_torque, has_soil, soil_force, tips_of
 from support.machines import KINDS, make
+from support.machines_redundant import REDUNDANT
 
 Array = NDArray[Any]
 IN_SOIL = "kim-chung-b in soil"
@@ -30,7 +31,7 @@ ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 @cache
 def names() -> tuple[str, ...]:
     """Names of all subjects: examples, one in soil, and kinds of random machines with a seed."""
-    random = (f"{kind}:{seed}" for kind in KINDS for seed in SEEDS)
+    random = (f"{kind}:{seed}" for kind in (*KINDS, *REDUNDANT) for seed in SEEDS)
     return (*sorted(eq.examples("linkage")), IN_SOIL, *random)
 
 

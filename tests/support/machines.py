@@ -26,6 +26,7 @@ from equipoise.mechanism.model import (
     Spring,
     Vector,
 )
+from support import machines_belts
 from support.machines_drives import moved
 from support.newton import Side, assembled
 from support.poses import Array, Poses, turned
@@ -728,13 +729,16 @@ KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
         guide_on_dyad,
         crossed_guides,
         *MOVED,
+        *machines_belts.MAKERS,
     )
 }
 
 
 def make(kind: str, seed: int) -> Case:
     """Return the machine of a kind that belongs to a seed, the same at every call."""
-    return KINDS[kind](np.random.default_rng([seed, *kind.encode()]))
+    from support.machines_redundant import REDUNDANT
+
+    return {**KINDS, **REDUNDANT}[kind](np.random.default_rng([seed, *kind.encode()]))
 
 
 def cases(*kinds: str) -> st.SearchStrategy[Case]:
