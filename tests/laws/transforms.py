@@ -19,6 +19,7 @@ from equipoise.mechanism.balance import Limit
 from equipoise.mechanism.field import Planting
 from equipoise.mechanism.model import FRAME, Vector
 from equipoise.mechanism.objectives import quantity_of
+from equipoise.mechanism.racks import Rack
 from equipoise.quantities import SI
 
 Value = TypeVar("Value")
@@ -75,12 +76,22 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
             for s in machine.sliders
         ),
         gears=tuple(
-            replace(g, start=float(start.links[g.driven].angle[0]) + angle) for g in machine.gears
+            put_off(
+                replace(g, start=float(start.links[g.driven].angle[0]) + angle),
+                angle * ((g.carrier == FRAME) - (g.driver == FRAME)),
+            )
+            for g in machine.gears
         ),
         loads=tuple(turned_load(load, angle) for load in machine.loads),
         position=None if machine.position is None else turned_position(machine.position, angle),
         planting=None,
     )
+
+
+def put_off(gear: eq.Gear, later: float) -> eq.Gear:
+    """A pair whose driver, seen from the carrier, comes to the same pitch points so much later."""
+    shape = gear.shape
+    return gear if shape is None else replace(gear, shape=replace(shape, phase=shape.phase + later))
 
 
 def swung(
@@ -143,6 +154,14 @@ def mirrored_planting(planting: Planting | None) -> Planting | None:
     )
 
 
+def restarted(machine: eq.Machine, start: Any, rack: Rack, angle: float) -> Rack:
+    """A rack as it stands at the start of a motion, in a frame that is turned."""
+    if rack.drives == "rack":
+        return replace(rack, angle=float(start.links[rack.pinion].angle[0]) + angle)
+    name = f"{rack.rack} on {rack.carrier}"
+    return replace(rack, travel=float(start.sliders[name].travel[0]))
+
+
 def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
     """The image in the x axis; crank angles change their sign."""
     flip = {"left": "right", "right": "left"}
@@ -163,11 +182,20 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
         sliders=tuple(
             replace(s, direction=-s.direction, angle=-s.angle) for s in machine.sliders
         ),
-        gears=tuple(replace(g, start=-g.start) for g in machine.gears),
+        gears=tuple(mirrored_gear(gear) for gear in machine.gears),
         loads=tuple(mirrored_load(load) for load in machine.loads),
         gravity=vector(np.conj, machine.gravity),
         position=position,
     )  # fmt: skip
+
+
+def mirrored_gear(gear: eq.Gear) -> eq.Gear:
+    shape = gear.shape
+    if shape is not None:
+        values = {key: getattr(shape, key)[::-1] for key in ("ratio", "radius")}
+        sines, angles = tuple(-b for b in shape.sines), tuple(-a for a in shape.angle[::-1])
+        shape = replace(shape, phase=-shape.phase, sines=sines, angle=angles, **values)
+    return replace(gear, start=-gear.start, shape=shape)
 
 
 def mirrored_link(link: eq.Link) -> eq.Link:
@@ -322,7 +350,13 @@ def with_axes(machine: eq.Machine, link: str, angle: float, shift: complex) -> e
             )
             for s in machine.sliders
         ),
-        gears=tuple(replace(g, start=g.start + angle * (g.driven == link)) for g in machine.gears),
+        gears=tuple(
+            put_off(
+                replace(g, start=g.start + angle * (g.driven == link)),
+                angle * (int(g.driver == link) - (g.carrier == link)),
+            )
+            for g in machine.gears
+        ),
         position=position,
     )
 
@@ -361,6 +395,14 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
             replace(g, driver=body(g.driver), driven=body(g.driven), carrier=body(g.carrier))
             for g in machine.gears
         ),
+        belts=tuple(
+            replace(b, driver=body(b.driver), driven=body(b.driven), carrier=body(b.carrier))
+            for b in machine.belts
+        ),
+        racks=tuple(
+            replace(r, pinion=body(r.pinion), rack=body(r.rack), carrier=body(r.carrier))
+            for r in machine.racks
+        ),
         loads=tuple(
             replace(load, link=body(load.link),
                     point=None if load.point is None else names(load.point))
@@ -391,6 +433,8 @@ def reordered(machine: eq.Machine) -> eq.Machine:
         assembly={joint: flip.get(side, side) for joint, side in machine.assembly.items()},
         sliders=machine.sliders[::-1],
         gears=machine.gears[::-1],
+        belts=machine.belts[::-1],
+        racks=machine.racks[::-1],
         loads=machine.loads[::-1],
         springs=machine.springs[::-1],
     )

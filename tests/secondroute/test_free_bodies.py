@@ -58,7 +58,7 @@ def same_forces(subject: Subject) -> None:
     for name, reaction in solved.joints.items():
         same_reaction(name, forces.joints[name], reaction, force, moment)
     for name, reaction in {**solved.gears, **solved.racks}.items():
-        same_reaction(name, forces.contacts[name], reaction, force, moment)
+        same_reaction(name, forces.solved.contacts[name], reaction, force, moment)
     for name, strands in solved.strands.items():
         belt = forces.belts[name]
         for what, got, want in zip(
@@ -81,8 +81,10 @@ def same_reaction(name: str, got: Any, want: Reaction, force: float, moment: flo
 
 
 def same_totals(forces: Any, solved: FreeBodies, force: float, moment: float) -> None:
-    """Compare drive torque and what the frame bears."""
-    agree("drive torque", forces.drive_torque, solved.drive_torque, TOLERANCE, moment)
+    """Compare what the drive exerts and what the frame bears."""
+    pushes = forces.motion.machine.drive.pushes
+    drive = forces.drive_force if pushes else forces.drive_torque
+    agree("drive", drive, solved.drive, TOLERANCE, force if pushes else moment)
     agree("frame force", vector(forces.frame_force), solved.frame_force, TOLERANCE, force)
     agree("frame moment", forces.frame_moment, solved.frame_moment, TOLERANCE, moment)
 

@@ -7,12 +7,13 @@ What each design has of its own is a slot, with a function that finds it in the 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from equipoise.codegen.angles import turned, write_running_angle
+from equipoise.codegen.applied import Held, names, write_load, write_spring, write_tension
 from equipoise.codegen.loops import write_loops
 from equipoise.codegen.source import Read, Sheet
 from equipoise.errors import MassError
@@ -20,8 +21,7 @@ from equipoise.mechanism import kernels
 from equipoise.mechanism.demands import inertia_about
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.loads import load_at
-from equipoise.mechanism.model import FRAME, Load, Spring
+from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.newton import LoopGroup
 from equipoise.mechanism.steps import (
     Call,
@@ -34,9 +34,6 @@ from equipoise.mechanism.steps import (
     size_of_bodies,
     u,
 )
-
-Held = tuple[str, str, str]
-"""Link, and identifiers of force and moment that hold something against it."""
 
 
 class Writer:
@@ -54,7 +51,7 @@ class Writer:
     def __init__(self, linkage: Linkage) -> None:
         self.linkage, self.machine, self.sheet = linkage, linkage.machine, Sheet()
         drive = self.machine.drive
-        steps = any(isinstance(step, RunningAngle) for step in linkage.motion)
+        steps = any(map(_counts, linkage.motion))
         self.counted = steps or drive.motion is not None
         self.orders: dict[str, float] = {FRAME: 0.0, drive.link: 1.0}
         self.points = set(self.machine.frame)
@@ -96,6 +93,12 @@ class Writer:
         own = [g.margin for g in self.linkage.groups if g.margin is not None]
         found = {self.name(number): k for k, number in enumerate(own)}
         return found | {self.apart[n]: k for k, n in enumerate(own) if n in self.apart}
+
+
+def _counts(step: Step) -> bool:
+    """Whether a step asks for the angle of a link that a dyad moves, or tells one of a rack's."""
+    racked = isinstance(step, Call) and step.kernel in (kernels.rolled, kernels.wound)
+    return racked or isinstance(step, RunningAngle)
 
 
 # -- motion ----------------------------------------------------------------------------------------
@@ -235,10 +238,11 @@ def write_demands(writer: Writer) -> None:
         raise MassError(missing)
     _write_inertia(writer)
     links, machine = list(writer.machine.links), writer.machine
-    moving = [(link, *_names(writer, "I", link)) for link in links]
-    weights = [(link, *_names(writer, "W", link)) for link in links]
-    loads = [_write_load(writer, k, load) for k, load in enumerate(machine.loads, 1)]
-    springs = [_write_spring(writer, k, spring) for k, spring in enumerate(machine.springs)]
+    moving = [(link, *names(writer, "I", link)) for link in links]
+    weights = [(link, *names(writer, "W", link)) for link in links]
+    loads = [write_load(writer, k, load) for k, load in enumerate(machine.loads, 1)]
+    springs = [write_spring(writer, k, spring) for k, spring in enumerate(machine.springs)]
+    springs += [held for k in range(len(machine.belts)) for held in write_tension(writer, k)]
     _write_frame(writer, "shaking", moving)
     _write_frame(writer, "frame", [*moving, *weights, *loads])
     for link in links:
@@ -248,10 +252,6 @@ def write_demands(writer: Writer) -> None:
         writer.sheet.put(moment, " + ".join(moment for _, _, moment in parts))
     if writer.machine.drive.motion is None:  # else its work tells nothing where the link rests
         writer.sheet.put("drive torque", " + ".join(_drive_torques(writer)))
-
-
-def _names(writer: Writer, cause: str, link: str) -> tuple[str, str]:
-    return writer.name(f"F{cause}({link})"), writer.name(f"M{cause}({link})")
 
 
 def _write_inertia(writer: Writer) -> None:
@@ -274,42 +274,6 @@ def _write_inertia(writer: Writer) -> None:
 def _inertia(writer: Writer, link: str, place: int) -> Read:
     anchor = writer.linkage.anchors[link]
     return lambda found: inertia_about(found.machine.links[link], anchor)[place]
-
-
-def _write_load(writer: Writer, number: int, load: Load) -> Held:
-    values: dict[str, Callable[[Any], Any]] = {
-        "x": lambda theta: load_at(load, theta)[0].real,
-        "y": lambda theta: load_at(load, theta)[0].imag,
-        "torque": lambda theta: load_at(load, theta)[1],
-    }
-    x, y, torque = (writer.sheet.row(f"load {number} {key}", of) for key, of in values.items())
-    force = f"({x} + 1j * {y})"
-    return _write_held(writer, load.link, load.point, force, torque, f"L{number}")
-
-
-def _write_spring(writer: Writer, number: int, spring: Spring) -> Held:
-    sheet, cause = writer.sheet, number + 1
-    place, *_ = writer.point(spring.link, spring.point)
-    stiffness = sheet.slot(
-        f"stiffness({cause})", lambda found: found.machine.springs[number].stiffness
-    )
-    free = sheet.slot(
-        f"free_length({cause})", lambda found: found.machine.springs[number].free_length
-    )
-    to = writer.name(f"p({spring.to})")
-    pull = sheet.put(f"pull({cause})", f"spring({place}, {to}, {stiffness}, {free})")
-    return _write_held(writer, spring.link, spring.point, pull, "0.0", f"S{cause}")
-
-
-def _write_held(
-    writer: Writer, link: str, point: str | None, force: str, torque: str, cause: str
-) -> Held:
-    """Write what holds a force at a point of a link, and a torque on it."""
-    anchor = writer.body(link)[0]
-    at = anchor if point is None else writer.point(link, point)[0]
-    outputs = (f"F{cause}({link})", f"M{cause}({link})")
-    writer.sheet.call("load_demand", [anchor, at, force, torque], outputs)
-    return link, *_names(writer, cause, link)
 
 
 def _write_frame(writer: Writer, what: str, demands: list[Held]) -> None:

@@ -99,7 +99,7 @@ def pull_of(builder: Builder, joints: Structure, belt: Belt) -> Pull:
 
 def _overlapping(belt: Belt, strands: Strands) -> Iterator[Note]:
     reach = belt.pitch_radii[0] + belt.pitch_radii[1]
-    if np.any(strands.distance <= reach):
+    if np.all(strands.distance <= reach):
         yield Note(
             "its pulleys overlap: their pitch radii add up to {reach:.6g} mm, and their pins are "
             "{distance:.6g} mm apart; give smaller ones, or set the pins farther apart",
@@ -114,6 +114,6 @@ def _runs_through(strands: Strands, place: complex) -> bool:
         start, _ = strands.ends(side)
         way = (place - start) * np.conj(strands.way(side))
         inside = (way.real >= 0) & (way.real <= strands.length)
-        if np.any(inside & (abs(way.imag) <= TOUCHING * strands.distance)):
+        if np.all(inside & (abs(way.imag) <= TOUCHING * strands.distance)):
             return True
     return False

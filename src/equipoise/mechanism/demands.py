@@ -23,8 +23,8 @@ from equipoise.mechanism.tip import surface_of, tip_link
 Demand = tuple[Any, Any]
 """Force (complex) and moment about a link's anchor, each (..., N) or the same at all angles."""
 
-Acting = tuple[str, str | None, Array, Any]
-"""Link, its point or None for a torque, force and torque."""
+Acting = tuple[str, Any, Array, Any]
+"""Link, its point, a place (N,) or None for a torque, force and torque."""
 
 MEETING = 1e-12
 """Of the coordinates of its ends: where they are closer, rounding decides where a spring points."""
@@ -86,7 +86,8 @@ def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
     result: dict[str, Demand] = {}
     for link, point, force, torque in acting:
         anchor = motion.state[f"p({motion.linkage.anchors[link]})"]
-        at = anchor if point is None else motion.points[point].place
+        named = isinstance(point, str)
+        at = anchor if point is None else motion.points[point].place if named else point
         f, m = kernels.load_demand(anchor, at, force, torque)
         before = result.get(link, (0.0, 0.0))
         result[link] = (before[0] + f, before[1] + m)

@@ -20,7 +20,6 @@ from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.belts import Belt
-from equipoise.mechanism.checks import Named
 from equipoise.mechanism.demands import (
     Demand,
     demand_of_inertia,
@@ -30,6 +29,7 @@ from equipoise.mechanism.demands import (
 )
 from equipoise.mechanism.model import Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.pushing import lengths
 from equipoise.mechanism.reactions import (
     BeltForce,
     JointForce,
@@ -38,6 +38,7 @@ from equipoise.mechanism.reactions import (
     SliderForce,
     VectorSignal,
     full,
+    pushed,
     reactions,
 )
 from equipoise.mechanism.steps import Array
@@ -123,10 +124,18 @@ class Forces:
         return self.solved.drive_torque
 
     @property
+    def drive_force(self) -> Array:
+        """Force with which a drive pushes its ends apart, N; of one that does."""
+        return self.solved.drive_force
+
+    @property
     def power(self) -> Array:
         """Power fed in by the drive, W."""
-        drive = self.motion.machine.drive.link
-        return self.drive_torque * self.motion.links[drive].angular_velocity
+        motion = self.motion
+        drive = motion.machine.drive
+        if drive.pushes:
+            return self.drive_force * lengths(motion)[1] * motion.speed
+        return self.drive_torque * motion.links[drive.link].angular_velocity
 
     @cached_property
     def joints(self) -> Mapping[str, JointForce]:
@@ -146,13 +155,7 @@ class Forces:
     @cached_property
     def belts(self) -> Mapping[str, BeltForce]:
         """Pull and tensions of each belt on its driven link."""
-        belts = ((one, self.solved.belts[one.name]) for one in self.motion.machine.belts)
-        return Named("belt", ((k.name, force.with_tension(k.tension or 0.0)) for k, force in belts))
-
-    @property
-    def contacts(self) -> dict[str, JointForce]:
-        """Force in every joint and between all teeth."""
-        return self.solved.contacts
+        return self.solved.taut(lambda belt: belt.tension or 0.0)
 
     @cached_property
     def split(self) -> Split:
@@ -183,6 +186,7 @@ class Shares:
     """Outputs told apart: arrays (..., N), whose first axes are what they are shares of.
 
     shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
+    drive_force : N, of a drive that pushes.
     joints, gears, racks, belts : name -> force whose arrays have those axes.
     """
 
@@ -195,6 +199,7 @@ class Shares:
     gears: Mapping[str, MeshForce]
     racks: Mapping[str, MeshForce]
     belts: Mapping[str, BeltForce]
+    drive_force: Array | None = field(default=None, kw_only=True)
 
     @property
     def of_machine(self) -> dict[str, Array]:
@@ -279,7 +284,7 @@ def massless(machine: Machine) -> Note | str:
 
 def split(whole: Forces) -> Split:
     """Run the joints once for every cause and link."""
-    motion, links, belts = whole.motion, tuple(whole.inertia), whole.motion.machine.belts
+    motion, links = whole.motion, tuple(whole.inertia)
     shape = (len(CAUSES), len(links), len(motion.crank_angle))
     demands = {}
     for k, link in enumerate(links):
@@ -288,6 +293,13 @@ def split(whole: Forces) -> Split:
             force[c, k], moment[c, k] = f, m
         demands[link] = (force, moment)
     solved = reactions(motion, demands, whole.solved)
+
+    def tension_told(belt: Belt) -> Array:
+        """With the springs, and with the driven link."""
+        own = np.zeros(shape)
+        own[CAUSES.index("spring"), links.index(belt.driven)] = belt.tension or 0.0
+        return own
+
     inertial = np.array([1, 1, 0, 0, 0])[:, None, None]
     # A spring's pull on the frame and what it makes the joints bear there cancel.
     on_frame = np.array([1, 1, 1, 1, 0])[:, None, None]
@@ -300,18 +312,10 @@ def split(whole: Forces) -> Split:
         solved.joints,
         solved.gears,
         solved.racks,
-        {one.name: _with_tension(one, solved.belts[one.name], shape, links) for one in belts},
+        solved.taut(tension_told),
         links,
+        drive_force=pushed(solved),
     )
-
-
-def _with_tension(
-    belt: Belt, force: BeltForce, shape: tuple[int, ...], links: tuple[str, ...]
-) -> BeltForce:
-    """Shares of what a belt does; its tension is one of springs, told with the driven link."""
-    own = np.zeros(shape)
-    own[CAUSES.index("spring"), links.index(belt.driven)] = belt.tension or 0.0
-    return force.with_tension(own)
 
 
 def _causes(whole: Forces, link: str) -> list[Demand]:

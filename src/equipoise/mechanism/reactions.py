@@ -6,8 +6,8 @@ that carry them, and the pass ends at drive and frame.  It is linear in the dema
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -16,12 +16,15 @@ import numpy as np
 from equipoise.mechanism import kernels
 from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.checks import Named
-from equipoise.mechanism.demands import Demand
+from equipoise.mechanism.demands import Demand, demands_of
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.pushing import pushes
 from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, run
 
+PUSH = "D"
+"""Name of the force of a drive that pushes, among the values of a pass."""
 JOINTS = ("pin", "slider")
 """Kinds of reactions that are no push of a coupling."""
 
@@ -99,10 +102,6 @@ class BeltForce:
     left: Array
     right: Array
 
-    def with_tension(self, tension: Any) -> BeltForce:
-        """The same with so much more in both strands."""
-        return replace(self, left=self.left + tension, right=self.right + tension)
-
 
 @dataclass(frozen=True, eq=False)
 class Pass:
@@ -118,6 +117,11 @@ class Pass:
     def drive_torque(self) -> Array:
         """Torque of the drive on its link, N m."""
         return full(self.motion, self.state[f"M({self.motion.machine.drive.link})"], float)
+
+    @cached_property
+    def drive_force(self) -> Array:
+        """Force with which the drive pushes its ends apart, or its sliding link ahead, N."""
+        return full(self.motion, self.state[PUSH], float)
 
     @cached_property
     def frame_force(self) -> Array:
@@ -153,7 +157,12 @@ class Pass:
     @property
     def belts(self) -> dict[str, BeltForce]:
         """Belts, by name, without the tension that they have anyway."""
-        return Named("belt", ((belt.name, self._belt(belt)) for belt in self.motion.machine.belts))
+        return self.taut(lambda belt: 0.0)
+
+    def taut(self, tension: Callable[[Belt], Any]) -> dict[str, BeltForce]:
+        """Belts, by name, with a tension in both strands."""
+        belts = self.motion.machine.belts
+        return Named("belt", ((belt.name, self._belt(belt, tension(belt))) for belt in belts))
 
     @property
     def contacts(self) -> dict[str, JointForce]:
@@ -182,11 +191,12 @@ class Pass:
         normal = kernels.cross(direction, force)
         return SliderForce(force, on, by, normal, full(self.motion, moment, float))
 
-    def _belt(self, belt: Belt) -> BeltForce:
+    def _belt(self, belt: Belt, tension: Any) -> BeltForce:
         pull = full(self.motion, self.state[f"T({belt.name})"], float)
         half = 0.5 * pull
         mean = 0.0 * half if belt.tension else self.state[f"flank({belt.name})"] * half
         left = -half if belt.crossed else half
+        mean = mean + tension
         return BeltForce(belt.driven, belt.driver, pull, mean + left, mean - left)
 
     def _teeth(self, rack: Rack) -> MeshForce:
@@ -211,10 +221,35 @@ def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None =
     demands : link -> force and moment about its anchor, of shapes (..., N).
     like : a pass whose gears are in contact on the same flanks; without it the demands tell.
     """
+    if motion.machine.drive.pushes:
+        return _pushed(motion, demands, like)
+    return _passed(motion, demands, like)
+
+
+def _pushed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) -> Pass:
+    """The same where a force drives: as large as it takes for the link to need no torque."""
+    drive = f"M({motion.machine.drive.link})"
+    acting = ((body, at, way, 0.0) for body, at, way in pushes(motion))
+    units = demands_of(motion, acting)
+    still = dict.fromkeys(motion.machine.links, (0j, 0.0)) | units
+    force = -_passed(motion, demands, like).state[drive] / _passed(motion, still, like).state[drive]
+    total = dict(demands)
+    for body, (unit, turning) in units.items():
+        own = demands.get(body, (0j, 0.0))
+        total[body] = own[0] + force * unit, own[1] + force * turning
+    found = _passed(motion, total, like)
+    found.state.update({drive: 0.0 * force, PUSH: force})
+    return found
+
+
+def _passed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) -> Pass:
+    """The run over the joints, which ends at a torque on the drive's link."""
     state = dict(motion.state)
-    for link, (force, moment) in demands.items():
+    of_links = dict(demands)
+    on_frame = of_links.pop(FRAME, (0j, 0.0))
+    of_links[FRAME] = 0j, 0.0
+    for link, (force, moment) in of_links.items():
         state[f"F({link})"], state[f"M({link})"] = force, moment
-    state[f"F({FRAME})"], state[f"M({FRAME})"] = 0j, 0.0
     known = {} if like is None else like.flanks
     state.update(known)
 
@@ -222,9 +257,16 @@ def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None =
         return isinstance(step, Call) and set(step.outputs) <= known.keys()
 
     run([step for step in motion.linkage.forces if not is_known(step)], state)
+    for name, more in zip((f"F({FRAME})", f"M({FRAME})"), on_frame, strict=True):
+        state[name] = state[name] + more
     drive = motion.machine.drive.link
     state[f"R({motion.linkage.pivot}/{drive})"] = state[f"F({drive})"]
     return Pass(motion, state)
+
+
+def pushed(found: Pass) -> Array | None:
+    """Force of a drive that pushes, None of any other."""
+    return found.drive_force if found.motion.machine.drive.pushes else None
 
 
 def full(motion: Motion, value: Any, kind: type) -> Array:

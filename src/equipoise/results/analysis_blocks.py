@@ -239,7 +239,7 @@ def loud(sizes: list[Array], most: int = MOST_ORDERS) -> list[int]:
 def joint_table(analysis: Analysis) -> Table:
     """The force in every joint and mesh."""
     forces = analysis.forces
-    joints = forces.contacts
+    joints = forces.solved.contacts
     scale = analysis.summary["frame_moment"].peak
     rows: list[tuple[Cell, ...]] = []
     for name, joint in joints.items():
