@@ -82,6 +82,10 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
             )
             for g in machine.gears
         ),
+        belts=tuple(
+            replace(b, start=float(start.links[b.driven].angle[0]) + angle) for b in machine.belts
+        ),
+        racks=tuple(restarted(start, rack, angle) for rack in machine.racks),
         loads=tuple(turned_load(load, angle) for load in machine.loads),
         position=None if machine.position is None else turned_position(machine.position, angle),
         planting=None,
@@ -162,6 +166,14 @@ def restarted(machine: eq.Machine, start: Any, rack: Rack, angle: float) -> Rack
     return replace(rack, travel=float(start.sliders[name].travel[0]))
 
 
+def restarted(start: Any, rack: Rack, angle: float) -> Rack:
+    """A rack as it stands at the start of a motion, in a frame that is turned."""
+    if rack.drives == "rack":
+        return replace(rack, angle=float(start.links[rack.pinion].angle[0]) + angle)
+    travel = start.sliders[f"{rack.rack} on {rack.carrier}"].travel
+    return replace(rack, travel=float(travel[0]))
+
+
 def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
     """The image in the x axis; crank angles change their sign."""
     flip = {"left": "right", "right": "left"}
@@ -183,6 +195,8 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
             replace(s, direction=-s.direction, angle=-s.angle) for s in machine.sliders
         ),
         gears=tuple(mirrored_gear(gear) for gear in machine.gears),
+        belts=tuple(replace(b, start=-b.start) for b in machine.belts),
+        racks=tuple(replace(r, angle=-r.angle, side=flip[r.side]) for r in machine.racks),
         loads=tuple(mirrored_load(load) for load in machine.loads),
         gravity=vector(np.conj, machine.gravity),
         position=position,
@@ -356,6 +370,11 @@ def with_axes(machine: eq.Machine, link: str, angle: float, shift: complex) -> e
                 angle * (int(g.driver == link) - (g.carrier == link)),
             )
             for g in machine.gears
+        ),
+        belts=tuple(replace(b, start=b.start + angle * (b.driven == link)) for b in machine.belts),
+        racks=tuple(
+            replace(r, angle=r.angle + angle * (r.drives == "rack" and r.pinion == link))
+            for r in machine.racks
         ),
         position=position,
     )

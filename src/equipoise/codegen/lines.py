@@ -12,17 +12,18 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.codegen.across import write_across
 from equipoise.codegen.angles import turned, write_running_angle
 from equipoise.codegen.applied import Held, names, write_load, write_spring, write_tension
 from equipoise.codegen.loops import write_loops
 from equipoise.codegen.source import Read, Sheet
 from equipoise.errors import MassError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.demands import inertia_about
-from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.dynamics import inertia_about, massless
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.newton import LoopGroup
+from equipoise.mechanism.planes import beside
 from equipoise.mechanism.steps import (
     Call,
     Rotation,
@@ -243,6 +244,9 @@ def write_demands(writer: Writer) -> None:
     loads = [write_load(writer, k, load) for k, load in enumerate(machine.loads, 1)]
     springs = [write_spring(writer, k, spring) for k, spring in enumerate(machine.springs)]
     springs += [held for k in range(len(machine.belts)) for held in write_tension(writer, k)]
+    if beside(machine):
+        held = [[force for _, force, _ in each] for each in (loads, springs)]
+        write_across(writer.sheet, writer.linkage, writer.body, *held)
     _write_frame(writer, "shaking", moving)
     _write_frame(writer, "frame", [*moving, *weights, *loads])
     for link in links:

@@ -1,12 +1,13 @@
 """Joint forces: the pass that turns what each link needs into the force in every joint.
 
 The groups are run in reverse order; each hands what its outer joints must supply to the bodies
-that carry them, and the pass ends at drive and frame.  It is linear in the demands.
+that carry them, and the pass ends at drive and frame.  It is linear in the demands.  Loads, soil
+and springs make demands of their own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -16,17 +17,17 @@ import numpy as np
 from equipoise.mechanism import kernels
 from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.checks import Named
-from equipoise.mechanism.demands import Demand, demands_of
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.parts import JOINTS
 from equipoise.mechanism.pushing import pushes
 from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, run
 
 PUSH = "D"
 """Name of the force of a drive that pushes, among the values of a pass."""
-JOINTS = ("pin", "slider")
-"""Kinds of reactions that are no push of a coupling."""
+Demand = tuple[Any, Any]
+"""Force (complex) and moment about a link's anchor, each (..., N) or the same at all angles."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,13 +155,8 @@ class Pass:
         racks = self.motion.machine.racks
         return Named("rack", ((rack.name, self._teeth(rack)) for rack in racks))
 
-    @property
-    def belts(self) -> dict[str, BeltForce]:
-        """Belts, by name, without the tension that they have anyway."""
-        return self.taut(lambda belt: 0.0)
-
-    def taut(self, tension: Callable[[Belt], Any]) -> dict[str, BeltForce]:
-        """Belts, by name, with a tension in both strands."""
+    def belts(self, tension: Callable[[Belt], Any]) -> dict[str, BeltForce]:
+        """Belts, by name, with a tension in both strands beside what their pull makes."""
         belts = self.motion.machine.belts
         return Named("belt", ((belt.name, self._belt(belt, tension(belt))) for belt in belts))
 
@@ -168,6 +164,16 @@ class Pass:
     def contacts(self) -> dict[str, JointForce]:
         """Force in every joint and between all teeth, by name."""
         return {**self.joints, **self.gears, **self.racks}
+
+    @cached_property
+    def exerted(self) -> dict[str, JointForce]:
+        """All of these, and whatever else bodies push each other with, by name."""
+        named = self.motion.linkage.named_reactions
+        pushes = {name: one for name, one in named if one.kind not in JOINTS}
+        return self.joints | {name: self._push(one) for name, one in pushes.items()}
+
+    def _push(self, one: Reaction) -> JointForce:
+        return JointForce(full(self.motion, self.state[one.force], complex), one.on, one.by)
 
     @property
     def flanks(self) -> State:
@@ -194,9 +200,8 @@ class Pass:
     def _belt(self, belt: Belt, tension: Any) -> BeltForce:
         pull = full(self.motion, self.state[f"T({belt.name})"], float)
         half = 0.5 * pull
-        mean = 0.0 * half if belt.tension else self.state[f"flank({belt.name})"] * half
+        mean = tension + (0.0 if belt.tension else self.state[f"flank({belt.name})"]) * half
         left = -half if belt.crossed else half
-        mean = mean + tension
         return BeltForce(belt.driven, belt.driver, pull, mean + left, mean - left)
 
     def _teeth(self, rack: Rack) -> MeshForce:
@@ -277,3 +282,20 @@ def full(motion: Motion, value: Any, kind: type) -> Array:
     if np.ndim(value) == 0:
         return np.full(count, value, dtype=kind)
     return np.broadcast_to(value, (*np.shape(value)[:-1], count))
+
+
+Acting = tuple[str, Any, Array, Any]
+"""Link, its point, a place (N,) or None for a torque, force and torque."""
+
+
+def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
+    """What holds forces (complex, N) and torques (N m), for every link that has one."""
+    result: dict[str, Demand] = {}
+    for link, point, force, torque in acting:
+        anchor = motion.state[f"p({motion.linkage.anchors[link]})"]
+        named = isinstance(point, str)
+        at = anchor if point is None else motion.points[point].place if named else point
+        f, m = kernels.load_demand(anchor, at, force, torque)
+        before = result.get(link, (0.0, 0.0))
+        result[link] = (before[0] + f, before[1] + m)
+    return result

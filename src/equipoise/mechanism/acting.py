@@ -1,9 +1,8 @@
-"""Demands: what joints must supply to links for their inertia, loads, soil, springs and belts."""
+"""What acts on links from outside of their joints: loads, soil, springs, the tension of belts."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from itertools import chain
+from collections.abc import Iterator
 from math import degrees
 from typing import Any
 
@@ -15,47 +14,19 @@ from equipoise.mechanism.field import Soil
 from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.joints import coupling_pins
 from equipoise.mechanism.loads import load_at
-from equipoise.mechanism.model import FRAME, Link
+from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.steps import Array, p, planar, u
+from equipoise.mechanism.reactions import Acting, Demand, demands_of
+from equipoise.mechanism.steps import Array
 from equipoise.mechanism.tip import surface_of, tip_link
-
-Demand = tuple[Any, Any]
-"""Force (complex) and moment about a link's anchor, each (..., N) or the same at all angles."""
-
-Acting = tuple[str, Any, Array, Any]
-"""Link, its point, a place (N,) or None for a torque, force and torque."""
 
 MEETING = 1e-12
 """Of the coordinates of its ends: where they are closer, rounding decides where a spring points."""
 
 
-def inertia_about(body: Link, point: str) -> tuple[float, complex, float]:
-    """Mass, first moment (complex) and moment of inertia of a link about one of its points.
-
-    Columns where the numbers of the link are.
-    """
-    assert body.mass is not None and body.center_of_mass is not None and body.inertia is not None
-    shift = planar(body.points[point]) - planar(body.center_of_mass)
-    mass, moment, inertia = kernels.about(body.mass, 0.0, body.inertia, shift)
-    return mass, moment, inertia
-
-
-def demand_of_inertia(
-    motion: Motion, link: str, speed2: float, mass: Any, moment: Any, inertia: Any
-) -> Demand:
-    """What moves a link with these inertial parameters about its anchor."""
-    _, p1, p2 = (motion.state[name] for name in p(motion.linkage.anchors[link]))
-    rotation, w, a = (motion.state[name] for name in u(link))
-    force, turning = kernels.inertia_demand(
-        p1, p2, rotation, w, a, speed2, motion.acceleration, mass, moment, inertia
-    )
-    return force, turning
-
-
 def load_demands(motion: Motion) -> dict[str, Demand]:
     """What holds the loads, for every link that has one."""
-    return demands_of(motion, _loads(motion))
+    return demands_of(motion, acting_loads(motion))
 
 
 def spring_demands(motion: Motion) -> dict[str, Demand]:
@@ -65,9 +36,19 @@ def spring_demands(motion: Motion) -> dict[str, Demand]:
     ------
     ModelError : the ends of a spring with a free length meet.
     """
-    springs = motion.machine.springs
-    acting = ((s.link, s.point, spring_force(motion, s), 0.0) for s in springs)
-    return demands_of(motion, chain(acting, _tensions(motion)))
+    return demands_of(motion, acting_springs(motion))
+
+
+def acting_springs(motion: Motion) -> Iterator[Acting]:
+    """Link, point and force of each spring, and of the tension of belts; they have no torque.
+
+    Raises
+    ------
+    ModelError : the ends of a spring with a free length meet.
+    """
+    for spring in motion.machine.springs:
+        yield spring.link, spring.point, spring_force(motion, spring), 0.0
+    yield from _tensions(motion)
 
 
 def _tensions(motion: Motion) -> Iterator[Acting]:
@@ -81,20 +62,7 @@ def _tensions(motion: Motion) -> Iterator[Acting]:
             yield from ((*end, 0.0) for end in ends if end[0] != FRAME)
 
 
-def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
-    """What holds forces (complex, N) and torques (N m), for every link that has one."""
-    result: dict[str, Demand] = {}
-    for link, point, force, torque in acting:
-        anchor = motion.state[f"p({motion.linkage.anchors[link]})"]
-        named = isinstance(point, str)
-        at = anchor if point is None else motion.points[point].place if named else point
-        f, m = kernels.load_demand(anchor, at, force, torque)
-        before = result.get(link, (0.0, 0.0))
-        result[link] = (before[0] + f, before[1] + m)
-    return result
-
-
-def _loads(motion: Motion) -> Iterator[Acting]:
+def acting_loads(motion: Motion) -> Iterator[Acting]:
     """Link, point, force and torque of each load."""
     machine = motion.machine
     for load in machine.loads:
