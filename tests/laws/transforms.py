@@ -158,14 +158,6 @@ def mirrored_planting(planting: Planting | None) -> Planting | None:
     )
 
 
-def restarted(machine: eq.Machine, start: Any, rack: Rack, angle: float) -> Rack:
-    """A rack as it stands at the start of a motion, in a frame that is turned."""
-    if rack.drives == "rack":
-        return replace(rack, angle=float(start.links[rack.pinion].angle[0]) + angle)
-    name = f"{rack.rack} on {rack.carrier}"
-    return replace(rack, travel=float(start.sliders[name].travel[0]))
-
-
 def restarted(start: Any, rack: Rack, angle: float) -> Rack:
     """A rack as it stands at the start of a motion, in a frame that is turned."""
     if rack.drives == "rack":
@@ -464,7 +456,7 @@ def swapped_sliders(machine: eq.Machine) -> eq.Machine:
     return replace(
         machine,
         sliders=tuple(
-            s if s.on == FRAME else
+            s if s.on == FRAME or s.link in {rack.rack for rack in machine.racks} else
             eq.Slider(s.on, s.through, s.link, s.point, -s.angle, -s.direction)
             for s in machine.sliders
         ),

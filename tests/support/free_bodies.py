@@ -12,7 +12,7 @@ package states: couples count as forces at the largest distance of two points of
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain, combinations
 
 import numpy as np
@@ -67,6 +67,7 @@ class FreeBodies:
     gears: Mapping[str, Reaction]
     racks: Mapping[str, Reaction]
     strands: Mapping[str, tuple[Array, Array]]
+    pulls: Mapping[str, Reaction]
     drive: Array
     frame_force: Array
     frame_moment: Array
@@ -387,7 +388,7 @@ def gathered(
     """Turn the unknowns into vectors and add up what the frame bears."""
     gears, racks, belts = coupled
     held = {contact.name: reaction(contact, unknowns[contact.name]) for contact in joints}
-    meshed, racked, taut, pulled = {}, {}, {}, []
+    meshed, racked, taut, pulled, both = {}, {}, {}, [], {}
     for gear, contact in zip(machine.gears, gears, strict=True):
         apart = separating(gear, machine, poses, unknowns[contact.name][:, 0])
         meshed[gear.name] = reaction(contact, unknowns[contact.name], apart)
@@ -398,6 +399,8 @@ def gathered(
         taut[belt.name] = tensions(belt, unknowns[belt.name][:, 0])
         for strand, tension in zip(strands, taut[belt.name], strict=True):
             pulled.append(reaction(strand, tension[:, None]))
+        force = pulled[-1].force + pulled[-2].force
+        both[belt.name] = replace(pulled[-1], force=force)
     drive, torque = unknowns[""][:, 0], 0.0
     pulls = [pull_on_frame(*acting) for acting in springs_on_links(machine, poses)]
     if machine.drive.stroke is None:
@@ -406,7 +409,7 @@ def gathered(
         pulls.append(reaction(cylinder(machine, poses), unknowns[""]))
     every = [*held.values(), *meshed.values(), *racked.values(), *pulled, *pulls]
     force, moment = on_frame(machine, every)
-    return FreeBodies(held, meshed, racked, taut, drive, force, moment - torque)
+    return FreeBodies(held, meshed, racked, taut, both, drive, force, moment - torque)
 
 
 def reaction(contact: Contact, unknowns: Array, more: Array | float = 0.0) -> Reaction:
