@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 from math import pi
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
@@ -25,7 +25,9 @@ from equipoise.keys import (
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.couplings import BETWEEN, Relation, closing, wrong_ends
-from equipoise.mechanism.strands import Strands
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.strands import Strands
 
 
 @declared
@@ -125,6 +127,8 @@ class Belt(Frozen):
 
     def strands(self, apart: Any) -> Strands:
         """Where they run; apart : from the driver's pin to the driven link's, complex, m."""
+        from equipoise.mechanism.strands import Strands  # which needs NumPy
+
         first, second = self.pitch_radii
         return Strands(apart, first, -second if self.crossed else second)
 

@@ -108,7 +108,8 @@ class Machine(Frozen):
     beside: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "description", "units", "gravity", "drive", "frame", "links",
                   "bearings", "assembly", "sliders", "gears", "belts", "racks", "loads",
-                  "springs", "joints", "position", "planting", "support", "rows", "balance")  # fmt: skip
+                  "springs", "joints", "position", "planting", "support", "rows",
+                  "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(Table(Drive), "the link that is driven")
