@@ -18,7 +18,7 @@ from itertools import chain, combinations
 import numpy as np
 
 from equipoise.mechanism.belts import Belt
-from equipoise.mechanism.model import FRAME, Gear, Machine
+from equipoise.mechanism.model import FRAME, Drive, FurtherDrive, Gear, Machine
 from equipoise.mechanism.racks import Rack
 from support.loads import on_links, springs_on_links
 from support.newton import rack_guide
@@ -68,7 +68,7 @@ class FreeBodies:
     racks: Mapping[str, Reaction]
     strands: Mapping[str, tuple[Array, Array]]
     pulls: Mapping[str, Reaction]
-    drive: Array
+    drives: Mapping[str, Array]
     frame_force: Array
     frame_moment: Array
 
@@ -160,7 +160,7 @@ Strands = tuple[Contact, Contact]
 
 
 def solved(system: System, passing: list[Contact | Strands]) -> dict[str, Array]:
-    """Solve for all unknowns, (N, how many) for each contact and for the drive, named ''."""
+    """Solve for all unknowns, (N, how many) for each contact and for each drive, by its link."""
     columns, owners = [], []
     for contact in passing:
         if isinstance(contact, tuple):
@@ -172,7 +172,8 @@ def solved(system: System, passing: list[Contact | Strands]) -> dict[str, Array]
         if contact.couple:
             columns.append(system.pair(contact, np.zeros_like(contact.at), 1.0))
         owners += [contact.name] * contact.size
-    columns, owners = [*columns, driving(system)], [*owners, ""]
+    for drive in system.machine.driven:
+        columns, owners = [*columns, driving(system, drive)], [*owners, drive]
     matrix = np.stack(columns, -1)
     if matrix.shape[1] == matrix.shape[2]:
         found = np.linalg.solve(matrix, system.known[..., None])[..., 0]
@@ -187,14 +188,14 @@ def solved(system: System, passing: list[Contact | Strands]) -> dict[str, Array]
     return {name: found[:, [o == name for o in owners]] for name in dict.fromkeys(owners)}
 
 
-def driving(system: System) -> Array:
-    """Return the column of the drive: a torque on its link, or a force between two bodies."""
+def driving(system: System, drive: Drive | FurtherDrive) -> Array:
+    """Return the column of a drive: a torque on its link, or a force between two bodies."""
     machine = system.machine
     if machine.drive.stroke is not None:
         push = cylinder(machine, system.poses)
         return system.pair(push, push.directions[0], 0.0)
     torque = np.zeros_like(system.known)
-    torque[:, system.rows[machine.drive.link] + 2] = 1.0
+    torque[:, system.rows[drive.link] + 2] = 1.0
     return torque
 
 
@@ -401,15 +402,15 @@ def gathered(
             pulled.append(reaction(strand, tension[:, None]))
         force = pulled[-1].force + pulled[-2].force
         both[belt.name] = replace(pulled[-1], force=force)
-    drive, torque = unknowns[""][:, 0], 0.0
+    drives = {drive.link: unknowns[drive][:, 0] for drive in machine.driven}
     pulls = [pull_on_frame(*acting) for acting in springs_on_links(machine, poses)]
-    if machine.drive.stroke is None:
-        torque = drive
-    else:
-        pulls.append(reaction(cylinder(machine, poses), unknowns[""]))
+    torque = sum(drives.values())
+    if machine.drive.stroke is not None:
+        torque = 0.0
+        pulls.append(reaction(cylinder(machine, poses), unknowns[machine.drive]))
     every = [*held.values(), *meshed.values(), *racked.values(), *pulled, *pulls]
     force, moment = on_frame(machine, every)
-    return FreeBodies(held, meshed, racked, taut, both, drive, force, moment - torque)
+    return FreeBodies(held, meshed, racked, taut, both, drives, force, moment - torque)
 
 
 def reaction(contact: Contact, unknowns: Array, more: Array | float = 0.0) -> Reaction:

@@ -27,7 +27,7 @@ from equipoise.mechanism.model import (
     Vector,
 )
 from support import machines_belts
-from support.machines_drives import moved
+from support.machines_drives import moved, two_driven
 from support.newton import Side, assembled
 from support.poses import Array, Poses, turned
 
@@ -713,6 +713,7 @@ def _more() -> Iterable[Callable[[np.random.Generator], Case]]:
 
 
 MOVED = [moved(maker) for maker in (slider_crank, watt, geared_counterweight)]
+MOVED.append(two_driven(geared_five_bar))
 KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
     maker.__name__: maker
     for maker in (

@@ -24,7 +24,7 @@ from equipoise.keys import (
 )
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import FRAME, Bodies
-from equipoise.mechanism.couplings import BETWEEN, Relation, closing, wrong_ends
+from equipoise.mechanism.couplings import BETWEEN, Relation, as_fraction, wrong_ends
 
 if TYPE_CHECKING:
     from equipoise.mechanism.strands import Strands
@@ -122,7 +122,7 @@ class Belt(Frozen):
     def exact_ratio(self) -> Fraction | None:
         """The speed ratio as a fraction, or None if it is no ratio of whole numbers."""
         if self.teeth is None:
-            return closing(self.speed_ratio)
+            return as_fraction(self.speed_ratio)
         return Fraction(*self.teeth) * (-1 if self.crossed else 1)
 
     def strands(self, apart: Any) -> Strands:

@@ -67,6 +67,12 @@ class Coupling(Protocol):
         """
 
 
+def as_fraction(ratio: float) -> Fraction | None:
+    """The ratio of whole numbers that a number is, or None if it is none."""
+    near = Fraction(ratio).limit_denominator(100_000)
+    return near if abs(float(near) - ratio) <= 1e-13 * abs(near) else None
+
+
 def coupled(
     angle_r: Any,
     w_r: Any,
@@ -85,12 +91,6 @@ def coupled(
         w_c + first * slip,
         a_c + first * (a_r - a_c) + second * slip * slip,
     )
-
-
-def closing(ratio: float) -> Fraction | None:
-    """A ratio as a fraction of whole numbers, or None if it is none."""
-    near = Fraction(ratio).limit_denominator(100_000)
-    return near if abs(float(near) - ratio) <= 1e-13 * abs(near) else None
 
 
 def wrong_ends(where: str, coupling: Coupling, bodies: Bodies) -> Iterator[ModelError]:

@@ -25,7 +25,14 @@ from equipoise.keys import (
 )
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import FRAME, Bodies
-from equipoise.mechanism.couplings import BETWEEN, Law, Relation, closing, coupled, wrong_ends
+from equipoise.mechanism.couplings import (
+    BETWEEN,
+    Law,
+    Relation,
+    as_fraction,
+    coupled,
+    wrong_ends,
+)
 from equipoise.mechanism.gear_shapes import GearShape, wrong_shape
 
 MESHES = ("external", "internal")
@@ -149,7 +156,7 @@ class Gear(Frozen):
         if self.teeth is not None:
             ratio = Fraction(*self.teeth)
             return ratio if self.mesh == "internal" else -ratio
-        return closing(self.speed_ratio)
+        return as_fraction(self.speed_ratio)
 
 
 def wrong_gear(where: str, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:

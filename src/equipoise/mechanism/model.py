@@ -6,10 +6,8 @@ with; what it cannot do (turn fully, close) is found by `mechanism.linkage`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
@@ -29,45 +27,40 @@ from equipoise.keys import (
     changed,
     declared,
     key,
-    wrong_values,
 )
-from equipoise.mechanism.belts import Belt, wrong_belt
+from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.checks import (
     FRAME,
     SIDES,
     Bodies,
     Vector,
     check_kept,
-    numbered,
-    too_many,
     unknown,
-    unknown_link,
-    wrong_text,
 )
 from equipoise.mechanism.couplings import Coupling
-from equipoise.mechanism.drives import Drive, wrong_drive
-from equipoise.mechanism.field import Planting, wrong_planting
+from equipoise.mechanism.drives import (
+    Drive,
+    Driven,
+    FurtherDrive,
+)
+from equipoise.mechanism.field import Planting
 from equipoise.mechanism.force_elements import (
     Load,
     LoadTable,
     Spring,
-    wrong_ends,
-    wrong_load,
 )
-from equipoise.mechanism.gears import Gear, wrong_gear
+from equipoise.mechanism.gears import Gear
 from equipoise.mechanism.links import (
     MASS_FIELDS,
     Link,
     size_of,
-    wrong_link,
-    wrong_points,
 )
-from equipoise.mechanism.parts import Bearing, JointStiffness, Slider, wrong_joint, wrong_slider
+from equipoise.mechanism.parts import Bearing, JointStiffness, Slider
 from equipoise.mechanism.places import Frame, Position
-from equipoise.mechanism.planes import wrong_planes
-from equipoise.mechanism.racks import Rack, wrong_rack
+from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.shown_units import ShownUnits
-from equipoise.mechanism.support import Row, Support, wrong_support
+from equipoise.mechanism.support import Row, Support
+from equipoise.mechanism.whole import problems_of
 
 if TYPE_CHECKING:
     from equipoise.mechanism.balance import Balance
@@ -75,6 +68,7 @@ if TYPE_CHECKING:
 __all__ = [
     "FRAME",
     "Drive",
+    "FurtherDrive",
     "Gear",
     "Link",
     "Load",
@@ -91,9 +85,6 @@ __all__ = [
 
 MOVING = ("link", "motion", "between", "slider", "stroke", "start")
 """What of the drive sets how the links move."""
-MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "belts": 200, "racks": 200,
-        "loads": 500, "springs": 200, "joints": 500}  # fmt: skip
-"""Far beyond any machine; they keep a file of nonsense from running for hours."""
 BESIDE = ("bodies", "plane", "planes")
 """Keys of a link that change nothing about the motion, beside its mass."""
 STILL = {"planting", "support", "rows", "springs", "bearings"}
@@ -102,12 +93,12 @@ STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 
 
 @declared
-class Machine(Frozen):
+class Machine(Driven, Frozen):
     """A planar linkage with its drive, loads, springs and gravity."""
 
     beside: ClassVar[Keys] = {"schema": VERSION}
-    file_order = ("schema", "title", "description", "units", "gravity", "drive", "frame", "links",
-                  "bearings", "assembly", "sliders", "gears", "belts", "racks", "loads",
+    file_order = ("schema", "title", "description", "units", "gravity", "drive", "drives", "frame",
+                  "links", "bearings", "assembly", "sliders", "gears", "belts", "racks", "loads",
                   "springs", "joints", "position", "planting", "support", "rows",
                   "balance")  # fmt: skip
 
@@ -153,6 +144,10 @@ class Machine(Frozen):
     springs: tuple[Spring, ...] = key(
         Tables(Table(Spring)), "linear springs between links and frame", default=()
     )
+    drives: tuple[FurtherDrive, ...] = key(
+        Tables(Table(FurtherDrive)), "links that are driven besides", default=()
+    )
+
     joints: tuple[JointStiffness, ...] = key(
         Tables(Table(JointStiffness)),
         "stiffness of joints, by which they share forces that statics leaves open; those left out "
@@ -181,25 +176,13 @@ class Machine(Frozen):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for problem in _problems(self):
+        for problem in problems_of(self):
             raise problem
 
     @property
     def bodies(self) -> Bodies:
         """Points of the frame and of every link, in their own axes."""
         return {FRAME: self.frame} | {name: link.points for name, link in self.links.items()}
-
-    @cached_property
-    def turning(self) -> Any:
-        """What tells the angle of the drive's link where a stroke does; None elsewhere."""
-        if not self.drive.pushes:
-            return None
-        return import_module("equipoise.mechanism.cylinders").commanded(self)  # which needs this
-
-    def turned(self, crank_angle: Any) -> tuple[Any, Any, Any]:
-        """Angle of the drive's link at crank angles (...), and its two derivatives by them."""
-        law = self.turning
-        return self.drive.turned(crank_angle) if law is None else law.value(crank_angle)
 
     @property
     def couplings(self) -> tuple[Coupling, ...]:
@@ -295,60 +278,3 @@ class Machine(Frozen):
     def points_of(self, body: str) -> Mapping[str, Vector]:
         """Points of a link, or of the frame."""
         return self.frame if body == FRAME else self.links[body].points
-
-
-# -- checks ----------------------------------------------------------------------------------------
-
-
-LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
-    "sliders": wrong_slider,
-    "gears": wrong_gear,
-    "belts": wrong_belt,
-    "racks": wrong_rack,
-    "loads": wrong_load,
-    "springs": wrong_ends,
-    "joints": wrong_joint,
-}
-"""What is wrong with each of the lists."""
-
-
-def _problems(machine: Machine) -> Iterator[ModelError]:
-    """Everything that is wrong with the values of a machine, the first things first."""
-    bodies = machine.bodies
-    yield from _too_much(machine)
-    yield from wrong_values("", machine)
-    yield from wrong_points("frame", machine.frame)
-    if not machine.links:
-        yield ModelError("links", "there is no link; give at least the drive's")
-    for name, link in machine.links.items():
-        yield from wrong_link(f"links.{name}", name, link)
-    yield from unknown_link("drive.link", machine.drive.link, bodies)
-    for name, wrong in LISTS.items():
-        for where, item in numbered(name, getattr(machine, name)):
-            yield from wrong(where, item, bodies)
-    if machine.position is not None:
-        known = dict.fromkeys(point for link in machine.links.values() for point in link.points)
-        for point in machine.position.points:
-            if point not in known:
-                yield ModelError(f"position.points.{point}", unknown(point, known, "point"))
-        for name in machine.position.angles:
-            yield from unknown_link(f"position.angles.{name}", name, bodies)
-    yield from wrong_planting(machine.planting, bodies)
-    yield from wrong_drive(machine.drive, bodies, [one.name for one in machine.sliders])
-    yield from wrong_planes(machine)
-    yield from wrong_support(machine.support, machine.rows)
-    if machine.balance is not None:
-        yield from machine.balance.problems(machine)
-
-
-def _too_much(machine: Machine) -> Iterator[ModelError]:
-    points = [(body, point) for body, points in machine.bodies.items() for point in points]
-    yield from too_many("links", machine.links, MOST["links"])
-    yield from too_many("points", points, MOST["points"])
-    for what in LISTS:
-        yield from too_many(what, getattr(machine, what), MOST[what])
-    yield from wrong_text("title", machine.title)
-    for body, names in machine.bodies.items():
-        yield from wrong_text("links", body)
-        for point in names:
-            yield from wrong_text(f"points of {body}", point)
