@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from equipoise.mechanism.joints import coupling_pins
 from equipoise.mechanism.linkage import Linkage
@@ -11,18 +11,15 @@ from equipoise.mechanism.loads import load_at
 from equipoise.mechanism.model import FRAME, Load, Spring
 from equipoise.mechanism.steps import planar
 
-if TYPE_CHECKING:
-    from equipoise.codegen.lines import Writer
-
 Held = tuple[str, str, str]
 """Link, and identifiers of force and moment that hold something against it."""
 
 
-def names(writer: Writer, cause: str, link: str) -> tuple[str, str]:
+def names(writer: Any, cause: str, link: str) -> tuple[str, str]:
     return writer.name(f"F{cause}({link})"), writer.name(f"M{cause}({link})")
 
 
-def write_load(writer: Writer, number: int, load: Load) -> Held:
+def write_load(writer: Any, number: int, load: Load) -> Held:
     values: dict[str, Callable[[Any], Any]] = {
         "x": lambda theta: load_at(load, theta)[0].real,
         "y": lambda theta: load_at(load, theta)[0].imag,
@@ -33,7 +30,7 @@ def write_load(writer: Writer, number: int, load: Load) -> Held:
     return _write_held(writer, load.link, load.point, force, torque, f"L{number}")
 
 
-def write_spring(writer: Writer, number: int, spring: Spring) -> Held:
+def write_spring(writer: Any, number: int, spring: Spring) -> Held:
     sheet, cause = writer.sheet, number + 1
     place, *_ = writer.point(spring.link, spring.point)
     stiffness = sheet.slot(
@@ -47,7 +44,7 @@ def write_spring(writer: Writer, number: int, spring: Spring) -> Held:
     return _write_held(writer, spring.link, spring.point, pull, "0.0", f"S{cause}")
 
 
-def write_tension(writer: Writer, number: int) -> Iterator[Held]:
+def write_tension(writer: Any, number: int) -> Iterator[Held]:
     """What a belt does to its links by the tension that both strands have anyway."""
     sheet, belt = writer.sheet, writer.machine.belts[number]
     if belt.tension is None:
@@ -68,7 +65,7 @@ def write_tension(writer: Writer, number: int) -> Iterator[Held]:
 
 
 def _write_held(
-    writer: Writer, link: str, point: str | None, force: str, torque: str, cause: str
+    writer: Any, link: str, point: str | None, force: str, torque: str, cause: str
 ) -> Held:
     """Write what holds a force at a point of a link, and a torque on it."""
     anchor = writer.body(link)[0]

@@ -302,8 +302,7 @@ def _coupled(builder: Builder, joints: Structure, unknown: list[str]) -> Group |
     for one in joints.couplings:
         ready = one.driven in unknown and {one.driver, one.carrier} <= known.keys()
         if ready and joints.freedom([one.driven], known) == 0:
-            build = racked if isinstance(one, Rack) else groups.coupled
-            return build(builder, joints, one)
+            return (racked if isinstance(one, Rack) else groups.coupled)(builder, joints, one)
     return None
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from equipoise.errors import ModelError
 from equipoise.keys import wrong_values
@@ -19,9 +19,6 @@ from equipoise.mechanism.places import wrong_position
 from equipoise.mechanism.planes import wrong_planes
 from equipoise.mechanism.racks import wrong_rack
 from equipoise.mechanism.support import wrong_support
-
-if TYPE_CHECKING:
-    from equipoise.mechanism.model import Machine
 
 MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "belts": 200, "racks": 200,
         "loads": 500, "springs": 200, "joints": 500, "drives": 20}  # fmt: skip
@@ -39,7 +36,7 @@ LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
 """What is wrong with each of the lists."""
 
 
-def problems_of(machine: Machine) -> Iterator[ModelError]:
+def problems_of(machine: Any) -> Iterator[ModelError]:
     """Everything that is wrong with the values of a machine, the first things first."""
     bodies = machine.bodies
     yield from _too_much(machine)
@@ -63,7 +60,7 @@ def problems_of(machine: Machine) -> Iterator[ModelError]:
         yield from machine.balance.problems(machine)
 
 
-def _too_much(machine: Machine) -> Iterator[ModelError]:
+def _too_much(machine: Any) -> Iterator[ModelError]:
     points = [(body, point) for body, points in machine.bodies.items() for point in points]
     yield from too_many("links", machine.links, MOST["links"])
     yield from too_many("points", points, MOST["points"])
