@@ -13,10 +13,13 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.angles import turned, write_running_angle
+from equipoise.codegen.coupled import write_coupling, write_rolled
 from equipoise.codegen.loops import write_loops
 from equipoise.codegen.source import Read, Sheet
 from equipoise.errors import MassError
 from equipoise.mechanism import kernels
+from equipoise.mechanism.contacts import rolled
+from equipoise.mechanism.couplings import coupled
 from equipoise.mechanism.dynamics import inertia_about, massless
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.loads import load_at
@@ -148,8 +151,10 @@ def _write_step(writer: Writer, step: Step, steps: str, number: int) -> None:
         if writer.counted:
             sheet.put(f"u({step.link})", f"rotation({writer.name(f'phi({step.link})')})")
     elif isinstance(step, Call):
-        if step.kernel is kernels.gear and not writer.counted:
-            _write_uniform_gear(writer, step)
+        if step.kernel is coupled or (step.kernel is kernels.gear and not writer.counted):
+            write_coupling(writer, step)
+        elif step.kernel is rolled:
+            write_rolled(writer, step, number)
         else:
             _write_call(writer, step, steps, number)
     elif isinstance(step, LoopGroup):
@@ -176,45 +181,6 @@ def _write_call(writer: Writer, step: Call, steps: str, number: int) -> None:
 
 def _parameter(steps: str, number: int, place: int) -> Read:
     return lambda found: getattr(found, steps)[number].parameters[place]
-
-
-def _write_uniform_gear(writer: Writer, step: Call) -> None:
-    """A gear whose driver and carrier turn in proportion to the crank does so too.
-
-    Its rotation is a cosine and sine of a multiple of the crank angle, known for all designs.
-    """
-    sheet = writer.sheet
-    driver, carrier, link = _gear_links(step)
-    order = _follows(step, writer.orders[driver], writer.orders[carrier], 0.0)
-    writer.orders[link] = order
-    start = sheet.slot(f"start({link})", lambda found: np.exp(1j * _start(found, link)), True)
-    sheet.put(f"u({link})", f"{writer.turned(order)} * {start}")
-    sheet.put(f"w({link})", repr(order))
-    sheet.put(f"a({link})", "0.0")
-
-
-def _gear_links(step: Call) -> list[str]:
-    """Driver, carrier and driven link of a gear's step."""
-    angles = step.inputs[0], step.inputs[3], step.outputs[0]
-    return [name.removeprefix("phi(")[:-1] for name in angles]
-
-
-def _follows(step: Call, driver: Any, carrier: Any, offset: Any) -> Any:
-    """What the step makes of driver's and carrier's angle (or order, without an offset)."""
-    ratio = step.parameters[0]
-    angle, *_ = step.kernel(driver, 0.0, 0.0, carrier, 0.0, 0.0, ratio, offset)
-    return angle
-
-
-def _start(found: Linkage, link: str) -> Any:
-    """Angle of a link at crank angle 0, of links that turn in proportion to the crank."""
-    for step in found.motion:
-        if isinstance(step, Call) and step.kernel is kernels.gear:
-            driver, carrier, driven = _gear_links(step)
-            if driven == link:
-                offset = step.parameters[1]
-                return _follows(step, _start(found, driver), _start(found, carrier), offset)
-    return 0.0
 
 
 # -- forces ----------------------------------------------------------------------------------------
