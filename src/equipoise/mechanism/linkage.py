@@ -21,7 +21,14 @@ from equipoise.mechanism import groups
 from equipoise.mechanism.builder import Builder, Group, Guide, Outer
 from equipoise.mechanism.checks import MODE, MODES, meant
 from equipoise.mechanism.cycle import Cycle, close
-from equipoise.mechanism.joints import Structure, drive_pivot, held_fast, structure, subsets
+from equipoise.mechanism.joints import (
+    Structure,
+    drive_pivot,
+    held_fast,
+    name_in_outputs,
+    structure,
+    subsets,
+)
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.parallels import pointed, surplus_cranks
 from equipoise.mechanism.shared import Shared, shared
@@ -87,13 +94,8 @@ class Linkage:
 
     @cached_property
     def named_reactions(self) -> tuple[tuple[str, Reaction], ...]:
-        """Joints by name: a pin of several bodies goes by its point and by the link it holds."""
-
-        def named(one: Reaction) -> str:
-            several = one.kind == "pin" and len(self.joints.pins[one.name]) > 2
-            return f"{one.name}/{one.on}" if several else one.name
-
-        return tuple((named(one), one) for one in self.reactions)
+        """Joints by their names in outputs."""
+        return tuple((name_in_outputs(self.joints, one), one) for one in self.reactions)
 
     @cached_property
     def cycle(self) -> Cycle:

@@ -1,4 +1,4 @@
-"""Sliding joints as frozen values, and what a machine is to those who only look at its parts."""
+"""Sliding joints and bearings as frozen values; what a machine is to those who see its parts."""
 
 from __future__ import annotations
 
@@ -19,6 +19,9 @@ from equipoise.mechanism.drives import Drive
 from equipoise.mechanism.gears import Gear
 from equipoise.mechanism.links import Link
 from equipoise.mechanism.support import Row, Support
+
+JOINTS = ("pin", "slider")
+"""Kinds of what holds bodies together, which is no push of a coupling."""
 
 
 @declared
@@ -45,6 +48,32 @@ class Slider(Frozen):
         return self.label or f"{self.link} on {self.on}"
 
 
+OF_JOINT = "joints."
+"""Begin of the names of outputs of joints."""
+
+
+@declared
+class JointStiffness(Frozen):
+    """How stiff a joint is, where joints share a force that statics leaves open."""
+
+    called = to_say("{what} of stiff joint {number}")
+
+    joint: str = key(Text(), "its force, as outputs call it", example="joints.B")
+    stiffness: float = key("stiffness", "more than 0", example="20000 kN/m", above=0)
+
+
+@declared
+class Bearing(Frozen):
+    """One of both bearings in which a link turns about its pin in the frame."""
+
+    called = to_say("{what} of bearing {name}")
+
+    link: str = key(
+        Text(of="link"), "that turns in it; it has one pin in the frame", example="crank"
+    )
+    plane: float = key("length", "z of its middle", example="-20 mm")
+
+
 class Mechanism(Protocol):
     """What a machine is to those who only look at its parts."""
 
@@ -63,6 +92,8 @@ class Mechanism(Protocol):
     @property
     def rows(self) -> Sequence[Row]: ...
     @property
+    def bearings(self) -> Mapping[str, Bearing]: ...
+    @property
     def support(self) -> Support | None: ...
 
 
@@ -80,3 +111,11 @@ def wrong_slider(where: str, slider: Slider, bodies: Bodies) -> Iterator[ModelEr
     if slider.on in bodies:
         yield from unknown_point(f"{where}.through", slider.through, slider.on, bodies)
     yield from unknown_point(f"{where}.point", slider.point, slider.link, bodies)
+
+
+def wrong_joint(where: str, one: JointStiffness, bodies: Bodies) -> Iterator[ModelError]:
+    """Complain of what is no joint's force; which joints there are, assembling tells."""
+    if not one.joint.startswith(OF_JOINT):
+        yield ModelError(
+            f"{where}.joint", Note("got {joint!r}; give a joint as joints.B", joint=one.joint)
+        )

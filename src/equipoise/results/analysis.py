@@ -14,11 +14,15 @@ from equipoise.mechanism import kernels
 from equipoise.mechanism.assessment import FourBar, four_bar
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dwell import Dwell
-from equipoise.mechanism.dynamics import CAUSES, Forces, forces, massless, place_of
+from equipoise.mechanism.dynamics import Forces, forces, massless, place_of
+from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.model import Machine, Vector
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
+from equipoise.mechanism.planes import beside
+from equipoise.mechanism.shares import CAUSES
 from equipoise.mechanism.strokes import Stroke, dwell, strokes
+from equipoise.mechanism.undecided import undecided
 from equipoise.quantities import Dimension
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
@@ -121,15 +125,17 @@ class Analysis(Result):
         found, count = self.solved, len(self.crank_angle)
         force = found.shaking_force
         signals = np.array([force.x, force.y, found.shaking_moment, found.drive_torque])
+        rocking = found.across.rocking_moment.value if beside(self.machine) else np.zeros(count)
+        signals = np.vstack([signals, np.real(rocking), np.imag(rocking)])
         one = Periodic.of(signals, self.motion.turns)
         whole = {"shaking_force": np.zeros(count, complex)}
         whole |= {name: np.zeros(count) for name in ("shaking_moment", *LATERAL, "drive_torque")}
         for row in rows:
-            x, y, moment, torque = one.shifted(row.phase).samples(count)
+            x, y, moment, torque, roll, yaw = one.shifted(row.phase).samples(count)
             whole["shaking_force"] += x + 1j * y
             whole["shaking_moment"] += moment + kernels.cross(complex(*row.offset), x + 1j * y)
-            whole["roll_moment"] -= row.lateral * y
-            whole["yaw_moment"] += row.lateral * x
+            whole["roll_moment"] += roll - row.lateral * y
+            whole["yaw_moment"] += yaw + row.lateral * x
             whole["drive_torque"] += torque
         return whole
 
@@ -183,6 +189,7 @@ class Analysis(Result):
             for family, joints in (("joints", found.joints), ("gears", found.gears)):
                 ends = {name: {"on": one.on, "by": one.by} for name, one in joints.items()}
                 result[family] = ends
+            result.update(_undecided(self.motion.linkage))
             result["about"] = {"x": found.about.real, "y": found.about.imag}
         for one in self.outputs.arrays:
             *keys, last = one.path
@@ -267,6 +274,18 @@ def _split(found: Forces) -> Values:
                 for step in one.path(item)[:-1]:
                     values = values[step]
                 values[one.path(item)[-1]] = {name: _parts(part) for name, part in parts}
+    return result
+
+
+def _undecided(linkage: Linkage) -> Values:
+    """Joints of which statics does not tell the force, where there are such."""
+    found = undecided(linkage)
+    result: Values = {}
+    if found.open:
+        rule = "stiffness" if found.by_stiffness else "least squares"
+        result["open"] = {"joints": [*found.open], "rule": rule}
+    if found.unbounded:
+        result["unbounded"] = {"joints": [*found.unbounded], "crank_angle": found.at}
     return result
 
 
