@@ -9,18 +9,16 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from equipoise.codegen.writer import Writer
 from equipoise.mechanism import kernels
 from equipoise.mechanism.couplings import Coupling, coupled
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.steps import Array, Call
-
-if TYPE_CHECKING:
-    from equipoise.codegen.lines import Writer
 
 Turning = Callable[[Array], tuple[Any, Any, Any]]
 """Angle of a link at crank angles (N,), rad, and its two derivatives by them."""

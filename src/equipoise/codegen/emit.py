@@ -10,9 +10,10 @@ from collections.abc import Sequence
 
 from equipoise.codegen.coupled import can_write_couplings, shifts_laws
 from equipoise.codegen.figures import Figure, Gathered
-from equipoise.codegen.lines import Writer, write_demands, write_joints, write_motion
+from equipoise.codegen.lines import write_demands, write_joints, write_motion
 from equipoise.codegen.loops import can_write
 from equipoise.codegen.source import Source, source_of
+from equipoise.codegen.writer import Writer
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.family import can_vary
