@@ -31,10 +31,9 @@ def links_of(step: Call) -> list[str]:
 
 
 def told_by_crank(linkage: Linkage) -> dict[str, Turning]:
-    """Links whose angle the crank angle alone tells: the drive, and what couplings hang on it."""
-    drive = linkage.machine.drive
+    """Links whose angle the crank angle alone tells: the drives, and what couplings hang on them."""
     found: dict[str, Turning] = {FRAME: lambda theta: (0.0 * theta, 0.0, 0.0)}
-    found[drive.link] = drive.turned
+    found |= {drive.link: drive.turned for drive in linkage.machine.driven}
     for step in linkage.motion:
         if isinstance(step, Call) and step.outputs[0].startswith("phi("):
             driver, carrier, driven = links_of(step)

@@ -25,10 +25,9 @@ class Writer:
 
     def __init__(self, linkage: Linkage) -> None:
         self.linkage, self.machine, self.sheet = linkage, linkage.machine, Sheet()
-        drive = self.machine.drive
         steps = any(isinstance(step, RunningAngle) for step in linkage.motion)
-        self.counted = steps or drive.motion is not None
-        self.orders: dict[str, float] = {FRAME: 0.0, drive.link: 1.0}
+        self.counted = steps or not self.machine.has_crank
+        self.orders: dict[str, float] = {FRAME: 0.0, self.machine.drive.link: 1.0}
         self.points = set(self.machine.frame)
         self.apart: dict[str, str] = {}
 
