@@ -31,7 +31,7 @@ def links_of(step: Call) -> list[str]:
 
 
 def told_by_crank(linkage: Linkage) -> dict[str, Turning]:
-    """Links whose angle the crank angle alone tells: the drives, and what couplings hang on them."""
+    """Links whose angle the crank angle alone tells: those driven, and what couplings add."""
     found: dict[str, Turning] = {FRAME: lambda theta: (0.0 * theta, 0.0, 0.0)}
     found |= {drive.link: drive.turned for drive in linkage.machine.driven}
     for step in linkage.motion:
