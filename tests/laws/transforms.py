@@ -105,13 +105,22 @@ def put_off(gear: eq.Gear, later: float) -> eq.Gear:
 def swung(
     drive: Driven, change: Callable[[float], float], later: Callable[[float], float]
 ) -> Driven:
-    """Change the angles between which a drive swings by a sine, and when it begins."""
+    """Change the angles between which a drive swings, and when it begins; all runs backwards where
+    `later` does.
+    """
     law = drive.motion
     if law is None:
         return drive
-    assert law.between is not None
-    low, high = map(change, law.between)
-    return replace(drive, motion=replace(law, between=(low, high), phase=later(law.phase)))
+    if law.between is not None:
+        low, high = map(change, law.between)
+        return replace(drive, motion=replace(law, between=(low, high), phase=later(law.phase)))
+    values = [change(one) for one in (law.start, *(part.to for part in law.segments))]
+    parts = list(law.segments)
+    if later(1.0) < later(0.0):
+        values, parts = values[::-1], parts[::-1]  # each law is its own image in its middle
+    ways = tuple(replace(part, to=to) for part, to in zip(parts, values[1:], strict=True))
+    moved = replace(law, start=values[0], segments=ways, phase=later(law.phase))
+    return replace(drive, motion=moved)
 
 
 def turned_position(position: eq.mechanism.Position, angle: float) -> eq.mechanism.Position:
