@@ -15,6 +15,7 @@ import numpy as np
 from equipoise.balancing.design_variables import DesignVariables, FreeSpring, LinkParameters
 from equipoise.errors import UsageError
 from equipoise.mechanism import kernels
+from equipoise.mechanism.across import Across
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics import Forces, demand_of_inertia, forces, place_of
 from equipoise.mechanism.model import Machine
@@ -113,10 +114,11 @@ class Effects:
         return Signal(start, self.full(columns), self.motion.turns)
 
     def _declared(self, output: str) -> tuple[Declared, str]:
-        joints = self.start.joints
+        joints, bearings = self.start.joints, self.machine.bearings
         for one, item in matches(output):
-            known = item in joints if item else "" in one.members(self.machine)
-            if one.needs == "masses" and not one.reason and known:
+            forces = bearings if one.group == "bearings" else joints
+            known = item in forces if item else "" in one.members(self.machine)
+            if one.is_of_row and not one.reason and known:
                 return one, item
         if output.startswith("joints."):
             raise UsageError(unknown(output.removeprefix("joints."), joints, "joint"))
@@ -194,6 +196,24 @@ class Effects:
             full[rows] = spring.columns(self.motion, output)
         return full
 
+    @cached_property
+    def across(self) -> Across:
+        """What a unit of each number does across the plane."""
+        links, count = self.machine.links, (self.count, len(self.motion.crank_angle))
+        inertia, weights, springs = (
+            {link: np.zeros(count, complex) for link in links} for _ in range(3)
+        )
+        for part, rows in self.masses:
+            plane = links[part.link].plane if part.plane is None else part.plane
+            inertia[part.link][rows] = plane * self.inertia[0][rows]
+            weights[part.link][rows] = plane * self.weight[0][rows]
+        for spring, rows in self.springs:
+            plane = links[spring.link].plane_of(spring.choice.point)
+            springs[spring.link][rows] = -plane * spring.pulls(self.motion)
+        exerted = _JointsOfUnit(self)
+        named = {name: exerted[name] for name, _ in self.motion.linkage.named_reactions}
+        return Across(self.motion, inertia, weights, {}, springs, named)
+
     def moment(self, demands: Demand, about: complex) -> Array:
         """Moment on the frame (K, N) of demands."""
         total = -demands[1]
@@ -241,7 +261,16 @@ class Present:
 
     @property
     def joints(self) -> Mapping[str, JointForce]:
-        return self.effects.start.solved_like(self.effects.flanks).joints
+        return self.solved.joints
+
+    @property
+    def solved(self) -> Pass:
+        """The run over the joints, with teeth on the flanks that count."""
+        return self.effects.start.solved_like(self.effects.flanks)
+
+    @property
+    def across(self) -> Across:
+        return replace(self.effects.start.across, exerted=self.solved.exerted)
 
 
 @dataclass(frozen=True)
@@ -280,6 +309,10 @@ class Unit:
     def joints(self) -> Mapping[str, JointForce]:
         return _JointsOfUnit(self.effects)
 
+    @property
+    def across(self) -> Across:
+        return self.effects.across
+
 
 class _JointsOfUnit(dict[str, JointForce]):
     """Joint forces (K, N) of a unit of each number, each made when it is asked for."""
@@ -289,5 +322,5 @@ class _JointsOfUnit(dict[str, JointForce]):
         self.effects = effects
 
     def __missing__(self, name: str) -> JointForce:
-        joint = self.effects.solved.joints[name]
+        joint = self.effects.solved.exerted[name]
         return replace(joint, value=self.effects.with_springs(joint.value, f"joints.{name}"))

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.codegen.across import write_across
 from equipoise.codegen.angles import turned, write_running_angle
 from equipoise.codegen.loops import write_loops
 from equipoise.codegen.source import Read, Sheet
@@ -22,6 +23,7 @@ from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.loads import load_at
 from equipoise.mechanism.model import FRAME, Load, Spring
 from equipoise.mechanism.newton import LoopGroup
+from equipoise.mechanism.planes import beside
 from equipoise.mechanism.steps import (
     Call,
     Rotation,
@@ -238,6 +240,9 @@ def write_demands(writer: Writer) -> None:
     weights = [(link, *_names(writer, "W", link)) for link in links]
     loads = [_write_load(writer, k, load) for k, load in enumerate(machine.loads, 1)]
     springs = [_write_spring(writer, k, spring) for k, spring in enumerate(machine.springs)]
+    if beside(machine):
+        held = [[force for _, force, _ in each] for each in (loads, springs)]
+        write_across(writer.sheet, writer.linkage, writer.body, *held)
     _write_frame(writer, "shaking", moving)
     _write_frame(writer, "frame", [*moving, *weights, *loads])
     for link in links:

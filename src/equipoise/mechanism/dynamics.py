@@ -9,7 +9,7 @@ stack of them.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cached_property
 from math import hypot
 from typing import Any
@@ -19,27 +19,24 @@ import numpy as np
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism import kernels
+from equipoise.mechanism.across import Across, masses_across, pushes_across
+from equipoise.mechanism.acting import acting_loads, acting_springs, load_demands, spring_demands
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.planes import beside
 from equipoise.mechanism.pushing import lengths
 from equipoise.mechanism.reactions import (
     Demand,
     JointForce,
     MeshForce,
     Pass,
-    SliderForce,
     VectorSignal,
     full,
-    load_demands,
     pushed,
     reactions,
-    spring_demands,
 )
+from equipoise.mechanism.shares import CAUSES, Split
 from equipoise.mechanism.steps import Array, p, planar, u
-
-CAUSES = ("translation", "rotation", "weight", "load", "spring")
-"""Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside, and
-springs to the frame."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,6 +139,14 @@ class Forces:
         return self.solved.gears
 
     @cached_property
+    def across(self) -> Across:
+        """What links beside each other do across the plane."""
+        motion = self.motion
+        loads = pushes_across(motion, acting_loads(motion))
+        springs = pushes_across(motion, acting_springs(motion))
+        return Across(motion, *masses_across(motion), loads, springs, self.solved.exerted)
+
+    @cached_property
     def split(self) -> Split:
         """Every output by cause and by link."""
         return split(self)
@@ -163,60 +168,6 @@ class Forces:
     def anchor(self, link: str) -> str:
         """The point of a link about which its demand's moment is taken."""
         return self.motion.linkage.anchors[link]
-
-
-@dataclass(frozen=True, eq=False)
-class Shares:
-    """Outputs told apart: arrays (..., N), whose first axes are what they are shares of.
-
-    shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
-    drive_force : N, of a drive that pushes.
-    joints, gears : name -> force whose arrays have those axes.
-    """
-
-    shaking_force: Array
-    shaking_moment: Array
-    frame_force: Array
-    frame_moment: Array
-    drive_torque: Array
-    joints: Mapping[str, JointForce]
-    gears: Mapping[str, MeshForce]
-    drive_force: Array | None = field(default=None, kw_only=True)
-
-    @property
-    def of_machine(self) -> dict[str, Array]:
-        """All but the forces in joints and gears, by name."""
-        known = {one.name: getattr(self, one.name) for one in fields(Shares)}
-        return {name: value for name, value in known.items() if isinstance(value, np.ndarray)}
-
-
-@dataclass(frozen=True, eq=False)
-class Split(Shares):
-    """Outputs by cause and link: arrays (5, L, N), causes as in `CAUSES`, links in file order.
-
-    Gears are taken with the flank in contact that the whole load gives.
-    """
-
-    links: tuple[str, ...]
-
-    def by_cause(self, output: str) -> dict[str, Array]:
-        """An output, such as ``drive_torque`` or ``joints.B``, summed over links."""
-        return dict(zip(CAUSES, self._array(output).sum(axis=1), strict=True))
-
-    def by_link(self, output: str) -> dict[str, Array]:
-        """An output, such as ``drive_torque`` or ``joints.B``, summed over causes."""
-        return dict(zip(self.links, self._array(output).sum(axis=0), strict=True))
-
-    def _array(self, output: str) -> Array:
-        found = self.of_machine
-        for name, joint in self.joints.items():
-            found[f"joints.{name}"] = joint.value
-            if isinstance(joint, SliderForce):
-                found[f"joints.{name}.moment"] = joint.moment
-        found |= {f"gears.{name}": mesh.value for name, mesh in self.gears.items()}
-        if output not in found:
-            raise UsageError(unknown(output, found, "output"))
-        return found[output]
 
 
 def forces(motion: Motion, about: str | Vector | complex | None = None) -> Forces:
@@ -303,9 +254,26 @@ def split(whole: Forces) -> Split:
         solved.drive_torque,
         solved.joints,
         solved.gears,
+        _across_apart(whole, solved, shape) if beside(motion.machine) else None,
         links,
         drive_force=pushed(solved),
     )
+
+
+def _across_apart(whole: Forces, solved: Pass, shape: tuple[int, ...]) -> Across:
+    """What links do across the plane, by cause and link."""
+    one = whole.across
+    parts = (one.inertia, one.weights, one.loads, one.springs)
+
+    def apart(cause: int, needed: Mapping[str, Any]) -> dict[str, Array]:
+        found = {}
+        for k, link in enumerate(whole.inertia):
+            found[link] = np.zeros(shape, complex)
+            found[link][cause, k] = needed.get(link, 0.0)
+        return found
+
+    inertia, weights, loads, springs = map(apart, (0, 2, 3, 4), parts)
+    return Across(whole.motion, inertia, weights, loads, springs, solved.exerted)
 
 
 def _causes(whole: Forces, link: str) -> list[Demand]:
