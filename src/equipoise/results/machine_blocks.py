@@ -10,7 +10,7 @@ import numpy as np
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.bodies import inertia_of, together
 from equipoise.mechanism.spoken import body_named
-from equipoise.quantities import PER_RPM, Dimension, Display, angle, display, number, told
+from equipoise.quantities import Dimension, Display, angle, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
 from equipoise.signals import Array, Figures, figures
 
@@ -229,16 +229,6 @@ def _support(machine: Machine) -> Iterator[str]:
 
 
 # -- motion ----------------------------------------------------------------------------------------
-
-
-def driven(machine: Machine, speed: float) -> str:
-    """How the drive runs."""
-    return say(
-        "{link} driven at {speed} rpm ({rate} rad/s)",
-        link=machine.drive.link,
-        speed=number(speed / PER_RPM),
-        rate=number(speed),
-    )
 
 
 def angles_told(analysis: Analysis) -> str:
