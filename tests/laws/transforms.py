@@ -167,6 +167,10 @@ def mirrored_planting(planting: Planting | None) -> Planting | None:
         planting,
         travel={"forward": "backward", "backward": "forward"}[planting.travel],
         release=None if planting.release is None else pi - planting.release,
+        arms=tuple(
+            replace(arm, release=None if arm.release is None else pi - arm.release)
+            for arm in planting.arms
+        ),
         tray=tray(planting, lambda z: -z.conjugate()),
     )
 
@@ -387,9 +391,12 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
     if position is not None:
         position = replace(position, points=keys(position.points), angles=keys(position.angles))
     if planting is not None:
-        finger = planting.finger_from
-        finger = None if finger is None else names(finger)
-        planting = replace(planting, tip=names(planting.tip), finger_from=finger)
+        first, *arms = (
+            replace(arm, tip=names(arm.tip), finger_from=arm.finger_from and names(arm.finger_from))
+            for arm in planting.every_arm
+        )
+        changes = {"tip": first.tip, "finger_from": first.finger_from, "arms": tuple(arms)}
+        planting = replace(planting, **changes)
     return replace(
         machine,
         drive=replace(machine.drive, link=body(machine.drive.link)),
