@@ -228,6 +228,21 @@ of_center(
     ("ax", "ay"),
 )
 
+
+def _of_drive(name: str, found: Any, link: str) -> Any:
+    torque = found.forces.drives[link]
+    return torque * found.motion.links[link].angular_velocity if name == "power" else torque
+
+
+of_drive = _alike("drives.{}.", _of_drive, members=lambda m: m.told_drives, linear=True)
+of_drive("torque", "torque", to_say("drive torque of {name}"), loop="{drive torque:name}")
+of_drive(
+    "power",
+    "power",
+    to_say("drive power of {name}"),
+    loop="{drive torque:name} * {angular velocity:name}",
+)
+
 # -- joints ----------------------------------------------------------------------------------------
 
 
