@@ -31,8 +31,8 @@ NEARLY = 0.05
 
 @dataclass(frozen=True)
 class Closed:
-    """A four-bar that a dyad closes: of two known bodies that share the pin `pivot`, `here` with the
-    first and `there` with the second of its outer pins.
+    """A four-bar that a dyad closes: of two known bodies that share the pin `pivot`, `here` with
+    the first and `there` with the second of its outer pins.
 
     sides : ends of each side and its length, m, those opposite to each other side by side.
     """
