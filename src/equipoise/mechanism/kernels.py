@@ -100,6 +100,29 @@ def slid(g, g1, g2, n, w, a, t, t1, t2):
     return g + n * t, g1 + (1j * w * t + t1) * n, g2 + ((1j * a - w * w) * t + slip) * n
 
 
+def rolled(angle_r, w_r, a_r, angle_c, w_c, a_c, way, offset):
+    """Travel of a rack on the carrier c, of which the pinion r rolls `way` for a radian."""
+    return way * (angle_r - angle_c) + offset, way * (w_r - w_c), way * (a_r - a_c)
+
+
+def wound(t, t1, t2, angle_c, w_c, a_c, rate, offset):
+    """Angle of a pinion that a rack, at the travel t on the carrier c, turns by `rate` for a m."""
+    return angle_c + rate * t + offset, w_c + rate * t1, a_c + rate * t2
+
+
+def travelled(p, p1, p2, g, g1, g2, u, w, a, along):
+    """Way from the point g to p along a line, of the direction `along` in axes that u turns."""
+    t, t1, t2 = along_line(p - g, p1 - g1, p2 - g2, u * along, w, a)
+    return t.real, t1.real, t2.real
+
+
+def railed(t, t1, t2, g, g1, g2, u, w, a, along, turn):
+    """Point and rotation of a link at the way t along a guide through g; others as in `rrp`."""
+    n = u * along
+    s, s1, s2 = slid(g, g1, g2, n, w, a, t, t1, t2)
+    return s, s1, s2, n * turn, w, a
+
+
 def rrr(p, p1, p2, q, q1, q2, arm_p, arm_q, side):
     """Two links pinned at p and q meet in the pin c.
 
