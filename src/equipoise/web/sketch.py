@@ -43,7 +43,7 @@ class Sketch(Outline):
         rest = {key: getattr(own, key) for key in REST}
         weights = {name: one for name, one in found.design.counterweights.items() if one.mass}
         return cls(own.frame, own.links, poses, own.drive, own.sliders, own.gears, rest,
-                   found.design.name, weights)  # fmt: skip
+                   float(motion.crank_angle[at]), found.design.name, weights)  # fmt: skip
 
     @property
     def units(self) -> ShownUnits | None:
