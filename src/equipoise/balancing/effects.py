@@ -23,6 +23,7 @@ from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.objectives import balanced_names
 from equipoise.mechanism.outputs import Declared, Found, matches
 from equipoise.mechanism.reactions import JointForce, Pass, VectorSignal, reactions
+from equipoise.mechanism.undecided import refuse_unbounded
 from equipoise.signals import Array
 
 Demand = tuple[Array, Array]
@@ -114,13 +115,13 @@ class Effects:
         return Signal(start, self.full(columns), self.motion.turns)
 
     def _declared(self, output: str) -> tuple[Declared, str]:
-        joints, bearings = self.start.joints, self.machine.bearings
+        joints = self.start.joints
         for one, item in matches(output):
-            forces = bearings if one.group == "bearings" else joints
-            known = item in forces if item else "" in one.members(self.machine)
+            known = item in (joints if one.group == "joints" else one.members(self.machine))
             if one.is_of_row and not one.reason and known:
                 return one, item
         if output.startswith("joints."):
+            refuse_unbounded(self.motion.linkage, output)
             raise UsageError(unknown(output.removeprefix("joints."), joints, "joint"))
         raise UsageError(unknown(output, balanced_names(self.machine), "output"))
 
@@ -181,7 +182,7 @@ class Effects:
     @cached_property
     def flanks(self) -> Pass:
         """A run whose gears are in contact on the flanks that count."""
-        if self.like is None or not self.machine.gears:
+        if self.like is None or not self.machine.couplings:
             return self.start.solved
         return forces(move(self.like, ANGLES, acceleration=0.0).at(self.motion.speed)).solved
 
@@ -211,7 +212,7 @@ class Effects:
             plane = links[spring.link].plane_of(spring.choice.point)
             springs[spring.link][rows] = -plane * spring.pulls(self.motion)
         exerted = _JointsOfUnit(self)
-        named = {name: exerted[name] for name, _ in self.motion.linkage.named_reactions}
+        named = {name: exerted[name] for name in self.solved.exerted}
         return Across(self.motion, inertia, weights, {}, springs, named)
 
     def moment(self, demands: Demand, about: complex) -> Array:
@@ -254,6 +255,10 @@ class Present:
     @property
     def drive_torque(self) -> Array:
         return self.effects.start.drive_torque
+
+    @property
+    def drives(self) -> Mapping[str, Array]:
+        return self.effects.start.drives
 
     @property
     def drive_force(self) -> Array:
@@ -300,6 +305,14 @@ class Unit:
     @property
     def drive_torque(self) -> Array:
         return self.effects.with_springs(self.effects.solved.drive_torque, "drive_torque")
+
+    @property
+    def drives(self) -> Mapping[str, Array]:
+        found = self.effects.solved.drives.items()
+        return {
+            link: self.effects.with_springs(torque, f"drives.{link}.torque")
+            for link, torque in found
+        }
 
     @property
     def drive_force(self) -> Array:

@@ -7,21 +7,23 @@ What each design has of its own is a slot, with a function that finds it in the 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
 from equipoise.codegen.across import write_across
-from equipoise.codegen.angles import turned, write_running_angle
+from equipoise.codegen.angles import write_running_angle
+from equipoise.codegen.applied import Held, names, write_load, write_spring, write_tension
+from equipoise.codegen.coupled import write_coupling, write_rolled
 from equipoise.codegen.loops import write_loops
-from equipoise.codegen.source import Read, Sheet
+from equipoise.codegen.source import Read
+from equipoise.codegen.writer import Writer
 from equipoise.errors import MassError
 from equipoise.mechanism import kernels
+from equipoise.mechanism.contacts import rolled
+from equipoise.mechanism.couplings import coupled
 from equipoise.mechanism.dynamics import inertia_about, massless
-from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.loads import load_at
-from equipoise.mechanism.model import FRAME, Drive, FurtherDrive, Load, Spring
+from equipoise.mechanism.model import FRAME, Drive, FurtherDrive
 from equipoise.mechanism.newton import LoopGroup
 from equipoise.mechanism.planes import beside
 from equipoise.mechanism.steps import (
@@ -30,73 +32,10 @@ from equipoise.mechanism.steps import (
     RunningAngle,
     Step,
     demand_names,
-    p,
     planar,
     size_of_bodies,
     u,
 )
-
-Held = tuple[str, str, str]
-"""Link, and identifiers of force and moment that hold something against it."""
-
-
-class Writer:
-    """What has been written of a linkage so far.
-
-    counted : whether angles of links are counted on from crank angle to crank angle, because a
-        gear follows a link that a dyad moves.
-    orders : link -> turns in a turn of the crank, of links that turn in proportion to it.
-    points : those that are known.
-    apart : number of a dyad with a block -> identifier of how far, over the size of the machine and
-        squared, the block is from its guide's pivot.  Near there the number drops too fast to tell
-        between the crank angles.
-    """
-
-    def __init__(self, linkage: Linkage) -> None:
-        self.linkage, self.machine, self.sheet = linkage, linkage.machine, Sheet()
-        steps = any(isinstance(step, RunningAngle) for step in linkage.motion)
-        self.counted = steps or not self.machine.has_crank
-        self.orders: dict[str, float] = {FRAME: 0.0, self.machine.drive.link: 1.0}
-        self.points = set(self.machine.frame)
-        self.apart: dict[str, str] = {}
-
-    def name(self, value: str) -> str:
-        return self.sheet.name(value)
-
-    def body(self, link: str) -> list[str]:
-        """Identifiers of a link's anchor and rotation, with their derivatives."""
-        return [self.name(name) for name in (*p(self.linkage.anchors[link]), *u(link))]
-
-    def point(self, link: str, point: str) -> list[str]:
-        """Identifiers of a point of a link and its derivatives."""
-        if point not in self.points:
-            self.points.add(point)
-            anchor = self.linkage.anchors[link]
-
-            def arm(found: Linkage) -> Any:
-                points = found.machine.points_of(link)
-                return planar(points[point]) - planar(points[anchor])
-
-            slot = self.sheet.slot(f"arm({link}/{point})", arm, vector=True)
-            self.sheet.call("point", [*self.body(link), slot], p(point))
-        return [self.name(name) for name in p(point)]
-
-    def turned(self, order: float) -> str:
-        """exp(i order theta), which no design changes."""
-        return turned(self.sheet, order)
-
-    def rate(self, key: str) -> str:
-        """Identifier of the crank's ``speed`` or ``acceleration``."""
-        return self.sheet.slot(key, lambda found: getattr(found.machine.drive, key))
-
-    def numbers(self) -> dict[str, int]:
-        """Identifiers of the dyads' own numbers, and of what else is to be watched; each with the
-        dyad that it tells of, by its place in the order in which they are solved.
-        """
-        own = [g.margin for g in self.linkage.groups if g.margin is not None]
-        found = {self.name(number): k for k, number in enumerate(own)}
-        return found | {self.apart[n]: k for k, n in enumerate(own) if n in self.apart}
-
 
 # -- motion ----------------------------------------------------------------------------------------
 
@@ -148,8 +87,10 @@ def _write_step(writer: Writer, step: Step, steps: str, number: int) -> None:
         if writer.counted:
             sheet.put(f"u({step.link})", f"rotation({writer.name(f'phi({step.link})')})")
     elif isinstance(step, Call):
-        if step.kernel is kernels.gear and not writer.counted:
-            _write_uniform_gear(writer, step)
+        if step.kernel is coupled or (step.kernel is kernels.gear and not writer.counted):
+            write_coupling(writer, step)
+        elif step.kernel is rolled:
+            write_rolled(writer, step, number)
         else:
             _write_call(writer, step, steps, number)
     elif isinstance(step, LoopGroup):
@@ -178,45 +119,6 @@ def _parameter(steps: str, number: int, place: int) -> Read:
     return lambda found: getattr(found, steps)[number].parameters[place]
 
 
-def _write_uniform_gear(writer: Writer, step: Call) -> None:
-    """A gear whose driver and carrier turn in proportion to the crank does so too.
-
-    Its rotation is a cosine and sine of a multiple of the crank angle, known for all designs.
-    """
-    sheet = writer.sheet
-    driver, carrier, link = _gear_links(step)
-    order = _follows(step, writer.orders[driver], writer.orders[carrier], 0.0)
-    writer.orders[link] = order
-    start = sheet.slot(f"start({link})", lambda found: np.exp(1j * _start(found, link)), True)
-    sheet.put(f"u({link})", f"{writer.turned(order)} * {start}")
-    sheet.put(f"w({link})", repr(order))
-    sheet.put(f"a({link})", "0.0")
-
-
-def _gear_links(step: Call) -> list[str]:
-    """Driver, carrier and driven link of a gear's step."""
-    angles = step.inputs[0], step.inputs[3], step.outputs[0]
-    return [name.removeprefix("phi(")[:-1] for name in angles]
-
-
-def _follows(step: Call, driver: Any, carrier: Any, offset: Any) -> Any:
-    """What the step makes of driver's and carrier's angle (or order, without an offset)."""
-    ratio = step.parameters[0]
-    angle, *_ = step.kernel(driver, 0.0, 0.0, carrier, 0.0, 0.0, ratio, offset)
-    return angle
-
-
-def _start(found: Linkage, link: str) -> Any:
-    """Angle of a link at crank angle 0, of links that turn in proportion to the crank."""
-    for step in found.motion:
-        if isinstance(step, Call) and step.kernel is kernels.gear:
-            driver, carrier, driven = _gear_links(step)
-            if driven == link:
-                offset = step.parameters[1]
-                return _follows(step, _start(found, driver), _start(found, carrier), offset)
-    return 0.0
-
-
 # -- forces ----------------------------------------------------------------------------------------
 
 
@@ -234,10 +136,11 @@ def write_demands(writer: Writer) -> None:
         raise MassError(missing)
     _write_inertia(writer)
     links, machine = list(writer.machine.links), writer.machine
-    moving = [(link, *_names(writer, "I", link)) for link in links]
-    weights = [(link, *_names(writer, "W", link)) for link in links]
-    loads = [_write_load(writer, k, load) for k, load in enumerate(machine.loads, 1)]
-    springs = [_write_spring(writer, k, spring) for k, spring in enumerate(machine.springs)]
+    moving = [(link, *names(writer, "I", link)) for link in links]
+    weights = [(link, *names(writer, "W", link)) for link in links]
+    loads = [write_load(writer, k, load) for k, load in enumerate(machine.loads, 1)]
+    springs = [write_spring(writer, k, spring) for k, spring in enumerate(machine.springs)]
+    springs += [held for k in range(len(machine.belts)) for held in write_tension(writer, k)]
     if beside(machine):
         held = [[force for _, force, _ in each] for each in (loads, springs)]
         write_across(writer.sheet, writer.linkage, writer.body, *held)
@@ -250,10 +153,6 @@ def write_demands(writer: Writer) -> None:
         writer.sheet.put(moment, " + ".join(moment for _, _, moment in parts))
     if writer.machine.has_crank:  # else work does not tell the torque of each drive
         writer.sheet.put("drive torque", " + ".join(_drive_torques(writer)))
-
-
-def _names(writer: Writer, cause: str, link: str) -> tuple[str, str]:
-    return writer.name(f"F{cause}({link})"), writer.name(f"M{cause}({link})")
 
 
 def _write_inertia(writer: Writer) -> None:
@@ -276,42 +175,6 @@ def _write_inertia(writer: Writer) -> None:
 def _inertia(writer: Writer, link: str, place: int) -> Read:
     anchor = writer.linkage.anchors[link]
     return lambda found: inertia_about(found.machine.links[link], anchor)[place]
-
-
-def _write_load(writer: Writer, number: int, load: Load) -> Held:
-    values: dict[str, Callable[[Any], Any]] = {
-        "x": lambda theta: load_at(load, theta)[0].real,
-        "y": lambda theta: load_at(load, theta)[0].imag,
-        "torque": lambda theta: load_at(load, theta)[1],
-    }
-    x, y, torque = (writer.sheet.row(f"load {number} {key}", of) for key, of in values.items())
-    force = f"({x} + 1j * {y})"
-    return _write_held(writer, load.link, load.point, force, torque, f"L{number}")
-
-
-def _write_spring(writer: Writer, number: int, spring: Spring) -> Held:
-    sheet, cause = writer.sheet, number + 1
-    place, *_ = writer.point(spring.link, spring.point)
-    stiffness = sheet.slot(
-        f"stiffness({cause})", lambda found: found.machine.springs[number].stiffness
-    )
-    free = sheet.slot(
-        f"free_length({cause})", lambda found: found.machine.springs[number].free_length
-    )
-    to = writer.name(f"p({spring.to})")
-    pull = sheet.put(f"pull({cause})", f"spring({place}, {to}, {stiffness}, {free})")
-    return _write_held(writer, spring.link, spring.point, pull, "0.0", f"S{cause}")
-
-
-def _write_held(
-    writer: Writer, link: str, point: str | None, force: str, torque: str, cause: str
-) -> Held:
-    """Write what holds a force at a point of a link, and a torque on it."""
-    anchor = writer.body(link)[0]
-    at = anchor if point is None else writer.point(link, point)[0]
-    outputs = (f"F{cause}({link})", f"M{cause}({link})")
-    writer.sheet.call("load_demand", [anchor, at, force, torque], outputs)
-    return link, *_names(writer, cause, link)
 
 
 def _write_frame(writer: Writer, what: str, demands: list[Held]) -> None:

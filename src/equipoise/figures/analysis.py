@@ -71,7 +71,7 @@ def over(analysis: Analysis, values: Array) -> tuple[Array, Array]:
 def angle_axis(analysis: Analysis) -> Axis:
     """The x axis: the whole cycle, or the crank angles there are."""
     motion = analysis.motion
-    axis = crank_axis(short(motion.machine.drive.link, 16), motion.speed, motion.turns)
+    axis = crank_axis(short(motion.machine.drive.crank, 16), motion.speed, motion.turns)
     if motion.whole_cycle:
         return axis
     low, high = (float(f(motion.crank_angle)) for f in (np.min, np.max))
@@ -155,7 +155,7 @@ class Joint:
 def joints_of(analysis: Analysis) -> dict[str, Joint]:
     """Every joint and pair of gears; of a sliding joint its couple too; rounding as zeros."""
     found, forces = {}, analysis.forces
-    every = {**forces.joints, **forces.gears}
+    every = forces.solved.contacts
     largest = max((float(np.max(joint.size)) for joint in every.values()), default=0.0)
     force, moment = LEAST_FORCE * largest, LEAST_FORCE * largest * size_of(analysis)
     for name, joint in every.items():
