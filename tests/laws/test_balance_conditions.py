@@ -209,6 +209,8 @@ def outputs_of(machine: eq.Machine, angles: Any) -> dict[str, Array]:
     found = {}
     for output in known_outputs():
         name, _, part = output.partition(".")
+        if name == "drive_force" and not machine.drive.pushes:
+            continue
         whole = getattr(forces, name)
         found[output] = np.asarray(getattr(whole, part) if part else whole)
     return found
