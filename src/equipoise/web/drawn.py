@@ -115,7 +115,7 @@ def with_entry(base: Solved | Drawn, entry: Entry) -> Solved | Drawn:
     if isinstance(base, Solved):
         design = entered(base.design, entry)
         try:
-            return settled(solved(design))
+            return settled(solved(design, None, base.swings is not None))
         except MobilityError:
             return drawn(sketch_of(base, 0).taking(design.machine))
     own = entered(Design(base.design.name, plain_of(base)), entry).own

@@ -14,6 +14,7 @@ from equipoise.mechanism.outputs import GROUPS
 from equipoise.mechanism.poles import guided, pinned
 from equipoise.quantities import display
 from equipoise.results.analysis import Analysis
+from equipoise.results.machine_blocks import driven
 from equipoise.signals import Periodic
 from equipoise.web.arrows import arrows_of, points_of
 from equipoise.web.block import Array, Block, Values
@@ -76,7 +77,10 @@ def state_of(
         "charts": charts_of(analysis, signals),
         "least": least_of(signals),
         "orders": _orders(analysis),
-        "notes": [massless(machine)] if analysis.solved is None else [],
+        "notes": [
+            *([said(found.swings)] if found.swings else []),
+            *([massless(machine)] if analysis.solved is None else []),
+        ],
         "before": before is not None,
         "status": status_of(found),
         "compared": against is not None,
@@ -124,7 +128,11 @@ def status_of(found: Solved) -> Values:
 
 def turning(machine: Machine) -> str:
     """That a machine is finished."""
-    return say("1 free motion; {link} turns fully", link=machine.drive.link)
+    drive = machine.drive
+    law = drive.stroke or drive.motion
+    if law is None or law.windings:
+        return say("1 free motion; {link} turns fully", link=drive.link)
+    return say("1 free motion; {what}", what=driven(machine, drive.speed))
 
 
 def _add_outputs(block: Block, analysis: Analysis, names: Sequence[str], prefix: str = "") -> None:
