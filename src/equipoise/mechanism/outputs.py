@@ -89,7 +89,7 @@ of_link(
     None,
     to_say("mechanical advantage of {name}"),
     had="angle_1",
-    members=pinned,
+    members=lambda machine: [] if machine.drive.pushes else pinned(machine),
     of=advantage,
     **UNBOUNDED,
 )
@@ -134,7 +134,7 @@ of_slider(
     "force per torque",
     to_say("mechanical advantage of {name}"),
     had="travel_1",
-    members=guided,
+    members=lambda machine: [] if machine.drive.pushes else guided(machine),
     of=advantage,
     **UNBOUNDED,
 )

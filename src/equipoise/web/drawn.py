@@ -62,7 +62,7 @@ def drawn(sketch: Sketch) -> Solved | Drawn:
 def tried(sketch: Sketch) -> Drawn:
     """What is dragged: it stands where it is drawn until it is let go."""
     found = drawn(sketch)
-    return found if isinstance(found, Drawn) else Drawn(sketch, turning(found.design.machine))
+    return found if isinstance(found, Drawn) else Drawn(sketch, turning(found.analysis.machine))
 
 
 def computed(design: Design | Sketch) -> Solved | Drawn:

@@ -116,7 +116,7 @@ def status_of(found: Solved) -> Values:
     finished : whether it can be computed.  drive : the crank, if there is one.
     stand : crank angle at which it was drawn, deg; None where it has not just been made.
     """
-    machine, stand = found.design.machine, found.stand
+    machine, stand = found.analysis.machine, found.stand
     return {
         "mobility": 1,
         "text": turning(machine),
