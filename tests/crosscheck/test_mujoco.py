@@ -11,6 +11,7 @@ from support import mujoco_engine
 from support.analyses import (
     Subject,
     agree,
+    every_apart,
     every_subject,
     force_size,
     moment_size,
@@ -52,7 +53,8 @@ def acting_on_links(subject: Subject) -> dict[str, Array]:
         on_links(machine, poses), springs_on_links(machine, poses)
     ):
         total[link] += action(subject, link, at, force, torque)
-    total[machine.drive.link][:, 2] += forces.drive_torque
+    for link, torque in forces.drives.items():
+        total[link][:, 2] += torque
     return total
 
 
@@ -72,3 +74,9 @@ def test_totals_and_what_each_link_carries(name: str) -> float:
             agree(f"moment on {link}", got[:, 2], want[:, 2], TOLERANCE, moment),
         ]
     return max(apart)
+
+
+@compared(MUJOCO, f"{TOTALS}, of links beside each other", TOLERANCE)
+@every_apart
+def test_totals_of_links_beside_each_other(name: str) -> float:
+    return same_totals(subject_of(name), mujoco_engine.totals)

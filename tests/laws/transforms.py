@@ -17,11 +17,12 @@ from equipoise.keys import Frozen, Kind, Point, Table, innermost
 from equipoise.keys.declaring import declarations
 from equipoise.mechanism.balance import Limit
 from equipoise.mechanism.field import Planting
-from equipoise.mechanism.model import FRAME, Vector
+from equipoise.mechanism.model import FRAME, FurtherDrive, Vector
 from equipoise.mechanism.objectives import quantity_of
 from equipoise.quantities import SI
 
 Value = TypeVar("Value")
+Driven = TypeVar("Driven", eq.Drive, FurtherDrive)
 Map = Callable[[complex], complex]
 
 
@@ -68,6 +69,7 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
     return replace(
         machine,
         drive=swung(machine.drive, lambda value: value + angle, lambda phase: phase + angle),
+        drives=tuple(later_drive(one, angle) for one in machine.drives),
         frame=mapped(machine.frame, lambda z: z * turn),
         gravity=vector(lambda z: z * turn, machine.gravity),
         sliders=tuple(
@@ -87,6 +89,13 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
     )
 
 
+def later_drive(drive: FurtherDrive, angle: float) -> FurtherDrive:
+    """Turn a further drive as the frame, at crank angles that grow by the same angle."""
+    if drive.motion is None:
+        return replace(drive, start=drive.start + angle * (1 - drive.ratio))
+    return swung(drive, lambda value: value + angle, lambda phase: phase + angle)
+
+
 def put_off(gear: eq.Gear, later: float) -> eq.Gear:
     """A pair whose driver, seen from the carrier, comes to the same pitch points so much later."""
     shape = gear.shape
@@ -94,15 +103,24 @@ def put_off(gear: eq.Gear, later: float) -> eq.Gear:
 
 
 def swung(
-    drive: eq.Drive, change: Callable[[float], float], later: Callable[[float], float]
-) -> eq.Drive:
-    """Change the angles between which a drive swings by a sine, and when it begins."""
+    drive: Driven, change: Callable[[float], float], later: Callable[[float], float]
+) -> Driven:
+    """Change the angles between which a drive swings, and when it begins; all runs backwards where
+    `later` does.
+    """
     law = drive.motion
     if law is None:
         return drive
-    assert law.between is not None
-    low, high = map(change, law.between)
-    return replace(drive, motion=replace(law, between=(low, high), phase=later(law.phase)))
+    if law.between is not None:
+        low, high = map(change, law.between)
+        return replace(drive, motion=replace(law, between=(low, high), phase=later(law.phase)))
+    values = [change(one) for one in (law.start, *(part.to for part in law.segments))]
+    parts = list(law.segments)
+    if later(1.0) < later(0.0):
+        values, parts = values[::-1], parts[::-1]  # each law is its own image in its middle
+    ways = tuple(replace(part, to=to) for part, to in zip(parts, values[1:], strict=True))
+    moved = replace(law, start=values[0], segments=ways, phase=later(law.phase))
+    return replace(drive, motion=moved)
 
 
 def turned_position(position: eq.mechanism.Position, angle: float) -> eq.mechanism.Position:
@@ -149,6 +167,10 @@ def mirrored_planting(planting: Planting | None) -> Planting | None:
         planting,
         travel={"forward": "backward", "backward": "forward"}[planting.travel],
         release=None if planting.release is None else pi - planting.release,
+        arms=tuple(
+            replace(arm, release=None if arm.release is None else pi - arm.release)
+            for arm in planting.arms
+        ),
         tray=tray(planting, lambda z: -z.conjugate()),
     )
 
@@ -167,6 +189,10 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
     return replace(
         machine,
         drive=replace(drive, speed=-drive.speed, acceleration=-drive.acceleration),
+        drives=tuple(
+            replace(swung(one, operator.neg, operator.neg), start=-one.start)
+            for one in machine.drives
+        ),
         frame=mapped(machine.frame, np.conj),
         links={name: mirrored_link(link) for name, link in machine.links.items()},
         assembly={joint: flip.get(side, side) for joint, side in machine.assembly.items()},
@@ -365,12 +391,16 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
     if position is not None:
         position = replace(position, points=keys(position.points), angles=keys(position.angles))
     if planting is not None:
-        finger = planting.finger_from
-        finger = None if finger is None else names(finger)
-        planting = replace(planting, tip=names(planting.tip), finger_from=finger)
+        first, *arms = (
+            replace(arm, tip=names(arm.tip), finger_from=arm.finger_from and names(arm.finger_from))
+            for arm in planting.every_arm
+        )
+        changes = {"tip": first.tip, "finger_from": first.finger_from, "arms": tuple(arms)}
+        planting = replace(planting, **changes)
     return replace(
         machine,
         drive=replace(machine.drive, link=body(machine.drive.link)),
+        drives=tuple(replace(one, link=body(one.link)) for one in machine.drives),
         frame=keys(machine.frame),
         links={
             names(name): replace(link, points=keys(link.points))

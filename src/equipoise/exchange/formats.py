@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.planes import beside
 
 if TYPE_CHECKING:
     from equipoise.balancing.workshop import Change
@@ -141,6 +142,11 @@ class Job:
         planting = self.machine.planting
         if planting is not None and planting.soil is not None:
             self.leave_out("the soil's force")
+
+    def leave_out_planes(self) -> None:
+        """Tell that everything lies in one plane."""
+        if beside(self.machine):
+            self.leave_out("the planes of links beside each other, and their bearings")
 
     def leave_out_motor(self) -> None:
         """Tell that the drive has its speed, whatever turns it."""

@@ -12,8 +12,13 @@ from equipoise.mechanism.checks import numbered
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import FRAME, Machine, size_of
+from equipoise.mechanism.planes import beside
+from equipoise.mechanism.statics import statics
 from equipoise.mechanism.steps import Call
+from equipoise.mechanism.undecided import undecided
 
+BARS = (kernels.rrr, kernels.parallelogram)
+"""Kernels of two links and three pins."""
 TYPES = {
     "frame": "double-crank (drag link)",
     "crank": "crank-rocker",
@@ -69,7 +74,7 @@ def four_bar(machine: Machine) -> FourBar | None:
     linkage = assemble(machine)
     drive, pivot = machine.drive.link, linkage.pivot
     for group in linkage.groups:
-        if not any(isinstance(s, Call) and s.kernel is kernels.rrr for s in group.motion):
+        if not any(isinstance(s, Call) and s.kernel in BARS for s in group.motion):
             continue
         first, second, inner = group.reactions
         if first.by == FRAME:
@@ -165,7 +170,13 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
     machine = linkage.machine
     if missing := massless(machine):
         yield missing
+    yield from undecided(linkage).told()
+    if beside(machine):
+        yield from statics(linkage).told()
+    through = {group.joint for group in linkage.groups if group.through}
     for joint, (number, angle) in linkage.cycle.weakest.items():
+        if joint in through:
+            continue
         transmission = degrees(asin(sqrt(min(number, 1.0))))
         if transmission < POOR_TRANSMISSION:
             yield (

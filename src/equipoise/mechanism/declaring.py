@@ -39,6 +39,7 @@ GROUPS = {
     "transmission": to_say("transmission angles"),
     "centers": to_say("instant centres"),
     "forces": to_say("frame and drive"),
+    "drives": to_say("drives"),
     "joints": to_say("joints"),
     "bearings": to_say("bearings"),
     "gears": to_say("gears"),

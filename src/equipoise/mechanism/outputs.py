@@ -89,7 +89,7 @@ of_link(
     None,
     to_say("mechanical advantage of {name}"),
     had="angle_1",
-    members=lambda machine: [] if machine.drive.pushes else pinned(machine),
+    members=lambda machine: pinned(machine) * machine.has_crank,
     of=advantage,
     **UNBOUNDED,
 )
@@ -134,7 +134,7 @@ of_slider(
     "force per torque",
     to_say("mechanical advantage of {name}"),
     had="travel_1",
-    members=lambda machine: [] if machine.drive.pushes else guided(machine),
+    members=lambda machine: guided(machine) * machine.has_crank,
     of=advantage,
     **UNBOUNDED,
 )
@@ -228,6 +228,21 @@ of_center(
     ("ax", "ay"),
 )
 
+
+def _of_drive(name: str, found: Any, link: str) -> Any:
+    torque = found.forces.drives[link]
+    return torque * found.motion.links[link].angular_velocity if name == "power" else torque
+
+
+of_drive = _alike("drives.{}.", _of_drive, members=lambda m: m.told_drives, linear=True)
+of_drive("torque", "torque", to_say("drive torque of {name}"), loop="{drive torque:name}")
+of_drive(
+    "power",
+    "power",
+    to_say("drive power of {name}"),
+    loop="{drive torque:name} * {angular velocity:name}",
+)
+
 # -- joints ----------------------------------------------------------------------------------------
 
 
@@ -284,6 +299,7 @@ of_bearing = _alike(
     lambda _, found, bearing: found.forces.across.bearings[bearing],
     needs="planes",
     members=lambda machine: machine.bearings,
+    items=lambda found: found.forces.across.bearings if found.machine.bearings else (),
 )
 of_bearing(
     "",

@@ -118,6 +118,7 @@ def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Re
         solved.frame_force,
         solved.frame_moment(pole),
         solved.drive_torque,
+        solved.drives,
         solved.joints,
         solved.gears,
         _across(motion, solved) if beside(machine) else None,
@@ -294,7 +295,8 @@ def spring_columns(
     solved = reactions(motion, demands, like)
     effort = pushed(solved)
     effort = solved.drive_torque if effort is None else effort
-    return effort, {name: one.value for name, one in solved.exerted.items()}
+    found = {f"drives.{link}.torque": torque for link, torque in solved.drives.items()}
+    return effort, found | {name: one.value for name, one in solved.exerted.items()}
 
 
 def spring_units(motion: Motion, link: str, point: str, to: str) -> Array:

@@ -16,7 +16,8 @@ from equipoise.mechanism.loads import work_in_cycle
 from equipoise.mechanism.support import idle_parts
 from equipoise.quantities import PER_RPM, SI, Dimension, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
-from equipoise.results.machine_blocks import bodies_tables, driven, place_told
+from equipoise.results.drive_blocks import driven
+from equipoise.results.machine_blocks import bodies_tables, place_told
 from equipoise.vibration.body import Body, at_rest
 from equipoise.vibration.linear import Excitation as Shaking
 
@@ -37,10 +38,11 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     """How the linkage is built up, and what to look at again."""
     linkage = assemble(machine)
     cycle, drive = linkage.cycle, machine.drive
-    about = f"{drive.link} at {number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
-    if drive.pushes or drive.motion is not None:
-        about = driven(machine, drive.speed)
-    yield Text(f"{len(machine.links)} moving links, one free motion; driven: {about}")
+    told = f"{drive.link} at {number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
+    if not machine.has_crank:
+        told = driven(machine, drive.speed)
+    free = "one free motion" if not machine.drives else f"{len(machine.driven)} free motions"
+    yield Text(f"{len(machine.links)} moving links, {free}; driven: {told}")
     yield from map(Text, _build_up(linkage))
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
     repeats = "motion repeats" if turns_given(machine) == 1 else "motion and loads repeat"
@@ -67,7 +69,10 @@ def _uncarried(machine: Machine) -> Iterator[str]:
         yield f"{error}; respond and modes need that"
 
 
-HOW = {"loops": "by Newton's method on the loop equations"}
+HOW = {
+    "loops": "by Newton's method on the loop equations",
+    "pointed": "where its pins are brought",
+}
 """How a group of links is solved, where that is not its kind."""
 
 

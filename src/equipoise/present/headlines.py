@@ -186,6 +186,8 @@ def ordered(found: Findings) -> str:
 
 def carried(analysis: Analysis) -> str:
     """Which joint carries most."""
+    if not analysis.forces.joints:
+        return say("The forces in the joints grow without bound where links lie in line")
     name, found = largest_joint(analysis)
     size = told(found.peak, "force", digits=3)
     return say("Joint {name} carries most: up to {peak}", name=named(joint_named(name)), peak=size)

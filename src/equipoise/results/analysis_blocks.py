@@ -10,14 +10,14 @@ import numpy as np
 from equipoise.i18n import say
 from equipoise.mechanism.dwell import Dwell
 from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.reactions import JointForce, SliderForce
-from equipoise.mechanism.spoken import body_named, joint_named
+from equipoise.mechanism.spoken import joint_named
 from equipoise.mechanism.strokes import SHARE
 from equipoise.quantities import Dimension, angle, percent
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
+from equipoise.results.drive_blocks import driven, drives_table
+from equipoise.results.joint_blocks import joint_blocks
 from equipoise.results.machine_blocks import (
     angles_told,
-    driven,
     four_bar_facts,
     four_bar_table,
     largest,
@@ -49,7 +49,7 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
         yield Notes((massless(machine),))
         return
     yield from force_blocks(analysis)
-    yield joint_table(analysis)
+    yield from joint_blocks(analysis)
 
 
 # -- motion ----------------------------------------------------------------------------------------
@@ -138,7 +138,7 @@ def advantages_table(analysis: Analysis) -> Table:
 
 def force_blocks(analysis: Analysis) -> Iterator[Block]:
     """Forces on frame and drive; what they come from; their orders."""
-    ones = [one for one in analysis.outputs.summed if one.group == "forces"]
+    ones = [one for one in analysis.outputs.summed if one.group in ("forces", "drives")]
     rows: list[tuple[Cell, ...]] = []
     for one in ones:
         found, kind = one.figures, one.dimension
@@ -156,6 +156,7 @@ def force_blocks(analysis: Analysis) -> Iterator[Block]:
     )
     labels = (say("mean"), say("RMS"), say("largest"), say("smallest"), say("peak to peak"))
     yield Table.of(title, ("", *labels), rows)
+    yield from drives_table(analysis)
     yield _by_link(analysis)
     yield _causes(analysis)
     if analysis.has_orders:
@@ -233,28 +234,6 @@ def loud(sizes: list[Array], most: int = MOST_ORDERS) -> list[int]:
     relative = [size / (np.max(size[1:], initial=0.0) or 1.0) for size in sizes]
     top = np.max(relative, axis=0)
     return [k for k in range(1, len(top)) if top[k] > 1e-6][:most]
-
-
-def joint_table(analysis: Analysis) -> Table:
-    """The force in every joint and mesh."""
-    forces = analysis.forces
-    joints: dict[str, JointForce] = {**forces.joints, **forces.gears}
-    scale = analysis.summary["frame_moment"].peak
-    rows: list[tuple[Cell, ...]] = []
-    for name, joint in joints.items():
-        found = figures(analysis.crank_angle, joint.size)
-        couple = None
-        if isinstance(joint, SliderForce):
-            couple = Value(float(np.max(np.abs(joint.moment))), scale)
-        named = say("teeth") if name in forces.gears else joint_named(name)
-        ends = f"{body_named(joint.by)} → {body_named(joint.on)}"
-        rows.append((named, ends, Value(found.mean), Value(found.rms), largest(found), couple))
-    labels = (say("mean"), say("RMS"), say("largest"))
-    columns = ["", say("by → on"), *(Column(label, "force") for label in labels)]
-    columns.append(Column(say("moment"), "torque"))
-    shown = len(columns) if any(row[-1] is not None for row in rows) else -1
-    title = say("Force in each joint; largest with its crank angle")
-    return Table.of(title, columns[:shown], (row[:shown] for row in rows))
 
 
 # -- harmonics -------------------------------------------------------------------------------------
