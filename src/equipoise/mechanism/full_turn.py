@@ -142,13 +142,14 @@ class FullTurn:
 
     def beyond(self, dip: float, names: Note | str) -> RangeError:
         """Tell that the drive's own motion leads where a dyad cannot be closed."""
+        link = self.machine.drive.link
         return RangeError(
             Note(
                 "{names} do not reach each other with {link!r} at {angle}, to which it is moved at "
                 "crank angle {at}; let it move less",
                 names=names,
-                link=self.machine.drive.link,
-                angle=_in_degrees(float(np.ravel(self.machine.turned(np.array([dip]))[0])[0])),
+                link=link,
+                angle=_in_degrees(float(np.ravel(self.machine.moved(np.array([dip]))[link][0])[0])),
                 at=_in_degrees(dip),
             )
         )

@@ -53,7 +53,7 @@ def swing(machine: Machine) -> Swing | None:
     ------
     MobilityError, MotionError, ModelError : the linkage cannot be moved at all.
     """
-    if machine.drive.pushes or machine.drive.motion is not None:
+    if not machine.has_crank:
         return None
     linkage = assemble(machine)
     found = reach(linkage)

@@ -14,7 +14,7 @@ from equipoise.mechanism.outputs import GROUPS
 from equipoise.mechanism.poles import guided, pinned
 from equipoise.quantities import display
 from equipoise.results.analysis import Analysis
-from equipoise.results.machine_blocks import driven
+from equipoise.results.drive_blocks import driven
 from equipoise.signals import Periodic
 from equipoise.web.arrows import arrows_of, points_of
 from equipoise.web.block import Array, Block, Values
