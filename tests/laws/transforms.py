@@ -19,6 +19,7 @@ from equipoise.mechanism.balance import Limit
 from equipoise.mechanism.field import Planting
 from equipoise.mechanism.model import FRAME, FurtherDrive, Vector
 from equipoise.mechanism.objectives import quantity_of
+from equipoise.mechanism.racks import Rack
 from equipoise.quantities import SI
 
 Value = TypeVar("Value")
@@ -83,6 +84,10 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
             )
             for g in machine.gears
         ),
+        belts=tuple(
+            replace(b, start=float(start.links[b.driven].angle[0]) + angle) for b in machine.belts
+        ),
+        racks=tuple(restarted(start, rack, angle) for rack in machine.racks),
         loads=tuple(turned_load(load, angle) for load in machine.loads),
         position=None if machine.position is None else turned_position(machine.position, angle),
         planting=None,
@@ -175,6 +180,14 @@ def mirrored_planting(planting: Planting | None) -> Planting | None:
     )
 
 
+def restarted(start: Any, rack: Rack, angle: float) -> Rack:
+    """A rack as it stands at the start of a motion, in a frame that is turned."""
+    if rack.drives == "rack":
+        return replace(rack, angle=float(start.links[rack.pinion].angle[0]) + angle)
+    travel = start.sliders[f"{rack.rack} on {rack.carrier}"].travel
+    return replace(rack, travel=float(travel[0]))
+
+
 def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
     """The image in the x axis; crank angles change their sign."""
     flip = {"left": "right", "right": "left"}
@@ -200,6 +213,8 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
             replace(s, direction=-s.direction, angle=-s.angle) for s in machine.sliders
         ),
         gears=tuple(mirrored_gear(gear) for gear in machine.gears),
+        belts=tuple(replace(b, start=-b.start) for b in machine.belts),
+        racks=tuple(replace(r, angle=-r.angle, side=flip[r.side]) for r in machine.racks),
         loads=tuple(mirrored_load(load) for load in machine.loads),
         gravity=vector(np.conj, machine.gravity),
         position=position,
@@ -374,6 +389,11 @@ def with_axes(machine: eq.Machine, link: str, angle: float, shift: complex) -> e
             )
             for g in machine.gears
         ),
+        belts=tuple(replace(b, start=b.start + angle * (b.driven == link)) for b in machine.belts),
+        racks=tuple(
+            replace(r, angle=r.angle + angle * (r.drives == "rack" and r.pinion == link))
+            for r in machine.racks
+        ),
         position=position,
     )
 
@@ -416,6 +436,14 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
             replace(g, driver=body(g.driver), driven=body(g.driven), carrier=body(g.carrier))
             for g in machine.gears
         ),
+        belts=tuple(
+            replace(b, driver=body(b.driver), driven=body(b.driven), carrier=body(b.carrier))
+            for b in machine.belts
+        ),
+        racks=tuple(
+            replace(r, pinion=body(r.pinion), rack=body(r.rack), carrier=body(r.carrier))
+            for r in machine.racks
+        ),
         loads=tuple(
             replace(load, link=body(load.link),
                     point=None if load.point is None else names(load.point))
@@ -446,6 +474,8 @@ def reordered(machine: eq.Machine) -> eq.Machine:
         assembly={joint: flip.get(side, side) for joint, side in machine.assembly.items()},
         sliders=machine.sliders[::-1],
         gears=machine.gears[::-1],
+        belts=machine.belts[::-1],
+        racks=machine.racks[::-1],
         loads=machine.loads[::-1],
         springs=machine.springs[::-1],
     )
@@ -456,7 +486,7 @@ def swapped_sliders(machine: eq.Machine) -> eq.Machine:
     return replace(
         machine,
         sliders=tuple(
-            s if s.on == FRAME else
+            s if s.on == FRAME or s.link in {rack.rack for rack in machine.racks} else
             eq.Slider(s.on, s.through, s.link, s.point, -s.angle, -s.direction)
             for s in machine.sliders
         ),

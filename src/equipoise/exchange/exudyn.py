@@ -50,6 +50,7 @@ def _model(job: Job) -> Data:
     machine, drawn = weighed(job.machine), trees(job)
     if not machine.drive.speed:
         raise UsageError("the drive stands still, and a script runs for a turn; give it a speed")
+    job.need_every_joint(structure(machine).needed)
     job.leave_out_motor()
     job.leave_out_planes()
     support, base = machine.support, "" if machine.support is None else BASE
@@ -131,7 +132,7 @@ def _geared(tree: Tree) -> list[Data]:
     UsageError : gears sit on three bodies of which none follows another or stands still.
     """
     shares: dict[str, dict[str, float]] = {}
-    for gear in tree.machine.gears:
+    for gear in (*tree.machine.gears, *tree.machine.belts):
         ratio, total = even_ratio(gear), dict[str, float]()
         for body, share in ((gear.driver, ratio), (gear.carrier, 1 - ratio)):
             for root, factor in shares.get(body, {body: 1.0}).items():

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.mechanism import joint_kernels, kernels
+from equipoise.mechanism.belt_contacts import pull_of
 from equipoise.mechanism.builder import Builder
 from equipoise.mechanism.couplings import Coupling, Law
 from equipoise.mechanism.gears import Gear
@@ -41,6 +42,8 @@ class Mesh:
     driven_pin: str
     lever: Any
     radial: Any
+
+    couples: ClassVar[bool] = False
 
     def steps(self, coupling: Coupling, ground: Reaction) -> tuple[Reaction, tuple[Step, ...]]:
         link, name = coupling.driven, coupling.name
@@ -144,5 +147,8 @@ def mesh_of(builder: Builder, joints: Structure, gear: Gear) -> Contact:
     return Mesh(driver_pin, driven_pin, centres / (1 - ratio), radial)
 
 
-CONTACTS: Mapping[str, Callable[[Builder, Structure, Any], Contact]] = {"gears": mesh_of}
+CONTACTS: Mapping[str, Callable[[Builder, Structure, Any], Contact]] = {
+    "gears": mesh_of,
+    "belts": pull_of,
+}
 """What makes the contact of a coupling, by its `table`."""

@@ -21,11 +21,13 @@ from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.across import Across, masses_across, pushes_across
 from equipoise.mechanism.acting import acting_loads, acting_springs, load_demands, spring_demands
+from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.planes import beside
 from equipoise.mechanism.pushing import lengths
 from equipoise.mechanism.reactions import (
+    BeltForce,
     Demand,
     JointForce,
     MeshForce,
@@ -154,6 +156,16 @@ class Forces:
         return self.solved.gears
 
     @cached_property
+    def racks(self) -> Mapping[str, MeshForce]:
+        """Force between the teeth of each rack and its pinion, on the driven of them."""
+        return self.solved.racks
+
+    @cached_property
+    def belts(self) -> Mapping[str, BeltForce]:
+        """Pull and tensions of each belt on its driven link."""
+        return self.solved.belts(lambda belt: belt.tension or 0.0)
+
+    @cached_property
     def across(self) -> Across:
         """What links beside each other do across the plane."""
         motion = self.motion
@@ -258,6 +270,13 @@ def split(whole: Forces) -> Split:
             force[c, k], moment[c, k] = f, m
         demands[link] = (force, moment)
     solved = reactions(motion, demands, whole.solved)
+
+    def tension_told(belt: Belt) -> Array:
+        """With the springs, and with the driven link."""
+        own = np.zeros(shape)
+        own[CAUSES.index("spring"), links.index(belt.driven)] = belt.tension or 0.0
+        return own
+
     inertial = np.array([1, 1, 0, 0, 0])[:, None, None]
     # A spring's pull on the frame and what it makes the joints bear there cancel.
     on_frame = np.array([1, 1, 1, 1, 0])[:, None, None]
@@ -270,6 +289,8 @@ def split(whole: Forces) -> Split:
         solved.drives,
         solved.joints,
         solved.gears,
+        solved.racks,
+        solved.belts(tension_told),
         _across_apart(whole, solved, shape) if beside(motion.machine) else None,
         links,
         drive_force=pushed(solved),

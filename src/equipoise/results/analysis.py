@@ -186,9 +186,11 @@ class Analysis(Result):
         if found is None:
             result["missing"] = massless(self.machine)
         else:
-            for family, joints in (("joints", found.joints), ("gears", found.gears)):
+            for family in ("joints", "gears", "racks", "belts"):
+                joints = getattr(found, family)
                 ends = {name: {"on": one.on, "by": one.by} for name, one in joints.items()}
-                result[family] = ends
+                if ends or family in ("joints", "gears"):
+                    result[family] = ends
             result.update(_undecided(self.motion.linkage))
             result["about"] = {"x": found.about.real, "y": found.about.imag}
             if not self.machine.has_crank and self.motion.whole_cycle:
@@ -274,7 +276,7 @@ def _split(found: Forces) -> Values:
                 parts = zip(names, whole.sum(axis=axis), strict=True)
                 values = result[key]
                 for step in one.path(item)[:-1]:
-                    values = values[step]
+                    values = values.setdefault(step, {})
                 values[one.path(item)[-1]] = {name: _parts(part) for name, part in parts}
     return result
 

@@ -113,26 +113,24 @@ def status_of(found: Solved) -> Values:
     """What is told of the making of a machine.
 
     mobility : number of free motions.  text : a sentence: what moves, or what is missing.
-    finished : whether it can be computed.  drive : the crank, if there is one.
+    finished : whether it can be computed.  drive : the crank, if there is one that turns.
     stand : crank angle at which it was drawn, deg; None where it has not just been made.
     """
     machine, stand = found.analysis.machine, found.stand
     return {
-        "mobility": 1,
+        "mobility": len(machine.driven),
         "text": turning(machine),
         "finished": True,
-        "drive": machine.drive.link,
+        "drive": machine.drive.crank or None,
         "stand": None if stand is None else float(np.degrees(stand)),
     }
 
 
 def turning(machine: Machine) -> str:
     """That a machine is finished."""
-    drive = machine.drive
-    law = drive.stroke or drive.motion
-    if law is None or law.windings:
-        return say("1 free motion; {link} turns fully", link=drive.link)
-    return say("1 free motion; {what}", what=driven(machine, drive.speed))
+    if not machine.has_crank:
+        return driven(machine, machine.drive.speed)
+    return say("1 free motion; {link} turns fully", link=machine.drive.link)
 
 
 def _add_outputs(block: Block, analysis: Analysis, names: Sequence[str], prefix: str = "") -> None:

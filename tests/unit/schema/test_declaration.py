@@ -31,8 +31,10 @@ from equipoise.mechanism import (
     support,
     weights,
 )
+from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import Frame, Machine, Position
+from equipoise.mechanism.racks import Rack
 from equipoise.schema import finding, models, schemas
 from equipoise.schema.documents import dumps, loads
 from equipoise.schema.places import Context
@@ -56,7 +58,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         links.Link,
         bodies.Body, bodies.Hole, parts.Bearing, parts.Slider, parts.Gear,
         parts.JointStiffness,
-        gear_shapes.GearShape,
+        gear_shapes.GearShape, Belt, Rack,
         force_elements.Load, Spring, Position, field.Planting, field.PlantingArm,
         field.Soil, support.Support,
         mounts.Mount, support.Row, balance.Balance, weights.CenterMove,
