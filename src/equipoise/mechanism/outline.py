@@ -100,7 +100,8 @@ class Outline:
 
     @property
     def joints(self) -> Structure:
-        return joined(self.bodies, self.sliders, self.gears)
+        coupled = (*self.gears, *self.rest.get("belts", ()), *self.rest.get("racks", ()))
+        return joined(self.bodies, self.sliders, coupled)
 
     @property
     def driven(self) -> list[str]:
