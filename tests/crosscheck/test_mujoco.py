@@ -64,6 +64,12 @@ def acting_on_links(subject: Subject) -> dict[str, Array]:
         on_links(machine, poses), springs_on_links(machine, poses)
     ):
         total[link] += action(subject, link, at, force, torque)
+    if machine.drive.pushes:
+        push = cylinder(machine, poses)
+        force = forces.drive_force[:, None] * push.directions[0]
+        for body, sign in ((push.on, 1.0), (push.by, -1.0)):
+            if body != FRAME:
+                total[body] += action(subject, body, push.at, sign * force, 0.0)
     for link, torque in forces.drives.items():
         total[link][:, 2] += torque
     return total

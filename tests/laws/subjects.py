@@ -32,7 +32,8 @@ ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 def names() -> tuple[str, ...]:
     """Names of all subjects: examples, one in soil, and kinds of random machines with a seed."""
     random = (f"{kind}:{seed}" for kind in (*KINDS, *REDUNDANT) for seed in SEEDS)
-    return (*sorted(eq.examples("linkage")), IN_SOIL, *random)
+    turned = (name for name in sorted(eq.examples("linkage")) if not eq.load(name).drive.pushes)
+    return (*turned, IN_SOIL, *random)
 
 
 @cache
