@@ -69,7 +69,7 @@ class Curve:
         # what a derivative may reach, where it is zero at all knots
         usual = (np.ptp(self._ends[0]) + np.max(abs(self.waves[:, 0]))) / self.length**order
         size = max(float(np.max(np.abs(self._ends[order]))), usual)
-        return self.knots[:-1][np.abs(left - before) > JUMP * size]
+        return np.asarray(self.knots[:-1][np.abs(left - before) > JUMP * size])
 
     @cached_property
     def extremes(self) -> tuple[float, float]:
@@ -77,7 +77,9 @@ class Curve:
         return tuple(self._extreme(sense) for sense in (-1.0, 1.0))  # type: ignore[return-value]
 
     def _extreme(self, sense: float) -> float:
-        x = np.unique(np.add.outer(self.knots[:-1], np.linspace(0, 1, 33)[:-1] * self._widths[:, None]))
+        x = np.unique(
+            np.add.outer(self.knots[:-1], np.linspace(0, 1, 33)[:-1] * self._widths[:, None])
+        )
         best = x[int(np.argmax(sense * self.at(x)[0]))]
         width = float(np.max(self._widths)) / 32
         for _ in range(3):
@@ -213,8 +215,10 @@ def spline(knots: Array, values: Array, degree: int) -> Curve:
     """
     half, count = degree // 2, len(knots) - 1
     orders = np.arange(degree + 1)
-    ends = np.array([[[_slope(i, j) * (end or i == j) for i in orders] for j in orders]
-                     for end in (0, 1)])  # fmt: skip
+    ends = np.array(
+        [[[_slope(i, j) * (end or i == j) for i in range(degree + 1)] for j in range(degree + 1)]
+         for end in (0, 1)]
+    )  # fmt: skip
     # from derivatives 0..half at both ends of a piece of length 1 to its coefficients
     hermite = np.linalg.inv(np.concatenate([ends[0, : half + 1], ends[1, : half + 1]]))
     widths = np.diff(knots)

@@ -32,7 +32,7 @@ from equipoise.mechanism.curves import NORMAL, ROUNDING, Array, Curve, joined, s
 from equipoise.quantities import format_exact
 
 SPLINES = {"cubic": 3, "quintic": 5}
-MOST_ROWS, MOST_SEGMENTS, MOST_TURNS = 720, 100, 100
+MOST_ROWS, MOST_TURNS = 720, 100
 CLOSED = 1e-9
 """Of the largest value, or of the cycle, by which rounding may miss what has to agree."""
 OVER = "crank angle that it takes"
@@ -70,20 +70,20 @@ class Law(Frozen):
 
     whole: ClassVar[float]
     dimension: ClassVar[Literal["angle", "length"]]
-    file_order = (
-        "between", "start", "segments", "at", "values", "spline", "turns", "phase"
-    )  # fmt: skip
     conditions: ClassVar[Conditions] = {
         "oneOf": [{"required": [one]} for one in ("between", "segments", "values")],
         "dependentRequired": {
-            "at": ["values"], "values": ["at"], "spline": ["values"], "start": ["segments"]
+            "crank_angles": ["values"],
+            "values": ["crank_angles"],
+            "spline": ["values"],
+            "start": ["segments"],
         },
-    }  # fmt: skip
+    }
 
     between: tuple[float, float] | None
     start: float
     segments: tuple[Any, ...]
-    at: tuple[float, ...]
+    crank_angles: tuple[float, ...]
     values: tuple[float, ...]
     spline: Literal["cubic", "quintic"]
     turns: int
@@ -100,27 +100,29 @@ class Law(Frozen):
         if self.between is not None:
             return sine(*self.between, self.period)
         if self.values:
-            knots = np.subtract([*self.at, self.at[0] + self.period], self.at[0])
+            knots = np.subtract(
+                [*self.crank_angles, self.crank_angles[0] + self.period], self.crank_angles[0]
+            )
             values = np.array([*self.values, self.values[0]])
             if self._is_closed:
                 knots, values = np.append(knots[:-2], self.period), values[:-1]
             return spline(knots, values, SPLINES[self.spline])
         before = (self.start, *(one.to for one in self.segments))
         parts = zip(pairwise(before), self.segments, strict=True)
-        whole = joined(
-            [NORMAL[s.law]().stretched(s.over, b - a).lifted(a) for (a, b), s in parts]
-        )
+        whole = joined([NORMAL[s.law]().stretched(s.over, b - a).lifted(a) for (a, b), s in parts])
         return Curve(whole.knots * (self.period / whole.length), whole.powers, whole.waves)
 
     @property
     def origin(self) -> float:
         """Crank angle at which the curve begins, rad."""
-        return self.phase + (self.at[0] if self.values else 0.0)
+        return self.phase + (self.crank_angles[0] if self.values else 0.0)
 
     @property
     def _is_closed(self) -> bool:
         """Whether the last of the rows is the first one in the next cycle."""
-        return abs(self.at[-1] - self.at[0] - self.period) <= CLOSED * self.period
+        return (
+            abs(self.crank_angles[-1] - self.crank_angles[0] - self.period) <= CLOSED * self.period
+        )
 
     def value(self, crank_angle: Any) -> tuple[Array, Array, Array]:
         """The value and its first and second derivative by crank angle, at crank angles (...)."""
@@ -164,7 +166,7 @@ class AngleLaw(Law):
     segments: tuple[AngleSegment, ...] = key(
         Tables(Table(AngleSegment)), "parts of the motion, one after the other", default=()
     )
-    at: tuple[float, ...] = key(
+    crank_angles: tuple[float, ...] = key(
         Listing(Quantity(dimension="angle"), right=AT), "crank angles of `values`", default=()
     )
     values: tuple[float, ...] = key(
@@ -192,7 +194,7 @@ class LengthLaw(Law):
     segments: tuple[LengthSegment, ...] = key(
         Tables(Table(LengthSegment)), "parts of the motion, one after the other", default=()
     )
-    at: tuple[float, ...] = key(
+    crank_angles: tuple[float, ...] = key(
         Listing(Quantity(dimension="angle"), right=AT), "crank angles of `values`", default=()
     )
     values: tuple[float, ...] = key(
@@ -213,9 +215,9 @@ class LengthLaw(Law):
 def wrong_law(where: str, law: Law) -> Iterator[ModelError]:
     """Everything that is wrong with a motion law."""
     given = [law.between is not None, bool(law.segments), bool(law.values)]
-    if sum(given) != 1 or bool(law.at) != bool(law.values):
+    if sum(given) != 1 or bool(law.crank_angles) != bool(law.values):
         yield ModelError(
-            where, Note("give exactly one of between, segments, and at together with values")
+            where, Note("give exactly one of between, segments, and crank_angles with values")
         )
         return
     problem = next(_wrong_segments(where, law) if law.segments else _wrong_rows(where, law), None)
@@ -233,20 +235,14 @@ def wrong_law(where: str, law: Law) -> Iterator[ModelError]:
 
 
 def _wrong_segments(where: str, law: Law) -> Iterator[ModelError]:
-    if len(law.segments) > MOST_SEGMENTS:
-        told = Note("got {count}; give at most {most}", count=len(law.segments), most=MOST_SEGMENTS)
-        yield ModelError(f"{where}.segments", told)
-        return
     total = sum(one.over for one in law.segments)
     if abs(total - law.period) > CLOSED * law.period:
         yield ModelError(
             f"{where}.segments",
             Note(
-                "they take {total:.6g} deg of crank angle together, and the cycle of {turns} x "
-                "360 deg has {period:.6g} deg; let them sum up to that, a dwell being a segment "
-                "to the value before",
+                "they take {total:.6g} deg of crank angle together, and a cycle has {period:.6g} "
+                "deg; let them sum up to that (a dwell is a segment to the value before it)",
                 total=degrees(total),
-                turns=law.turns,
                 period=degrees(law.period),
             ),
         )
@@ -274,29 +270,28 @@ def _wrong_rows(where: str, law: Law) -> Iterator[ModelError]:
     if law.between is not None:
         return
     count = len(law.values)
-    if len(law.at) != count or not 3 <= count <= MOST_ROWS:
+    if len(law.crank_angles) != count or not 3 <= count <= MOST_ROWS:
         yield ModelError(
             f"{where}.values",
             Note(
                 "got {values} values at {angles} crank angles; give 3 to {most} of each",
                 values=count,
-                angles=len(law.at),
+                angles=len(law.crank_angles),
                 most=MOST_ROWS,
             ),
         )
-    elif any(b - a <= CLOSED for a, b in pairwise(law.at)):
-        yield ModelError(f"{where}.at", Note("the crank angles must rise from row to row"))
-    elif law.at[-1] - law.at[0] > law.period * (1 + CLOSED):
+    elif any(b - a <= CLOSED for a, b in pairwise(law.crank_angles)):
         yield ModelError(
-            f"{where}.at",
+            f"{where}.crank_angles", Note("the crank angles must rise from row to row")
+        )
+    elif law.crank_angles[-1] - law.crank_angles[0] > law.period * (1 + CLOSED):
+        yield ModelError(
+            f"{where}.crank_angles",
             Note(
-                "the rows go over {span:.6g} deg, the cycle has {period:.6g} deg; give fewer, or "
-                "more turns",
-                span=degrees(law.at[-1] - law.at[0]),
+                "got crank angles over {span:.6g} deg, more than the {period:.6g} deg of a cycle",
+                span=degrees(law.crank_angles[-1] - law.crank_angles[0]),
                 period=degrees(law.period),
             ),
         )
     elif law._is_closed:
         yield from _wrong_return(f"{where}.values", law, law.values[0], law.values[-1])
-        if count == 3:
-            yield ModelError(f"{where}.values", Note("give 3 values before the one that closes"))
