@@ -27,6 +27,8 @@ Law = Callable[[Any], tuple[Any, Any, Any]]
 
 GRID = 3600
 """Angles of the cam among which the sharpest place is looked for."""
+BESIDE = 1e-7
+"""rad: how far beside an angle at which a law changes is looked; nearer, rounding decides."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,9 +123,12 @@ class Shape:
     def contact(self) -> tuple[Array, Array]:
         """Where cam and follower touch, m, and the common normal, complex, from the cam's axis."""
         one = self.ride
-        if self.flat:
-            return kernels.flat_contact(one.place, one.place_1, one.turn_1, one.normal)
-        return kernels.round_contact(one.place, one.place_1, self.radius)
+        touching: tuple[Array, Array] = (
+            kernels.flat_contact(one.place, one.place_1, one.turn_1, one.normal)
+            if self.flat
+            else kernels.round_contact(one.place, one.place_1, self.radius)
+        )
+        return touching
 
     @property
     def surface(self) -> Array:
@@ -134,12 +139,14 @@ class Shape:
     def outer(self) -> Array:
         """The far flank of a groove, like `surface`."""
         at, normal = self.contact
-        return (at + 2 * self.radius * normal) * self._back
+        flank: Array = (at + 2 * self.radius * normal) * self._back
+        return flank
 
     @property
     def pitch(self) -> Array:
         """Curve of the roller's centre, or of the edge, in the cam's axes; complex, m."""
-        return self.ride.place * self._back
+        curve: Array = self.ride.place * self._back
+        return curve
 
     @property
     def _back(self) -> Array:
@@ -156,7 +163,8 @@ class Shape:
     def curvature(self) -> Array:
         """Of the curve of roller or edge (N,), 1/m; positive where convex."""
         one = self.ride
-        return kernels.round_curvature(one.place, one.place_1, one.place_2)
+        bend: Array = kernels.round_curvature(one.place, one.place_1, one.place_2)
+        return bend
 
     @property
     def radius_of_curvature(self) -> Array:
@@ -164,7 +172,8 @@ class Shape:
         one = self.ride
         if self.flat:
             rates = one.place_1, one.place_2, one.turn_1, one.turn_2
-            return kernels.flat_radius(one.place, *rates, one.normal)
+            radius: Array = kernels.flat_radius(one.place, *rates, one.normal)
+            return radius
         with np.errstate(divide="ignore"):
             return 1 / self.curvature - self.radius
 
@@ -178,7 +187,7 @@ def lowest(shape: Shape, value: Callable[[Shape], Array], knots: Array) -> tuple
 
     knots : angles at which the law changes, to both sides of which is looked.
     """
-    beside = np.concatenate([knots - 1e-9, knots + 1e-9])
+    beside = np.concatenate([knots - BESIDE, knots + BESIDE])
     angles = np.unique(np.concatenate([np.arange(GRID) * (2 * pi / GRID), beside % (2 * pi)]))
     width, best = 2 * pi / GRID, (np.inf, 0.0)
     for _ in range(4):

@@ -61,9 +61,7 @@ class Cam(Frozen):
         example="20 mm",
     )
     roller_radius: float = key("length", "goes with a roller", default=0.0, at_least=0)
-    carrier: str = key(
-        Text(of="body"), "to which both are joined", default=FRAME, example="frame"
-    )
+    carrier: str = key(Text(of="body"), "to which both are joined", default=FRAME, example="frame")
     lift: LengthLaw | None = key(
         Table(LengthLaw, headed=True),
         "displacement of a sliding follower along its guide, away from the cam, over the angle "
