@@ -114,10 +114,10 @@ def spring_power(found: eq.mechanism.Forces) -> Array:
     motion, machine = found.motion, found.motion.machine
     rows = [np.zeros(len(motion.crank_angle))]
     for spring in machine.springs:
-        point = motion.points[spring.point]
-        arm = point.place - complex(*machine.frame[spring.to])
+        point, to = motion.points[spring.point], motion.points[spring.to]
+        arm = point.place - to.place
         length = np.abs(arm)
-        growth = along(arm, point.velocity) / np.where(length > 0, length, 1.0)
+        growth = along(arm, point.velocity - to.velocity) / np.where(length > 0, length, 1.0)
         rows.append(-spring.stiffness * (length - spring.free_length) * growth)
     return np.array(rows)
 

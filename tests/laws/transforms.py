@@ -353,7 +353,8 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
             for load in machine.loads
         ),
         springs=tuple(
-            replace(spring, link=body(spring.link), point=names(spring.point), to=names(spring.to))
+            replace(spring, link=body(spring.link), point=names(spring.point),
+                    to=names(spring.to), on=body(spring.on))
             for spring in machine.springs
         ),
         position=position,

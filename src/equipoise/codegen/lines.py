@@ -217,7 +217,9 @@ def write_demands(writer: Writer) -> None:
     moving = [(link, *_names(writer, "I", link)) for link in links]
     weights = [(link, *_names(writer, "W", link)) for link in links]
     loads = [_write_load(writer, k, load) for k, load in enumerate(machine.loads, 1)]
-    springs = [_write_spring(writer, k, spring) for k, spring in enumerate(machine.springs)]
+    springs = [
+        held for k, one in enumerate(machine.springs) for held in _write_spring(writer, k, one)
+    ]
     _write_frame(writer, "shaking", moving)
     _write_frame(writer, "frame", [*moving, *weights, *loads])
     for link in links:
@@ -265,7 +267,8 @@ def _write_load(writer: Writer, number: int, load: Load) -> Held:
     return _write_held(writer, load.link, load.point, force, torque, f"L{number}")
 
 
-def _write_spring(writer: Writer, number: int, spring: Spring) -> Held:
+def _write_spring(writer: Writer, number: int, spring: Spring) -> Iterator[Held]:
+    """Write a spring's pull, and what holds it at each of its ends that is on a link."""
     sheet, cause = writer.sheet, number + 1
     place, *_ = writer.point(spring.link, spring.point)
     stiffness = sheet.slot(
@@ -274,9 +277,12 @@ def _write_spring(writer: Writer, number: int, spring: Spring) -> Held:
     free = sheet.slot(
         f"free_length({cause})", lambda found: found.machine.springs[number].free_length
     )
-    to = writer.name(f"p({spring.to})")
+    to = (writer.name(f"p({spring.to})") if spring.on == FRAME
+          else writer.point(spring.on, spring.to)[0])  # fmt: skip
     pull = sheet.put(f"pull({cause})", f"spring({place}, {to}, {stiffness}, {free})")
-    return _write_held(writer, spring.link, spring.point, pull, "0.0", f"S{cause}")
+    yield _write_held(writer, spring.link, spring.point, pull, "0.0", f"S{cause}")
+    if spring.on != FRAME:
+        yield _write_held(writer, spring.on, spring.to, f"(-{pull})", "0.0", f"S{cause}")
 
 
 def _write_held(

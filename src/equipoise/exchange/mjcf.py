@@ -219,7 +219,7 @@ def _springs(root: ET.Element, tree: Tree) -> None:
     for spring in tree.machine.springs:
         rates = {"stiffness": repr(spring.stiffness), "springlength": repr(spring.free_length)}
         tendon = ET.SubElement(_part(root, "tendon"), "spatial", rates)
-        for body, point in ((spring.link, spring.point), (FRAME, spring.to)):
+        for body, point in ((spring.link, spring.point), (spring.on, spring.to)):
             ET.SubElement(tendon, "site", site=_place(tree, body, point))
 
 

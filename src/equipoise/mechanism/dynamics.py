@@ -37,7 +37,7 @@ from equipoise.mechanism.steps import Array, p, planar, u
 
 CAUSES = ("translation", "rotation", "weight", "load", "spring")
 """Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside, and
-springs to the frame."""
+springs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +99,7 @@ class Forces:
     def frame_force(self) -> VectorSignal:
         """Sum of the forces of all joints and springs on the frame, N.
 
-        It is the sum of shaking force, weight and loads: springs are between links and frame.
+        It is the sum of shaking force, weight and loads: a spring has two ends.
         """
         of_springs = sum(force for force, _ in self.springs.values())
         return VectorSignal(self.solved.frame_force + of_springs)

@@ -23,7 +23,15 @@ from equipoise.keys import (
     inside,
     key,
 )
-from equipoise.mechanism.checks import FRAME, Bodies, Vector, unknown, unknown_link, unknown_point
+from equipoise.mechanism.checks import (
+    FRAME,
+    Bodies,
+    Vector,
+    unknown,
+    unknown_body,
+    unknown_link,
+    unknown_point,
+)
 
 MEAN_SPEEDS = ("held", "free")
 OUTSIDE = ("zero", "hold", "wrap")
@@ -121,7 +129,7 @@ class Load(Frozen):
 
 @declared
 class Spring(Frozen):
-    """A linear spring without mass: it pulls `point` of `link` towards the frame's point `to`."""
+    """A linear spring without mass: it pulls `point` of `link` towards the point `to` of `on`."""
 
     called = to_say("{what} of spring {number}")
 
@@ -131,7 +139,7 @@ class Spring(Frozen):
         "its point on the link, not one that is pinned to the frame",
         example="C",
     )
-    to: str = key(Text(of="point", on="frame"), "its point on the frame", example="S")
+    to: str = key(Text(of="point", on="on"), "its point on the frame, or on `on`", example="S")
     stiffness: float = key("stiffness", "more than 0", example="2 kN/m", above=0)
     free_length: float = key(
         "length",
@@ -141,6 +149,7 @@ class Spring(Frozen):
         at_least=0,
         why=Note("a length cannot be negative, give 0 or more"),
     )
+    on: str = key(Text(of="body"), "the body of its other point", default=FRAME)
 
 
 @declared
@@ -312,17 +321,25 @@ def _from_to(table: LoadTable) -> Note:
 
 def wrong_ends(where: str, spring: Any, bodies: Bodies) -> Iterator[ModelError]:
     """What is wrong with the two points of a spring, or of one that may be set."""
-    link, point, to = spring.link, spring.point, spring.to
-    if problem := [*unknown_link(f"{where}.link", link, bodies)]:
+    link, point, to, on = spring.link, spring.point, spring.to, getattr(spring, "on", FRAME)
+    problem = [*unknown_link(f"{where}.link", link, bodies), *unknown_body(f"{where}.on", on, bodies)]
+    if problem:
         yield from problem
         return
     points, frame = bodies[link], bodies[FRAME]
     if point not in points:
         sentence = unknown(point, points, Note("point of {body}", body=link))
         yield ModelError(f"{where}.point", sentence)
-    elif to not in frame:
-        yield ModelError(f"{where}.to", unknown(to, frame, "point of the frame"))
-    elif point in frame:
+    elif on == link:
+        yield ModelError(f"{where}.on", Note("{link!r} cannot pull on itself", link=link))
+    elif to not in bodies[on]:
+        of = "point of the frame" if on == FRAME else Note("point of {body}", body=on)
+        yield ModelError(f"{where}.to", unknown(to, bodies[on], of))
+    elif on != FRAME and (point in bodies[on] or to in points):
+        yield ModelError(
+            where, Note("{link!r} and {on!r} are pinned there; give other points", link=link, on=on)
+        )
+    elif point in frame and on == FRAME:
         yield ModelError(
             f"{where}.point",
             Note(

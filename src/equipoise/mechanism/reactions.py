@@ -209,8 +209,16 @@ def spring_demands(motion: Motion) -> dict[str, Demand]:
     ------
     ModelError : the ends of a spring with a free length meet.
     """
-    springs = motion.machine.springs
-    return demands_of(motion, ((s.link, s.point, spring_force(motion, s), 0.0) for s in springs))
+    return demands_of(motion, _pulls(motion))
+
+
+def _pulls(motion: Motion) -> Iterator[Acting]:
+    """Link, point and force of each end of a spring that is on a link."""
+    for one in motion.machine.springs:
+        force = spring_force(motion, one)
+        yield one.link, one.point, force, 0.0
+        if one.on != FRAME:
+            yield one.on, one.to, -force, 0.0
 
 
 def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
@@ -264,7 +272,7 @@ def resistance(soil: Soil, depth: Array, speed: Array) -> Array:
 
 
 def spring_force(motion: Motion, spring: Spring) -> Any:
-    """Force of a spring on its link's point (N,), N, complex; minus this on the frame's.
+    """Force of a spring on its link's point (N,), N, complex; minus this on its other end.
 
     Raises
     ------
@@ -272,18 +280,17 @@ def spring_force(motion: Motion, spring: Spring) -> Any:
     """
     if spring.free_length:
         spring_direction(motion, spring.link, spring.point, spring.to)
-    to = complex(*motion.machine.frame[spring.to])
-    place = motion.points[spring.point].place
+    place, to = motion.points[spring.point].place, motion.points[spring.to].place
     return kernels.spring(place, to, spring.stiffness, spring.free_length)
 
 
 def spring_vector(motion: Motion, point: str, to: str) -> Any:
-    """From a moving point to a point of the frame (N,), m, complex."""
-    return complex(*motion.machine.frame[to]) - motion.points[point].place
+    """From a point to another, both ends of a spring (N,), m, complex."""
+    return motion.points[to].place - motion.points[point].place
 
 
 def spring_direction(motion: Motion, link: str, point: str, to: str) -> Any:
-    """Unit vector from a moving point to a point of the frame (N,), complex.
+    """Unit vector from a spring's end on a link to its other end (N,), complex.
 
     Raises
     ------
@@ -291,7 +298,7 @@ def spring_direction(motion: Motion, link: str, point: str, to: str) -> Any:
     """
     along = spring_vector(motion, point, to)
     length = abs(along)
-    coordinates = abs(motion.points[point].place) + abs(complex(*motion.machine.frame[to]))
+    coordinates = abs(motion.points[point].place) + abs(motion.points[to].place)
     meeting = length <= MEETING * coordinates
     if meeting.any():
         angle = degrees(motion.crank_angle[meeting.argmax()])
