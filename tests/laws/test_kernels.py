@@ -8,8 +8,7 @@ import importlib.util
 import inspect
 from collections.abc import Callable, Iterator
 from functools import cache
-from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import mpmath
@@ -20,7 +19,6 @@ from equipoise.mechanism import joint_kernels, kernels
 from laws.formulas import FORMULAS, Formula, constants, evaluate
 
 ANGLES = np.array([0.1, 0.9, 1.7, 2.6, 3.5, 4.4, 5.8])
-SOURCE = Path(inspect.getfile(kernels))
 BOTH = (kernels, joint_kernels)
 FUNCTIONS = {
     name: found
@@ -124,17 +122,21 @@ def test_fifty_digits_give_what_numbers_give(name: str) -> None:
 
 
 @cache
-def compiled() -> ModuleType:
+def compiled() -> SimpleNamespace:
     """Load the kernels a second time and compile every one of them by Numba."""
     numba = pytest.importorskip("numba")
-    spec = importlib.util.spec_from_file_location("compiled_kernels", SOURCE)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    for name in FUNCTIONS.keys() & vars(module).keys():
-        setattr(module, name, numba.njit(getattr(module, name)))
-    return module
+    found: dict[str, Any] = {}
+    for one in BOTH:
+        spec = importlib.util.spec_from_file_location("compiled_kernels", inspect.getfile(one))
+        assert spec is not None
+        assert spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        vars(module).update(found)
+        own = [name for name in FUNCTIONS if FUNCTIONS[name].__module__ == one.__name__]
+        found |= {name: numba.njit(vars(module)[name]) for name in own}
+        vars(module).update(found)
+    return SimpleNamespace(**found)
 
 
 @every_formula

@@ -165,7 +165,7 @@ class Batch:
         self.source = emit(self.base, Gathered.of(self.wanted))
         self.gathered = self.source.gathered
         self.march = March.of(self.source, self.base)
-        rounds = machine.gears or self.march
+        rounds = machine.couplings or self.march
         self.turns = self.base.cycle.turns if rounds else cycle.turns_of_loads(machine)
         windings = self.base.cycle.windings if rounds else {}
         fastest = max((abs(turns) for turns in windings.values()), default=1) / self.turns

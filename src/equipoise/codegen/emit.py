@@ -19,6 +19,7 @@ from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.newton import LoopGroup
 from equipoise.mechanism.outputs import DECLARED, declared
+from equipoise.mechanism.reactions import JOINTS
 
 _LOOKED_UP = re.compile(r"\{([^}:]+)(:name)?\}")
 """Values in the expression of an output: of the machine, or of the member of a family."""
@@ -75,7 +76,7 @@ def _reaction(writer: Writer, item: str, value: str) -> str:
     if reaction is None:
         raise _Missing
     order = writer.linkage.joints.bodies.index
-    told = reaction.kind == "gear" or order(reaction.on) > order(reaction.by)
+    told = reaction.kind not in JOINTS or order(reaction.on) > order(reaction.by)
     sign = 1.0 if told else -1.0
     force = f"({sign} * {writer.name(reaction.force)})"
     if value == "joint force":
@@ -114,7 +115,7 @@ def can_emit(linkage: Linkage) -> bool:
     if machine.planting is not None and machine.planting.soil is not None:
         return False
     loops = [step for step in linkage.motion if isinstance(step, LoopGroup)]
-    return all(map(can_write, loops)) and not (loops and machine.gears)
+    return all(map(can_write, loops)) and not (loops and machine.couplings)
 
 
 def emit(linkage: Linkage, gathered: Gathered) -> Source:

@@ -75,7 +75,7 @@ class _Group:
         def part(key: Any, get: Callable[[Any], Any]) -> Any:
             return self.slotted(get(value), f"{name} {key}", lambda found: get(read(found)))
 
-        if isinstance(value, str):
+        if isinstance(value, str) or callable(value):
             return value
         if isinstance(value, tuple):
             return tuple(part(k, itemgetter(k)) for k in range(len(value)))

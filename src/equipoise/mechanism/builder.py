@@ -32,7 +32,7 @@ from equipoise.mechanism.steps import (
 class Group:
     """Links that are solved together.
 
-    kind : by a dyad's kernel, by their gear, or by Newton's method on loop equations.
+    kind : by a dyad's kernel, by their coupling, or by Newton's method on loop equations.
     motion : steps that find their position and derivatives.
     forces : steps that find the reactions in their joints, once all later groups are done.
     margin : name of the dyad's assembly margin, the squared sine of its transmission angle,
@@ -40,7 +40,7 @@ class Group:
     joint : inner joint of the dyad.  dead : says what the links do where the margin is zero.
     """
 
-    kind: Literal["dyad", "geared", "loops"]
+    kind: Literal["dyad", "coupled", "loops"]
     links: tuple[str, ...]
     motion: tuple[Step, ...]
     forces: tuple[Step, ...]

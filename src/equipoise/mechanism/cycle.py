@@ -148,9 +148,10 @@ class _Grid:
             self.tables[link] = angle
         if group.kind == "loops":
             self.record_loops(group)
-        if group.kind == "geared":
-            gear = next(r.name for r in group.reactions if r.kind == "gear")
-            self.windings[group.links[0]] = self.gear_winding(gear)
+        if group.kind == "coupled":
+            (link,) = group.links
+            push = group.reactions[-1]
+            self.windings[link] = self.coupled_winding(push.name)
             return
         for link in group.links:
             table = self.tables[link]
@@ -165,21 +166,21 @@ class _Grid:
         if np.max(solved.sizes(rise)) > 1e-8:
             raise _LongerCycle(0)
 
-    def gear_winding(self, name: str) -> int:
-        """Turns of a driven gear in one cycle, or a longer cycle in which they are whole."""
-        gear = next(gear for gear in self.machine.gears if gear.name == name)
-        carrier = self.windings[gear.carrier]
-        relative = self.windings[gear.driver] - carrier
+    def coupled_winding(self, name: str) -> int:
+        """Turns of a driven body in one cycle, or a longer cycle in which they are whole."""
+        coupling = next(one for one in self.machine.couplings if one.name == name)
+        carrier = self.windings[coupling.carrier]
+        relative = self.windings[coupling.driver] - carrier
         if relative == 0:
             return carrier
-        ratio = gear.exact_ratio
+        ratio = coupling.exact_ratio
         if ratio is None:
             raise MotionError(
                 Note(
                     "the motion never repeats, or only after far too many turns: the ratio "
                     "{speed_ratio!r} of the gears {name} is no fraction of small whole "
                     "numbers; give numbers of teeth",
-                    speed_ratio=gear.speed_ratio,
+                    speed_ratio=coupling.speed_ratio,
                     name=name,
                 )
             )

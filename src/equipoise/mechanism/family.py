@@ -235,7 +235,7 @@ def _with(value: Value, **changes: Any) -> Value:
 
 def linkage_of(machine: Machine, base: Linkage) -> Linkage:
     """The linkage of a machine with columns, in the order in which its base is solved."""
-    joints = replace(base.joints, sliders=machine.sliders, gears=machine.gears)
+    joints = replace(base.joints, sliders=machine.sliders, couplings=machine.couplings)
     needed = base.needed_references
     start = {f"reference({name})": base.cycle.reference(name, np.zeros(1)) for name in needed}
     with np.errstate(all="ignore"):

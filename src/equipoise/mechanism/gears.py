@@ -22,7 +22,9 @@ from equipoise.keys import (
     inside,
     key,
 )
+from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body
+from equipoise.mechanism.couplings import Relation
 
 MESHES = ("external", "internal")
 
@@ -47,6 +49,9 @@ class Gear(Frozen):
         "oneOf": [{"required": ["ratio"]}, {"required": ["teeth"]}],
         "dependentRequired": {"mesh": ["teeth"]},
     }
+
+    table: ClassVar[str] = "gears"
+    kind: ClassVar[str] = "gear"
 
     driver: str = inside(Text())
     driven: str = inside(Text())
@@ -112,6 +117,10 @@ class Gear(Frozen):
             return self.ratio
         ratio = self.teeth[0] / self.teeth[1]
         return ratio if self.mesh == "internal" else -ratio
+
+    @property
+    def relation(self) -> Relation:
+        return kernels.gear, (self.speed_ratio,)
 
     @property
     def exact_ratio(self) -> Fraction | None:

@@ -9,7 +9,8 @@ from itertools import islice
 from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.checks import Bodies, bodies_at, form_of
-from equipoise.mechanism.model import FRAME, Gear, Machine, Slider
+from equipoise.mechanism.couplings import Coupling
+from equipoise.mechanism.model import FRAME, Machine, Slider
 
 MOST_SUBSETS = 10_000
 
@@ -25,7 +26,7 @@ class Structure:
     bodies: tuple[str, ...]
     pins: Mapping[str, tuple[str, ...]]
     sliders: tuple[Slider, ...]
-    gears: tuple[Gear, ...]
+    couplings: tuple[Coupling, ...]
 
     def freedom(self, links: Iterable[str], known: Iterable[str]) -> int:
         """Free motions of some links when the known bodies move as they must."""
@@ -39,8 +40,8 @@ class Structure:
         for slider in self.sliders:
             ends = {slider.link, slider.on}
             count -= 2 * (ends <= both and bool(ends & free))
-        for gear in self.gears:
-            ends = {gear.driver, gear.driven, gear.carrier}
+        for one in self.couplings:
+            ends = {one.driver, one.driven, one.carrier}
             count -= ends <= both and bool(ends & free)
         return count
 
@@ -50,16 +51,18 @@ class Structure:
 
 def structure(machine: Machine) -> Structure:
     """Read joints off the names that bodies share."""
-    result = joined(machine.bodies, machine.sliders, machine.gears)
+    result = joined(machine.bodies, machine.sliders, machine.couplings)
     _check_apart(machine, result.pins)
     _check_mobility(result, machine.drive.link, _alike(machine.bodies, result.pins))
     return result
 
 
-def joined(bodies: Bodies, sliders: tuple[Slider, ...], gears: tuple[Gear, ...]) -> Structure:
+def joined(
+    bodies: Bodies, sliders: tuple[Slider, ...], couplings: tuple[Coupling, ...]
+) -> Structure:
     """Joints of bodies, the frame first, whether or not they make a linkage."""
     pins = {point: tuple(names) for point, names in bodies_at(bodies).items() if len(names) > 1}
-    return Structure((*bodies,), pins, sliders, gears)
+    return Structure((*bodies,), pins, sliders, couplings)
 
 
 def undetermined(joints: Structure, drive: str) -> list[str]:
@@ -120,20 +123,31 @@ def drive_pivot(joints: Structure, drive: str) -> str:
     return pivots[0]
 
 
-def gear_pins(joints: Structure, gear: Gear) -> tuple[str, str]:
-    """Points of the carrier about which driver and driven gear turn."""
+def place_in_file(joints: Structure, coupling: Coupling) -> str:
+    """Where a coupling stands in the model file, such as ``gears[2]``."""
+    alike = [one for one in joints.couplings if one.table == coupling.table]
+    return f"{coupling.table}[{alike.index(coupling) + 1}]"
+
+
+def coupling_pins(joints: Structure, coupling: Coupling) -> tuple[str, str]:
+    """Points of the carrier about which driver and driven body turn.
+
+    Raises
+    ------
+    ModelError : one of them turns about none, or several.
+    """
     pins = []
-    for body in (gear.driver, gear.driven):
-        shared = joints.pins_between(body, gear.carrier)
+    for body in (coupling.driver, coupling.driven):
+        shared = joints.pins_between(body, coupling.carrier)
         if len(shared) != 1:
             raise ModelError(
-                f"gears[{joints.gears.index(gear) + 1}]",
+                place_in_file(joints, coupling),
                 Note(
                     "{body!r} shares {shared} points with the carrier {carrier!r}; each gear "
                     "turns about exactly one point of the carrier",
                     body=body,
                     shared=len(shared),
-                    carrier=gear.carrier,
+                    carrier=coupling.carrier,
                 ),
             )
         pins += shared
@@ -171,7 +185,7 @@ def _check_mobility(joints: Structure, drive: str, alike: Note | str) -> None:
         links=_number(len(links), MOVING_LINKS),
         pins=_number(pins, PINS),
         sliders=_number(len(joints.sliders), SLIDING_JOINTS),
-        gears=_number(len(joints.gears), GEARS),
+        gears=_number(len(joints.couplings), GEARS),
     )
     if mobility < 1:
         raise MobilityError(
@@ -198,12 +212,12 @@ def _check_mobility(joints: Structure, drive: str, alike: Note | str) -> None:
 def subsets(joints: Structure, links: list[str]) -> Iterator[tuple[str, ...]]:
     """Sets of links that hang together, small ones first, each in file order.
 
-    A pair of gears counts as hanging together with its carrier.  The search ends after a number
+    What is coupled counts as hanging together with its carrier.  The search ends after a number
     of sets that no real machine needs.
     """
     touching: dict[str, set[str]] = {link: set() for link in links}
     groups = [*joints.pins.values(), *((s.link, s.on) for s in joints.sliders)]
-    groups += [(g.driver, g.driven, g.carrier) for g in joints.gears]
+    groups += [(one.driver, one.driven, one.carrier) for one in joints.couplings]
     for bodies in groups:
         members = [body for body in bodies if body in touching]
         for member in members:

@@ -1,6 +1,6 @@
 """From a machine to its steps: the drive first, then whatever the known bodies determine next.
 
-Links are taken in the smallest groups that can be solved: a geared link, a dyad, and only where
+Links are taken in the smallest groups that can be solved: a coupled link, a dyad, and only where
 neither fits a group for Newton's method.  Each group becomes steps for motion and, in reverse
 order, steps for forces.
 """
@@ -213,9 +213,9 @@ def _turns(machine: Machine) -> Cycle:
 
 
 def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group:
-    """The smallest group that the known bodies determine: geared link, dyad, or loops."""
+    """The smallest group that the known bodies determine: coupled link, dyad, or loops."""
     known = builder.rank
-    group = _geared(builder, joints, unknown)
+    group = _coupled(builder, joints, unknown)
     if group is not None:
         return group
     outers = {link: outer_joints(builder, joints, link) for link in unknown}
@@ -248,13 +248,13 @@ def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group
     )
 
 
-def _geared(builder: Builder, joints: Structure, unknown: list[str]) -> Group | None:
-    """A link pinned to its gear's carrier, with driver and carrier known, if there is one."""
+def _coupled(builder: Builder, joints: Structure, unknown: list[str]) -> Group | None:
+    """A link pinned to its coupling's carrier, with driver and carrier known, if there is one."""
     known = builder.rank
-    for gear in joints.gears:
-        ready = gear.driven in unknown and {gear.driver, gear.carrier} <= known.keys()
-        if ready and joints.freedom([gear.driven], known) == 0:
-            return groups.geared(builder, joints, gear)
+    for one in joints.couplings:
+        ready = one.driven in unknown and {one.driver, one.carrier} <= known.keys()
+        if ready and joints.freedom([one.driven], known) == 0:
+            return groups.coupled(builder, joints, one)
     return None
 
 

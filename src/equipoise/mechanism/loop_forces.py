@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism import joint_kernels, kernels
-from equipoise.mechanism.loops import GearLoop, Loop, Poses
+from equipoise.mechanism.loops import CouplingLoop, Loop, Poses
 from equipoise.mechanism.newton import LoopGroup, poses_in
 from equipoise.mechanism.steps import Array, Reaction, State
 
@@ -38,13 +38,15 @@ class LoopForces:
             units = zip(*loop.wrenches(poses, sense), strict=True)  # of forces, then of couples
             for name, unit in zip(reaction.outputs, units, strict=False):
                 state[name] = sum(part * one for part, one in zip(parts, unit, strict=True))
-            if isinstance(loop, GearLoop):
+            if isinstance(loop, CouplingLoop):
                 state[f"p({reaction.at})"] = loop.place(poses)
                 state[f"T({loop.name})"] = parts[0]
 
     def senses(self, state: State, poses: Poses) -> list[Any]:
-        """Sign of each gear's tangential force, which does not depend on the pressure angle."""
-        names = [f"flank({loop.name})" if isinstance(loop, GearLoop) else "" for loop in self.loops]
+        """Sign of each coupling's push, which does not depend on the slant of its line."""
+        names = [
+            f"flank({loop.name})" if isinstance(loop, CouplingLoop) else "" for loop in self.loops
+        ]
         if any(name and name not in state for name in names):
             strengths = self.solve(state, poses, [0.0] * len(self.loops))
             for name, parts in zip(names, strengths, strict=True):

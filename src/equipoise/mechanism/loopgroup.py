@@ -10,14 +10,16 @@ import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
+from equipoise.mechanism import kernels
 from equipoise.mechanism.builder import Builder, Group
-from equipoise.mechanism.groups import Mesh
-from equipoise.mechanism.joints import Structure
+from equipoise.mechanism.contacts import contact_of
+from equipoise.mechanism.couplings import Coupling
+from equipoise.mechanism.joints import Structure, place_in_file
 from equipoise.mechanism.loop_forces import LoopForces
 from equipoise.mechanism.loops import (
+    CouplingLoop,
     End,
     Free,
-    GearLoop,
     Hinge,
     Loop,
     PinLoop,
@@ -26,7 +28,7 @@ from equipoise.mechanism.loops import (
     Rail,
     SlideLoop,
 )
-from equipoise.mechanism.model import FRAME, Gear, Position, Slider
+from equipoise.mechanism.model import FRAME, Position, Slider
 from equipoise.mechanism.newton import LoopGroup, poses_in
 from equipoise.mechanism.steps import Reaction, Step, initial_state, pin_reaction, run
 
@@ -41,7 +43,7 @@ def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> G
     maker = _Maker(builder, joints, links)
     before, loops = maker.prepare()
     touched = {FRAME, *(end.body for loop in loops for end in (loop.on, loop.by))}
-    touched |= {loop.carrier for loop in loops if isinstance(loop, GearLoop)}
+    touched |= {loop.carrier for loop in loops if isinstance(loop, CouplingLoop)}
     unsolved = LoopGroup(
         links,
         tuple(maker.anchors[link] for link in links),
@@ -64,7 +66,7 @@ def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> G
     reach = tuple(
         step
         for reaction in reactions
-        if reaction.kind != "gear"
+        if reaction.kind in ("pin", "slider")
         for step in builder.reach(reaction.on, reaction.at)
     )
     forces: tuple[Step, ...] = (LoopForces(solved, loops, reactions), *hand_over)
@@ -96,12 +98,12 @@ class _Maker:
         loops = self.pinned_and_sliding()  # from the anchors that this has found
         reachable = {*self.builder.rank, *self.links}
         before: list[Step] = []
-        for gear in self.joints.gears:
-            ends = {gear.driver, gear.driven, gear.carrier}
+        for one in self.joints.couplings:
+            ends = {one.driver, one.driven, one.carrier}
             if ends <= reachable and ends & set(self.links):
                 for body in self.roots(ends, loops):
                     before += self.builder.running_angle(body)
-                loops.append(self.gear(gear))
+                loops.append(self.coupling(one))
         return tuple(before), tuple(loops)
 
     def pinned_and_sliding(self) -> list[Loop]:
@@ -166,20 +168,23 @@ class _Maker:
             return SlideLoop(slider.name, link, guide, along, turn)
         return SlideLoop(slider.name, guide, link, turn.conjugate(), along.conjugate())
 
-    def gear(self, gear: Gear) -> GearLoop:
-        if gear.driven not in self.links:
+    def coupling(self, coupling: Coupling) -> CouplingLoop:
+        if coupling.driven not in self.links:
             raise ModelError(
-                f"gears[{self.joints.gears.index(gear) + 1}]",
+                place_in_file(self.joints, coupling),
                 Note(
                     "{driven!r} is moved already by other joints; name the gear that is moved "
                     "already first in between",
-                    driven=gear.driven,
+                    driven=coupling.driven,
                 ),
             )
-        mesh = Mesh.of(self.builder, self.joints, gear)
-        on, by = self.end(gear.driven, mesh.driven_pin), self.end(gear.driver, mesh.driver_pin)
-        ratio = gear.speed_ratio
-        return GearLoop(gear.name, on, by, gear.carrier, ratio, 0.0, mesh.lever, mesh.radial)
+        contact = contact_of(self.builder, self.joints, coupling)
+        on = self.end(coupling.driven, contact.driven_pin)
+        by = self.end(coupling.driver, contact.driver_pin)
+        kernel, numbers = coupling.relation
+        return CouplingLoop(
+            coupling.name, coupling.kind, on, by, coupling.carrier, kernel, numbers, 0.0, contact
+        )
 
     def reaction(self, loop: Loop) -> Reaction:
         on, by = loop.on.body, loop.by.body
@@ -189,7 +194,7 @@ class _Maker:
         if isinstance(loop, SlideLoop):
             couple = f"C({loop.name}/{on})"
             return Reaction(loop.name, "slider", on, by, loop.on.point, force, couple)
-        return Reaction(loop.name, "gear", on, by, f"pitch({loop.name})", force)
+        return Reaction(loop.name, loop.kind, on, by, f"pitch({loop.name})", force)
 
 
 def _solve_start(
@@ -206,8 +211,8 @@ def _solve_start(
                 names=", ".join(group.links),
             ),
         )
-    gears = {gear.name: gear for gear in builder.machine.gears}
-    meshes = {loop.name: loop for loop in loops if isinstance(loop, GearLoop)}
+    starts = {one.name: one.start for one in builder.machine.couplings}
+    meshes = {loop.name: loop for loop in loops if isinstance(loop, CouplingLoop)}
     if meshes and position.crank_angle != 0:
         raise ModelError(
             "position.crank_angle",
@@ -219,8 +224,8 @@ def _solve_start(
         )
     # Its gears stand still at the angle at which they start.
     standing = tuple(
-        replace(loop, carrier=FRAME, ratio=0.0, offset=gears[loop.name].start)
-        if isinstance(loop, GearLoop)
+        replace(loop, carrier=FRAME, kernel=kernels.gear, numbers=(0.0,), offset=starts[loop.name])
+        if isinstance(loop, CouplingLoop)
         else loop
         for loop in loops
     )

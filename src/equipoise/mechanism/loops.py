@@ -9,10 +9,13 @@ All of it is arithmetic on poses, so that it runs on arrays, and can be written 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Protocol
 
-from equipoise.mechanism import joint_kernels, kernels
+from equipoise.mechanism import kernels
+from equipoise.mechanism.couplings import Coupling
+from equipoise.mechanism.steps import Reaction, Step
 
 
 @dataclass(frozen=True)
@@ -52,6 +55,31 @@ class End:
 
 Poses = dict[str, Pose]
 Wrench = tuple[Any, float]
+
+
+class Contact(Protocol):
+    """How the driver's push reaches the driven body.
+
+    driver_pin, driven_pin : points of the carrier about which the two turn.
+    """
+
+    @property
+    def driver_pin(self) -> str: ...
+    @property
+    def driven_pin(self) -> str: ...
+
+    def steps(self, coupling: Coupling, ground: Reaction) -> tuple[Reaction, tuple[Step, ...]]:
+        """The push, and steps that find it and the force in the driven body's pin `ground`."""
+
+    def place(self, poses: Poses, on: End, carrier: str) -> Any:
+        """Where the push acts, complex, m; `on` is the driven body's pin."""
+
+    def wrenches(self, poses: Poses, on: End, carrier: str, sense: Any) -> list[tuple[Any, float]]:
+        """Force and couple on the driven body, at that place, for a push of 1.
+
+        sense : sign of the push that is asked for without any slant of its line; see
+            `joint_kernels.flank`.
+        """
 
 
 @dataclass(frozen=True)
@@ -114,17 +142,21 @@ class SlideLoop:
 
 
 @dataclass(frozen=True)
-class GearLoop:
-    """Angles of driven link, driver and carrier in a fixed relation."""
+class CouplingLoop:
+    """Angles of driven link, driver and carrier in a fixed relation.
+
+    kind : of its `Reaction`.  kernel, numbers : as of `couplings.Relation`.
+    """
 
     name: str
+    kind: str
     on: End
     by: End
     carrier: str
-    ratio: float
+    kernel: Callable[..., tuple[Any, ...]]
+    numbers: tuple[Any, ...]
     offset: Any
-    lever: Any
-    radial: Any
+    contact: Contact
 
     unknowns: ClassVar[int] = 1
 
@@ -133,21 +165,17 @@ class GearLoop:
             (pose.angle, *pose.turn[1:])
             for pose in (poses[self.on.body], poses[self.by.body], poses[self.carrier])
         )
-        wanted = kernels.gear(*driver, *carrier, self.ratio, self.offset)
+        wanted = self.kernel(*driver, *carrier, *self.numbers, self.offset)
         return [driven[level] - wanted[level]]
 
     def place(self, poses: Poses) -> Any:
-        """The pitch point."""
-        turn = poses[self.carrier].turn[0]
-        return poses[self.on.body].point(self.on.arm)[0] + turn * self.lever
+        return self.contact.place(poses, self.on, self.carrier)
 
     def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
-        """The flank in contact, told by `sense`, sets the line of action."""
-        turn = poses[self.carrier].turn[0]
-        return [(joint_kernels.tooth(turn, sense, self.lever, self.radial), 0.0)]
+        return self.contact.wrenches(poses, self.on, self.carrier, sense)
 
 
-Loop = PinLoop | SlideLoop | GearLoop
+Loop = PinLoop | SlideLoop | CouplingLoop
 
 
 @dataclass(frozen=True)

@@ -42,6 +42,7 @@ from equipoise.mechanism.checks import (
     wrong_speeds,
     wrong_text,
 )
+from equipoise.mechanism.couplings import Coupling
 from equipoise.mechanism.drives import Drive
 from equipoise.mechanism.field import Planting, wrong_planting
 from equipoise.mechanism.force_elements import (
@@ -163,6 +164,11 @@ class Machine(Frozen):
     def bodies(self) -> Bodies:
         """Points of the frame and of every link, in their own axes."""
         return {FRAME: self.frame} | {name: link.points for name, link in self.links.items()}
+
+    @property
+    def couplings(self) -> tuple[Coupling, ...]:
+        """Joints by which one body's angle tells another's, in the order of the file."""
+        return self.gears
 
     @property
     def mass(self) -> float:

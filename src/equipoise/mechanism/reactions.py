@@ -26,6 +26,8 @@ from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, run
 from equipoise.mechanism.tip import surface_of, tip_link
 
+JOINTS = ("pin", "slider")
+"""Kinds of reactions that are no push of a coupling."""
 Demand = tuple[Any, Any]
 """Force (complex) and moment about a link's anchor, each (..., N) or the same at all angles."""
 
@@ -120,7 +122,7 @@ class Pass:
     def joints(self) -> dict[str, JointForce]:
         """Pins and sliders, by name."""
         named = self.motion.linkage.named_reactions
-        return Named("joint", ((n, self._joint(r)) for n, r in named if r.kind != "gear"))
+        return Named("joint", ((n, self._joint(r)) for n, r in named if r.kind in JOINTS))
 
     @property
     def gears(self) -> dict[str, MeshForce]:

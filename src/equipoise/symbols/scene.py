@@ -13,7 +13,8 @@ from equipoise.errors import EquipoiseError
 from equipoise.mechanism.bodies import place_of
 from equipoise.mechanism.body_checks import Outline, outlines
 from equipoise.mechanism.checks import Bodies
-from equipoise.mechanism.joints import Structure, gear_pins
+from equipoise.mechanism.gears import Gear
+from equipoise.mechanism.joints import Structure, coupling_pins
 from equipoise.mechanism.model import FRAME, Link
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.tip import surface_of
@@ -314,8 +315,10 @@ def _solids(link: Link) -> Iterator[Outline]:
 
 def wheels_of(joints: Structure, bodies: Bodies) -> Iterator[Wheel]:
     """The gears, of which each has its pin on the carrier."""
-    for gear in joints.gears:
-        driver, driven = gear_pins(joints, gear)
+    for gear in joints.couplings:
+        if not isinstance(gear, Gear):
+            continue
+        driver, driven = coupling_pins(joints, gear)
         carrier = bodies[gear.carrier]
         apart = abs(complex(*carrier[driver]) - complex(*carrier[driven]))
         radius = apart / abs(1 - gear.speed_ratio)

@@ -30,7 +30,7 @@ ANGLES = np.linspace(0.1, 6.2, 18)
 def only_loops() -> Iterator[None]:
     """Let Newton's method solve every group."""
     with pytest.MonkeyPatch.context() as patch:
-        for solver in ("_dyad", "_geared"):
+        for solver in ("_dyad", "_coupled"):
             patch.setattr(f"equipoise.mechanism.linkage.{solver}", lambda *_: None)
         yield
 

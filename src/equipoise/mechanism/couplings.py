@@ -1,0 +1,74 @@
+"""Couplings: joints by which the angle of one body tells that of another, both seen from a carrier.
+
+A pair of gears is one.  A coupling takes one free motion; it says by which formula the driven
+body's running angle follows the driver's, and a contact says where and along which line one body
+pushes the other.  Whatever puts a linkage together, solves it or counts its motions asks for this,
+and never for a kind of coupling.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any, ClassVar, Protocol
+
+Relation = tuple[Callable[..., tuple[Any, ...]], tuple[Any, ...]]
+"""Kernel and its numbers: called with angle, first and second derivative of the driver, then of the
+carrier, then these numbers and an offset, it gives those of the driven body."""
+Law = Callable[[Any], tuple[Any, Any, Any]]
+"""A function of an angle, with its first and second derivative."""
+
+
+class Coupling(Protocol):
+    """Two bodies of which one drives the other, both on a carrier.
+
+    table : key of the list in the model file.  kind : that of its `Reaction`.
+    start : angle of the driven body in the frame at crank angle 0, rad.
+    """
+
+    table: ClassVar[str]
+    kind: ClassVar[str]
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def driver(self) -> str: ...
+    @property
+    def driven(self) -> str: ...
+    @property
+    def carrier(self) -> str: ...
+    @property
+    def start(self) -> Any: ...
+    @property
+    def relation(self) -> Relation:
+        """How the angles go together."""
+
+    @property
+    def speed_ratio(self) -> float:
+        """Speed of the driven body over the driver's, both seen from the carrier, in the mean."""
+
+    @property
+    def exact_ratio(self) -> Fraction | None:
+        """Turns of the driven body in a turn of the driver, both seen from the carrier; None where
+        that is no ratio of whole numbers.
+        """
+
+
+def coupled(
+    angle_r: Any,
+    w_r: Any,
+    a_r: Any,
+    angle_c: Any,
+    w_c: Any,
+    a_c: Any,
+    law: Law,
+    offset: Any,
+) -> tuple[Any, Any, Any]:
+    """Angle of a driven body: seen from the carrier c it is a function of that of the driver r."""
+    value, first, second = law(angle_r - angle_c)
+    slip = w_r - w_c
+    return (
+        angle_c + value + offset,
+        w_c + first * slip,
+        a_c + first * (a_r - a_c) + second * slip * slip,
+    )
