@@ -15,7 +15,9 @@ from itertools import chain
 
 import numpy as np
 
+from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.model import FRAME, Gear, Machine
+from support.cams import line_of_force
 from support.loads import on_links, springs_on_links
 from support.poses import Array, Poses, cross, drive_pivot, pin_between, pins, quarter
 
@@ -57,6 +59,7 @@ class FreeBodies:
 
     joints: Mapping[str, Reaction]
     gears: Mapping[str, Reaction]
+    cams: Mapping[str, Reaction]
     drive_torque: Array
     frame_force: Array
     frame_moment: Array
@@ -102,6 +105,7 @@ def solve(
         pair fewer than bodies.  Without it the first body of all holds the others.
     """
     joints = [*pin_contacts(machine, poses, pairs or {}), *slider_contacts(machine, poses)]
+    joints += [cam_contact(cam, machine, poses) for cam in machine.cams]
     gears = [gear_contact(gear, machine, poses) for gear in machine.gears]
     system = equations(machine, poses)
     unknowns = solved(system, joints, gears)
@@ -227,6 +231,12 @@ def separating(gear: Gear, machine: Machine, poses: Poses, tangential: Array) ->
     return towards * size[:, None] * unit
 
 
+def cam_contact(cam: Cam, machine: Machine, poses: Poses) -> Contact:
+    """Return the place where a cam pushes its follower, along their common normal."""
+    at, normal = line_of_force(machine, cam, poses)
+    return Contact(cam.name, cam.driven, cam.driver, at, (normal,))
+
+
 # -- results ---------------------------------------------------------------------------------------
 
 
@@ -248,7 +258,8 @@ def gathered(
     torque = unknowns[""][:, 0]
     pulls = [pull_on_frame(*acting) for acting in springs_on_links(machine, poses)]
     force, moment = on_frame(machine, [*held.values(), *meshed.values(), *pulls])
-    return FreeBodies(held, meshed, torque, force, moment - torque)
+    pressed = {cam.name: held.pop(cam.name) for cam in machine.cams}
+    return FreeBodies(held, meshed, pressed, torque, force, moment - torque)
 
 
 def reaction(contact: Contact, unknowns: Array) -> Reaction:

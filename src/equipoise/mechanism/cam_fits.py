@@ -14,7 +14,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism.builder import Guide
 from equipoise.mechanism.cam_shapes import Array, Path, Shape, Sliding, Swinging, lowest
 from equipoise.mechanism.cams import Cam
-from equipoise.mechanism.joints import Structure
+from equipoise.mechanism.joints import Structure, place_in_file
 from equipoise.mechanism.kernels import dot
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.steps import planar
@@ -32,6 +32,7 @@ class Fit:
     rest : where the displacement is 0, the way along the guide (m) or the angle (rad) of the
         follower in the carrier.
     sense : by what the displacement is multiplied to add to that.
+    face : normal of a flat face in the follower's axes, else None.
     """
 
     cam: Cam
@@ -40,6 +41,7 @@ class Fit:
     guide: Guide | None
     rest: Any
     sense: float
+    face: Any
     path: Path
 
     @property
@@ -59,7 +61,7 @@ def fitted(machine: Machine, joints: Structure, cam: Cam) -> Fit:
     ------
     ModelError : it is not joined to its carrier as it has to be, or cannot touch its follower.
     """
-    where = f"cams[{machine.cams.index(cam) + 1}]"
+    where = place_in_file(joints, cam)
     pivots = joints.pins_between(cam.driver, cam.carrier)
     if len(pivots) != 1:
         raise ModelError(
@@ -103,14 +105,15 @@ def _on_guide(machine: Machine, cam: Cam, cam_pin: str, guide: Guide, where: str
     arm = _place(machine, cam.driven, cam.point) - _place(machine, cam.driven, guide.point)
     base = _place(machine, cam.carrier, guide.base) - _place(machine, cam.carrier, cam_pin)
     shift = base / n + arm * guide.turn
-    normal = None
-    if cam.kind == "flat":
-        face = 1.0 if cam.normal is None else np.exp(1j * cam.normal) * guide.turn
-        if np.any(face.real < STEEPEST):
+    face = normal = None
+    if cam.rides == "flat":
+        face = 1 / guide.turn if cam.normal is None else np.exp(1j * cam.normal)
+        way = face * guide.turn
+        if np.any(way.real < STEEPEST):
             told = Note("the face does not look along the guide; turn it by 180 deg, or less")
             raise ModelError(f"{where}.normal", told)
-        rest = (cam.base_radius - dot(face, shift)) / face.real
-        normal = face * n
+        rest = (cam.base_radius - dot(way, shift)) / way.real
+        normal = way * n
     else:
         height2 = cam.radius**2 - shift.imag**2
         if np.any(height2 <= 0):
@@ -126,7 +129,7 @@ def _on_guide(machine: Machine, cam: Cam, cam_pin: str, guide: Guide, where: str
             )
         rest = height2**0.5 - shift.real
     path = Sliding(n, n * (shift + rest), normal)
-    return Fit(cam, cam_pin, "", guide, rest, 1.0, path)
+    return Fit(cam, cam_pin, "", guide, rest, 1.0, face, path)
 
 
 def _on_pin(machine: Machine, cam: Cam, cam_pin: str, pin: str, where: str) -> Fit:
@@ -156,7 +159,7 @@ def _on_pin(machine: Machine, cam: Cam, cam_pin: str, pin: str, where: str) -> F
     turn = turn / abs(turn)
     normal = None if face is None else towards
     path = Swinging(pivot, arm * turn, sense, normal)
-    return Fit(cam, cam_pin, pin, None, np.angle(turn), sense, path)
+    return Fit(cam, cam_pin, pin, None, np.angle(turn), sense, face, path)
 
 
 # -- what cannot be made ---------------------------------------------------------------------------
@@ -181,7 +184,7 @@ def check_shape(fit: Fit, where: str) -> None:
                 angle=degrees(angle),
             ),
         )
-    check = _check_flat if fit.cam.kind == "flat" else _check_round
+    check = _check_flat if fit.cam.rides == "flat" else _check_round
     check(fit.cam, least, where)
 
 

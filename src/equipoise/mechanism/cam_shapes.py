@@ -157,7 +157,8 @@ class Shape:
         """From the way in which the follower rises to the common normal (N,), rad."""
         at, normal = self.contact
         forth = self.path.forth(at if self.flat else self.ride.place)
-        return np.arctan2(cross(forth, normal), dot(forth, normal))
+        slant = np.arctan2(cross(forth, normal), dot(forth, normal))
+        return np.broadcast_to(slant, self.angle.shape)
 
     @property
     def curvature(self) -> Array:
@@ -192,7 +193,8 @@ def lowest(shape: Shape, value: Callable[[Shape], Array], knots: Array) -> tuple
     width, best = 2 * pi / GRID, (np.inf, 0.0)
     for _ in range(4):
         with np.errstate(all="ignore"):
-            values = np.nan_to_num(value(shape.at(angles)), nan=-np.inf)
+            found = np.broadcast_to(value(shape.at(angles)), angles.shape)
+        values = np.nan_to_num(found, nan=-np.inf)
         k = int(highest_at(-values, smooth=False))
         best = min(best, (float(values[k]), float(angles[k])))
         angles, width = best[1] + np.linspace(-width, width, 41), width / 18

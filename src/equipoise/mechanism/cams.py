@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from fractions import Fraction
 from typing import ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Conditions, Frozen, Table, Text, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link, unknown_point
+from equipoise.mechanism.couplings import Relation, coupled
 from equipoise.mechanism.laws import AngleLaw, Law, LengthLaw, wrong_law
 
-KINDS = ("roller", "flat", "knife")
+RIDES = ("roller", "flat", "knife")
 CLOSURES = ("spring", "groove", "ribs")
 LEFT_RIGHT = ("left", "right")
 
@@ -25,7 +27,12 @@ class Cam(Frozen):
     """
 
     called = to_say("{what} of cam {number}")
-    file_order = ("cam", "follower", "carrier", "kind", "point", "roller_radius", "base_radius")
+    table: ClassVar[str] = "cams"
+    kind: ClassVar[str] = "cam"
+    start: ClassVar[float] = 0.0
+    speed_ratio: ClassVar[float] = 0.0
+    exact_ratio: ClassVar[Fraction] = Fraction(0)
+    file_order = ("cam", "follower", "carrier", "rides", "point", "roller_radius", "base_radius")
     conditions: ClassVar[Conditions] = {"oneOf": [{"required": ["lift"]}, {"required": ["swing"]}]}
 
     driver: str = key(
@@ -40,8 +47,10 @@ class Cam(Frozen):
         name="follower",
         example="tappet",
     )
-    kind: Literal["roller", "flat", "knife"] = key(
-        Text(KINDS), "what rides on the cam: a roller, a flat face or an edge", example="roller"
+    rides: Literal["roller", "flat", "knife"] = key(
+        Text(RIDES),
+        "what of the follower is on the cam: a roller, a flat face, or an edge",
+        example="roller",
     )
     point: str = key(
         Text(of="point", on="follower"),
@@ -98,6 +107,10 @@ class Cam(Frozen):
         return law
 
     @property
+    def relation(self) -> Relation:
+        return coupled, (self.law.value,)
+
+    @property
     def radius(self) -> float:
         """Of the curve that roller or edge takes where the displacement is 0, m."""
         return self.base_radius + self.roller_radius
@@ -116,7 +129,7 @@ def wrong_cam(where: str, cam: Cam, bodies: Bodies) -> Iterator[ModelError]:
     if (cam.lift is None) == (cam.swing is None):
         yield ModelError(where, Note("give either lift or swing"))
         return
-    yield from _wrong_kind(where, cam)
+    yield from _wrong_ride(where, cam)
     at = f"{where}.{'lift' if cam.swing is None else 'swing'}"
     problem = [*wrong_law(at, cam.law)]
     yield from problem
@@ -124,19 +137,19 @@ def wrong_cam(where: str, cam: Cam, bodies: Bodies) -> Iterator[ModelError]:
         yield ModelError(at, Note("let the follower be back after one turn of the cam"))
 
 
-def _wrong_kind(where: str, cam: Cam) -> Iterator[ModelError]:
-    """Complain of keys that do not go with the kind of follower."""
-    if cam.kind == "roller" and not cam.roller_radius:
+def _wrong_ride(where: str, cam: Cam) -> Iterator[ModelError]:
+    """Complain of keys that do not go with what rides on the cam."""
+    if cam.rides == "roller" and not cam.roller_radius:
         yield ModelError(f"{where}.roller_radius", Note("missing; give the radius of the roller"))
-    if cam.kind != "roller" and cam.roller_radius:
+    if cam.rides != "roller" and cam.roller_radius:
         yield ModelError(f"{where}.roller_radius", Note("goes with a roller; leave it out"))
-    if cam.kind != "flat" and cam.normal is not None:
+    if cam.rides != "flat" and cam.normal is not None:
         yield ModelError(f"{where}.normal", Note("goes with a flat face; leave it out"))
-    if cam.kind == "flat" and cam.swing is not None and cam.normal is None:
+    if cam.rides == "flat" and cam.swing is not None and cam.normal is None:
         yield ModelError(
             f"{where}.normal", Note("missing; say how the face stands on the pinned follower")
         )
-    if cam.kind != "roller" and cam.closed_by == "groove":
+    if cam.rides != "roller" and cam.closed_by == "groove":
         yield ModelError(
             f"{where}.closed_by", Note("a groove takes a roller; give ribs, or a spring")
         )

@@ -322,7 +322,10 @@ def _from_to(table: LoadTable) -> Note:
 def wrong_ends(where: str, spring: Any, bodies: Bodies) -> Iterator[ModelError]:
     """What is wrong with the two points of a spring, or of one that may be set."""
     link, point, to, on = spring.link, spring.point, spring.to, getattr(spring, "on", FRAME)
-    problem = [*unknown_link(f"{where}.link", link, bodies), *unknown_body(f"{where}.on", on, bodies)]
+    problem = [
+        *unknown_link(f"{where}.link", link, bodies),
+        *unknown_body(f"{where}.on", on, bodies),
+    ]
     if problem:
         yield from problem
         return

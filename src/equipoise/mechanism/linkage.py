@@ -19,6 +19,8 @@ from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism import groups
 from equipoise.mechanism.builder import Builder, Group, Guide, Outer
+from equipoise.mechanism.cam_groups import follower
+from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.checks import meant
 from equipoise.mechanism.cycle import Cycle, close
 from equipoise.mechanism.joints import Structure, drive_pivot, structure, subsets
@@ -254,7 +256,11 @@ def _coupled(builder: Builder, joints: Structure, unknown: list[str]) -> Group |
     for one in joints.couplings:
         ready = one.driven in unknown and {one.driver, one.carrier} <= known.keys()
         if ready and joints.freedom([one.driven], known) == 0:
-            return groups.coupled(builder, joints, one)
+            return (
+                follower(builder, joints, one)
+                if isinstance(one, Cam)
+                else groups.coupled(builder, joints, one)
+            )
     return None
 
 

@@ -29,6 +29,7 @@ from equipoise.keys import (
     key,
     wrong_values,
 )
+from equipoise.mechanism.cams import Cam, wrong_cam
 from equipoise.mechanism.checks import (
     FRAME,
     SIDES,
@@ -86,7 +87,15 @@ __all__ = [
 ]
 
 
-MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "loads": 500, "springs": 200}
+MOST = {
+    "links": 100,
+    "points": 2000,
+    "sliders": 200,
+    "gears": 200,
+    "cams": 100,
+    "loads": 500,
+    "springs": 200,
+}
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 
@@ -97,7 +106,7 @@ class Machine(Frozen):
 
     beside: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "description", "units", "gravity", "drive", "frame", "links",
-                  "assembly", "sliders", "gears", "loads", "springs", "position", "planting",
+                  "assembly", "sliders", "gears", "cams", "loads", "springs", "position", "planting",
                   "support", "rows", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
@@ -111,6 +120,7 @@ class Machine(Frozen):
     )
     sliders: tuple[Slider, ...] = key(Tables(Table(Slider)), "sliding joints", default=())
     gears: tuple[Gear, ...] = key(Tables(Table(Gear)), "pairs of gears", default=())
+    cams: tuple[Cam, ...] = key(Tables(Table(Cam)), "cams with their followers", default=())
     loads: tuple[Load, ...] = key(
         Tables(Table(Load)), "forces and torques from outside", default=()
     )
@@ -139,7 +149,7 @@ class Machine(Frozen):
         default=None,
     )
     springs: tuple[Spring, ...] = key(
-        Tables(Table(Spring)), "linear springs between links and frame", default=()
+        Tables(Table(Spring)), "linear springs between links, or links and frame", default=()
     )
 
     units: ShownUnits | None = key(
@@ -168,7 +178,7 @@ class Machine(Frozen):
     @property
     def couplings(self) -> tuple[Coupling, ...]:
         """Joints by which one body's angle tells another's, in the order of the file."""
-        return self.gears
+        return (*self.gears, *self.cams)
 
     @property
     def mass(self) -> float:
@@ -265,6 +275,7 @@ class Machine(Frozen):
 LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
     "sliders": wrong_slider,
     "gears": wrong_gear,
+    "cams": wrong_cam,
     "loads": wrong_load,
     "springs": wrong_ends,
 }
