@@ -238,6 +238,10 @@ class Present:
     def joints(self) -> Mapping[str, JointForce]:
         return self.effects.start.solved_like(self.effects.flanks).joints
 
+    @property
+    def cams(self) -> Mapping[str, JointForce]:
+        return self.effects.start.solved_like(self.effects.flanks).cams
+
 
 @dataclass(frozen=True)
 class Unit:
@@ -269,16 +273,21 @@ class Unit:
 
     @property
     def joints(self) -> Mapping[str, JointForce]:
-        return _JointsOfUnit(self.effects)
+        return _JointsOfUnit(self.effects, "joints")
+
+    @property
+    def cams(self) -> Mapping[str, JointForce]:
+        return _JointsOfUnit(self.effects, "cams")
 
 
 class _JointsOfUnit(dict[str, JointForce]):
-    """Joint forces (K, N) of a unit of each number, each made when it is asked for."""
+    """Forces in joints, or of cams, (K, N) of a unit of each number, each made when asked for."""
 
-    def __init__(self, effects: Effects) -> None:
+    def __init__(self, effects: Effects, family: str) -> None:
         super().__init__()
-        self.effects = effects
+        self.effects, self.family = effects, family
 
     def __missing__(self, name: str) -> JointForce:
-        joint = self.effects.solved.joints[name]
-        return replace(joint, value=self.effects.with_springs(joint.value, f"joints.{name}"))
+        joint: JointForce = getattr(self.effects.solved, self.family)[name]
+        output = f"{self.family}.{name}"
+        return replace(joint, value=self.effects.with_springs(joint.value, output))

@@ -41,6 +41,7 @@ GROUPS = {
     "forces": to_say("frame and drive"),
     "joints": to_say("joints"),
     "gears": to_say("gears"),
+    "cams": to_say("cams"),
     "rows": to_say("all rows together"),
     "gauges": to_say("gauges"),
 }

@@ -22,6 +22,7 @@ from equipoise.mechanism import kernels
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import (
+    CamForce,
     Demand,
     JointForce,
     MeshForce,
@@ -131,6 +132,11 @@ class Forces:
         return self.solved.gears
 
     @cached_property
+    def cams(self) -> Mapping[str, CamForce]:
+        """Force of each cam on its follower."""
+        return self.solved.cams
+
+    @cached_property
     def split(self) -> Split:
         """Every output by cause and by link."""
         return split(self)
@@ -159,7 +165,7 @@ class Shares:
     """Outputs told apart: arrays (..., N), whose first axes are what they are shares of.
 
     shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
-    joints, gears : name -> force whose arrays have those axes.
+    joints, gears, cams : name -> force whose arrays have those axes.
     """
 
     shaking_force: Array
@@ -169,10 +175,11 @@ class Shares:
     drive_torque: Array
     joints: Mapping[str, JointForce]
     gears: Mapping[str, MeshForce]
+    cams: Mapping[str, CamForce]
 
     @property
     def of_machine(self) -> dict[str, Array]:
-        """All but the forces in joints and gears, by name."""
+        """All but the forces in joints, gears and cams, by name."""
         known = {one.name: getattr(self, one.name) for one in fields(Shares)}
         return {name: value for name, value in known.items() if isinstance(value, np.ndarray)}
 
@@ -201,6 +208,7 @@ class Split(Shares):
             if isinstance(joint, SliderForce):
                 found[f"joints.{name}.moment"] = joint.moment
         found |= {f"gears.{name}": mesh.value for name, mesh in self.gears.items()}
+        found |= {f"cams.{name}": pressed.value for name, pressed in self.cams.items()}
         if output not in found:
             raise UsageError(unknown(output, found, "output"))
         return found[output]
@@ -290,6 +298,7 @@ def split(whole: Forces) -> Split:
         solved.drive_torque,
         solved.joints,
         solved.gears,
+        solved.cams,
         links,
     )
 

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from equipoise.i18n import say, to_say
+from equipoise.mechanism.cam_contacts import pressure_angle
 from equipoise.mechanism.checks import FRAME, bodies_at
 from equipoise.mechanism.declaring import (
     DECLARED,
@@ -293,6 +294,37 @@ of_gear(
 )
 of_gear(".tangential", "force", to_say("tangential tooth force {name}"), summed=False)
 of_gear(".radial", "force", to_say("radial tooth force {name}"), summed=False)
+
+of_cam = _alike(
+    "cams.{}",
+    lambda name, found, cam: _members(found.forces.cams, name, cam),
+    members=lambda machine: [cam.name for cam in machine.cams],
+    spoken=lambda name: name.replace(" to ", " → "),
+)
+of_cam(
+    "",
+    "force",
+    to_say("contact force {name}"),
+    FORCES,
+    linear=True,
+    loop="{joint force:name}",
+    summed=(True, False),
+    compared=FORCE,
+)
+of_cam(
+    ".normal",
+    "force",
+    to_say("contact force along the normal {name}"),
+    linear="{what} is only read; take the whole contact force instead",
+)
+of_slant = _alike(
+    "cams.{}.",
+    lambda _, found, cam: pressure_angle(found.motion, cam),
+    needs="motion",
+    members=lambda machine: [cam.name for cam in machine.cams],
+    spoken=lambda name: name.replace(" to ", " → "),
+)
+of_slant("pressure_angle", "angle", to_say("pressure angle {name}"))
 
 # -- rows and support ------------------------------------------------------------------------------
 

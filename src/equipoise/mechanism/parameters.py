@@ -120,6 +120,7 @@ def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Re
         solved.drive_torque,
         solved.joints,
         solved.gears,
+        solved.cams,
         parameter_names(machine),
         values,
     )

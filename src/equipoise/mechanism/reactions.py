@@ -91,6 +91,16 @@ class MeshForce(JointForce):
 
 
 @dataclass(frozen=True, eq=False)
+class CamForce(JointForce):
+    """Force of a cam on its follower, N, along their common normal.
+
+    normal : it along the normal away from the cam; below 0 where the follower is held back.
+    """
+
+    normal: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Pass:
     """Joint forces of one run over the groups, for one demand or a stack of them.
 
@@ -131,6 +141,12 @@ class Pass:
         return Named("pair of gears", ((r.name, self._mesh(r)) for r in gears))
 
     @property
+    def cams(self) -> dict[str, CamForce]:
+        """Cams, by name; the force is on the follower."""
+        cams = (r for r in self.motion.linkage.reactions if r.kind == "cam")
+        return Named("cam", ((r.name, self._pressed(r)) for r in cams))
+
+    @property
     def flanks(self) -> State:
         """Which flank of each pair of gears is in contact, by name in the state."""
         return {name: value for name, value in self.state.items() if name.startswith("flank(")}
@@ -158,6 +174,11 @@ class Pass:
         lever = self.state[f"p({reaction.at})"] - self.state[f"p({pin})"]
         radial = -kernels.dot(lever, force) / abs(lever)
         return MeshForce(force, reaction.on, reaction.by, tangential, radial)
+
+    def _pressed(self, reaction: Reaction) -> CamForce:
+        force = full(self.motion, self.state[reaction.force], complex)
+        normal = full(self.motion, self.state[f"T({reaction.name})"], float)
+        return CamForce(force, reaction.on, reaction.by, normal)
 
 
 def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None = None) -> Pass:

@@ -180,7 +180,8 @@ class Analysis(Result):
         if found is None:
             result["missing"] = massless(self.machine)
         else:
-            for family, joints in (("joints", found.joints), ("gears", found.gears)):
+            families = {"joints": found.joints, "gears": found.gears}
+            for family, joints in (families | ({"cams": found.cams} if found.cams else {})).items():
                 ends = {name: {"on": one.on, "by": one.by} for name, one in joints.items()}
                 result[family] = ends
             result["about"] = {"x": found.about.real, "y": found.about.imag}
@@ -265,7 +266,7 @@ def _split(found: Forces) -> Values:
                 parts = zip(names, whole.sum(axis=axis), strict=True)
                 values = result[key]
                 for step in one.path(item)[:-1]:
-                    values = values[step]
+                    values = values.setdefault(step, {})
                 values[one.path(item)[-1]] = {name: _parts(part) for name, part in parts}
     return result
 

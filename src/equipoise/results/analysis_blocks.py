@@ -236,7 +236,7 @@ def loud(sizes: list[Array], most: int = MOST_ORDERS) -> list[int]:
 def joint_table(analysis: Analysis) -> Table:
     """The force in every joint and mesh."""
     forces = analysis.forces
-    joints: dict[str, JointForce] = {**forces.joints, **forces.gears}
+    joints: dict[str, JointForce] = {**forces.joints, **forces.gears, **forces.cams}
     scale = analysis.summary["frame_moment"].peak
     rows: list[tuple[Cell, ...]] = []
     for name, joint in joints.items():
@@ -245,6 +245,7 @@ def joint_table(analysis: Analysis) -> Table:
         if isinstance(joint, SliderForce):
             couple = Value(float(np.max(np.abs(joint.moment))), scale)
         named = say("teeth") if name in forces.gears else joint_named(name)
+        named = say("cam") if name in forces.cams else named
         ends = f"{body_named(joint.by)} → {body_named(joint.on)}"
         rows.append((named, ends, Value(found.mean), Value(found.rms), largest(found), couple))
     labels = (say("mean"), say("RMS"), say("largest"))

@@ -1,0 +1,101 @@
+"""What a motion does at the contact of a cam: pressure angle, and where a spring lets go."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from equipoise.mechanism.cam_fits import fitted
+from equipoise.mechanism.kernels import cross, dot
+from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.reactions import reactions
+from equipoise.mechanism.steps import Array
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.dynamics import Forces
+
+
+def pressure_angle(motion: Motion, name: str) -> Array:
+    """From the way in which a follower rises to the common normal (N,), rad, by the cam's name."""
+    linkage, state = motion.linkage, motion.state
+    cam = next(one for one in motion.machine.cams if one.name == name)
+    fit = fitted(motion.machine, linkage.joints, cam)
+    carrier, normal = state[f"u({cam.carrier})"], state[f"normal({name})"]
+    at = state[f"p(contact({name}))" if cam.rides == "flat" else f"p({cam.point})"]
+    forth = fit.path.forth((at - state[f"p({fit.cam_pin})"]) / carrier) * carrier
+    slant = np.arctan2(cross(forth, normal), dot(forth, normal))
+    return np.broadcast_to(slant, motion.crank_angle.shape)
+
+
+@dataclass(frozen=True, eq=False)
+class LetGo:
+    """A follower that its springs do not keep on the cam everywhere.
+
+    name : of the cam.
+    ranges : crank angles, rad, between which it would have to be pulled, at the speed analysed.
+    least : smallest normal force, N, and crank angle, rad, of it.
+    speed : size of the crank's speed, rad/s, from which on contact is lost; 0 where it is at rest,
+        and inf where it never is.
+    at : crank angle, rad, at which that happens.
+    """
+
+    name: str
+    ranges: tuple[tuple[float, float], ...]
+    least: tuple[float, float]
+    speed: float
+    at: float
+
+
+def let_go(forces: Forces) -> tuple[LetGo, ...]:
+    """Of each cam that springs close, where and from which speed its follower lifts off.
+
+    The normal force is A + B times the square of the speed: B is what inertia asks for, A what
+    weight, loads and springs do, and what an acceleration of the crank adds at any speed.  Soil,
+    which resists faster fingers more, is taken as it is at the speed analysed.
+    """
+    machine, motion = forces.motion.machine, forces.motion
+    sprung = [cam.name for cam in machine.cams if cam.closed_by == "spring"]
+    if not sprung:
+        return ()
+    fast = forces.at(speed=1.0, acceleration=0.0).inertia
+    squared = reactions(motion, fast, forces.solved).cams
+    return tuple(
+        _let_go(name, motion.crank_angle, forces.cams[name].normal, squared[name].normal,
+                motion.speed)
+        for name in sprung
+    )  # fmt: skip
+
+
+def _let_go(name: str, theta: Array, normal: Array, per_speed2: Array, speed: float) -> LetGo:
+    at_rest = normal - per_speed2 * speed**2
+    worst = int(np.argmin(at_rest))
+    if at_rest[worst] <= 0:
+        limit, place = 0.0, worst
+    else:
+        with np.errstate(divide="ignore"):
+            squares = np.where(per_speed2 < 0, -at_rest / per_speed2, np.inf)
+        place = int(np.argmin(squares))
+        limit = float(np.sqrt(squares[place]))
+    k = int(np.argmin(normal))
+    least = float(normal[k]), float(theta[k])
+    return LetGo(name, _ranges(theta, normal), least, limit, float(theta[place]))
+
+
+def _ranges(theta: Array, normal: Array) -> tuple[tuple[float, float], ...]:
+    """Between which crank angles a force is negative, by straight lines between its samples."""
+    if len(theta) < 2 or not np.any(normal < 0):
+        return ()
+    period = theta[-1] - theta[0] + theta[1] - theta[0]
+    x = np.append(theta, theta[0] + period)
+    y = np.append(normal, normal[0])
+    if np.all(normal < 0):
+        return ((float(x[0]), float(x[-1])),)
+    k = np.flatnonzero(np.sign(y[:-1]) * np.sign(y[1:]) < 0)
+    crossings = x[k] - y[k] * (x[k + 1] - x[k]) / (y[k + 1] - y[k])
+    down = crossings[y[k] > 0]
+    up = crossings[y[k] < 0]
+    if up[0] < down[0]:
+        up = np.append(up[1:], up[0] + period)
+    return tuple((float(a), float(b)) for a, b in zip(down, up, strict=True))
