@@ -160,9 +160,10 @@ export class Charts {
     const moving = names.filter((name) => !state.scene.frame.includes(name));
     const first = state.traced;
     const points = [...first, ...moving.filter((name) => !first.includes(name))];
-    const ground: [string, string][] = state.planting
-      ? [[`ground.${state.planting.tip}`, say("{point} over ground", { point: state.planting.tip })]]
-      : [];
+    const ground = (state.planting?.tips ?? []).map((point): [string, string] => [
+      `ground.${point}`,
+      say("{point} over ground", { point }),
+    ]);
     const paths = points.map((point): [string, string] => [point, say("Path of {point}", { point })]);
     this.pathOf.offer([...ground, ...paths]);
     this.whose.offer([

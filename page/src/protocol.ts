@@ -264,7 +264,7 @@ export interface StateMessage {
   /** What was measured, and how it compares; its signals are `measured.` and an output. */
   record: { name: string; told: string[]; left_out: string[] } | null;
   arrows: ArrowOf[];
-  planting?: { tip: string; surface: number } | null;
+  planting?: { tips: string[]; surface: number } | null;
 }
 
 /** A vector at a point over the crank angle. */

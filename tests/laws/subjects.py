@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 import equipoise as eq
 from equipoise.mechanism.field import Soil, SoilTable
-from support.loads import force_and_torque, has_soil, soil_force, tip_of
+from support.loads import force_and_torque, has_soil, soil_force, tips_of
 from support.machines import KINDS, make
 
 Array = NDArray[Any]
@@ -129,11 +129,11 @@ def acting(found: eq.mechanism.Forces) -> Iterator[tuple[str, str | None, Array,
         force, torque = force_and_torque(load, motion.crank_angle)
         yield load.link, load.point, force[:, 0] + 1j * force[:, 1], torque
     if has_soil(machine):
-        link, point, _ = tip_of(machine)
-        tip = motion.points[point]
-        place, velocity = (np.stack([z.real, z.imag], -1) for z in (tip.place, tip.velocity))
-        force = soil_force(machine, place, velocity, motion.speed)
-        yield link, point, force[:, 0] + 1j * force[:, 1], np.zeros(len(force))
+        for link, point, _ in tips_of(machine):
+            tip = motion.points[point]
+            place, velocity = (np.stack([z.real, z.imag], -1) for z in (tip.place, tip.velocity))
+            force = soil_force(machine, place, velocity, motion.speed)
+            yield link, point, force[:, 0] + 1j * force[:, 1], np.zeros(len(force))
 
 
 def along(a: Any, b: Any) -> Any:

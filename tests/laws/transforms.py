@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache
@@ -66,6 +67,7 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
     start = eq.move(machine, np.array([-angle]))
     return replace(
         machine,
+        drive=swung(machine.drive, lambda value: value + angle, lambda phase: phase + angle),
         frame=mapped(machine.frame, lambda z: z * turn),
         gravity=vector(lambda z: z * turn, machine.gravity),
         sliders=tuple(
@@ -79,6 +81,18 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
         position=None if machine.position is None else turned_position(machine.position, angle),
         planting=None,
     )
+
+
+def swung(
+    drive: eq.Drive, change: Callable[[float], float], later: Callable[[float], float]
+) -> eq.Drive:
+    """Change the angles between which a drive swings by a sine, and when it begins."""
+    law = drive.motion
+    if law is None:
+        return drive
+    assert law.between is not None
+    low, high = map(change, law.between)
+    return replace(drive, motion=replace(law, between=(low, high), phase=later(law.phase)))
 
 
 def turned_position(position: eq.mechanism.Position, angle: float) -> eq.mechanism.Position:
@@ -139,7 +153,7 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
             mapped(position.points, np.conj),
             {link: -value for link, value in position.angles.items()},
         )
-    drive = machine.drive
+    drive = swung(machine.drive, operator.neg, operator.neg)
     return replace(
         machine,
         drive=replace(drive, speed=-drive.speed, acceleration=-drive.acceleration),

@@ -11,7 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MassError
-from equipoise.mechanism.field import Soil, SoilTable
+from equipoise.mechanism.field import PlantingArm, Soil, SoilTable
 from equipoise.mechanism.model import Machine
 from support.loads import springs_on_links
 from support.machines import KINDS, Case, make
@@ -68,7 +68,7 @@ def subject_of(name: str) -> Subject:
 
 
 def planted(machine: Machine, rng: np.random.Generator) -> Machine:
-    """Drive a point through soil that resists in every way, in some part of its path."""
+    """Drive one point, or two, through soil that resists in every way, in some part of a path."""
     moving = {label for link in machine.links.values() for label in link.points} - {*machine.frame}
     tip = str(rng.choice(sorted(moving)))
     path = eq.move(machine, 360).points[tip]
@@ -83,7 +83,9 @@ def planted(machine: Machine, rng: np.random.Generator) -> Machine:
     table = SoilTable((0.1 * size, 0.2 * size), (20.0, 70.0))
     soil = Soil(10.0, 100.0 / size, 20.0 / pace, 50.0 / (size * pace), table)
     way = str(rng.choice(["forward", "backward"]))
-    return machine.with_planting(tip=tip, travel=way, soil=soil, **level, **forward)
+    others = sorted(moving - {tip})
+    arms = (PlantingArm(str(rng.choice(others))),) if others and rng.random() < 0.5 else ()
+    return machine.with_planting(tip=tip, travel=way, soil=soil, arms=arms, **level, **forward)
 
 
 def vector(signal: Any) -> Array:

@@ -59,21 +59,25 @@ def has_soil(machine: Machine) -> bool:
     return machine.planting is not None and machine.planting.soil is not None
 
 
-def tip_of(machine: Machine) -> tuple[str, str, Vector]:
-    """Return link, point and place on the link of the tip; a shared point is the first link's."""
+def tips_of(machine: Machine) -> Iterator[tuple[str, str, Vector]]:
+    """Yield link, point and place on the link of each tip; a shared point is the first link's."""
     assert machine.planting is not None
-    tip = machine.planting.tip
-    return next((name, tip, k.points[tip]) for name, k in machine.links.items() if tip in k.points)
+    links = machine.links.items()
+    for tip in (machine.planting.tip, *(arm.tip for arm in machine.planting.arms)):
+        yield next((name, tip, k.points[tip]) for name, k in links if tip in k.points)
 
 
 def surface_height(machine: Machine) -> float:
-    """Return the height of the soil's surface, from a dense scan for the tip's lowest point."""
+    """Return the height of the soil's surface, from a dense scan for the tips' lowest point."""
     planting = machine.planting
     assert planting is not None
     if planting.surface is not None:
         return planting.surface
-    tip = planting.tip
+    assert planting.depth is not None
+    return min(_lowest(machine, tip) for _, tip, _ in tips_of(machine)) + planting.depth
 
+
+def _lowest(machine: Machine, tip: str) -> float:
     def height(crank_angle: float) -> float:
         return float(eq.move(machine, np.array([crank_angle])).points[tip].y[0])
 
@@ -81,12 +85,10 @@ def surface_height(machine: Machine) -> float:
     angles, heights = cycle.crank_angle, cycle.points[tip].y
     low = (heights <= np.roll(heights, 1)) & (heights <= np.roll(heights, -1))
     step = angles[1] - angles[0]
-    lowest = min(
+    return min(
         minimize_scalar(height, bounds=(at - step, at + step), method="bounded").fun
         for at in angles[low]
     )
-    assert planting.depth is not None
-    return lowest + planting.depth
 
 
 def travel(planting: Planting, speed: float) -> Array:
@@ -95,6 +97,7 @@ def travel(planting: Planting, speed: float) -> Array:
     if size is None:
         assert planting.hill_spacing is not None
         size = planting.hill_spacing * planting.units_per_turn * abs(speed) / TURN
+        size *= 1 + len(planting.arms)
     return np.array([{"forward": size, "backward": -size}[planting.travel], 0.0])
 
 
@@ -123,9 +126,9 @@ def on_links(machine: Machine, poses: Poses) -> Iterator[tuple[str, Array, Array
             local = machine.links[load.link].points[load.point]
         yield load.link, poses.place(load.link, local), force, torque
     if has_soil(machine):
-        link, _, local = tip_of(machine)
-        at, velocity = poses.place(link, local), poses.speed(link, local)
-        yield link, at, soil_force(machine, at, velocity, machine.drive.speed), 0.0 * at[:, 0]
+        for link, _, local in tips_of(machine):
+            at, velocity = poses.place(link, local), poses.speed(link, local)
+            yield link, at, soil_force(machine, at, velocity, machine.drive.speed), 0.0 * at[:, 0]
 
 
 def spring_force(spring: Spring, at: Array, to: Vector) -> Array:

@@ -26,6 +26,7 @@ from equipoise.mechanism.model import (
     Spring,
     Vector,
 )
+from support.machines_drives import moved
 from support.newton import Side, assembled
 from support.poses import Array, Poses, turned
 
@@ -703,6 +704,7 @@ def planetary_arm(rng: np.random.Generator) -> Case:
     return draft.case("arm")
 
 
+MOVED = [moved(maker) for maker in (slider_crank, watt, geared_counterweight)]
 KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
     maker.__name__: maker
     for maker in (
@@ -725,6 +727,7 @@ KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
         slider_on_rocker,
         guide_on_dyad,
         crossed_guides,
+        *MOVED,
     )
 }
 

@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from equipoise.mechanism.model import FRAME, Gear, Machine, Slider, Vector
+from support.driving import driven
 from support.poses import Array, Poses, cross, pins, quarter, turned
 
 
@@ -60,7 +61,8 @@ class Constraints:
         ]
         rows += [row for slider in self.machine.sliders for row in self._slider(q, rate, slider)]
         rows += [self._gear(q, gear) for gear in self.machine.gears]
-        rows.append(self._turn({self.machine.drive.link: 1.0}, q, -crank_angle))
+        drive = self.machine.drive
+        rows.append(self._turn({drive.link: 1.0}, q, -driven(drive, crank_angle)[0]))
         return Row(
             np.concatenate([row.residual for row in rows]),
             np.concatenate([row.jacobian for row in rows]),
@@ -208,7 +210,8 @@ def followed(constraints: Constraints, q: Array, here: float, there: float) -> A
 def slope(constraints: Constraints, q: Array, crank_angle: float) -> Array:
     """Return the derivative of the coordinates with respect to the crank angle."""
     row = constraints.at(q, np.zeros_like(q), crank_angle)
-    return np.linalg.solve(row.jacobian, np.eye(q.size)[-1])
+    rate = driven(constraints.machine.drive, crank_angle)[1]
+    return np.linalg.solve(row.jacobian, np.eye(q.size)[-1] * rate)
 
 
 def moving(constraints: Constraints, angles: Array | list[float], found: list[Array]) -> Poses:
@@ -220,7 +223,9 @@ def moving(constraints: Constraints, angles: Array | list[float], found: list[Ar
         rate = slope(constraints, q, angle) * drive.speed
         row = constraints.at(q, rate, angle)
         rates.append(rate)
-        changes.append(np.linalg.solve(row.jacobian, row.bend + last * drive.acceleration))
+        _, first, second = driven(drive, angle)
+        asked = first * drive.acceleration + second * drive.speed**2
+        changes.append(np.linalg.solve(row.jacobian, row.bend + last * asked))
     q, v, a = np.array(found), np.array(rates), np.array(changes)
     columns = constraints.columns.items()
     return Poses(

@@ -166,7 +166,7 @@ class Batch:
         self.gathered = self.source.gathered
         self.march = March.of(self.source, self.base)
         rounds = machine.couplings or self.march
-        self.turns = self.base.cycle.turns if rounds else cycle.turns_of_loads(machine)
+        self.turns = self.base.cycle.turns if rounds else cycle.turns_given(machine)
         windings = self.base.cycle.windings if rounds else {}
         fastest = max((abs(turns) for turns in windings.values()), default=1) / self.turns
         self.slope = SLOPE * max(1.0, fastest)

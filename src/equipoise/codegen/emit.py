@@ -134,7 +134,8 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]
     if any(one.needs == "masses" for one in wanted):
         write_demands(writer)
-    if any("{joint " in (one.loop or "") for one in wanted):
+    passed = ["{joint "] if linkage.machine.drive.motion is None else ["{joint ", "{drive torque"]
+    if any(value in (one.loop or "") for one in wanted for value in passed):
         if any(isinstance(step, LoopGroup) for step in linkage.motion):
             raise UsageError("joint forces of groups of loops cannot be computed in a loop")
         write_joints(writer)

@@ -52,8 +52,10 @@ class Writer:
 
     def __init__(self, linkage: Linkage) -> None:
         self.linkage, self.machine, self.sheet = linkage, linkage.machine, Sheet()
-        self.counted = any(isinstance(step, RunningAngle) for step in linkage.motion)
-        self.orders: dict[str, float] = {FRAME: 0.0, self.machine.drive.link: 1.0}
+        drive = self.machine.drive
+        steps = any(isinstance(step, RunningAngle) for step in linkage.motion)
+        self.counted = steps or drive.motion is not None
+        self.orders: dict[str, float] = {FRAME: 0.0, drive.link: 1.0}
         self.points = set(self.machine.frame)
         self.apart: dict[str, str] = {}
 
@@ -105,14 +107,32 @@ def write_motion(writer: Writer) -> None:
         sheet.slot(f"p({name})", _frame_point(name), vector=True)
         sheet.put(f"p1({name})", "0j")
         sheet.put(f"p2({name})", "0j")
-    for link, rotation, rate in ((FRAME, "1 + 0j", "0.0"), (drive, writer.turned(1.0), "1.0")):
-        for name, value in zip(u(link), (rotation, rate, "0.0"), strict=True):
+    moved = _driven(writer)
+    for link, *values in ((FRAME, "1 + 0j", "0.0", "0.0"), (drive, *moved[1:])):
+        for name, value in zip(u(link), values, strict=True):
             sheet.put(name, value)
     if writer.counted:
         sheet.put(f"phi({FRAME})", "0.0")
-        sheet.put(f"phi({drive})", sheet.row("theta", lambda theta: theta, "theta"))
+        sheet.put(f"phi({drive})", moved[0])
     for number, step in enumerate(writer.linkage.motion):
         _write_step(writer, step, "motion", number)
+
+
+def _driven(writer: Writer) -> tuple[str, str, str, str]:
+    """Angle, rotation and rates of the driven link, which no design changes."""
+    sheet, drive = writer.sheet, writer.machine.drive
+    if drive.motion is None:
+        angle = sheet.row("theta", lambda theta: theta, "theta") if writer.counted else ""
+        return angle, writer.turned(1.0), "1.0", "0.0"
+    rows = {
+        "angle": lambda theta: drive.turned(theta)[0],
+        "cos": lambda theta: np.cos(drive.turned(theta)[0]),
+        "sin": lambda theta: np.sin(drive.turned(theta)[0]),
+        "first": lambda theta: drive.turned(theta)[1],
+        "second": lambda theta: drive.turned(theta)[2],
+    }
+    angle, cos, sin, *rates = (sheet.row(f"{name}({drive.link})", of) for name, of in rows.items())
+    return angle, f"({cos} + 1j * {sin})", rates[0], rates[1]
 
 
 def _frame_point(name: str) -> Read:
@@ -227,7 +247,8 @@ def write_demands(writer: Writer) -> None:
         force, moment = demand_names(link)
         writer.sheet.put(force, " + ".join(force for _, force, _ in parts))
         writer.sheet.put(moment, " + ".join(moment for _, _, moment in parts))
-    writer.sheet.put("drive torque", " + ".join(_drive_torques(writer)))
+    if writer.machine.drive.motion is None:  # else its work tells nothing where the link rests
+        writer.sheet.put("drive torque", " + ".join(_drive_torques(writer)))
 
 
 def _names(writer: Writer, cause: str, link: str) -> tuple[str, str]:
@@ -324,3 +345,5 @@ def write_joints(writer: Writer) -> None:
     for number, step in enumerate(writer.linkage.forces):
         _write_step(writer, step, "forces", number)
     writer.sheet.put(f"R({writer.linkage.pivot}/{drive})", writer.name(f"F({drive})"))
+    if writer.machine.drive.motion is not None:
+        writer.sheet.put("drive torque", writer.name(f"M({drive})"))

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
-from math import floor, pi
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,21 +11,14 @@ import numpy as np
 from equipoise.figures.linkage import drawn
 from equipoise.figures.shared import angle_step
 from equipoise.figures.style import short
-from equipoise.i18n import say, to_say
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.tip import TipCurve
-from equipoise.planting.ground import GroundPath
+from equipoise.figures.tip_paths import INSTANTS, Instant, Paths
+from equipoise.i18n import say
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, quantity
-from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import soil
 
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
 
-IN_TURN, SKETCHED = 720, 180
-"""In a turn: places of the path that are drawn; crank angles by which ways of blocks are found."""
-AHEAD = 2.5
-"""Largest width of what is shown over ground, over its height."""
 MOST_UNITS = 12
 SMALLER = 0.85
 """Size of the machine's signs, over that in a picture of their own."""
@@ -35,148 +26,12 @@ ABOVE, BELOW = 0.06, 0.16
 """Free above and below what is drawn, over its height."""
 ARROWS_IN = ((0.12, 0.45), (0.55, 0.88))
 """Between which parts of the way from exit to entry the heads of arrows are."""
-INSTANTS = {
-    "pick-up": to_say("pick-up"),
-    "entry": to_say("entry"),
-    "lowest": to_say("lowest"),
-    "release": to_say("release"),
-    "exit": to_say("exit"),
-}
-"""Instant of a planting stroke -> in words."""
-
-
-# -- places ----------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Instant:
-    """An instant on a path: its name, place (m, complex) and direction away from the path, deg."""
-
-    name: str
-    place: complex
-    away: float
-
-
-class Paths:
-    """Both paths of a machine in the sense of time, as places in m.
-
-    ``way`` is the crank angle that the drive has turned, rad.
-    """
-
-    def __init__(self, figures: PlantingFigures) -> None:
-        self.figures = figures
-        self.curve: TipCurve = figures.curve
-        self.ground = GroundPath(self.curve)
-        self.sense = self.ground.sense
-        self.level = figures["surface"]
-        self.tray = np.array([complex(*end) for end in figures.planting.tray or ()], complex)
-
-    @property
-    def drives(self) -> bool:
-        """Whether there is a path over ground."""
-        return self.figures["forward_speed"] != 0
-
-    @cached_property
-    def scene(self) -> Scene:
-        """The machine over its cycle and, last of all, at the lowest point of the tip."""
-        cycle = np.linspace(0, self.curve.period, SKETCHED * self.curve.turns, endpoint=False)
-        return Scene.of(move(self.figures.machine, [*cycle, self.figures["lowest.crank_angle"]]))
-
-    def way_of(self, name: str, after: float = 0.0) -> float:
-        """When an instant comes for the first time at or after another way."""
-        way = self.sense * self.figures[f"{name}.crank_angle"]
-        return after + float(np.mod(way - after, self.curve.period))
-
-    @cached_property
-    def start(self) -> float:
-        """When the drawing of the path over ground begins: high up before a hill."""
-        lowest = self.way_of("lowest")
-        if self.curve.turns > 1:
-            return lowest - pi
-        return lowest - float(np.mod(lowest - self.way_of("highest"), self.curve.period))
-
-    @cached_property
-    def travel(self) -> float:
-        """Crank angle over which the path over ground is drawn: two hills, or one long cycle."""
-        return 2 * pi * max(2, min(self.curve.turns, 4))
-
-    @cached_property
-    def ways(self) -> Array:
-        """Over which the path over ground is drawn."""
-        return self.start + np.linspace(0, self.travel, round(IN_TURN * self.travel / (2 * pi)) + 1)
-
-    @cached_property
-    def cycle(self) -> Array:
-        """Over which the path relative to the machine is drawn: closed."""
-        return np.linspace(0, self.curve.period, IN_TURN * self.curve.turns + 1)
-
-    def on_machine(self, ways: Array) -> Array:
-        """Places relative to the machine."""
-        places: Array = self.curve.at(self.sense * ways[None]).place[0]
-        return places
-
-    def over_ground(self, ways: Array) -> Array:
-        """Places over ground, counted from the first hill."""
-        hill = self.way_of("release", self.way_of("entry", self.start))
-        origin = float(self.ground.place(np.array([[hill]])).real[0, 0])
-        places: Array = self.ground.place(ways[None])[0] - origin
-        return places
-
-    def instants(self, over_ground: bool) -> Iterator[Instant]:
-        """Instants of the first hill that is drawn, on either path; over ground no pick-up."""
-        lowest = self.way_of("lowest", self.start)
-        for name in [*INSTANTS][1:] if over_ground else INSTANTS:
-            key = name.replace("-", "_")
-            released = key != "release" or self.figures.planting.release is not None
-            if f"{key}.crank_angle" in self.figures.figures and released:
-                before = key in ("entry", "pick_up")
-                way = self.way_of(key, lowest - self.curve.period if before else lowest)
-                yield Instant(name, *self.place_and_away(way, over_ground))
-
-    def place_and_away(self, way: float, over_ground: bool) -> tuple[complex, float]:
-        """Where the tip is, and the direction (deg) that points out of its path."""
-        near = np.array([way, way + 1e-3])
-        here, then = (self.over_ground if over_ground else self.on_machine)(near)
-        away = (then - here) * 1j * (1 if over_ground else self._turning)
-        return complex(here), float(np.degrees(np.angle(away)))
-
-    @cached_property
-    def _turning(self) -> float:
-        """1 where the left of the path relative to the machine is outside, else -1."""
-        places = self.on_machine(self.cycle)
-        area = float(np.sum(np.imag(np.conj(places[:-1]) * places[1:])))
-        return -1.0 if area > 0 else 1.0
-
-    def crossings(self) -> Iterator[complex]:
-        """Places over ground at which loops cross themselves, as far as they are drawn."""
-        period = self.curve.period
-        for loop in self.figures.loops:
-            first = self.sense * loop.first
-            first += period * -floor((first - self.start) / period)
-            while first + loop.way < self.start + self.travel:
-                yield complex(self.over_ground(np.array([first]))[0])
-                first += period
-
-    def span_over_ground(self, high: float) -> tuple[float, float]:
-        """From where to where that path is shown, m: less than two hills of a long way.
-
-        high : of the panel, m.
-        """
-        x, most = self.over_ground(self.ways).real, AHEAD * high
-        start, stop = float(np.min(x)), float(np.max(x))
-        if stop - start <= most:
-            return start, stop
-        shares = (0.3, 0.7) if self.figures["forward_speed"] > 0 else (0.7, 0.3)
-        return -most * shares[0], most * shares[1]
-
-
-# -- the picture -----------------------------------------------------------------------------------
 
 
 def path(figures: PlantingFigures) -> Chart:
     """The path relative to the machine with the linkage, and the path over ground."""
     paths = Paths(figures)
-    tip, drive = short(figures.planting.tip), short(figures.machine.drive.link)
+    tip, drive = short(figures.tip), short(figures.machine.drive.link)
     what = say(
         "Path of the tip {tip}, linkage at the lowest point; numbers: angle of {link}, deg",
         tip=tip,
@@ -191,9 +46,8 @@ def path(figures: PlantingFigures) -> Chart:
 
 def _held(paths: Paths) -> list[tuple[complex, complex]]:
     """Corners of what each panel shows, m: of one size, so that both have one scale."""
-    places = np.concatenate(
-        [paths.on_machine(paths.cycle), paths.scene.corners_at(-1), paths.tray, [1j * paths.level]]
-    )
+    every = [paths.on_machine(paths.cycle, arm) for arm in range(len(paths.curve.arms))]
+    places = np.concatenate([*every, paths.scene.corners_at(-1), paths.tray, [1j * paths.level]])
     low, high = float(np.min(places.imag)), float(np.max(places.imag))
     low, high = low - BELOW * (high - low), high + ABOVE * (high - low)
     spans = [(float(np.min(places.real)), float(np.max(places.real)))]
@@ -227,6 +81,7 @@ def _machine_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
         _axis(say("x in the frame")),
         _axis(say("height y in the frame")),
         (
+            *paths.of_further_arms(over_ground=False),
             *_path(paths, paths.on_machine(paths.cycle)),
             Curve.of(np.concatenate(across), "", "tick"),
         ),
@@ -257,7 +112,12 @@ def _ground_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
     return Panel(
         _axis(say("distance over ground")),
         _axis(say("height y in the frame")),
-        (*_other_units(paths, places), *_path(paths, places), *lines),
+        (
+            *_other_units(paths, places),
+            *paths.of_further_arms(over_ground=True),
+            *_path(paths, places),
+            *lines,
+        ),
         (*marks, spacing),
         arrows=(*_senses(paths, over_ground=True), *arrows),
         title=f"{way} →" if ahead else f"← {way}",
@@ -294,7 +154,8 @@ def _other_units(paths: Paths, places: Array) -> Iterator[Curve]:
     """Paths of other planting units of the same drive, which plant the hills between."""
     sense = np.sign(paths.figures["forward_speed"])
     for number in range(1, min(paths.figures.planting.units_per_turn, MOST_UNITS)):
-        x = places.real + sense * number * paths.figures["hill_spacing"]
+        spacing = len(paths.curve.arms) * paths.figures["hill_spacing"]
+        x = places.real + sense * number * spacing
         yield Curve(x, places.imag, "", "other unit")
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.figures.analysis import named
+from equipoise.figures.points import FORBIDDEN
 from equipoise.figures.shared import (
     ROOM,
     by_name,
@@ -52,7 +53,8 @@ def charts(figures: PlantingFigures) -> dict[str, Chart]:
     """Every chart of a planting machine by name.
 
     ``ratio-LINK`` for each link but the drive; ``velocity``, ``velocity-x``, ``velocity-y`` and the
-    same of ``acceleration``; ``torque`` and ``joints`` where there are forces in the soil.
+    same of ``acceleration``, for a further arm such as ``velocity-x-Q``; ``torque`` and ``joints``
+    where there are forces in the soil.
     """
     drawn: dict[str, Chart] = {}
     for link in figures.machine.links:
@@ -80,15 +82,24 @@ def soil_spans(figures: PlantingFigures) -> list[tuple[float, float]]:
 
 
 def stay_panel(
-    figures: PlantingFigures, y: Axis, curves: Sequence[Curve], marks: Sequence[Mark], **rest: Any
+    figures: PlantingFigures,
+    y: Axis,
+    curves: Sequence[Curve],
+    marks: Sequence[Mark],
+    arms: Sequence[PlantingFigures] = (),
+    **rest: Any,
 ) -> Panel:
-    """Signals over crank angle, with the stay in the soil shaded and its events."""
+    """Signals over crank angle, with the stay in the soil shaded and its events.
+
+    arms : whose stays are shaded; where not given, the one of which the figures are.
+    """
+    spans = [span for arm in arms or [figures] for span in soil_spans(arm)]
     return Panel(
         crank_axis(figures.machine.drive.link, figures["speed"], figures.curve.turns),
         y,
         tuple(curves),
         tuple(marks),
-        tuple(Band(low, high, "soil") for low, high in soil_spans(figures)),
+        tuple(Band(low, high, "soil") for low, high in spans),
         tuple(Line(figures[f"{name}.crank_angle"], name) for name in EVENTS),
         **rest,
     )
@@ -127,15 +138,17 @@ def ratio(figures: PlantingFigures, link: str) -> Chart:
 
 
 def tips(figures: PlantingFigures) -> Iterator[Chart]:
-    """Velocity and acceleration of the tip relative to the machine, and their parts."""
-    for name, (title, label, dimension, _) in QUANTITIES.items():
-        for part, (told, suffix) in PARTS.items():
-            values = tip_values(figures, name, part)
-            what = say(title, tip=short(figures.planting.tip))
-            what += f", {say(told)}" if told else ""
-            y = Axis.of(f"{say(label)}{suffix}", dimension, values, room=ROOM)
-            places = [*_extremes(figures, name, part)]
-            yield _chart(figures, name + part, what, y, values, places)
+    """Velocity and acceleration of each tip relative to the machine, and their parts."""
+    for number, arm in enumerate(figures.arms):
+        of = f"-{arm.tip.translate(FORBIDDEN)}" if number else ""
+        for name, (title, label, dimension, _) in QUANTITIES.items():
+            for part, (told, suffix) in PARTS.items():
+                values = tip_values(arm, name, part)
+                what = say(title, tip=short(arm.tip))
+                what += f", {say(told)}" if told else ""
+                y = Axis.of(f"{say(label)}{suffix}", dimension, values, room=ROOM)
+                places = [*_extremes(arm, name, part)]
+                yield _chart(arm, name + part + of, what, y, values, places)
 
 
 def tip_values(figures: PlantingFigures, name: str, part: str = "") -> Array:
@@ -228,4 +241,4 @@ def _air_and_soil(
     curves = [
         Curve(*closed(angles, values, period), names[role], role) for role, values in pair.items()
     ]
-    return stay_panel(figures, y, curves, marks, **rest)
+    return stay_panel(figures, y, curves, marks, figures.arms, **rest)

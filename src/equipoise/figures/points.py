@@ -48,7 +48,7 @@ def moving(motion: Motion) -> list[str]:
 
 
 def traced(motion: Motion) -> list[str]:
-    """Points with a path worth following: a planting tip, then those of couplers, first those that
+    """Points with a path worth following: planting tips, then those of couplers, first those that
     are no joint.
 
     A point of a link that is pinned to the frame runs on a circle; these come only where a machine
@@ -60,16 +60,21 @@ def traced(motion: Motion) -> list[str]:
     names = moving(motion)
     driven = [name for name in names if name not in machine.links[machine.drive.link].points]
     found = [name for name in names if name not in circling] or driven or names
-    tip = [] if machine.planting is None else [machine.planting.tip]
-    every = dict.fromkeys([*tip, *found])
-    return sorted(every, key=lambda name: (name not in tip, name in joints.pins))
+    tips = _tips(motion)
+    every = dict.fromkeys([*tips, *found])
+    return sorted(every, key=lambda name: (name not in tips, name in joints.pins))
+
+
+def _tips(motion: Motion) -> list[str]:
+    planting = motion.machine.planting
+    return [] if planting is None else [arm.tip for arm in planting.every_arm]
 
 
 def followed(motion: Motion) -> list[str]:
-    """Points whose paths are drawn where something moves: a planting tip alone, else the first of
+    """Points whose paths are drawn where something moves: planting tips alone, else the first of
     those with a path worth following.
     """
-    return traced(motion)[: MOST_PATHS if motion.machine.planting is None else 1]
+    return _tips(motion)[:MOST_PATHS] or traced(motion)[:MOST_PATHS]
 
 
 def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:

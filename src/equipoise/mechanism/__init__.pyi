@@ -5,6 +5,7 @@ from .bodies import Hole as Hole
 from .dynamics import Forces as Forces
 from .dynamics import forces as forces
 from .field import Planting as Planting
+from .field import PlantingArm as PlantingArm
 from .field import Soil as Soil
 from .field import SoilTable as SoilTable
 from .force_elements import Motor as Motor

@@ -70,9 +70,10 @@ class Cycle:
         return value + rise[..., None] * cycles  # type: ignore[no-any-return]
 
 
-def turns_of_loads(machine: Machine) -> int:
-    """Turns of the crank after which all loads of a machine are back."""
-    return lcm(*(load.table.turns for load in machine.loads if load.table is not None))
+def turns_given(machine: Machine) -> int:
+    """Turns of the crank after which the drive and all loads of a machine are back."""
+    loads = (load.table.turns for load in machine.loads if load.table is not None)
+    return lcm(machine.drive.turns, *loads)
 
 
 def close(machine: Machine, groups: Iterable[Group], near: Cycle | None = None) -> Cycle:
@@ -85,7 +86,7 @@ def close(machine: Machine, groups: Iterable[Group], near: Cycle | None = None) 
     RangeError, ChangePointError : the crank cannot turn fully, or not in a definite way.
     MotionError : the motion does not close within `MOST_TURNS` turns of the crank.
     """
-    base = turns = tried = turns_of_loads(machine)
+    base = turns = tried = turns_given(machine)
     while turns <= min(MOST_TURNS, MOST_LOOP_TURNS * base):
         tried = turns
         grid = _Grid(machine, turns, near)
@@ -125,8 +126,10 @@ class _Grid:
             self.state[f"near({name})"] = table
         self.done: list[Group] = []
         drive = machine.drive.link
-        self.windings = {FRAME: 0, drive: turns}
-        self.tables: dict[str, Array] = {drive: self.theta}
+        angle = self.state[f"phi({drive})"]
+        turned = round(float(angle[-1] - angle[0]) / (2 * pi))
+        self.windings: dict[str, int] = {FRAME: 0, drive: turned}
+        self.tables: dict[str, Array] = {drive: angle}
         self.weakest: dict[str, tuple[float, float]] = {}
 
     def add(self, group: Group) -> None:

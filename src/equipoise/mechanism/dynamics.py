@@ -113,13 +113,14 @@ class Forces:
 
     @property
     def drive_torque(self) -> Array:
-        """Torque of the drive on its link, N m; times speed it is the power fed in."""
+        """Torque of the drive on its link, N m; times that link's speed it is the power fed in."""
         return self.solved.drive_torque
 
     @property
     def power(self) -> Array:
         """Power fed in by the drive, W."""
-        return self.drive_torque * self.motion.speed
+        drive = self.motion.machine.drive.link
+        return self.drive_torque * self.motion.links[drive].angular_velocity
 
     @cached_property
     def joints(self) -> Mapping[str, JointForce]:

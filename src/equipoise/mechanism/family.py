@@ -95,9 +95,16 @@ class Family:
         state: State = {"theta": theta}
         for name, places in self._frame.items():
             state.update({f"p({name})": places, f"p1({name})": 0j, f"p2({name})": 0j})
-        drive = self.first.machine.drive.link
-        for link, rotation, rate in ((FRAME, 1 + 0j, 0.0), (drive, np.exp(1j * theta), 1.0)):
-            state.update({f"u({link})": rotation, f"w({link})": rate, f"a({link})": 0.0})
+        drives = [k.machine.drive for k in self.linkages]
+        angle, w, a = drives[0].turned(theta)
+        if any(drive.motion != drives[0].motion for drive in drives):
+            laws = zip(drives, theta, strict=True)
+            angle, w, a = map(np.array, zip(*(d.turned(row) for d, row in laws), strict=True))
+        for link, *values in (
+            (FRAME, 1 + 0j, 0.0, 0.0),
+            (drives[0].link, np.exp(1j * angle), w, a),
+        ):
+            state.update(zip(u(link), values, strict=True))
         return state
 
     def _one_by_one(self, theta: Array) -> State:

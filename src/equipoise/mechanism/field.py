@@ -20,13 +20,14 @@ from equipoise.keys import (
     Listing,
     Point,
     Table,
+    Tables,
     Text,
     Whole,
     declared,
     inside,
     key,
 )
-from equipoise.mechanism.checks import FRAME, Bodies, Vector, unknown
+from equipoise.mechanism.checks import FRAME, Bodies, Vector, numbered, unknown
 
 WAYS = ("forward", "backward")
 PARTS = ("resistance", "per_depth", "per_speed", "per_depth_and_speed")
@@ -92,6 +93,24 @@ class Soil(Frozen):
     )
 
 
+FINGER_FROM = (
+    "root of the finger, from which it points to the tip; the first other point of the tip's "
+    "link if left out"
+)
+RELEASE = "crank angle at which the seedling is let go; the lowest point if left out"
+
+
+@declared
+class PlantingArm(Frozen):
+    """A planting arm: a finger with its tip."""
+
+    called = to_say("{what} of planting arm {tip}")
+
+    tip: str = key(Text(of="point"), "point of a moving link that goes into the soil", example="Q")
+    finger_from: str | None = key(Text(of="point"), FINGER_FROM, default=None)
+    release: float | None = key("angle", RELEASE, default=None)
+
+
 @declared
 class Planting(Frozen):
     """The planting finger and the field that it works in."""
@@ -99,7 +118,7 @@ class Planting(Frozen):
     called = to_say("{what} of planting")
     file_order = ("tip", "forward_speed", "hill_spacing", "depth", "surface", "release",
              "acceleration_limit", "soil_acceleration_limit", "units_per_turn", "travel",
-             "finger_from", "tray", "soil")  # fmt: skip
+             "finger_from", "tray", "arms", "soil")  # fmt: skip
     conditions: ClassVar[Conditions] = {
         "allOf": [
             {"oneOf": [{"required": [one]}, {"required": [other]}]}
@@ -131,7 +150,10 @@ class Planting(Frozen):
         above=0,
     )
     units_per_turn: int = key(
-        Whole(1), "hills planted in a row in one turn of the drive", default=1, at_least=1
+        Whole(1),
+        "hills that each arm plants in a row in one turn of the drive",
+        default=1,
+        at_least=1,
     )
     travel: Literal["forward", "backward"] = key(
         Text(WAYS),
@@ -141,17 +163,8 @@ class Planting(Frozen):
     surface: float | None = key(
         "length", "height of the soil's surface in the frame, instead of `depth`", default=None
     )
-    finger_from: str | None = key(
-        Text(of="point"),
-        "root of the finger, from which it points to the tip; the first other point of the tip's "
-        "link if left out",
-        default=None,
-    )
-    release: float | None = key(
-        "angle",
-        "crank angle at which the seedling is let go; the lowest point if left out",
-        default=None,
-    )
+    finger_from: str | None = key(Text(of="point"), FINGER_FROM, default=None)
+    release: float | None = key("angle", RELEASE, default=None)
     tray: tuple[Vector, Vector] | None = key(
         Listing(Point(), (2,)),
         "both ends of the edge of the seedling tray, in the frame",
@@ -168,11 +181,27 @@ class Planting(Frozen):
         Table(Soil), "what the soil does to the tip below its surface", default=None
     )
 
+    arms: tuple[PlantingArm, ...] = key(
+        Tables(Table(PlantingArm)),
+        "further arms of the same drive, such as the second one of a rotary transplanter",
+        default=(),
+    )
+
+    @property
+    def every_arm(self) -> tuple[PlantingArm, ...]:
+        """All arms; the first is that of `tip`."""
+        return (PlantingArm(self.tip, self.finger_from, self.release), *self.arms)
+
+    @property
+    def hills_per_turn(self) -> int:
+        """Hills planted in a row in one turn of the drive, by all arms."""
+        return self.units_per_turn * (1 + len(self.arms))
+
     def forward(self, speed: float) -> float:
         """Velocity of the machine along x, m/s, at a speed of the drive, rad/s."""
         if self.forward_speed is None:
             assert self.hill_spacing is not None
-            size = self.hill_spacing * self.units_per_turn * abs(speed) / (2 * pi)
+            size = self.hill_spacing * self.hills_per_turn * abs(speed) / (2 * pi)
         else:
             size = self.forward_speed
         return size if self.travel == "forward" else -size
@@ -182,15 +211,10 @@ def wrong_planting(planting: Planting | None, bodies: Bodies) -> Iterator[ModelE
     """Everything that is wrong with the planting values of a machine."""
     if planting is None:
         return
-    links = [name for name, points in bodies.items() if name != FRAME and planting.tip in points]
-    if not links:
-        known = dict.fromkeys(point for name in bodies if name != FRAME for point in bodies[name])
-        yield ModelError("planting.tip", unknown(planting.tip, known, "point of a moving link"))
+    wrong = list(_wrong_arms(planting, bodies))
+    yield from wrong
+    if wrong:
         return
-    points = [point for point in bodies[links[0]] if point != planting.tip]
-    if planting.finger_from is not None and planting.finger_from not in points:
-        what = f"other point of {links[0]}, the tip's link,"
-        yield ModelError("planting.finger_from", unknown(planting.finger_from, points, what))
     if (planting.forward_speed is None) == (planting.hill_spacing is None):
         yield ModelError("planting", Note("give either forward_speed or hill_spacing"))
     if (planting.depth is None) == (planting.surface is None):
@@ -207,6 +231,28 @@ def wrong_planting(planting: Planting | None, bodies: Bodies) -> Iterator[ModelE
         )
     if planting.soil.table is not None:
         yield from _wrong_table("planting.soil.table", planting.soil.table)
+
+
+def _wrong_arms(planting: Planting, bodies: Bodies) -> Iterator[ModelError]:
+    places = ["planting", *(where for where, _ in numbered("planting.arms", planting.arms))]
+    tips: list[str] = []
+    for where, arm in zip(places, planting.every_arm, strict=True):
+        links = [name for name, points in bodies.items() if name != FRAME and arm.tip in points]
+        if not links:
+            moving = (bodies[name] for name in bodies if name != FRAME)
+            known = dict.fromkeys(point for points in moving for point in points)
+            yield ModelError(f"{where}.tip", unknown(arm.tip, known, "point of a moving link"))
+            continue
+        if arm.tip in tips:
+            yield ModelError(
+                f"{where}.tip",
+                Note("got {tip!r} again; give each arm a tip of its own", tip=arm.tip),
+            )
+        tips.append(arm.tip)
+        points = [point for point in bodies[links[0]] if point != arm.tip]
+        if arm.finger_from is not None and arm.finger_from not in points:
+            what = f"other point of {links[0]}, the tip's link,"
+            yield ModelError(f"{where}.finger_from", unknown(arm.finger_from, points, what))
 
 
 def _wrong_table(where: str, table: SoilTable) -> Iterator[ModelError]:

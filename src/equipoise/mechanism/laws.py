@@ -10,9 +10,7 @@ from collections.abc import Iterator
 from functools import cached_property
 from itertools import pairwise
 from math import degrees, pi
-from typing import Any, ClassVar, Literal
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
@@ -28,9 +26,13 @@ from equipoise.keys import (
     declared,
     key,
 )
-from equipoise.mechanism.curves import NORMAL, ROUNDING, Array, Curve, joined, sine, spline
 from equipoise.quantities import format_exact
 
+if TYPE_CHECKING:
+    from equipoise.mechanism.curves import Array, Curve
+
+LAWS = ("cycloidal", "modified sine", "modified trapezoid", "3-4-5", "4-5-6-7", "harmonic",
+        "s-curve", "trapezoid", "linear")  # fmt: skip
 SPLINES = {"cubic": 3, "quintic": 5}
 MOST_ROWS, MOST_TURNS = 720, 100
 CLOSED = 1e-9
@@ -48,7 +50,7 @@ class AngleSegment(Frozen):
 
     over: float = key("angle", OVER, above=0, word=to_say("crank angle taken"), example="120 deg")
     to: float = key("angle", "at its end", word=to_say("angle at the end"), example="30 deg")
-    law: str = key(Text((*NORMAL,)), LAW, default="cycloidal")
+    law: str = key(Text(LAWS), LAW, default="cycloidal")
 
 
 @declared
@@ -59,7 +61,7 @@ class LengthSegment(Frozen):
 
     over: float = key("angle", OVER, above=0, word=to_say("crank angle taken"), example="120 deg")
     to: float = key("length", "at its end", word=to_say("length at the end"), example="20 mm")
-    law: str = key(Text((*NORMAL,)), LAW, default="cycloidal")
+    law: str = key(Text(LAWS), LAW, default="cycloidal")
 
 
 class Law(Frozen):
@@ -97,6 +99,10 @@ class Law(Frozen):
     @cached_property
     def curve(self) -> Curve:
         """The value over the crank angle from `origin` on."""
+        import numpy as np
+
+        from equipoise.mechanism.curves import NORMAL, Curve, joined, sine, spline
+
         if self.between is not None:
             return sine(*self.between, self.period)
         if self.values:
@@ -126,13 +132,14 @@ class Law(Frozen):
 
     def value(self, crank_angle: Any) -> tuple[Array, Array, Array]:
         """The value and its first and second derivative by crank angle, at crank angles (...)."""
-        return self.curve.at(np.asarray(crank_angle) - self.origin)
+        return self.curve.at(crank_angle - self.origin)
 
     def jumps(self, order: int) -> Array:
         """Crank angles within a cycle (J,), rad, at which the derivative of this order jumps."""
-        angles = np.mod(self.curve.jumps(order) + self.origin, self.period)
-        near = self.period * (1 - ROUNDING)
-        return np.sort(np.where(angles > near, 0.0, angles))
+        angles = (self.curve.jumps(order) + self.origin) % self.period
+        angles[angles > self.period * (1 - CLOSED)] = 0.0
+        angles.sort()
+        return angles
 
     @property
     def windings(self) -> int:

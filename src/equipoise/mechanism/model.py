@@ -40,11 +40,10 @@ from equipoise.mechanism.checks import (
     too_many,
     unknown,
     unknown_link,
-    wrong_speeds,
     wrong_text,
 )
 from equipoise.mechanism.couplings import Coupling
-from equipoise.mechanism.drives import Drive
+from equipoise.mechanism.drives import Drive, wrong_drive
 from equipoise.mechanism.field import Planting, wrong_planting
 from equipoise.mechanism.force_elements import (
     Load,
@@ -52,7 +51,6 @@ from equipoise.mechanism.force_elements import (
     Spring,
     wrong_ends,
     wrong_load,
-    wrong_motor,
 )
 from equipoise.mechanism.gears import Gear, wrong_gear
 from equipoise.mechanism.links import (
@@ -284,7 +282,7 @@ LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
 
 def _problems(machine: Machine) -> Iterator[ModelError]:
     """Everything that is wrong with the values of a machine, the first things first."""
-    bodies, motor = machine.bodies, machine.drive.motor
+    bodies = machine.bodies
     yield from _too_much(machine)
     yield from wrong_values("", machine)
     yield from wrong_points("frame", machine.frame)
@@ -304,10 +302,7 @@ def _problems(machine: Machine) -> Iterator[ModelError]:
         for name in machine.position.angles:
             yield from unknown_link(f"position.angles.{name}", name, bodies)
     yield from wrong_planting(machine.planting, bodies)
-    if machine.drive.speeds:
-        yield from wrong_speeds("drive.speeds", machine.drive.speeds)
-    if motor is not None:
-        yield from wrong_motor("drive.motor", motor)
+    yield from wrong_drive(machine.drive)
     yield from wrong_support(machine.support, machine.rows)
     if machine.balance is not None:
         yield from machine.balance.problems(machine)

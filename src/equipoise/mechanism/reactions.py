@@ -262,11 +262,14 @@ def _loads(motion: Motion) -> Iterator[Acting]:
     for load in machine.loads:
         yield load.link, load.point, *load_at(load, motion.crank_angle)
     if machine.planting is not None and machine.planting.soil is not None:
-        yield tip_link(machine), machine.planting.tip, soil_force(motion), 0.0
+        for arm in machine.planting.every_arm:
+            yield tip_link(machine, arm.tip), arm.tip, soil_force(motion, arm.tip), 0.0
 
 
-def soil_force(motion: Motion) -> Array:
-    """Force of the soil on the tip (N,), N, complex; 0 above the surface.
+def soil_force(motion: Motion, tip: str | None = None) -> Array:
+    """Force of the soil on a tip (N,), N, complex; 0 above the surface.
+
+    tip : of any arm; of the first where not given.
 
     Raises
     ------
@@ -276,9 +279,9 @@ def soil_force(motion: Motion) -> Array:
     planting = motion.machine.planting
     if planting is None or planting.soil is None:
         return np.zeros(len(motion.crank_angle), complex)
-    tip = motion.points[planting.tip]
-    depth = surface_of(motion.machine) - tip.y
-    over_ground = tip.velocity + planting.forward(motion.speed)
+    point = motion.points[tip or planting.tip]
+    depth = surface_of(motion.machine) - point.y
+    over_ground = point.velocity + planting.forward(motion.speed)
     speed = np.abs(over_ground)
     size = np.where(depth > 0, resistance(planting.soil, depth, speed), 0.0)
     against = np.divide(-over_ground, speed, out=np.zeros_like(over_ground), where=speed > 0)

@@ -7,6 +7,7 @@ each of P machines, all solved in one call.  Samples only tell between which cra
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
@@ -16,7 +17,7 @@ import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.mechanism.family import Family, Triple, column
-from equipoise.mechanism.field import Planting
+from equipoise.mechanism.field import Planting, PlantingArm
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.steps import Array, State
@@ -181,8 +182,9 @@ class Tip:
 
 
 class TipCurve:
-    """The tip's path relative to the machine, of P machines of the same build.
+    """The path of an arm's tip relative to the machine, of P machines of the same build.
 
+    arm : the first.  arms : the curves of all arms, this one among them.
     grid_size : crank angles in a turn that are sampled.
     turns : of the crank in a cycle, if they are known; then nothing is checked.
 
@@ -197,10 +199,21 @@ class TipCurve:
     ) -> None:
         self.machines = tuple(machines)
         self.planting = planting_of(self.machines[0])
+        self.arm = self.planting.every_arm[0]
         self.link = tip_link(self.machines[0])
         self.family = Family([assemble(machine) for machine in self.machines])
         self.turns = self.family.first.cycle.turns if turns is None else turns
         self.theta = np.arange(grid_size * self.turns) * (2 * pi / grid_size)
+        self.arms: tuple[TipCurve, ...] = (self,)
+        self.arms += tuple(map(self._of_arm, self.planting.arms))
+        for curve in self.arms:
+            curve.arms = self.arms
+
+    def _of_arm(self, arm: PlantingArm) -> TipCurve:
+        """The curve of a further arm of the same machines."""
+        other = copy(self)
+        other.arm, other.link = arm, tip_link(self.machines[0], arm.tip)
+        return other
 
     @property
     def count(self) -> int:
@@ -230,7 +243,7 @@ class TipCurve:
     def at(self, theta: Array) -> Tip:
         """The tip at crank angles (P, K)."""
         state = self.family.solve(theta)
-        return Tip(theta, *self.point_of(state, self.planting.tip), state)
+        return Tip(theta, *self.point_of(state, self.arm.tip), state)
 
     def point_of(self, state: State, point: str, link: str | None = None) -> Triple:
         """A point of the tip's link, or of another, and its derivatives, (P, K)."""
@@ -261,7 +274,8 @@ class TipCurve:
         if self.planting.surface is not None:
             return np.full(self.count, self.planting.surface)
         depths = [planting_of(machine).depth for machine in self.machines]
-        level: Array = self.lowest[0] + np.array(depths)
+        lowest = np.min([one.lowest[0] for one in self.arms], axis=0)
+        level: Array = lowest + np.array(depths)
         return level
 
     def height(self, theta: Array) -> Any:
@@ -289,9 +303,9 @@ def planting_of(machine: Machine) -> Planting:
     return machine.planting
 
 
-def tip_link(machine: Machine) -> str:
-    """The first moving link that has the tip."""
-    tip = planting_of(machine).tip
+def tip_link(machine: Machine, tip: str | None = None) -> str:
+    """The first moving link that has a tip; that of the first arm where not given."""
+    tip = tip or planting_of(machine).tip
     return next(name for name, link in machine.links.items() if tip in link.points)
 
 

@@ -1,34 +1,30 @@
-"""What planting shows: instants of a stroke, path, soil, extremes; a search before and after."""
+"""What planting shows: instants of a stroke, path, soil, extremes, of each arm."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from math import pi
 from typing import TYPE_CHECKING, Any
 
-from equipoise.i18n import Note, say, to_say
-from equipoise.mechanism.assessment import remarks
-from equipoise.mechanism.linkage import assemble
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs import joint_named
+from equipoise.planting.arms import SHARED
 from equipoise.planting.names import (
     EXTREMES,
-    FIGURES,
     INSTANTS,
     OF_AN_INSTANT,
-    OTHERS,
     PATH,
     SOIL,
     Named,
     dimension_of,
-    figure_named,
 )
 from equipoise.planting.stroke import finger_base
 from equipoise.quantities import PER_RPM, Dimension, angle, number, told
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value, broken_if
 
 if TYPE_CHECKING:
-    from equipoise.planting.search import Fit
     from equipoise.planting.summary import PlantingFigures
 
 LIMITS = {"acceleration": to_say("all the way"), "soil_acceleration": to_say("in the soil")}
@@ -49,6 +45,12 @@ class Page:
 
     def get(self, name: str) -> float | None:
         return self.figures.figures.get(name)
+
+    def titled(self, title: str) -> str:
+        """A title, with the tip where there are several."""
+        if len(self.figures.curve.arms) == 1:
+            return title
+        return say("Tip {tip}. {title}", title=title, tip=self.figures.tip)
 
     def cell(self, name: str, scale: float = 0.0) -> Value | None:
         """A figure with its dimension; None where there is none."""
@@ -88,20 +90,25 @@ def planting_blocks(figures: PlantingFigures, zero: float = 0.0) -> Iterator[Blo
 
     zero : direction (rad) from which crank angles count.
     """
-    page = Page(figures, zero)
-    yield from map(Text, _heading(page))
-    yield _instants(page)
-    yield _values(say("Path of the tip"), PATH, page)
-    yield _values(say("In the soil"), SOIL, page)
-    yield _extremes(page)
-    for part in (_ratios, _visits, _loops, _clearances, _limits, _forces):
-        yield from part(page)
+    pages = [Page(arm, zero) for arm in figures.arms]
+    yield from map(Text, _heading(pages))
+    yield from map(_instants, pages)
+    yield _values(say("Path of the tip"), PATH, pages)
+    yield _values(say("In the soil"), SOIL, pages)
+    yield from map(_extremes, pages)
+    yield from _ratios(pages[0])
+    for part in (_visits, _loops):
+        for page in pages:
+            yield from part(page)
+    yield from _clearances(pages)
+    yield from _limits(pages)
+    yield from _forces(pages[0])
     if figures.notes:
         yield Notes(figures.notes)
 
 
-def _heading(page: Page) -> Iterator[str]:
-    figures = page.figures
+def _heading(pages: Sequence[Page]) -> Iterator[str]:
+    figures = pages[0].figures
     drive, speed = figures.machine.drive, figures["speed"]
     yield say(
         DRIVEN[0] if speed > 0 else DRIVEN[1],
@@ -110,18 +117,21 @@ def _heading(page: Page) -> Iterator[str]:
         travel=figures.planting.travel,
         forward=told(abs(figures["forward_speed"]), "speed"),
     )
-    base = finger_base(figures.curve)
-    tip = say("tip {tip} on {link}", tip=figures.planting.tip, link=figures.curve.link)
-    finger = [] if base is None else [say("finger from {base}", base=base)]
-    surface = told(figures["surface"], "length")
-    yield say(", ").join([tip, *finger, say("surface of the soil at y = {y}", y=surface)])
-    if page.zero:
-        yield say("Crank angles count from {angle}.", angle=angle(page.zero, 2))
+    for arm in figures.arms:
+        base = finger_base(arm.curve)
+        parts = [say("tip {tip} on {link}", tip=arm.tip, link=arm.curve.link)]
+        parts += [] if base is None else [say("finger from {base}", base=base)]
+        if arm is figures:
+            surface = told(figures["surface"], "length")
+            parts.append(say("surface of the soil at y = {y}", y=surface))
+        yield say(", ").join(parts)
+    if pages[0].zero:
+        yield say("Crank angles count from {angle}.", angle=angle(pages[0].zero, 2))
 
 
 def _instants(page: Page) -> Table:
     names = [name for name in INSTANTS if page.get(f"{name}.crank_angle") is not None]
-    if page.figures.planting.release is None:
+    if page.figures.curve.arm.release is None:
         names.remove("release")
     names = _in_time(page, names)
     angles = (page.turned(page.figures[f"{name}.crank_angle"]) for name in names)
@@ -137,7 +147,7 @@ def _instants(page: Page) -> Table:
         rows.append((say(one.words), *(page.cell(f"{name}.{key}", scale) for name, scale in pairs)))
     title = say("Instants; relative to the machine where nothing else is said, directions from x")
     columns = (Column(""), *(Column(say(INSTANTS[name])) for name in names))
-    return Table(title, columns, tuple(rows))
+    return Table(page.titled(title), columns, tuple(rows))
 
 
 def _in_time(page: Page, names: list[str]) -> list[str]:
@@ -148,13 +158,21 @@ def _in_time(page: Page, names: list[str]) -> list[str]:
     return sorted(names, key=lambda name: round(ways[name] - start, 9) % period)
 
 
-def _values(title: str, figures: dict[str, Named], page: Page) -> Table:
+def _values(title: str, figures: dict[str, Named], pages: Sequence[Page]) -> Table:
+    """Figures of all arms beside each other; what is of the machine stands with the first."""
+
+    def cell_of(page: Page, name: str) -> Cell:
+        shared = page is not pages[0] and name in SHARED
+        return None if shared else page.cell(name)
+
     rows = tuple(
-        (say(one.words), page.cell(name))
+        (say(one.words), *(cell_of(page, name) for page in pages))
         for name, one in figures.items()
-        if page.get(name) is not None
+        if any(page.get(name) is not None for page in pages)
     )
-    return Table(title, (Column(""), Column(say("value"))), rows)
+    several = len(pages) > 1
+    values = (say("tip {tip}", tip=p.figures.tip) if several else say("value") for p in pages)
+    return Table(title, (Column(""), *map(Column, values)), rows)
 
 
 def _extremes(page: Page) -> Table:
@@ -167,7 +185,8 @@ def _extremes(page: Page) -> Table:
         for name, one in EXTREMES.items()
     )
     columns = (Column(""), Column(say("value")), Column(say("direction"), "angle"))
-    return Table(say("Extremes relative to the machine, at crank angle"), columns, rows)
+    title = page.titled(say("Extremes relative to the machine, at crank angle"))
+    return Table(title, columns, rows)
 
 
 def _ratios(page: Page) -> Iterator[Block]:
@@ -189,7 +208,8 @@ def _visits(page: Page) -> Iterator[Block]:
     if len(rows) > 1:
         angles = (Column(label, "angle") for label in (say("entry"), say("exit"), say("deepest")))
         columns = (*angles, Column(say("depth"), "length", "mm"))
-        yield Table(say("Every stay in the soil; crank angles"), columns, rows)
+        title = page.titled(say("Every stay in the soil; crank angles"))
+        yield Table(title, columns, rows)
 
 
 def _loops(page: Page) -> Iterator[Block]:
@@ -207,20 +227,22 @@ def _loops(page: Page) -> Iterator[Block]:
         sizes = (say("crossing y"), say("height"), say("width"))
         columns = (*passes, *(Column(label, "length", "mm") for label in sizes))
         title = say("Loops of the path over ground; crank angles")
-        yield Table(title, (*columns, Column(say("crossing"))), rows)
+        yield Table(page.titled(title), (*columns, Column(say("crossing"))), rows)
     for cusp in page.figures.cusps:
         at = angle(page.from_zero(cusp), 2)
-        yield Text(say("Cusp of the path over ground at crank angle {angle}", angle=at))
+        text = say("Cusp of the path over ground at crank angle {angle}", angle=at)
+        yield Text(page.titled(text))
 
 
-def _clearances(page: Page) -> Iterator[Block]:
-    figures = page.figures
-    bodies = [*figures.machine.links, f"tip {figures.planting.tip}"]
+def _clearances(pages: Sequence[Page]) -> Iterator[Block]:
+    figures = pages[0].figures
+    bodies = dict.fromkeys(figures.machine.links, pages[0])
+    bodies |= {f"tip {page.figures.tip}": page for page in pages}
     grounds = {"soil": say("above the soil")}
     if figures.planting.tray is not None:
         grounds["tray"] = say("from the tray")
     rows: list[tuple[Cell, ...]] = []
-    for body in bodies:
+    for body, page in bodies.items():
         names = (f"clearance.{ground}.{body}" for ground in grounds)
         height = figures["curve.height"]
         cells = [page.at(f"{name}.value", f"{name}.crank_angle", height) for name in names]
@@ -231,16 +253,18 @@ def _clearances(page: Page) -> Iterator[Block]:
     yield Table(title, columns, tuple(rows))
 
 
-def _limits(page: Page) -> Iterator[Block]:
+def _limits(pages: Sequence[Page]) -> Iterator[Block]:
     """Limits of acceleration; a highest speed that is below the machine's stands out."""
-    speed = abs(page.figures.machine.drive.speed)
+    speed = abs(pages[0].figures.machine.drive.speed)
     rows: list[tuple[Cell, ...]] = []
-    for name, label in LIMITS.items():
+    for page, (name, label) in product(pages, LIMITS.items()):
         figures = ("limit", "highest_speed", "highest_forward_speed")
         limit, highest, forward = (page.cell(f"limits.{name}.{what}") for what in figures)
         if highest is not None:
             over = broken_if(speed > highest.value * (1 + 1e-9))
-            rows.append((say(label), limit, replace(highest, emphasis=over), forward))
+            of = say(label)
+            of = say("{what}, tip {tip}", what=of, tip=page.figures.tip) if pages[1:] else of
+            rows.append((of, limit, replace(highest, emphasis=over), forward))
     if rows:
         columns = (
             Column(""),
@@ -272,76 +296,4 @@ def _forces(page: Page) -> Iterator[Block]:
     yield Table(title, tuple(map(Column, labels)), tuple(rows))
 
 
-# -- a search of geometry --------------------------------------------------------------------------
-
-
-def fit_blocks(fit: Fit) -> Iterator[Block]:
-    """Goals, what was changed for them, and the figures before and after."""
-    yield Text(say("{count} designs judged, seed {seed}", count=fit.judged, seed=fit.seed))
-    yield _goals(fit)
-    yield _changes(fit)
-    yield _figures(fit)
-    missed = [figure_named(name) for name, met in fit.met.items() if not met]
-    notes: list[Note | str] = [*fit.after.notes, *remarks(assemble(fit.machine))]
-    if missed:
-        template = to_say(
-            "not met: {names}; widen the limits of [vary], loosen the goals, or try another seed"
-        )
-        notes.append(Note(template, names=", ".join(missed)))
-    if notes:
-        yield Notes(tuple(notes))
-
-
-def _told(figures: PlantingFigures | None, name: str) -> Cell:
-    value = None if figures is None else figures.figures.get(name)
-    return say("none") if value is None else _figure(value, name)
-
-
-def _figure(value: float, name: str) -> Value:
-    kind = dimension_of(name)
-    return Value(value, after=4) if kind is None else quantity(value, kind)
-
-
-def _goals(fit: Fit) -> Table:
-    words = {True: say("yes"), False: say("no"), None: ""}
-    rows: list[tuple[Cell, ...]] = []
-    for goal in fit.goals:
-        name, met = goal.figure, fit.met.get(goal.figure)
-        limits = (goal.target, goal.at_least, goal.at_most)
-        wanted = (None if value is None else _figure(value, name) for value in limits)
-        before, after = _told(fit.before, name), _told(fit.after, name)
-        if met is False and isinstance(after, Value):  # stands out
-            after = replace(after, emphasis="broken")
-        rows.append((figure_named(name), goal.make or "", *wanted, before, after, words[met]))
-    labels = (
-        *("", say("make"), say("wanted"), say("at least"), say("at most")),
-        *(say("before"), say("after"), say("met")),
-    )
-    return Table(say("Goals"), tuple(map(Column, labels)), tuple(rows))
-
-
-def _changes(fit: Fit) -> Table:
-    rows: list[tuple[Cell, ...]] = []
-    for one in fit.designs.variables:
-        values = (one.start, fit.values[one.name], one.low, one.high)
-        rows.append((one.name, *(quantity(value, one.dimension) for value in values)))
-    old, new = fit.designs.machine.drive.speed, fit.machine.drive.speed
-    if old != new:
-        pair = (quantity(speed, "angular speed") for speed in (old, new))
-        rows.append((say("crank speed"), *pair, None, None))
-    labels = ("", say("before"), say("after"), say("lowest allowed"), say("highest allowed"))
-    return Table(say("Changes"), tuple(map(Column, labels)), tuple(rows))
-
-
-def _figures(fit: Fit) -> Table:
-    asked = {goal.figure for goal in fit.goals}
-    rows: list[tuple[Cell, ...]] = []
-    for name in (*FIGURES, *OTHERS):
-        known = [f for f in (fit.before, fit.after) if f is not None and name in f.figures]
-        if name not in asked and known:
-            rows.append((figure_named(name), _told(fit.before, name), _told(fit.after, name)))
-    columns = (Column(""), Column(say("before")), Column(say("after")))
-    return Table(say("Other figures"), columns, tuple(rows))
-
-
-SHOWS: dict[str, Any] = {"PlantingFigures": planting_blocks, "Fit": fit_blocks}
+SHOWS: dict[str, Any] = {"PlantingFigures": planting_blocks}

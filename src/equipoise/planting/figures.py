@@ -7,8 +7,6 @@ where a design does not have it.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from functools import partial
-from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -24,10 +22,10 @@ from equipoise.mechanism.tip import (
     roots,
     smallest,
 )
+from equipoise.planting.clearance import clearances
 from equipoise.planting.stroke import (
     Figures,
     direction,
-    distance,
     finger_base,
     ground_drive,
     in_time,
@@ -35,12 +33,14 @@ from equipoise.planting.stroke import (
     instant,
     pick_up,
     release,
-    to_line,
     while_driving,
+    whole_cycle,
     wrapped,
 )
 from equipoise.signals import Array
 
+OF_MACHINE = ("ratio", "transmission")
+"""Groups of figures that are of no arm."""
 PANELS, SAMPLES_OF_TURN = 24, 720
 """Panels of the stay in which lengths are summed up, and samples of a turn."""
 
@@ -59,6 +59,8 @@ def tip_figures(
     breaks : (P, B) crank angles from entry to leave between which the path is smooth; None for
         equal panels.
     wanted : first parts of the names that are needed, such as ``curve``; None for all.
+
+    What is of the whole machine comes with the first of its arms.
     """
     instants: dict[str, Callable[[], Array]] = {
         "lowest": lambda: curve.lowest[1],
@@ -86,6 +88,8 @@ def tip_figures(
         "clearance": lambda name: clearances(curve, entry),
         **dict.fromkeys(instants, lambda name: instant(curve, name, instants[name]())),
     }
+    if curve is not curve.arms[0]:
+        groups = {name: group for name, group in groups.items() if name not in OF_MACHINE}
     known = [group(name) for name, group in groups.items() if wanted is None or name in wanted]
     return {name: values for found in known for name, values in found.items()}
 
@@ -279,7 +283,7 @@ def limits(curve: TipCurve, entry: Array, leave: Array) -> Figures:
     """
     result: Figures = {}
     for name, limit, ends in (
-        ("acceleration", curve.planting.acceleration_limit, _cycle(curve)),
+        ("acceleration", curve.planting.acceleration_limit, whole_cycle(curve)),
         ("soil_acceleration", curve.planting.soil_acceleration_limit, (entry, leave)),
     ):
         if limit is not None:
@@ -292,54 +296,3 @@ def limits(curve: TipCurve, entry: Array, leave: Array) -> Figures:
                 f"limits.{name}.highest_forward_speed": np.abs(ground_drive(curve)[:, 0]) * speed,
             }
     return result
-
-
-def _cycle(curve: TipCurve) -> tuple[Array, Array]:
-    """Crank angles (P,) of begin and end of the cycle."""
-    return np.zeros(curve.count), np.full(curve.count, curve.period)
-
-
-def clearances(curve: TipCurve, entry: Array) -> Figures:
-    """Smallest distance of each link from the soil and from the tray's edge.
-
-    A link is the lines between its points, the tip left out, which is meant to go into the soil
-    and to pass the edge.  The tip's own distance from the edge is 0 where it passes it.
-
-    entry : (P,) crank angles at which the tip enters the soil.
-    """
-    result: Figures = {}
-    tip, tray, links = curve.planting.tip, curve.planting.tray, curve.machines[0].links
-    outlines = {name: [p for p in link.points if p != tip] for name, link in links.items()}
-    outlines = {name: points for name, points in outlines.items() if points}
-
-    def places(theta: Array, link: str) -> Array:
-        state = curve.family.solve(theta)
-        return np.array([curve.point_of(state, point, link)[0] for point in outlines[link]])
-
-    def height(theta: Array, link: str) -> Any:
-        return np.min(places(theta, link).imag, axis=0) - curve.surface[:, None]
-
-    for link in outlines:
-        result |= _smallest(curve, f"clearance.soil.{link}", partial(height, link=link))
-    if tray is None:
-        return result
-    start, stop = (complex(*point) for point in tray)
-
-    def apart(theta: Array, link: str) -> Any:
-        found = places(theta, link)
-        lines = combinations(found, 2) if len(found) > 1 else [(found[0], found[0])]
-        return np.min([distance(a, b, start, stop) for a, b in lines], axis=0)
-
-    for link in outlines:
-        result |= _smallest(curve, f"clearance.tray.{link}", partial(apart, link=link))
-    name, passes = f"clearance.tray.tip {tip}", pick_up(curve, entry)
-    found = _smallest(curve, name, lambda theta: to_line(curve.at(theta).place, start, stop))
-    met = np.isfinite(passes)
-    found[f"{name}.value"][met] = 0.0
-    found[f"{name}.crank_angle"][met] = wrapped(curve, passes)[met]
-    return result | found
-
-
-def _smallest(curve: TipCurve, name: str, signal: Signal) -> Figures:
-    value, at = lowest_within(signal, *_cycle(curve), samples=len(curve.theta) + 1)
-    return {f"{name}.value": value, f"{name}.crank_angle": wrapped(curve, at)}

@@ -16,10 +16,9 @@ from equipoise.mechanism.family import Family
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, unknown
 from equipoise.mechanism.tip import TipCurve
+from equipoise.planting.arms import machine_figures
 from equipoise.planting.designs import Designs
-from equipoise.planting.figures import tip_figures
 from equipoise.planting.names import TURNING, dimension_of
-from equipoise.planting.stroke import soil_crossings
 from equipoise.signals import Array
 
 USUAL_SHARE = 0.01
@@ -227,11 +226,16 @@ def _figures(
     """Figures of designs by name, (P,); NaN where a design does not have one."""
     with np.errstate(all="ignore"):
         curve = TipCurve(machines, GRID, turns)
-        entry, leave = soil_crossings(curve)
-        found = tip_figures(curve, entry, leave, wanted=wanted)
-        lift, height = curve.highest[0] - curve.surface, curve.highest[0] - curve.lowest[0]
-        plants = np.isfinite(entry) & (lift > LEAST_LIFT * height)
+        found = machine_figures(curve, wanted)
+        plants = np.all([_plants(one) for one in curve.arms], axis=0)
         return {name: np.where(plants, values, np.nan) for name, values in found.items()}
+
+
+def _plants(curve: TipCurve) -> Array:
+    """Whether the tip reaches the soil, and rises well above it, (P,)."""
+    lift, height = curve.highest[0] - curve.surface, curve.highest[0] - curve.lowest[0]
+    plants: Array = (lift > LEAST_LIFT * height) & (curve.surface > curve.lowest[0])
+    return plants
 
 
 def figure_names(machine: Machine) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import NamedTuple
 
 from equipoise.i18n import say, to_say
@@ -49,6 +50,8 @@ PATH = {
     "curve.smallest_radius.value": Named(to_say("smallest radius of the curve"), "length"),
     "ground.smallest_radius.value": Named(to_say("smallest radius over ground"), "length"),
     "hill_spacing": Named(to_say("distance of hills"), "length"),
+    "hills.smallest_distance": Named(to_say("smallest distance of hills"), "length"),
+    "hills.largest_distance": Named(to_say("largest distance of hills"), "length"),
     "planting_frequency": Named(to_say("planting frequency"), "frequency"),
 }
 SOIL = {
@@ -91,12 +94,21 @@ DIMENSIONS: dict[str, Dimension] = {
     "highest_forward_speed": "speed",
 }
 """Of the others, by their name or its last part."""
+FIRST = {*INSTANTS, *(name.partition(".")[0] for name in FIGURES), "limits", "clearance"}
+ARM = re.compile(rf"arms\.(?P<tip>.+?)\.(?=(?:{'|'.join(FIRST)})\.)")
+"""Begin of the name of a figure of a further arm; tips may be called anything, with dots too."""
 TURNING = {"crank_angle", "direction", "attitude", "min_at", "max_at"}
 """Last parts of the names of angles that are the same after a turn."""
 
 
+def of_all_arms(figure: str) -> str:
+    """The name of a figure without that of its arm."""
+    return ARM.sub("", figure)
+
+
 def dimension_of(figure: str) -> Dimension | None:
     """Dimension of a figure such as ``curve.height``, or None for a plain number."""
+    figure = of_all_arms(figure)
     first, _, rest = figure.partition(".")
     last = figure.rpartition(".")[2]
     if last in TURNING:
@@ -113,6 +125,8 @@ def dimension_of(figure: str) -> Dimension | None:
 
 def figure_named(name: str) -> str:
     """A figure, such as ``pick_up.velocity.size``, in words, where there are any."""
+    if arm := ARM.match(name):
+        return say("{what}, tip {tip}", what=figure_named(name[arm.end() :]), tip=arm["tip"])
     known = FIGURES | LINKAGE
     if name in known:
         return say(known[name].words)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -54,6 +54,8 @@ class Fit(Result):
     steps : for each goal, what counts as one step away from its target.
     judged : number of designs.  seed : of the random numbers.
     """
+
+    shown_in: ClassVar[str] = "planting.fit_blocks"
 
     machine: Machine
     before: PlantingFigures | None

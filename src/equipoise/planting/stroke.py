@@ -60,8 +60,21 @@ def wrapped(curve: TipCurve, theta: Array) -> Array:
     return within_period(theta, curve.period)
 
 
+def whole_cycle(curve: TipCurve) -> tuple[Array, Array]:
+    """Crank angles (P,) of begin and end of the cycle."""
+    return np.zeros(curve.count), np.full(curve.count, curve.period)
+
+
 TOUCH = 1e-12
 """Share of the path's height within which the tip touches the surface and does not pass it."""
+
+
+def both_sides(curve: TipCurve) -> Array:
+    """Whether the tip both reaches and leaves the soil, (P,)."""
+    lowest, highest = curve.lowest[0], curve.highest[0]
+    touch = TOUCH * (highest - lowest)
+    both: Array = (curve.surface > lowest + touch) & (curve.surface < highest - touch)
+    return both
 
 
 @dataclass(frozen=True)
@@ -123,7 +136,18 @@ def _deepest(
 def _check_reach(curve: TipCurve, level: float) -> None:
     lowest, highest = float(curve.lowest[0][0]), float(curve.highest[0][0])
     touch = TOUCH * (highest - lowest)
-    tip, given = curve.planting.tip, curve.planting.depth
+    tip, given = curve.arm.tip, curve.planting.depth
+    if level <= lowest + touch and given is not None:
+        raise ModelError(
+            "planting.depth",
+            Note(
+                "got {place}; the tip {tip} never reaches the soil, its lowest point is {higher} "
+                "above that of the deepest; give more than that",
+                place=_mm(given),
+                tip=tip,
+                higher=_mm(lowest - level + given),
+            ),
+        )
     if level <= lowest + touch:
         raise ModelError(
             "planting.surface",
@@ -188,7 +212,7 @@ def soil_crossings(curve: TipCurve) -> tuple[Array, Array]:
 
 def release(curve: TipCurve) -> Array:
     """Crank angle (P,) at which the seedling is let go."""
-    given = curve.planting.release
+    given = curve.arm.release
     return curve.lowest[1] if given is None else np.full(curve.count, given)
 
 
@@ -221,10 +245,10 @@ def instant(curve: TipCurve, instant: str, theta: Array) -> Figures:
 
 def finger_base(curve: TipCurve) -> str | None:
     """The point from which the finger points to the tip, if the tip's link has one."""
-    if curve.planting.finger_from is not None:
-        return curve.planting.finger_from
+    if curve.arm.finger_from is not None:
+        return curve.arm.finger_from
     points = curve.machines[0].links[curve.link].points
-    return next((point for point in points if point != curve.planting.tip), None)
+    return next((point for point in points if point != curve.arm.tip), None)
 
 
 class Edge:

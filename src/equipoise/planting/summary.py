@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from math import isfinite, pi
@@ -19,6 +19,7 @@ from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import MOST_ANGLES, Motion, move
 from equipoise.mechanism.rates import PointMotion
 from equipoise.mechanism.tip import TipCurve
+from equipoise.planting.arms import SHARED, hills, of_arm
 from equipoise.planting.figures import tip_figures
 from equipoise.planting.ground import GroundPath, Loop
 from equipoise.planting.stroke import Visit, finger_base, tray_crossings, visits, wrapped
@@ -69,6 +70,7 @@ class PlantingFigures(Result):
     loops, cusps : of the path over ground.
     tray_crossings : crank angles (rad) at which the tip passes the tray's edge.
     notes : what a reader has to know, in sentences.
+    further : the same of each further arm; `figures` has theirs too: ``arms.Q.curve.height``.
     """
 
     curve: TipCurve
@@ -78,6 +80,7 @@ class PlantingFigures(Result):
     cusps: tuple[float, ...]
     tray_crossings: tuple[float, ...]
     notes: tuple[Note, ...]
+    further: tuple[PlantingFigures, ...] = ()
 
     def __getitem__(self, name: str) -> float:
         return self.figures[name]
@@ -90,6 +93,16 @@ class PlantingFigures(Result):
     def planting(self) -> Planting:
         return self.curve.planting
 
+    @property
+    def tip(self) -> str:
+        """Of the arm."""
+        return self.curve.arm.tip
+
+    @property
+    def arms(self) -> tuple[PlantingFigures, ...]:
+        """Those of each arm, the first among them."""
+        return (self, *self.further)
+
     @cached_property
     def forces(self) -> SoilForces | None:
         """Forces in the soil and in the air; None where no soil or not every mass is given."""
@@ -100,23 +113,29 @@ class PlantingFigures(Result):
 
         wanted : keys that are needed of those that take time; None for all.
         """
-        result: dict[str, Any] = {
-            "title": self.machine.title,
-            "tip": self.planting.tip,
-            "finger_from": finger_base(self.curve),
-        }
-        for name, value in self.figures.items():
-            _nest(result, name, value)
-        result["visits"] = [asdict(visit) for visit in self.visits]
-        result["loops"] = [asdict(loop) for loop in self.loops]
-        result["cusps"] = list(self.cusps)
-        result["tray_crossings"] = list(self.tray_crossings)
+        result: dict[str, Any] = {"title": self.machine.title, **self._of_arm()}
+        if self.further:
+            result["arms"] = {
+                one.tip: {key: value for key, value in one._of_arm().items() if key not in SHARED}
+                for one in self.further
+            }
         if (wanted is None or "forces" in wanted) and self.forces is not None:
             result["forces"] = {
                 name: {"in_air": _of(air), "in_soil": _of(soil)}
                 for name, (air, soil) in self.forces.compared().items()
             }
         result["notes"] = list(map(str, self.notes))
+        return result
+
+    def _of_arm(self) -> dict[str, Any]:
+        result: dict[str, Any] = {"tip": self.tip, "finger_from": finger_base(self.curve)}
+        for name, value in self.figures.items():
+            if not name.startswith("arms."):
+                _nest(result, name, value)
+        result["visits"] = [asdict(visit) for visit in self.visits]
+        result["loops"] = [asdict(loop) for loop in self.loops]
+        result["cusps"] = list(self.cusps)
+        result["tray_crossings"] = list(self.tray_crossings)
         return result
 
 
@@ -152,6 +171,22 @@ def plant(machine: Machine, speed: float | None = None) -> PlantingFigures:
     curve = TipCurve([machine])
     if machine.drive.speed == 0:
         raise ModelError("drive.speed", "got 0; give the speed at which the crank turns")
+    first, *further = map(_read_off, curve.arms)
+    known = dict(first.figures)
+    known |= {name: float(value[0]) for name, value in hills(curve).items() if isfinite(value[0])}
+    for arm in further:
+        known |= of_arm(arm.tip, arm.figures)
+    notes = tuple(note for arm in (first, *further) for note in arm.notes)
+    return replace(
+        first,
+        figures=Named("figure", known.items()),
+        further=tuple(further),
+        notes=(*_machine_notes(curve, known), *notes),
+    )
+
+
+def _read_off(curve: TipCurve) -> PlantingFigures:
+    """What one arm plants."""
     path, stays = GroundPath(curve), visits(curve)
     main = stays[0]
     breaks = path.sense * path.breaks(path.sense * main.entry, path.sense * main.exit)
@@ -159,6 +194,7 @@ def plant(machine: Machine, speed: float | None = None) -> PlantingFigures:
     crossed = tray_crossings(curve)
     values = _of_drive(curve) | {name: float(value[0]) for name, value in found.items()}
     known = Named("figure", ((n, value) for n, value in values.items() if isfinite(value)))
+    notes = _notes(curve, stays, crossed, known)
     return PlantingFigures(
         curve=curve,
         figures=known,
@@ -166,8 +202,12 @@ def plant(machine: Machine, speed: float | None = None) -> PlantingFigures:
         loops=path.loops(),
         cusps=path.cusps(),
         tray_crossings=crossed,
-        notes=tuple(_notes(curve, stays, crossed, known)),
+        notes=tuple(notes if len(curve.arms) == 1 else _named(curve.arm.tip, notes)),
     )
+
+
+def _named(tip: str, notes: Iterable[Note]) -> Iterator[Note]:
+    return (Note("tip {tip}: {note}", tip=tip, note=note) for note in notes)
 
 
 def _of(figures: Figures) -> dict[str, float]:
@@ -185,8 +225,8 @@ def _of_drive(curve: TipCurve) -> dict[str, float]:
     return {
         "speed": speed,
         "forward_speed": forward,
-        "hill_spacing": way / curve.planting.units_per_turn,
-        "planting_frequency": abs(speed) / (2 * pi) * curve.planting.units_per_turn,
+        "hill_spacing": way / curve.planting.hills_per_turn,
+        "planting_frequency": abs(speed) / (2 * pi) * curve.planting.hills_per_turn,
     }
 
 
@@ -204,47 +244,51 @@ def _collisions(known: Mapping[str, float]) -> Iterator[Note]:
             yield Note("{link} goes through the tray's edge", link=link)
 
 
+def _machine_notes(curve: TipCurve, known: Mapping[str, float]) -> Iterator[Note]:
+    """What is of no arm alone."""
+    if curve.forward[0, 0] == 0:
+        yield Note(
+            "forward_speed is 0: there is no path over ground, and the figures of"
+            " that path are left out"
+        )
+    if curve.planting.units_per_turn > 1:
+        yield Note(
+            "units_per_turn is {units_per_turn}: soil loads, and clearances "
+            "without the tip, are those of the tips named, not of the other "
+            "units",
+            units_per_turn=curve.planting.units_per_turn,
+        )
+    yield from _collisions(known)
+
+
 def _notes(
     curve: TipCurve,
     stays: tuple[Visit, ...],
     crossed: tuple[float, ...],
     known: Mapping[str, float],
 ) -> Iterator[Note]:
-    planting = curve.planting
-    if curve.forward[0, 0] == 0:
-        yield Note(
-            "forward_speed is 0: there is no path over ground, and the figures of"
-            " that path are left out"
-        )
+    arm = curve.arm
     if len(stays) > 1:
         yield Note(
             "the tip is in the soil {count} times a cycle; entry, exit and lowest"
             " point are those of the deepest stay",
             count=len(stays),
         )
-    if planting.tray is not None and not crossed:
+    if curve.planting.tray is not None and not crossed:
         yield Note("the tip never passes the tray's edge, so that it picks up nothing")
-    if planting.units_per_turn > 1:
-        yield Note(
-            "units_per_turn is {units_per_turn}: soil loads, and clearances "
-            "without the tip, are those of the one tip named, not of the other "
-            "units",
-            units_per_turn=planting.units_per_turn,
-        )
-    if planting.release is not None and known["release.y"] > known["surface"]:
+    if arm.release is not None and known["release.y"] > known["surface"]:
         yield Note("the seedling is let go above the surface of the soil")
-    yield from _collisions(known)
     base = finger_base(curve)
     if base is not None and "soil.hole_length" not in known and curve.forward[0, 0] != 0:
         yield Note(
             "{base} is below the surface at entry or exit, so that no length of a hole is told",
             base=base,
         )
-    if planting.finger_from is None and base is not None:
+    if arm.finger_from is None and base is not None:
         yield Note(
             "the finger is taken from {base} to {tip}; finger_from can name another",
             base=base,
-            tip=planting.tip,
+            tip=arm.tip,
         )
 
 
@@ -267,10 +311,12 @@ def table(figures: PlantingFigures, angles: int = 360) -> list[tuple[str, str, A
         ("crank_angle", "rad", np.mod(motion.crank_angle, 2 * pi * turns)),
         ("time", "s", time),
     ]
-    columns += _columns("tip", motion.points[figures.planting.tip], time, forward)
-    if figures.curve.link in motion.mass_centers:
-        center = motion.mass_centers[figures.curve.link]
-        columns += _columns("center_of_mass", center, time, forward)
+    for arm in figures.arms:
+        of = "" if arm is figures else f" {arm.tip}"
+        columns += _columns(f"tip{of}", motion.points[arm.tip], time, forward)
+        if arm.curve.link in motion.mass_centers:
+            center = motion.mass_centers[arm.curve.link]
+            columns += _columns(f"center_of_mass{of}", center, time, forward)
     return columns
 
 

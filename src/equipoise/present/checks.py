@@ -9,7 +9,7 @@ from equipoise.errors import ModelError
 from equipoise.handheld.design_plan import OUTPUTS
 from equipoise.handheld.hand_blocks import varied_named
 from equipoise.mechanism.assessment import remarks
-from equipoise.mechanism.cycle import turns_of_loads
+from equipoise.mechanism.cycle import turns_given
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.loads import work_in_cycle
@@ -43,7 +43,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     )
     yield from map(Text, _build_up(linkage))
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
-    repeats = "motion repeats" if turns_of_loads(machine) == 1 else "motion and loads repeat"
+    repeats = "motion repeats" if turns_given(machine) == 1 else "motion and loads repeat"
     yield Text(f"the crank turns fully; the {repeats} after {turns}")
     yield from bodies_tables(machine)
     yield from map(Text, (*_springs(machine), *_drive_train(machine), *_support(machine)))

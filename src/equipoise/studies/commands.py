@@ -184,7 +184,7 @@ def _of_command(study: Study, numbers: Sequence[int], command: str) -> list[Requ
     raise ModelError(where, f"equipoise {command} cannot compute the model: {first}") from first
 
 
-OF_ONE = {"visits", "loops", "cusps", "tray_crossings", "forces"} | {
+OF_ONE = {"visits", "loops", "cusps", "tray_crossings", "forces", "arms"} | {
     *("speed", "forward_speed", "hill_spacing", "planting_frequency")
 }
 """Keys of what `plant` reads off one machine, not off a curve of many."""

@@ -293,18 +293,14 @@ def _sizes(table: Any) -> Iterator[float]:
 def planting_figures(machines: Sequence[Machine], steps: Sequence[Sequence[Step]]) -> Array:
     """Figures (P, m) of machines of one build whose cranks turn fully; NaN where one is missing."""
     from equipoise.mechanism.tip import TipCurve
-    from equipoise.planting.figures import tip_figures
-    from equipoise.planting.stroke import TOUCH, soil_crossings
+    from equipoise.planting.arms import machine_figures
+    from equipoise.planting.stroke import both_sides
 
     curve = TipCurve(machines)
-    entry, leave = soil_crossings(curve)
-    lowest, highest = curve.lowest[0], curve.highest[0]
-    touch = TOUCH * (highest - lowest)
-    plants = (curve.surface > lowest + touch) & (curve.surface < highest - touch)
-    plants &= curve.speed[:, 0] != 0
+    plants = np.all([both_sides(one) for one in curve.arms], axis=0) & (curve.speed[:, 0] != 0)
     names = [".".join(map(str, one)) for one in steps]
     wanted = {str(one[0]) for one in steps}
-    found = tip_figures(curve, entry, leave, wanted=wanted)
+    found = machine_figures(curve, wanted)
     columns = [found.get(name, np.full(len(machines), np.nan)) for name in names]
     table: Array = np.where(plants[:, None], np.stack(columns, axis=1), np.nan)
     return table

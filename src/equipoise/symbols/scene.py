@@ -292,7 +292,8 @@ def _field(motion: Motion) -> Field | None:
         surface = surface_of(motion.machine)
     except EquipoiseError:  # it cannot turn all the way round
         return None
-    lowest = float(motion.points[planting.tip].place.imag.min())
+    places = [motion.points[arm.tip].place.imag for arm in planting.every_arm]
+    lowest = float(np.min(places))
     depth = surface - lowest if planting.depth is None else planting.depth
     return Field(surface, max(depth, 0.0), tuple(complex(*end) for end in planting.tray or ()))
 

@@ -106,11 +106,13 @@ def moves_of(scene: Scene, block: Block) -> None:
 
 
 def ground_of(found: Solved, block: Block) -> Values:
-    """Path of a planting tip over ground, for the block, and the soil that it goes into."""
+    """Paths of planting tips over ground, for the block, and the soil that they go into."""
     planting, speed = found.analysis.machine.planting, found.motion.speed
     if planting is None or speed == 0:
         return {}
     scene = found.scene
     way = planting.forward(speed) / speed * scene.crank_angle
-    block.add(f"ground.{planting.tip}", scene.places[planting.tip] + way)
-    return {"planting": {"tip": planting.tip, "surface": surface_of(found.analysis.machine)}}
+    tips = [arm.tip for arm in planting.every_arm]
+    for tip in tips:
+        block.add(f"ground.{tip}", scene.places[tip] + way)
+    return {"planting": {"tips": tips, "surface": surface_of(found.analysis.machine)}}

@@ -17,7 +17,7 @@ from equipoise.mechanism.outputs import joint_named
 from equipoise.mechanism.strokes import declared_figures, dimension_of
 from equipoise.mechanism.support import FREEDOMS, PLANAR
 from equipoise.planting.blocks import cell
-from equipoise.planting.names import FIGURES
+from equipoise.planting.names import FIGURES, figure_named, of_all_arms
 from equipoise.planting.summary import PlantingFigures, plant
 from equipoise.quantities import Dimension, display
 from equipoise.results.analysis import Analysis
@@ -253,8 +253,8 @@ def _planted(found: Solved) -> _Figures:
         return {}
     figures = planted(found).figures
     return {
-        name: _Told(say(one.words), float(figures[name]), told.dimension, told.unit)
-        for name, one in FIGURES.items()
+        name: _Told(figure_named(name), float(figures[name]), told.dimension, told.unit)
+        for name in (*FIGURES, *(name for name in figures if of_all_arms(name) in FIGURES))
         if name in figures
         for told in [cell(float(figures[name]), name)]
         if told is not None

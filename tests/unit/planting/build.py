@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import equipoise as eq
-from equipoise.mechanism.field import Planting
+from equipoise.mechanism.field import Planting, PlantingArm
 from equipoise.mechanism.rates import PointMotion
 from equipoise.planting.summary import PlantingFigures
 
@@ -59,6 +59,38 @@ def planetary(speed: float = 20.0, teeth: int = 30, **planting: Any) -> eq.Machi
 def planetary_tip(theta: Array, teeth: int = 30) -> Array:
     return np.asarray(
         ARM * np.exp(1j * theta) + FINGER * np.exp(1j * (START + (1 - 40 / teeth) * theta))
+    )
+
+
+def two_arms(apart: float = np.pi, speed: float = 20.0, **planting: Any) -> eq.Machine:
+    """The bundled planetary arm, and a second one like it, ahead on the carrier by an angle.
+
+    At theta the second tip is where the first one is at theta + apart.
+    """
+    given = {"tip": "P", "forward_speed": 0.5, "depth": 0.03, "arms": (PlantingArm("Q"),)}
+    machine = eq.load("planetary-planting-arm")
+    carrier, idler, planet = machine.links.values()
+    ahead = {new: complex(*carrier.points[old]) * np.exp(1j * apart)
+             for old, new in (("B", "D"), ("C", "E"))}  # fmt: skip
+    points = {**carrier.points, **{name: (z.real, z.imag) for name, z in ahead.items()}}
+    first, second = machine.gears
+    return replace(
+        machine,
+        links={
+            "carrier": carrier.altered(points=points),
+            "idler": idler,
+            "planet": planet,
+            "idler 2": idler.altered(points={"D": (0.0, 0.0)}),
+            "planet 2": planet.altered(points={"E": (0.0, 0.0), "Q": planet.points["P"]}),
+        },
+        gears=(
+            first,
+            second,
+            replace(first, driven="idler 2"),
+            replace(second, driver="idler 2", driven="planet 2", start=START - apart),
+        ),
+        drive=eq.Drive("carrier", speed),
+        planting=Planting(**given | planting),
     )
 
 

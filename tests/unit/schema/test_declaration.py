@@ -20,6 +20,7 @@ from equipoise.mechanism import (
     counterweights,
     field,
     force_elements,
+    laws,
     links,
     mounts,
     objectives,
@@ -48,9 +49,11 @@ PAGE = Path(__file__).parents[3] / "docs" / "model-file.md"
 DOCUMENTED: dict[str, type[Frozen]] = {
     of.__name__: of
     for of in (
-        Machine, shown_units.ShownUnits, parts.Drive, force_elements.Motor, Frame, links.Link,
+        Machine, shown_units.ShownUnits, parts.Drive, laws.AngleLaw,
+        laws.AngleSegment, force_elements.Motor, Frame, links.Link,
         bodies.Body, bodies.Hole, parts.Slider, parts.Gear,
-        force_elements.Load, Spring, Position, field.Planting, field.Soil, support.Support,
+        force_elements.Load, Spring, Position, field.Planting, field.PlantingArm,
+        field.Soil, support.Support,
         mounts.Mount, support.Row, balance.Balance, weights.CenterMove,
         weights.AddedMass, weights.Weight, counterweights.GearedWeight,
         counterweights.BalanceShafts,

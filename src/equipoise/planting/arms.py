@@ -1,0 +1,67 @@
+"""Figures of all arms of a machine together, for one machine or for many designs of it at once."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from typing import TypeVar
+
+import numpy as np
+
+from equipoise.mechanism.tip import TipCurve
+from equipoise.planting.figures import tip_figures
+from equipoise.planting.stroke import Figures, release, soil_crossings
+from equipoise.signals import Array
+
+Value = TypeVar("Value")
+
+SHARED = ("surface", "speed", "forward_speed", "hill_spacing", "planting_frequency")
+"""Figures that are the same of all arms."""
+
+
+def of_arm(tip: str, figures: Mapping[str, Value]) -> Iterator[tuple[str, Value]]:
+    """Figures of a further arm as those of its machine: ``arms.Q.curve.height``."""
+    return ((f"arms.{tip}.{name}", value) for name, value in figures.items() if name not in SHARED)
+
+
+def machine_figures(curve: TipCurve, wanted: Collection[str] | None = None) -> Figures:
+    """Every figure of the first arm, of the further ones, and of the hills of all.
+
+    wanted : first parts of the names that are needed, such as ``curve``; None for all.
+    """
+    first, *further = curve.arms
+    found = tip_figures(first, *soil_crossings(first), wanted=wanted)
+    if wanted is None or "hills" in wanted:
+        found |= hills(curve)
+    if wanted is None or "arms" in wanted:
+        for arm in further:
+            found |= of_arm(arm.arm.tip, tip_figures(arm, *soil_crossings(arm)))
+    return found
+
+
+def hills(curve: TipCurve) -> Figures:
+    """Distances over ground from hill to hill of a row, where each arm plants one a turn.
+
+    NaN for a machine at rest.
+    """
+    if len(curve.arms) < 2 or curve.turns > 1 or curve.planting.units_per_turn > 1:
+        return {}
+    sense, forward = np.sign(curve.speed[:, 0]), curve.forward[:, 0]
+    row = np.abs(forward) * curve.period / np.abs(curve.speed[:, 0])
+    places = np.stack([_hill(one, sense) for one in curve.arms], axis=1)
+    with np.errstate(invalid="ignore"):
+        along = np.sort(np.mod(places, row[:, None]), axis=1)
+        apart = np.diff(along, axis=1, append=along[:, :1] + row[:, None])
+    drives = np.where(row > 0, 1.0, np.nan)
+    return {
+        "hills.smallest_distance": np.min(apart, axis=1) * drives,
+        "hills.largest_distance": np.max(apart, axis=1) * drives,
+    }
+
+
+def _hill(curve: TipCurve, sense: Array) -> Array:
+    """Place over ground (P,), m, at which an arm lets a seedling go."""
+    theta = release(curve)
+    way = np.mod(sense * theta, curve.period)
+    place = curve.at(theta[:, None]).place[:, 0].real
+    result: Array = place + way * curve.forward[:, 0] / np.abs(curve.speed[:, 0])
+    return result
