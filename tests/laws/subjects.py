@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 import equipoise as eq
 from equipoise.mechanism.field import Soil, SoilTable
+from support import machines_cams
 from support.loads import force_and_torque, has_soil, soil_force, tips_of
 from support.machines import KINDS, make
 
@@ -30,7 +31,7 @@ ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 @cache
 def names() -> tuple[str, ...]:
     """Names of all subjects: examples, one in soil, and kinds of random machines with a seed."""
-    random = (f"{kind}:{seed}" for kind in KINDS for seed in SEEDS)
+    random = (f"{kind}:{seed}" for kind in (*KINDS, *machines_cams.KINDS) for seed in SEEDS)
     return (*sorted(eq.examples("linkage")), IN_SOIL, *random)
 
 
@@ -41,7 +42,8 @@ def machine_of(name: str) -> eq.Machine:
         return in_soil()
     kind, _, seed = name.partition(":")
     # What may be changed of it does nothing to what is analysed, and its names need not follow.
-    found = make(kind, int(seed)).machine if seed else eq.load(name).with_balance(None)
+    made = machines_cams.make if kind in machines_cams.KINDS else make
+    found = made(kind, int(seed)).machine if seed else eq.load(name).with_balance(None)
     return spelled_out(found)
 
 
@@ -147,7 +149,7 @@ def outputs(found: eq.mechanism.Forces) -> Iterator[tuple[str, Array]]:
         yield name, getattr(found, name).value
     for name in ("shaking_moment", "frame_moment", "drive_torque"):
         yield name, getattr(found, name)
-    for family in ("joints", "gears"):
+    for family in ("joints", "gears", "cams"):
         yield from family_of(family, getattr(found, family))
 
 

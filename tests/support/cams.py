@@ -104,10 +104,16 @@ class Cut:
     def rest(self) -> tuple[float, float]:
         """The follower's displacement on the base circle, and the sense in which it rises."""
         size = 20 * (abs(self.pivot) + self.cam.radius + abs(self.rider(0.0)[0]))
-        ways = np.linspace(0, 2 * np.pi, 2001) if self.slider is None else np.linspace(-size, size, 20001)
+        ways = (
+            np.linspace(0, 2 * np.pi, 2001)
+            if self.slider is None
+            else np.linspace(-size, size, 20001)
+        )
         gaps = np.array([self.distance(way) - self.cam.radius for way in ways])
         for k in np.flatnonzero(gaps[:-1] * gaps[1:] < 0):
-            found = brentq(lambda w: self.distance(w) - self.cam.radius, ways[k], ways[k + 1], xtol=1e-15)
+            found = brentq(
+                lambda w: self.distance(w) - self.cam.radius, ways[k], ways[k + 1], xtol=1e-15
+            )
             if self.is_right(found):
                 rises = self.distance(found + 1e-6) > self.distance(found)
                 return float(found), 1.0 if rises else -1.0
@@ -195,7 +201,9 @@ class Cammed(Constraints):
             return Row(base.residual + _pair(c) - rides.residual, jacobian, bend)
         return self.lying(q, rate, cut, k, (rides, base, body))
 
-    def lying(self, q: Array, rate: Array, cut: Cut, k: int, parts: tuple[Row, Row, int | None]) -> Row:
+    def lying(
+        self, q: Array, rate: Array, cut: Cut, k: int, parts: tuple[Row, Row, int | None]
+    ) -> Row:
         """The face goes through the place on the cam, and along its tangent there."""
         rides, base, body = parts
         cam = cut.cam
@@ -217,7 +225,9 @@ class Cammed(Constraints):
         drift = -(spin**2) * c + 2j * spin * rate[k] * c1 - rate[k] ** 2 * radius * lean1**2 * n_cam
         change = rates @ rate
         bend = _pair(n) @ (rides.bend - base.bend - _pair(drift))
-        bend -= 2 * rate[link] * (_pair(1j * n) @ change) - rate[link] ** 2 * (_pair(n) @ _pair(gap))
+        bend -= 2 * rate[link] * (_pair(1j * n) @ change) - rate[link] ** 2 * (
+            _pair(n) @ _pair(gap)
+        )
         second = np.zeros(q.size)
         second[link] += 1.0
         second[k] -= lean1
@@ -270,4 +280,3 @@ def line_of_force(machine: Machine, cam: Cam, poses: Poses) -> tuple[Array, Arra
         normals.append(normal)
     at, normal = (np.array(values) * out for values in (places, normals))
     return axis + np.column_stack([at.real, at.imag]), np.column_stack([normal.real, normal.imag])
-

@@ -1,4 +1,4 @@
-"""Random machines with cams: every kind of follower, sliding and pinned, on carriers of every kind."""
+"""Random machines with cams: all kinds of followers, sliding and pinned, on frame and links."""
 
 from __future__ import annotations
 
@@ -30,7 +30,9 @@ def _law(rng: np.random.Generator, largest: float, sliding: bool) -> dict[str, A
         at = np.cumsum(rng.uniform(0.6, 1, 6))
         at *= 2 * pi / (at[-1] + 0.8)
         values = tuple(map(float, high * rng.uniform(0, 1, 6)))
-        given = law(crank_angles=tuple(map(float, at)), values=values, spline="quintic", phase=phase)
+        given = law(
+            crank_angles=tuple(map(float, at)), values=values, spline="quintic", phase=phase
+        )
     else:
         ends = [0.0, high, high, 0.3 * high, 0.0, 0.0]
         widths = rng.uniform(0.7, 1.3, 5)
@@ -118,7 +120,9 @@ def camshaft(rng: np.random.Generator, sliding: bool) -> Case:
     draft.add("crank", A=(0, 0), B=_scaled(rng, draft))
     way = float(rng.uniform(-pi, pi))
     side = float(rng.uniform(-0.3, 0.3)) * size
-    draft.ground("G", size * (2.5 * _unit(way) if not sliding else side / size * _unit(way + pi / 2)))
+    draft.ground(
+        "G", size * (2.5 * _unit(way) if not sliding else side / size * _unit(way + pi / 2))
+    )
     return _case(draft, _followed(draft, "crank", FRAME, size, (way, "G"), sliding=sliding))
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.mechanism.cam_fits import fitted
+from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.kernels import cross, dot
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import reactions
@@ -33,7 +34,6 @@ def pressure_angle(motion: Motion, name: str) -> Array:
 class LetGo:
     """A follower that its springs do not keep on the cam everywhere.
 
-    name : of the cam.
     ranges : crank angles, rad, between which it would have to be pulled, at the speed analysed.
     least : smallest normal force, N, and crank angle, rad, of it.
     speed : size of the crank's speed, rad/s, from which on contact is lost; 0 where it is at rest,
@@ -41,7 +41,7 @@ class LetGo:
     at : crank angle, rad, at which that happens.
     """
 
-    name: str
+    cam: Cam
     ranges: tuple[tuple[float, float], ...]
     least: tuple[float, float]
     speed: float
@@ -56,19 +56,20 @@ def let_go(forces: Forces) -> tuple[LetGo, ...]:
     which resists faster fingers more, is taken as it is at the speed analysed.
     """
     machine, motion = forces.motion.machine, forces.motion
-    sprung = [cam.name for cam in machine.cams if cam.closed_by == "spring"]
+    sprung = [cam for cam in machine.cams if cam.closed_by == "spring"]
     if not sprung:
         return ()
     fast = forces.at(speed=1.0, acceleration=0.0).inertia
     squared = reactions(motion, fast, forces.solved).cams
     return tuple(
-        _let_go(name, motion.crank_angle, forces.cams[name].normal, squared[name].normal,
-                motion.speed)
-        for name in sprung
-    )  # fmt: skip
+        _let_go(cam, motion, forces.cams[cam.name].normal, squared[cam.name].normal)
+        for cam in sprung
+    )
 
 
-def _let_go(name: str, theta: Array, normal: Array, per_speed2: Array, speed: float) -> LetGo:
+def _let_go(cam: Cam, motion: Motion, normal: Array, per_speed2: Array) -> LetGo:
+    """From the normal force, and the share of it that a speed of 1 rad/s asks for."""
+    theta, speed = motion.crank_angle, motion.speed
     at_rest = normal - per_speed2 * speed**2
     worst = int(np.argmin(at_rest))
     if at_rest[worst] <= 0:
@@ -80,7 +81,7 @@ def _let_go(name: str, theta: Array, normal: Array, per_speed2: Array, speed: fl
         limit = float(np.sqrt(squares[place]))
     k = int(np.argmin(normal))
     least = float(normal[k]), float(theta[k])
-    return LetGo(name, _ranges(theta, normal), least, limit, float(theta[place]))
+    return LetGo(cam, _ranges(theta, normal), least, limit, float(theta[place]))
 
 
 def _ranges(theta: Array, normal: Array) -> tuple[tuple[float, float], ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import degrees, pi
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from equipoise.mechanism.joints import Structure, place_in_file
 from equipoise.mechanism.kernels import dot
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.steps import planar
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.linkage import Linkage
 
 STEEPEST = 1e-6
 """Cosine of the pressure angle at which the follower jams."""
@@ -162,13 +165,30 @@ def _on_pin(machine: Machine, cam: Cam, cam_pin: str, pin: str, where: str) -> F
     return Fit(cam, cam_pin, pin, None, np.angle(turn), sense, face, path)
 
 
+def fits_of(linkage: Linkage) -> tuple[Fit, ...]:
+    """All cams of a linkage."""
+    machine, joints = linkage.machine, linkage.joints
+    return tuple(fitted(machine, joints, cam) for cam in machine.cams)
+
+
+def sharpest(fit: Fit) -> tuple[float, float]:
+    """Least radius of curvature of a cam's surface, m, and the cam angle, rad, of it."""
+    knots = _knots(fit)
+    return lowest(fit.shape(knots), lambda one: abs(one.radius_of_curvature), knots)
+
+
+def _knots(fit: Fit) -> Array:
+    """Cam angles (K,), rad, at which the law changes."""
+    law = fit.cam.law
+    return law.curve.knots[:-1] + law.origin
+
+
 # -- what cannot be made ---------------------------------------------------------------------------
 
 
 def check_shape(fit: Fit, where: str) -> None:
     """Raise an error where the follower jams or the cam is undercut."""
-    curve = fit.cam.law.curve
-    knots = curve.knots[:-1] + fit.cam.law.origin
+    knots = _knots(fit)
     shape = fit.shape(knots)
 
     def least(value: Callable[[Shape], Array]) -> tuple[float, float]:

@@ -99,9 +99,9 @@ def _touch(fit: Fit) -> list[Step]:
     ends, found = (place, f"p({fit.cam_pin})", rate), (f"p({_at(cam)})", f"normal({name})")
     if fit.face is None:
         return [towards, Call(kernels.touch_round, ends, (cam.roller_radius,), found)]
-    inputs = (*ends, f"u({cam.driven})", f"y1({name})")
+    more = (*ends, f"u({cam.driven})", f"y1({name})")
     sense = fit.sense if fit.guide is None else 0.0
-    return [towards, Call(kernels.touch_flat, inputs, (fit.face, sense), found)]
+    return [towards, Call(kernels.touch_flat, more, (fit.face, sense), found)]
 
 
 def _at(cam: Cam) -> str:
@@ -115,7 +115,7 @@ def _forces(builder: Builder, joints: Structure, fit: Fit) -> tuple[Any, ...]:
     push = Reaction(cam.name, cam.kind, link, cam.driver, _at(cam), f"R({cam.name}/{link})")
     pressed = (*push.outputs, f"T({cam.name})")
     touching = (f"p({_at(cam)})", f"normal({cam.name})")
-    inputs = (*demand_names(link), f"p({fit.joint})", *touching)
+    inputs: tuple[str, ...] = (*demand_names(link), f"p({fit.joint})", *touching)
     if fit.guide is not None:
         ground = guide_reaction(fit.guide, link, cam.carrier, fit.joint)
         inputs = (*inputs, f"u({cam.carrier})")

@@ -104,8 +104,8 @@ class Machine(Frozen):
 
     beside: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "description", "units", "gravity", "drive", "frame", "links",
-                  "assembly", "sliders", "gears", "cams", "loads", "springs", "position", "planting",
-                  "support", "rows", "balance")  # fmt: skip
+                  "assembly", "sliders", "gears", "cams", "loads", "springs", "position",
+                  "planting", "support", "rows", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(Table(Drive), "the link that is driven")

@@ -15,6 +15,7 @@ from equipoise.mechanism.reactions import JointForce, SliderForce
 from equipoise.mechanism.strokes import SHARE
 from equipoise.quantities import Dimension, angle, percent
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
+from equipoise.results.cam_blocks import cam_blocks
 from equipoise.results.machine_blocks import (
     angles_told,
     driven,
@@ -45,6 +46,7 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
     machine, motion = analysis.machine, analysis.motion
     yield Text(f"{driven(machine, motion.speed)}; {angles_told(analysis)}")
     yield from motion_blocks(analysis)
+    yield from cam_blocks(analysis)
     if analysis.solved is None:
         yield Notes((massless(machine),))
         return

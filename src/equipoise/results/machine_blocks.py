@@ -195,6 +195,13 @@ def _parts(machine: Machine) -> Iterator[str]:
             carrier=body_named(gear.carrier),
             ratio=number(gear.speed_ratio),
         )
+    for cam in machine.cams:
+        yield say(
+            "Cam: {cam} moves {follower} on {carrier}",
+            cam=body_named(cam.driver),
+            follower=cam.driven,
+            carrier=body_named(cam.carrier),
+        )
     for spring in machine.springs:
         yield say(
             "Spring: {stiffness} from {point} of {link} to {to}",
