@@ -15,6 +15,7 @@ import pint
 import equipoise as eq
 from equipoise.keys import Frozen, Kind, Point, Table, innermost
 from equipoise.keys.declaring import declarations
+from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.balance import Limit
 from equipoise.mechanism.field import Planting
 from equipoise.mechanism.model import FRAME, Vector
@@ -76,6 +77,10 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
         ),
         gears=tuple(
             replace(g, start=float(start.links[g.driven].angle[0]) + angle) for g in machine.gears
+        ),
+        cams=tuple(
+            later(cam, angle * ((cam.carrier == FRAME) - (cam.driver == FRAME)))
+            for cam in machine.cams
         ),
         loads=tuple(turned_load(load, angle) for load in machine.loads),
         position=None if machine.position is None else turned_position(machine.position, angle),
@@ -164,6 +169,7 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
             replace(s, direction=-s.direction, angle=-s.angle) for s in machine.sliders
         ),
         gears=tuple(replace(g, start=-g.start) for g in machine.gears),
+        cams=tuple(mirrored_cam(cam) for cam in machine.cams),
         loads=tuple(mirrored_load(load) for load in machine.loads),
         gravity=vector(np.conj, machine.gravity),
         position=position,
@@ -177,6 +183,32 @@ def mirrored_link(link: eq.Link) -> eq.Link:
         points=mapped(link.points, np.conj),
         center_of_mass=None if center is None else vector(np.conj, center),
     )
+
+
+def later(cam: Cam, angle: float) -> Cam:
+    """Let a cam's law begin at an angle that is larger by so much."""
+    return with_law(cam, replace(cam.law, phase=cam.law.phase + angle))
+
+
+def with_law(cam: Cam, law: Any) -> Cam:
+    return replace(cam, **{"lift" if cam.swing is None else "swing": law})
+
+
+def mirrored_cam(cam: Cam) -> Cam:
+    """The image of a cam, which turns the other way; the laws of segments are symmetric."""
+    law = cam.law
+    ends = [law.start, *(one.to for one in law.segments)]
+    back = [replace(s, to=a) for s, a in zip(law.segments, ends[:-1], strict=True)][::-1]
+    changed = replace(
+        law,
+        phase=-law.phase,
+        segments=tuple(back),
+        crank_angles=tuple(-angle for angle in law.crank_angles[::-1]),
+        values=law.values[::-1],
+    )
+    normal = None if cam.normal is None else -cam.normal
+    side = {"left": "right", "right": "left"}[cam.side]
+    return with_law(replace(cam, normal=normal, side=side), changed)
 
 
 def mirrored_load(load: eq.Load) -> eq.Load:
@@ -323,6 +355,15 @@ def with_axes(machine: eq.Machine, link: str, angle: float, shift: complex) -> e
             for s in machine.sliders
         ),
         gears=tuple(replace(g, start=g.start + angle * (g.driven == link)) for g in machine.gears),
+        cams=tuple(
+            later(
+                cam
+                if cam.normal is None or cam.driven != link
+                else replace(cam, normal=cam.normal - angle),
+                angle * ((cam.driver == link) - (cam.carrier == link)),
+            )
+            for cam in machine.cams
+        ),
         position=position,
     )
 
@@ -360,6 +401,11 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
         gears=tuple(
             replace(g, driver=body(g.driver), driven=body(g.driven), carrier=body(g.carrier))
             for g in machine.gears
+        ),
+        cams=tuple(
+            replace(cam, driver=body(cam.driver), driven=body(cam.driven),
+                    carrier=body(cam.carrier), point=names(cam.point))
+            for cam in machine.cams
         ),
         loads=tuple(
             replace(load, link=body(load.link),

@@ -194,6 +194,8 @@ def check_shape(fit: Fit, where: str) -> None:
     def least(value: Callable[[Shape], Array]) -> tuple[float, float]:
         return lowest(shape, value, knots)
 
+    if fit.cam.rides == "flat":
+        _check_speed(least, where)
     cosine, angle = least(lambda one: np.cos(one.pressure_angle))
     if cosine < STEEPEST:
         raise ModelError(
@@ -208,7 +210,7 @@ def check_shape(fit: Fit, where: str) -> None:
     check(fit.cam, least, where)
 
 
-def _check_flat(cam: Cam, least: Any, where: str) -> None:
+def _check_speed(least: Any, where: str) -> None:
     slack, angle = least(lambda one: 1 - one.ride.turn_1)
     if slack < STEEPEST:
         told = Note(
@@ -217,6 +219,9 @@ def _check_flat(cam: Cam, least: Any, where: str) -> None:
             angle=degrees(angle),
         )
         raise ModelError(where, told)
+
+
+def _check_flat(cam: Cam, least: Any, where: str) -> None:
     radius, angle = least(lambda one: one.radius_of_curvature)
     if radius <= 0:
         raise ModelError(

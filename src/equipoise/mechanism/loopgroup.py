@@ -169,6 +169,7 @@ class _Maker:
         return SlideLoop(slider.name, guide, link, turn.conjugate(), along.conjugate())
 
     def coupling(self, coupling: Coupling) -> CouplingLoop:
+        contact = contact_of(self.builder, self.joints, coupling)
         if coupling.driven not in self.links:
             raise ModelError(
                 place_in_file(self.joints, coupling),
@@ -178,7 +179,6 @@ class _Maker:
                     driven=coupling.driven,
                 ),
             )
-        contact = contact_of(self.builder, self.joints, coupling)
         on = self.end(coupling.driven, contact.driven_pin)
         by = self.end(coupling.driver, contact.driver_pin)
         kernel, numbers = coupling.relation
