@@ -12,6 +12,8 @@ from typing import Any
 
 import mpmath
 
+from equipoise.mechanism import kernels
+
 Exp = Callable[[Any], Any]
 Inputs = Callable[[Any, Exp], tuple[Any, ...]]
 
@@ -109,6 +111,18 @@ def _point(t: Any, exp: Exp) -> tuple[Any, ...]:
     return (*P(t, exp), *U(t, exp))
 
 
+def _four_bar(t: Any, exp: Exp) -> tuple[Any, ...]:
+    pin = G(t, exp)
+    ends = ((U, 0.6), (V, 2.3))
+    return (*(one for turn, arm in ends for one in kernels.point(*pin, *turn(t, exp), arm)), *pin)
+
+
+def _two_ends(t: Any, exp: Exp) -> tuple[Any, ...]:
+    pin = G(t, exp)
+    return (*pin, *kernels.point(*pin, *U(t, exp), 0.6))
+
+
+FOUR = (2.3j, -0.6 + 0j)
 RRR = ((2 + 0.5j), (-0.7 + 1.9j))
 RRP = (2.7 - 1.9j, ALONG, 0.1 - 0.3j, ACROSS)
 RPR = (0.35, ALONG, ACROSS, 0.01)
@@ -120,6 +134,9 @@ FORMULAS = {
     "gear": Formula("gear", _gear, (-1.5, 0.3), ("angle",), False),
     "rrr left": Formula("rrr", _two_pins, (*RRR, 1.0), ("link", "link", "point")),
     "rrr right": Formula("rrr", _two_pins, (*RRR, -1.0), ("link", "link", "point")),
+    "parallel": Formula("parallelogram", _four_bar, (*FOUR, 1.0), ("link", "link", "point")),
+    "antiparallel": Formula("parallelogram", _four_bar, (*FOUR, -1.0), ("link", "link", "point")),
+    "pointed": Formula("pointed", _two_ends, (0.6j,), ("link",), False),
     "rrp forward": Formula("rrp", _pin_and_guide, (*RRP, 1.0), ("link", "link", "point")),
     "rrp backward": Formula("rrp", _pin_and_guide, (*RRP, -1.0), ("link", "link", "point")),
     "rpr forward": Formula("rpr", _two_pins, (*RPR, 1.0), ("link", "link")),

@@ -19,6 +19,7 @@ from equipoise.mechanism.field import Soil, SoilTable
 from support import machines_cams
 from support.loads import force_and_torque, has_soil, soil_force, tips_of
 from support.machines import KINDS, make
+from support.machines_redundant import REDUNDANT
 
 Array = NDArray[Any]
 IN_SOIL = "kim-chung-b in soil"
@@ -31,7 +32,8 @@ ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 @cache
 def names() -> tuple[str, ...]:
     """Names of all subjects: examples, one in soil, and kinds of random machines with a seed."""
-    random = (f"{kind}:{seed}" for kind in (*KINDS, *machines_cams.KINDS) for seed in SEEDS)
+    kinds = (*KINDS, *REDUNDANT, *machines_cams.KINDS)
+    random = (f"{kind}:{seed}" for kind in kinds for seed in SEEDS)
     return (*sorted(eq.examples("linkage")), IN_SOIL, *random)
 
 

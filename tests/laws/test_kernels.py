@@ -74,7 +74,7 @@ def test_kernel_is_arithmetic_only(body: ast.FunctionDef) -> None:
 
 
 def test_every_motion_kernel_is_tried() -> None:
-    motion = {"point", "gear", "rrr", "rrp", "rpr", "prp", "rpp"}
+    motion = {"point", "gear", "rrr", "parallelogram", "pointed", "rrp", "rpr", "prp", "rpp"}
     assert {formula.kernel for formula in FORMULAS.values()} == motion
     assert motion <= FUNCTIONS.keys()
 
@@ -194,6 +194,16 @@ def moved(name: str) -> tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]
 
 def zero(gap: Any) -> None:
     assert np.max(np.abs(gap)) < 1e-13
+
+
+@pytest.mark.parametrize("name", ["parallel", "antiparallel"])
+def test_opposite_sides_are_equal(name: str) -> None:
+    (p, _, _, q, *_), (arm_p, arm_q, side), (*_, c, _, _, sine2) = moved(name)
+    zero(abs(c - p) - abs(arm_p))
+    zero(abs(c - q) - abs(arm_q))
+    a = moved(name)[0][6]
+    zero(kernels.cross(c - p, q - a) if side > 0 else kernels.cross(c - a, q - p))
+    zero(np.sin(np.angle((c - p) / (c - q))) ** 2 - sine2)
 
 
 @pytest.mark.parametrize(("name", "sign"), [("rrr left", 1), ("rrr right", -1)])
@@ -477,7 +487,7 @@ def arguments(name: str) -> list[Any]:
     return [make[kind]() for kind in SIGNATURES[name]]
 
 
-TOOLS = {"cross", "dot", "positive", "length", "inverse"}
+TOOLS = {"cross", "dot", "positive", "length", "inverse", "inverse_or_zero", "turning"}
 """Of vectors, on which the formulas stand."""
 
 

@@ -15,13 +15,14 @@ from equipoise.mechanism.field import PlantingArm, Soil, SoilTable
 from equipoise.mechanism.model import Machine
 from support.loads import springs_on_links
 from support.machines import KINDS, Case, make
+from support.machines_redundant import REDUNDANT
 from support.poses import Array, Poses, from_motion
 
 ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 """Crank angles of every comparison, off the round numbers at which loads may begin or end."""
 
 EXAMPLES = sorted(eq.examples("linkage"))
-RANDOM = [f"{kind}:{seed}" for kind in KINDS for seed in range(10)]
+RANDOM = [f"{kind}:{seed}" for kind in (*KINDS, *REDUNDANT) for seed in range(10)]
 PLANTED = [f"{kind} in soil:{seed}" for kind in KINDS for seed in range(2)]
 every_subject = pytest.mark.parametrize("name", [*EXAMPLES, *RANDOM, *PLANTED])
 """Bundled examples, and random machines by kind and seed, also with a point in the soil."""

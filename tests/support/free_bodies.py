@@ -4,14 +4,16 @@ The general form of the nine equations that Lee and Kim write for a four-bar.  W
 are 3 n equations (two forces and the moment about the centre of mass of each link).  A pin brings
 two unknowns, a sliding joint a force across its line and a couple, a gear pair the tangential
 force at the pitch point, and the drive its torque.  A linkage with one free motion and no
-redundant constraint has as many unknowns as equations.
+redundant constraint has as many unknowns as equations.  Where joints hold too much, the forces of
+least squares are those of the rule that the package states: couples count as forces at the
+largest distance of two points of a body.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import chain, combinations
 
 import numpy as np
 
@@ -151,9 +153,22 @@ def solved(system: System, joints: list[Contact], gears: list[Contact]) -> dict[
     torque[:, system.rows[system.machine.drive.link] + 2] = 1.0
     columns, owners = [*columns, torque], [*owners, ""]
     matrix = np.stack(columns, -1)
-    assert matrix.shape[1] == matrix.shape[2], "as many unknowns as equations"
-    found = np.linalg.solve(matrix, system.known[..., None])[..., 0]
+    if matrix.shape[1] == matrix.shape[2]:
+        found = np.linalg.solve(matrix, system.known[..., None])[..., 0]
+    else:
+        couples = [k == len(one.directions) for one in (*joints, *gears) for k in range(one.size)]
+        units = np.where([*couples, False], extent(system.machine), 1.0)
+        pairs = zip(matrix * units, system.known, strict=True)
+        found = units * np.array([np.linalg.lstsq(*pair)[0] for pair in pairs])
     return {name: found[:, [o == name for o in owners]] for name in dict.fromkeys(owners)}
+
+
+def extent(machine: Machine) -> float:
+    """Return the largest distance of two points of a body."""
+    pairs = (
+        pair for points in machine.bodies.values() for pair in combinations(points.values(), 2)
+    )
+    return max(float(np.hypot(*np.subtract(*pair))) for pair in pairs)
 
 
 # -- contacts --------------------------------------------------------------------------------------

@@ -734,7 +734,9 @@ KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
 
 def make(kind: str, seed: int) -> Case:
     """Return the machine of a kind that belongs to a seed, the same at every call."""
-    return KINDS[kind](np.random.default_rng([seed, *kind.encode()]))
+    from support.machines_redundant import REDUNDANT
+
+    return {**KINDS, **REDUNDANT}[kind](np.random.default_rng([seed, *kind.encode()]))
 
 
 def cases(*kinds: str) -> st.SearchStrategy[Case]:

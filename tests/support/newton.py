@@ -137,18 +137,28 @@ def closed(constraints: Constraints, q: Array, crank_angle: float, steps: int = 
     small = 0
     for _ in range(steps):
         row = constraints.at(q, rest, crank_angle)
-        try:
-            step = np.linalg.solve(row.jacobian, -row.residual)
-        except np.linalg.LinAlgError:
-            break
+        step = solved(row.jacobian, -row.residual)
         q = q + step
         change = float(np.max(np.abs(step / scale)))
         if not change < 1e6:
             break
         small += change < 1e-13
         if change < 1e-15 or small > 1:
+            if np.max(np.abs(row.residual)) > 1e-9 * max(size, 1.0):
+                break  # the nearest to what joints that hold too much ask for, and no pose
             return q
     raise NotAssembledError(f"no pose at crank angle {crank_angle:g}")
+
+
+def solved(matrix: Array, right: Array) -> Array:
+    """Solve a square system, NaN where it is singular, or more equations that go together."""
+    if len(matrix) > matrix.shape[1]:
+        scale = np.linalg.norm(matrix, axis=0)
+        return np.asarray(np.linalg.lstsq(matrix / scale, right, rcond=1e-13)[0] / scale)
+    try:
+        return np.asarray(np.linalg.solve(matrix, right))
+    except np.linalg.LinAlgError:
+        return np.full(len(right), np.nan)
 
 
 def reach(machine: Machine) -> float:
@@ -211,13 +221,13 @@ def slope(constraints: Constraints, q: Array, crank_angle: float) -> Array:
     """Return the derivative of the coordinates with respect to the crank angle."""
     row = constraints.at(q, np.zeros_like(q), crank_angle)
     rate = driven(constraints.machine.drive, crank_angle)[1]
-    return np.linalg.solve(row.jacobian, np.eye(q.size)[-1] * rate)
+    return solved(row.jacobian, np.eye(len(row.jacobian))[-1] * rate)
 
 
 def moving(constraints: Constraints, angles: Array | list[float], found: list[Array]) -> Poses:
     """Return poses with the velocities and accelerations that the drive forces on them."""
     drive = constraints.machine.drive
-    last = np.eye(found[0].size)[-1]
+    last = np.eye(len(constraints.at(found[0], 0 * found[0], 0.0).residual))[-1]
     rates, changes = [], []
     for angle, q in zip(angles, found, strict=True):
         rate = slope(constraints, q, angle) * drive.speed
@@ -225,7 +235,7 @@ def moving(constraints: Constraints, angles: Array | list[float], found: list[Ar
         rates.append(rate)
         _, first, second = driven(drive, angle)
         asked = first * drive.acceleration + second * drive.speed**2
-        changes.append(np.linalg.solve(row.jacobian, row.bend + last * asked))
+        changes.append(solved(row.jacobian, row.bend + last * asked))
     q, v, a = np.array(found), np.array(rates), np.array(changes)
     columns = constraints.columns.items()
     return Poses(

@@ -111,7 +111,11 @@ def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
 
 
 def can_emit(linkage: Linkage) -> bool:
-    """Whether the steps of a linkage can be written out: no soil, no gears beside loops."""
+    """Whether the steps of a linkage can be written out: no soil, no gears beside loops, and no
+    joints whose forces only all free bodies together tell.
+    """
+    if linkage.shared is not None:
+        return False
     machine = linkage.machine
     if machine.planting is not None and machine.planting.soil is not None:
         return False
@@ -128,7 +132,10 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     MassError : it needs masses, and the machine lacks some.
     """
     if not can_emit(linkage):
-        raise UsageError("large groups of loops, and fingers in soil, cannot be computed in a loop")
+        raise UsageError(
+            "large groups of loops, fingers in soil, parallel cranks and double guides cannot be "
+            "computed in a loop"
+        )
     writer = Writer(linkage)
     write_motion(writer)
     wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]

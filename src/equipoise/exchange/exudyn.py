@@ -46,7 +46,7 @@ def _model(job: Job) -> Data:
     ------
     UsageError : it does not move, or something has no place in a planar model of Exudyn.
     """
-    machine, drawn = weighed(job.machine), trees(job.machine, job.crank_angle)
+    machine, drawn = weighed(job.machine), trees(job)
     if not machine.drive.speed:
         raise UsageError("the drive stands still, and a script runs for a turn; give it a speed")
     job.leave_out_motor()

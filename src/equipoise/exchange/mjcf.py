@@ -49,7 +49,7 @@ FAR = 1e30
 def made(job: Job) -> str:
     """The file's text."""
     machine = weighed(job.machine)
-    drawn = trees(machine, job.crank_angle)
+    drawn = trees(job)
     root = ET.Element("mujoco", model=str(machine.title))
     _options(root, machine)
     world = ET.SubElement(root, "worldbody")

@@ -115,17 +115,24 @@ class Tree:
             yield gear.name, {link: one for link, one in factors.items() if one}
 
 
-def trees(machine: Machine, crank_angle: float = 0.0) -> tuple[Tree, ...]:
-    """Every linkage of a machine, drawn at a crank angle (rad) of the drive.
+def trees(job: Job) -> tuple[Tree, ...]:
+    """Every linkage of a job's machine, drawn at its crank angle, with the first of the guides
+    between two bodies.
 
     Raises
     ------
     MotionError : it cannot be drawn there.
     UsageError : sliders alone make a loop.
     """
+    machine, joints = job.machine, assemble(job.machine).joints
+    for slider in joints.sliders:
+        if slider not in joints.needed.sliders:
+            job.leave_out(
+                f"the guide {slider.name}, beside which another one leads {slider.link!r}"
+            )
     rows = rows_of(machine)
     return tuple(
-        _tree(machine, crank_angle, row, f" {number}" if len(rows) > 1 else "")
+        _tree(machine, job.crank_angle, row, f" {number}" if len(rows) > 1 else "")
         for number, row in enumerate(rows, 1)
     )
 
@@ -183,7 +190,7 @@ def _edges(machine: Machine) -> Iterator[Edge]:
     """Joints, those first that are to be in the tree."""
     linkage = assemble(machine)
     yield Edge(FRAME, machine.drive.link, pin=linkage.pivot)
-    yield from (Edge(one.on, one.link, slider=one) for one in machine.sliders)
+    yield from (Edge(one.on, one.link, slider=one) for one in linkage.joints.needed.sliders)
     for pin, (first, *others) in linkage.joints.pins.items():
         for other in others:
             if (pin, other) != (linkage.pivot, machine.drive.link):

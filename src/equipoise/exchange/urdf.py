@@ -22,7 +22,7 @@ EFFORT = 1e6
 
 def made(job: Job) -> str:
     """The file's text."""
-    machine, drawn = weighed(job.machine), trees(job.machine, job.crank_angle)
+    machine, drawn = weighed(job.machine), trees(job)
     root = ET.Element("robot", name=str(machine.title))
     ET.SubElement(root, "link", name=FRAME)
     for tree in drawn:

@@ -10,6 +10,7 @@ import numpy as np
 
 from equipoise.i18n import Note
 from equipoise.mechanism import kernels
+from equipoise.mechanism.checks import MODE, MODES
 from equipoise.mechanism.model import Machine, Slider
 from equipoise.mechanism.steps import (
     Call,
@@ -32,15 +33,17 @@ from equipoise.mechanism.steps import (
 class Group:
     """Links that are solved together.
 
-    kind : by a dyad's kernel, by their coupling, or by Newton's method on loop equations.
+    kind : by a dyad's kernel, by their coupling, by Newton's method on loop equations, or, of a
+        link that too many joints hold, by two of its pins.
     motion : steps that find their position and derivatives.
     forces : steps that find the reactions in their joints, once all later groups are done.
     margin : name of the dyad's assembly margin, the squared sine of its transmission angle,
         negative where it cannot be closed; None for others.
     joint : inner joint of the dyad.  dead : says what the links do where the margin is zero.
+    through : whether they go on through change points, where the margin is zero.
     """
 
-    kind: Literal["dyad", "coupled", "loops"]
+    kind: Literal["dyad", "coupled", "loops", "pointed"]
     links: tuple[str, ...]
     motion: tuple[Step, ...]
     forces: tuple[Step, ...]
@@ -48,6 +51,7 @@ class Group:
     margin: str | None = None
     joint: str = ""
     dead: Note | str = ""
+    through: bool = False
 
 
 @dataclass(frozen=True)
@@ -111,6 +115,7 @@ class Builder:
     assembly side was asked for.  missing : those of them that the file does not answer -> words
     of the two sides, what they mean, what the file has.  motion : steps so far.  told :
     references at crank angle 0, of a machine of the same build, whose branch is taken over.
+    mode : of four-bars of equal opposite sides whose own entry is missing, one of `MODES`.
     """
 
     machine: Machine
@@ -122,6 +127,7 @@ class Builder:
     missing: dict[str, tuple[tuple[str, str], str, str | None]] = field(default_factory=dict)
     running: set[str] = field(default_factory=set)
     told: State = field(default_factory=dict)
+    mode: str | None = None
     _now: State = field(init=False)
     _ran: int = field(init=False, default=0)
 
@@ -174,8 +180,10 @@ class Builder:
 
     def side(self, joint: str, words: tuple[str, str], meaning: str) -> float:
         """+1 or -1 for the side on which the file assembles a dyad; +1 where that is missing."""
-        self.sides.add(joint)
         side = self.machine.assembly.get(joint)
+        if side is None and words == MODES and self.mode is not None:
+            joint, side = MODE, self.mode
+        self.sides.add(joint)
         if side not in words:
             self.missing[joint] = (words, meaning, side)
         return -1.0 if side == words[1] else 1.0

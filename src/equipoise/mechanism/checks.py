@@ -12,6 +12,8 @@ from equipoise.i18n import Note, Worded
 __all__ = [
     "FRAME",
     "LONGEST_NAME",
+    "MODE",
+    "MODES",
     "SIDES",
     "Bodies",
     "Named",
@@ -33,7 +35,9 @@ __all__ = [
 ]
 
 FRAME = "frame"
-SIDES = ("left", "right", "forward", "backward")
+MODE, MODES = "mode", ("parallel", "antiparallel")
+"""How dyads that close four-bars of equal opposite sides go on through their change points."""
+SIDES = ("left", "right", "forward", "backward", *MODES)
 Vector = tuple[float, float]
 """Components along x (forward) and y (up)."""
 Bodies = Mapping[str, Mapping[str, Vector]]

@@ -7,7 +7,7 @@ smallest value of each dyad's margin, which must stay above zero.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import lcm, pi
@@ -20,7 +20,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism.builder import Group
 from equipoise.mechanism.full_turn import FullTurn
 from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.steps import Array, initial_state, run, running_angle
+from equipoise.mechanism.steps import Array, State, initial_state, run, running_angle
 
 POINTS_PER_TURN, FEWER_POINTS, MANY_TURNS = 720, 144, 100
 """Crank angles of the grid in a turn, and in each of more than so many turns."""
@@ -76,10 +76,16 @@ def turns_given(machine: Machine) -> int:
     return lcm(machine.drive.turns, *loads)
 
 
-def close(machine: Machine, groups: Iterable[Group], near: Cycle | None = None) -> Cycle:
+def close(
+    machine: Machine,
+    groups: Iterable[Group],
+    near: Cycle | None = None,
+    check: Callable[[State], None] | None = None,
+) -> Cycle:
     """Find the cycle of a linkage, given the groups in which it is solved.
 
     near : that of a machine of the same build that differs by little, if one is known.
+    check : looks at the state over the whole cycle, and raises an error where something is wrong.
 
     Raises
     ------
@@ -96,6 +102,8 @@ def close(machine: Machine, groups: Iterable[Group], near: Cycle | None = None) 
         except _LongerCycle as longer:
             base, turns = (longer.turns, longer.turns) if longer.turns else (base, turns + base)
             continue
+        if check is not None:
+            check(grid.state)
         return Cycle(turns, grid.windings, grid.tables, grid.weakest)
     raise MotionError(
         Note(

@@ -52,7 +52,7 @@ class FullTurn:
         names = all_of([repr(link) for link in group.links])
         if smallest < -CHANGE_POINT:
             raise self.range_error(group, margin, at, names)
-        if smallest < CHANGE_POINT:
+        if smallest < CHANGE_POINT and not group.through:
             raise ChangePointError(
                 Note(
                     "change point at crank angle {angle}: {dead} there, and nothing "

@@ -7,14 +7,16 @@ which numbers.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
-from equipoise.mechanism import joint_kernels, kernels
+from equipoise.mechanism import joint_kernels, kernels, parallels
 from equipoise.mechanism.builder import Builder, Group, Guide, Outer, guide_reaction
+from equipoise.mechanism.checks import MODES
 from equipoise.mechanism.contacts import contact_of
 from equipoise.mechanism.couplings import Coupling
 from equipoise.mechanism.joints import Structure
@@ -46,6 +48,7 @@ def _dyad(
     joint: str,
     point: str = "",
     dead: Note | str = "",
+    more: tuple[str, ...] = (),
 ) -> Group:
     """Two links of which the outer joints are known, and that are known afterwards.
 
@@ -53,10 +56,11 @@ def _dyad(
     motion : kernel and its numbers; it goes on from the outer joints.
     forces : kernel, the places and rotations that it takes before the demands, and its numbers.
     joint, dead : as in `Group`.  point : where the inner joint is, if the kernel finds that.
+    more : names of what the kernel of the motion takes beside the outer joints.
     """
     first, second = (outer.link for outer in outers)
     margin = f"s({reactions[2].name})"
-    known = [name for outer in outers for name in outer.inputs]
+    known = [*(name for outer in outers for name in outer.inputs), *more]
     found = (*u(first), *u(second), *(p(point) if point else ()), margin)
     reach = [step for outer in outers for step in builder.reach(outer.body, outer.point)]
     builder.add({first: reactions[0].at, second: reactions[1].at}, [point] if point else [])
@@ -81,6 +85,8 @@ def _dyad(
 def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
     """Two links and three pins."""
     link, other = first.link, second.link
+    if closed := parallels.parallel_by(builder, first, second, pin):
+        return _through(builder, first, second, pin, closed)
     meaning = f"{pin} lies left or right of the line from {first.point} to {second.point}"
     side = builder.side(pin, ("left", "right"), meaning)
     arms = (builder.arm(link, first.point, pin), builder.arm(other, second.point, pin))
@@ -95,6 +101,29 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         point=pin,
         dead=Note("{link!r} and {other!r} lie in line", link=link, other=other),
     )
+
+
+def _through(
+    builder: Builder, first: Outer, second: Outer, pin: str, closed: parallels.Closed
+) -> Group:
+    """Two links and three pins that close a four-bar of equal opposite sides."""
+    link, other, pivot = first.link, second.link, closed.pivot
+    meaning = f"opposite links at {pin} stay parallel, or the four-bar is crossed"
+    side = builder.side(pin, MODES, meaning)
+    arms = (builder.arm(link, first.point, pin), builder.arm(other, second.point, pin))
+    reach = builder.reach(closed.carrier, pivot)
+    places = (f"p({first.point})", f"p({second.point})", f"p({pin})")
+    found = _dyad(
+        builder,
+        (first, second),
+        (first.reaction(), second.reaction(), pin_reaction(pin, other, link)),
+        (kernels.parallelogram, (*arms, side)),
+        (joint_kernels.rrr_forces, places, ()),
+        joint=pin,
+        point=pin,
+        more=p(pivot),
+    )
+    return replace(found, motion=(*reach, *found.motion), through=True)
 
 
 def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 
 from equipoise.errors import MobilityError, ModelError
@@ -44,6 +44,17 @@ class Structure:
             ends = {one.driver, one.driven, one.carrier}
             count -= ends <= both and bool(ends & free)
         return count
+
+    @property
+    def mobility(self) -> int:
+        """Count of free motions; the drive commands one of them."""
+        return self.freedom(self.bodies[1:], [FRAME])
+
+    @property
+    def needed(self) -> Structure:
+        """The same without all but the first of the sliding joints between two bodies."""
+        first = {frozenset((one.link, one.on)): one for one in reversed(self.sliders)}
+        return replace(self, sliders=tuple(s for s in self.sliders if s in first.values()))
 
     def pins_between(self, a: str, b: str) -> list[str]:
         return [point for point, bodies in self.pins.items() if a in bodies and b in bodies]
@@ -175,37 +186,45 @@ def _alike(bodies: Bodies, pins: Iterable[str]) -> Note | str:
 
 
 def _check_mobility(joints: Structure, drive: str, alike: Note | str) -> None:
-    links = joints.bodies[1:]
-    mobility = joints.freedom(links, [FRAME])
-    if mobility == 1:
+    if (mobility := joints.mobility) <= 1:  # whether joints hold too much, lengths decide
         return
-    pins = sum(len(bodies) - 1 for bodies in joints.pins.values())
-    count = Note(
-        "{links}, {pins}, {sliders} and {gears}",
-        links=_number(len(links), MOVING_LINKS),
-        pins=_number(pins, PINS),
-        sliders=_number(len(joints.sliders), SLIDING_JOINTS),
-        gears=_number(len(joints.couplings), GEARS),
-    )
-    if mobility < 1:
-        raise MobilityError(
-            Note(
-                "the linkage has no free motion (count {mobility}: {count}); too many "
-                "joints hold {names}",
-                mobility=mobility,
-                count=count,
-                names=_names(held_too_often(joints, drive)),
-            )
-        )
     raise MobilityError(
         Note(
             "the linkage has {mobility} free motions ({count}), and one drive can "
             "command only one; the drive leaves {names} undetermined{alike}",
             mobility=mobility,
-            count=count,
+            count=_count(joints),
             names=_names(undetermined(joints, drive)),
             alike=alike,
         )
+    )
+
+
+def _count(joints: Structure) -> Note:
+    pins = sum(len(bodies) - 1 for bodies in joints.pins.values())
+    return Note(
+        "{links}, {pins}, {sliders} and {gears}",
+        links=_number(len(joints.bodies) - 1, MOVING_LINKS),
+        pins=_number(pins, PINS),
+        sliders=_number(len(joints.sliders), SLIDING_JOINTS),
+        gears=_number(len(joints.couplings), GEARS),
+    )
+
+
+def no_motion(joints: Structure) -> Note:
+    """Say that the joints hold the links, as far as counting tells."""
+    return Note(
+        "the linkage has no free motion (count {mobility}: {count})",
+        mobility=joints.mobility,
+        count=_count(joints),
+    )
+
+
+def held_fast(joints: Structure, drive: str) -> MobilityError:
+    """An error for joints that hold links whatever the lengths."""
+    names = _names(held_too_often(joints, drive))
+    return MobilityError(
+        Note("{held}; too many joints hold {names}", held=no_motion(joints), names=names)
     )
 
 

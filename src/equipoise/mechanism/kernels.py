@@ -50,6 +50,17 @@ def inverse(a):
     return a.conjugate() * (1 / (a.real * a.real + a.imag * a.imag))
 
 
+def inverse_or_zero(a):
+    """1 / a of a vector; 0 of 0."""
+    return a.conjugate() * (1 / (a.real * a.real + a.imag * a.imag + 1e-300))
+
+
+def turning(d, d1, d2):
+    """First and second derivative of the angle of a vector d of constant length."""
+    over = 1 / (d.real * d.real + d.imag * d.imag)
+    return cross(d, d1) * over, cross(d, d2) * over
+
+
 # -- motion ----------------------------------------------------------------------------------------
 
 
@@ -106,6 +117,40 @@ def rrr(p, p1, p2, q, q1, q2, arm_p, arm_q, side):
     c2 = p2 + (1j * a_p - w_p * w_p) * to_p
     u_p, u_q = to_p * inverse(arm_p), to_q * inverse(arm_q)
     return u_p, w_p, a_p, u_q, w_q, a_q, p + to_p, c1, c2, number
+
+
+def parallelogram(p, p1, p2, q, q1, q2, a, a1, a2, arm_p, arm_q, side):
+    """Two links pinned at p and q whose inner pin c closes a four-bar of equal opposite sides.
+
+    a : the pin of the bodies that carry p and q; other arguments as in `rrr`.
+    side : +1 where opposite links stay parallel, -1 where the four-bar is crossed.  Both go on
+    through the change points, where all four pins lie in line.
+    Returns the same as `rrr`.
+    """
+    z, z1, z2 = (q - p).conjugate(), (q1 - p1).conjugate(), (q2 - p2).conjugate()
+    over = inverse_or_zero(z)
+    span = dot(arm_p, arm_p) - dot(arm_q, arm_q)
+    share, rest = 0.5 + 0.5 * side, (0.5 - 0.5 * side) * span
+    bent = 2 * z1 * z1 * over - z2
+    c = a + share * (p + q - 2 * a) + rest * over
+    c1 = a1 + share * (p1 + q1 - 2 * a1) - rest * z1 * over * over
+    c2 = a2 + share * (p2 + q2 - 2 * a2) + rest * bent * over * over
+    to_p, to_q = c - p, c - q
+    w_p, a_p = turning(to_p, c1 - p1, c2 - p2)
+    w_q, a_q = turning(to_q, c1 - q1, c2 - q2)
+    sine = cross(to_p, to_q) / (length(arm_p) * length(arm_q))
+    u_p, u_q = to_p * inverse(arm_p), to_q * inverse(arm_q)
+    return u_p, w_p, a_p, u_q, w_q, a_q, c, c1, c2, sine * sine
+
+
+def pointed(p, p1, p2, q, q1, q2, arm):
+    """A link pinned at p whose point at `arm` from there is pinned at q, both known.
+
+    Returns its rotation; the distance of p and q is taken to be that of its points.
+    """
+    to_q = q - p
+    w, a = turning(to_q, q1 - p1, q2 - p2)
+    return to_q * inverse(arm) * (length(arm) / length(to_q)), w, a
 
 
 def rrp(p, p1, p2, g, g1, g2, u, w, a, arm, along, shift, turn, side):

@@ -21,10 +21,12 @@ from equipoise.mechanism import groups
 from equipoise.mechanism.builder import Builder, Group, Guide, Outer
 from equipoise.mechanism.cam_groups import follower
 from equipoise.mechanism.cams import Cam
-from equipoise.mechanism.checks import meant
+from equipoise.mechanism.checks import MODE, MODES, meant
 from equipoise.mechanism.cycle import Cycle, close
-from equipoise.mechanism.joints import Structure, drive_pivot, structure, subsets
+from equipoise.mechanism.joints import Structure, drive_pivot, held_fast, structure, subsets
 from equipoise.mechanism.model import FRAME, Machine
+from equipoise.mechanism.parallels import pointed, surplus_cranks
+from equipoise.mechanism.shared import Shared, shared
 from equipoise.mechanism.steps import (
     Reaction,
     State,
@@ -35,6 +37,10 @@ from equipoise.mechanism.steps import (
     run,
 )
 
+NO_PARALLELS = Note(
+    "no two links of this linkage close a four-bar of equal opposite sides with known ones, so "
+    "that there are no change points to go on through; leave it out"
+)
 NOTHING: Mapping[str, tuple[int, str]] = {}
 
 
@@ -46,6 +52,7 @@ class Linkage:
     anchors : body -> point about which its moments are taken.
     groups : what is solved after the drive, in order.
     near : motion of a machine that differs by little, from which loops are followed sooner.
+    shared : all joints at once, where groups cannot tell their forces one after the other.
     """
 
     machine: Machine
@@ -54,6 +61,7 @@ class Linkage:
     anchors: Mapping[str, str]
     groups: tuple[Group, ...]
     near: Cycle | None = None
+    shared: Shared | None = None
 
     @cached_property
     def motion(self) -> tuple[Step, ...]:
@@ -67,11 +75,15 @@ class Linkage:
     @cached_property
     def forces(self) -> tuple[Step, ...]:
         """Steps from what each link needs to every joint force; the drive link comes last."""
+        if self.shared is not None:
+            return (self.shared,)
         return tuple(step for group in reversed(self.groups) for step in group.forces)
 
     @cached_property
     def reactions(self) -> tuple[Reaction, ...]:
         """Every joint, the drive's pin first."""
+        if self.shared is not None:
+            return self.shared.reactions
         drive = pin_reaction(self.pivot, self.machine.drive.link, FRAME)
         return (drive, *(reaction for group in self.groups for reaction in group.reactions))
 
@@ -88,7 +100,8 @@ class Linkage:
     @cached_property
     def cycle(self) -> Cycle:
         """The closed motion; raises a `MotionError` where the crank cannot turn fully."""
-        return close(self.machine, self.groups, self.near)
+        check = None if self.shared is None else self.shared.check
+        return close(self.machine, self.groups, self.near, check)
 
     def of(self, machine: Machine) -> Linkage:
         """The same linkage for a machine that differs in nothing but masses, speed or gravity."""
@@ -125,8 +138,11 @@ def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
         names = [name for name, _ in kept.named_reactions]
         for name in names:
             if names.count(name) > 1:  # outputs go by the names of joints
-                sentence = f"two joints would be called {name!r} in the output; rename one"
-                raise ModelError("links", sentence)
+                raise ModelError(
+                    "links",
+                    f"two joints would be called {name!r} in the output; rename one, or give a "
+                    "second guide a label",
+                )
         machine.__dict__["_linkage"] = kept
     return kept
 
@@ -146,12 +162,17 @@ def ordered(
 
     pivot = drive_pivot(joints, machine.drive.link)
     builder, groups, choices = _grouped(machine, joints, pivot, start or {}, assumed)
-    idle = [joint for joint in machine.assembly if joint not in builder.sides]
+    pointed_at = {point for group in groups if group.kind == "pointed"
+                  for link in group.links for point in machine.links[link].points}  # fmt: skip
+    asked = builder.sides | pointed_at  # of links that two pins hold lengths decide the side
+    idle = [joint for joint in machine.assembly if joint not in asked]
     if choices:
         if not assumed and (decided := sides.decided(machine, choices, _turns)):
             return ordered(machine, joints, start, decided)
         raise sides.missing(machine, choices, idle)
     for joint in idle:
+        if joint == MODE and machine.assembly[joint] in MODES:
+            raise ModelError(f"assembly.{joint}", NO_PARALLELS)
         dyads = ", ".join(sorted(builder.sides)) or "no point"
         hint = meant(joint, [*builder.sides]) or f"the dyads of this linkage meet at {dyads}"
         raise ModelError(
@@ -161,7 +182,8 @@ def ordered(
                 hint=hint,
             ),
         )
-    return Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
+    order, whole = tuple(groups), shared(builder, joints, pivot, tuple(groups))
+    return Linkage(machine, joints, pivot, builder.anchors, order, shared=whole)
 
 
 def sides_at_position(machine: Machine) -> dict[str, str]:
@@ -189,14 +211,24 @@ def _grouped(
     from equipoise.mechanism import sides
 
     drive = machine.drive.link
-    builder = Builder(machine, points=set(machine.frame), running={FRAME, drive}, told=start)
+    mode = machine.assembly.get(MODE)
+    if mode not in MODES:
+        mode = MODES[0] if joints.mobility < 1 else None
+    points, running = set(machine.frame), {FRAME, drive}
+    builder = Builder(machine, points=points, running=running, told=start, mode=mode)
+    surplus: frozenset[str] = frozenset()
+    if joints.mobility < 1:
+        surplus, joints = surplus_cranks(machine, joints), joints.needed
     builder.add({FRAME: pivot, drive: pivot})
     unknown = [link for link in machine.links if link != drive]
     groups: list[Group] = []
     choices: list[sides.Choice] = []
     while unknown:
         try:
-            group = next_group(builder, joints, unknown)
+            ready = [
+                link for link in unknown if link not in surplus or _held(builder, joints, link)
+            ]
+            group = next_group(builder, joints, ready)
         except ModelError:
             if choices:  # sides come first: on a wrong one what hangs on it cannot be right
                 raise sides.missing(machine, choices) from None
@@ -221,6 +253,10 @@ def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group
     if group is not None:
         return group
     outers = {link: outer_joints(builder, joints, link) for link in unknown}
+    for held in outers.values() if joints.mobility < 1 else ():
+        pins = [outer for outer in held if outer.guide is None]
+        if len(pins) > 1 and (group := pointed(builder, pins)):
+            return group
     hung = [link for link in unknown if len(outers[link]) == 1]
     for pair in combinations(hung, 2):
         if joints.freedom(pair, known) == 0:
@@ -229,6 +265,8 @@ def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group
                 return dyad
     for links in subsets(joints, unknown):
         freedom = joints.freedom(links, known)
+        if freedom < 0 and joints.mobility < 1:
+            raise held_fast(joints, builder.machine.drive.link)
         if freedom < 0:
             raise MobilityError(
                 Note(
@@ -248,6 +286,11 @@ def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group
             names=", ".join(unknown),
         )
     )
+
+
+def _held(builder: Builder, joints: Structure, link: str) -> bool:
+    """Whether two pins of a link are on known bodies."""
+    return len(outer_joints(builder, joints, link)) > 1
 
 
 def _coupled(builder: Builder, joints: Structure, unknown: list[str]) -> Group | None:

@@ -56,16 +56,20 @@ class LoopForces:
 
     def solve(self, state: State, poses: Poses, senses: Sequence[Any]) -> list[list[Array]]:
         """Strength (..., N) of every unknown of each loop."""
+        matrix = self.matrix(state, poses, senses)
+        solved = np.linalg.solve(matrix, self.demand(state)[..., None])[..., 0]
+        strengths = iter(np.moveaxis(solved, -1, 0))
+        return [list(islice(strengths, loop.unknowns)) for loop in self.loops]
+
+    def matrix(self, state: State, poses: Poses, senses: Sequence[Any]) -> Array:
+        """What each unknown adds to force and moment on each link, (N, 3 n, m)."""
         shape = np.shape(state["theta"])
         columns = [
             [np.broadcast_to(entry, shape) for entry in column]
             for loop, sense in zip(self.loops, senses, strict=True)
             for column in self.columns(loop, poses, sense)
         ]
-        matrix = np.moveaxis(np.array(columns), (0, 1, 2), (2, 1, 0))
-        solved = np.linalg.solve(matrix, self.demand(state)[..., None])[..., 0]
-        strengths = iter(np.moveaxis(solved, -1, 0))
-        return [list(islice(strengths, loop.unknowns)) for loop in self.loops]
+        return np.moveaxis(np.array(columns), (0, 1, 2), (2, 1, 0))
 
     def columns(self, loop: Loop, poses: Poses, sense: Any) -> list[list[Any]]:
         """Force and moment about the anchor on each link, for a unit of each of its unknowns."""

@@ -40,7 +40,7 @@ FAR = 0.25
 
 def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Group:
     """Make the group of these links, with `builder` knowing them afterwards."""
-    maker = _Maker(builder, joints, links)
+    maker = Maker(builder, joints, links)
     before, loops = maker.prepare()
     touched = {FRAME, *(end.body for loop in loops for end in (loop.on, loop.by))}
     touched |= {loop.carrier for loop in loops if isinstance(loop, CouplingLoop)}
@@ -74,8 +74,11 @@ def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> G
 
 
 @dataclass
-class _Maker:
-    """anchors : of each link.  holds : link -> number of the joint that tells where it is."""
+class Maker:
+    """Loop equations of some links, and what hangs on them.
+
+    anchors : of each link.  holds : link -> number of the joint that tells where it is.
+    """
 
     builder: Builder
     joints: Structure

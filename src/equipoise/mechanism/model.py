@@ -113,7 +113,8 @@ class Machine(Frozen):
     links: Mapping[str, Link] = key(Named(Table(Link)), "moving links by name")
     assembly: Mapping[str, str] = key(
         Named(Text(SIDES)),
-        "side on which the inner joint of each dyad lies, by name of the joint",
+        "side on which the inner joint of each dyad lies, by name of the joint; `mode` for all "
+        "that close a four-bar of equal opposite sides",
         factory=dict,
     )
     sliders: tuple[Slider, ...] = key(Tables(Table(Slider)), "sliding joints", default=())

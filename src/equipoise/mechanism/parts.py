@@ -33,10 +33,16 @@ class Slider(Frozen):
     through: str = key(Text(of="point", on="on"), "a point of the guide on the line", example="A")
     direction: float = key("angle", "of the line, in the axes of the guide", example="0 deg")
     angle: float = key("angle", "of the sliding link's x axis, from the line", default=0.0)
+    label: str = key(
+        Text(),
+        "its name in outputs, `LINK on BODY` if left out; a second guide of the same link on the "
+        "same body needs one",
+        default="",
+    )
 
     @property
     def name(self) -> str:
-        return f"{self.link} on {self.on}"
+        return self.label or f"{self.link} on {self.on}"
 
 
 class Mechanism(Protocol):

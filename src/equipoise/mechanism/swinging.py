@@ -72,7 +72,7 @@ def _add_references(linkage: Linkage, state: State, chosen: Array, side: int, er
 def _check(linkage: Linkage, state: State, theta: Array, error: Stuck, doing: str) -> None:
     """Raise the error again, with the crank angle, where a dyad cannot be closed."""
     for group in linkage.groups:
-        if group.margin is None:
+        if group.margin is None or group.through:
             continue
         margin = np.broadcast_to(state[group.margin], theta.shape)
         bad = ~(margin > CHANGE_POINT)

@@ -157,7 +157,7 @@ JOINTS: list[tuple[str, str, Any]] = [
      lambda: geared(pressure_angle=pi / 2)),
     ("gears[1].pressure_angle", "from 0 deg to less than 90 deg...",
      lambda: geared(pressure_angle=-0.1)),
-    ("assembly.C", "got 'up'; give 'left', 'right', 'forward' or 'backward'",
+    ("assembly.C", "got 'up'; give 'left', 'right', 'forward', 'backward', 'parallel' or...",
      lambda: four_bar(1.0, 0.35, 0.9, 0.8, "up")),
     ("position.points.X", "no point is called 'X'...", lambda: placed(points={"X": ORIGIN})),
     ("position.angles.rokker", "did you mean 'rocker'?...", lambda: placed(angles={"rokker": 0})),

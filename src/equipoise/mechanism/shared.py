@@ -1,0 +1,279 @@
+"""Forces that statics alone does not decide: all joints of a machine at once, by a stated rule.
+
+Where joints hold links more often than they need be held, the free bodies have fewer equations than
+unknowns.  Of all joint forces that hold the machine in balance, those are taken whose squares sum
+up to the least, or, where the file gives joints a stiffness, that store the least energy in them.
+The same free bodies serve a linkage that goes on through change points.
+
+Drive torque, and force and moment on the frame as a whole, follow from the demands alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import degrees
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import MobilityError, ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.mechanism import kernels
+from equipoise.mechanism.builder import Builder, Group
+from equipoise.mechanism.joints import Structure, no_motion
+from equipoise.mechanism.loop_forces import LoopForces
+from equipoise.mechanism.loopgroup import Maker
+from equipoise.mechanism.loops import CouplingLoop, Loop, Poses, SlideLoop
+from equipoise.mechanism.model import FRAME, Machine
+from equipoise.mechanism.newton import LoopGroup, poses_in
+from equipoise.mechanism.steps import Array, State, planar
+
+AGREES = 1e-9
+"""Misfit, in sizes of the machine, that rounding of lengths explains."""
+OPEN = 1e-9
+"""Share of a joint in forces that hold each other, up to which it has none."""
+ROUNDING = 1e-11
+"""Share of a singular value in the largest that rounding explains."""
+WEAK = 1e-7
+"""Smallest over largest stiffness against motion, up to which joints do not hold the machine."""
+BESIDE = 1e-3
+"""rad: how far from a change point it is looked at which forces grow without bound there."""
+
+
+@dataclass(frozen=True)
+class Shared(LoopForces):
+    """The free bodies of all links, whose joints share what statics leaves open.
+
+    group : all links and joints.  pivot : the drive's.
+    count : says that the joints hold too much; empty where they do not.
+    compliance : of each joint, m/N, by name of its force; empty where none is given.
+    groups : how the motion is solved.
+    """
+
+    pivot: str
+    count: Note | str
+    compliance: Mapping[str, float]
+    groups: tuple[Group, ...]
+
+    def run(self, state: State) -> None:
+        drive = self.group.links[0]
+        force, moment = self.demanded(state)
+        by_work = sum(
+            kernels.drive_torque(state[f"p1({anchor})"], state[f"w({link})"],
+                                 state[f"F({link})"], state[f"M({link})"])
+            for link, anchor in zip(self.group.links, self.group.anchors, strict=True)
+        )  # fmt: skip
+        super().run(state)
+        turns_evenly = np.ndim(state[f"w({drive})"]) == 0  # else it may stand still, doing no work
+        torque = by_work if turns_evenly else state["drive torque"]
+        state[f"F({drive})"], state[f"M({drive})"] = state[self.reactions[0].force], torque
+        state[f"F({FRAME})"] = force - state[f"F({drive})"]
+        state[f"M({FRAME})"] = moment - torque
+        poses = self.poses(state)
+        for loop, reaction in zip(self.loops, self.reactions, strict=True):
+            state.setdefault(f"p({reaction.at})", loop.place(poses))
+
+    def demanded(self, state: State) -> tuple[Any, Any]:
+        """Force and moment about the pivot that all links together need."""
+        force, moment, pivot = 0j, 0.0, state[f"p({self.pivot})"]
+        for link, anchor in zip(self.group.links, self.group.anchors, strict=True):
+            force = force + state[f"F({link})"]
+            lever = state[f"p({anchor})"] - pivot
+            moment = moment + state[f"M({link})"] + kernels.cross(lever, state[f"F({link})"])
+        return force, moment
+
+    def poses(self, state: State) -> Poses:
+        group = self.group
+        return poses_in(state, (*group.known, *zip(group.links, group.anchors, strict=True)))
+
+    def solve(self, state: State, poses: Poses, senses: Sequence[Any]) -> list[list[Array]]:
+        matrix, rows, units = self.balance(state, poses, senses)
+        inverse, loose, _ = _parts(matrix)
+        if self.compliance:
+            inverse = self.by_stiffness(inverse, loose)
+        right = (self.demand(state) / rows)[..., None]
+        found = np.moveaxis((inverse @ right)[..., 0] * units, -1, 0)
+        state["drive torque"], strengths = found[-1], iter(found)
+        return [[next(strengths) for _ in range(loop.unknowns)] for loop in self.loops]
+
+    def balance(
+        self, state: State, poses: Poses, senses: Sequence[Any]
+    ) -> tuple[Array, Array, Array]:
+        """Equations (N, 3 n, m) of all free bodies without dimension, and the units (3 n,) of rows
+        and (m,) of unknowns: moments are counted as forces at the largest distance
+        of two points of a body.
+
+        The last unknown is the torque of the drive.
+        """
+        size = self.group.size
+        couples = [
+            not force
+            for loop in self.loops
+            for force in ([1, 0] if isinstance(loop, SlideLoop) else [0] * loop.unknowns)
+        ]
+        units = np.where([not one for one in [*couples, False]], size, 1.0)
+        rows = np.tile([1.0, 1.0, size], len(self.group.links))
+        matrix = self.matrix(state, poses, senses)
+        torque = np.zeros((*matrix.shape[:2], 1))
+        torque[:, 2] = 1.0
+        return np.concatenate([matrix, torque], axis=-1) / rows[:, None] * units, rows, units
+
+    def by_stiffness(self, inverse: Array, loose: Array) -> Array:
+        """Of solutions that differ by `loose` forces (N, m, k), the one of least energy.
+
+        Raises
+        ------
+        ModelError : the joints that have a stiffness leave it open.
+        """
+        soft = np.array([
+            self.compliance.get(reaction.force, 0.0)
+            for loop, reaction in zip(self.loops, self.reactions, strict=True)
+            for _ in range(loop.unknowns)
+        ] + [0.0])  # fmt: skip
+        weighed = np.swapaxes(loose * soft[:, None], -1, -2)
+        energy = weighed @ loose
+        if np.any(np.linalg.eigvalsh(energy)[..., 0] < AGREES * np.max(soft)):
+            raise ModelError(
+                "joints",
+                "the stiffness given does not decide the forces that statics leaves open; give "
+                "that of further joints, or of none",
+            )
+        return np.asarray(inverse - loose @ np.linalg.solve(energy, weighed @ inverse))
+
+    # -- what statics decides ----------------------------------------------------------------------
+
+    def open_joints(self, state: State) -> frozenset[str]:
+        """Names of forces that statics leaves open at some crank angle."""
+        _, loose, _ = _parts(self.unsensed(state))
+        if not loose.shape[-1]:
+            return frozenset()
+        share = np.max(np.abs(loose), axis=(0, -1))
+        return self.those(share > OPEN)
+
+    def strength(self, state: State) -> Array:
+        """How well the joints hold the machine (N,): 0 where a force in them has no bound."""
+        sizes = np.linalg.svd(self.unsensed(state), compute_uv=False)
+        return np.asarray(sizes[:, -1] / sizes[:, 0])
+
+    def growing_joints(self, state: State) -> frozenset[str]:
+        """Names of forces that grow without bound towards where the joints do not hold it."""
+        _, _, unknowns = np.linalg.svd(self.unsensed(state), full_matrices=False)
+        return self.those(np.max(np.abs(unknowns[:, -1]), axis=0) > BESIDE)
+
+    def unsensed(self, state: State) -> Array:
+        """The equations, for whatever flank of gears."""
+        return self.balance(state, self.poses(state), [0.0] * len(self.loops))[0]
+
+    def those(self, told: Array) -> frozenset[str]:
+        """Names of forces by flags of the unknowns."""
+        flags = iter(told)
+        owners = [
+            (reaction.force, [next(flags) for _ in range(loop.unknowns)])
+            for loop, reaction in zip(self.loops, self.reactions, strict=True)
+        ]
+        return frozenset(force for force, some in owners if any(some))
+
+    # -- whether lengths agree ---------------------------------------------------------------------
+
+    def check(self, state: State) -> None:
+        """Raise a `MobilityError` where a joint that is not needed for the motion does not fit."""
+        if not self.count:
+            return
+        theta, poses = state["theta"], self.poses(state)
+        gaps = [self.gap(loop, poses) for loop in self.loops]
+        misfits = np.array([np.broadcast_to(gap, np.shape(theta)) for gap in gaps])
+        worst, at = np.unravel_index(np.argmax(misfits), misfits.shape)
+        if misfits[worst, at] <= AGREES * self.group.size:
+            return
+        told = self.too_short(state) or Note(
+            "{name!r} of {link!r} is {misfit:.4g} mm beside where it should be at crank angle "
+            "{angle:.4g} deg; give lengths that agree, or leave it out",
+            name=self.loops[worst].name,
+            link=self.loops[worst].on.body,
+            misfit=misfits[worst, at] * 1e3,
+            angle=degrees(theta[at]),
+        )
+        raise MobilityError(Note("{count}: {told}", count=self.count, told=told))
+
+    def gap(self, loop: Loop, poses: Poses) -> Any:
+        """By how much a joint does not fit, m."""
+        if isinstance(loop, CouplingLoop):
+            return 0.0
+        first, second = loop.gaps(poses, 0)
+        if isinstance(loop, SlideLoop):
+            first = first * self.group.size
+        return np.hypot(first, second)
+
+    def too_short(self, state: State) -> Note | str:
+        """Say of the link that two pins hold which distance of them is needed."""
+        found = []
+        for group in self.groups:
+            if group.kind != "pointed":
+                continue
+            call: Any = group.motion[-1]
+            first, second = call.inputs[0], call.inputs[3]
+            needed = np.abs(state[second] - state[first]) + 0 * state["theta"]
+            off = np.abs(needed - abs(call.parameters[0]))
+            at = int(np.argmax(off))
+            found.append((off[at], at, group.links[0], first[2:-1], second[2:-1], needed, call))
+        if (
+            not found
+            or (worst := max(found, key=lambda one: one[0]))[0] <= AGREES * self.group.size
+        ):
+            return ""
+        off, at, link, first, second, needed, call = worst
+        low, high = float(np.min(needed)), float(np.max(needed))
+        same = high - low <= AGREES * self.group.size
+        template = FIXED if same else MOVING
+        return Note(template, link=link, first=first, second=second,
+                    misfit=off * 1e3, angle=degrees(state["theta"][at]), low=low * 1e3,
+                    high=high * 1e3, given=abs(call.parameters[0]) * 1e3)  # fmt: skip
+
+
+FIXED = to_say(
+    "{second} of {link!r} comes {misfit:.4g} mm beside its pin, at crank angle {angle:.4g} deg; "
+    "its points {first} and {second} are {given:.7g} mm apart, and {low:.7g} mm would fit"
+)
+MOVING = to_say(
+    "{second} of {link!r} comes {misfit:.4g} mm beside its pin, at crank angle {angle:.4g} deg; "
+    "its points {first} and {second} are {given:.7g} mm apart, and the others bring the pins "
+    "{low:.7g} to {high:.7g} mm apart as the crank turns"
+)
+
+
+def _parts(matrix: Array) -> tuple[Array, Array, Array]:
+    """Least-squares inverse of matrices (N, n, m), unknowns (N, m, k) that they make nothing of,
+    and their singular values (N, n).
+    """
+    left, sizes, right = np.linalg.svd(matrix, full_matrices=True)
+    rank = sizes.shape[-1]
+    kept = sizes > ROUNDING * sizes[:, :1]
+    over = np.where(kept, 1 / np.where(kept, sizes, 1.0), 0.0)
+    right = np.swapaxes(right, -1, -2)
+    return right[..., :rank] * over[:, None] @ np.swapaxes(left, -1, -2), right[..., rank:], sizes
+
+
+def _largest_distance(machine: Machine) -> float:
+    """Between two points of a body, m, however its axes lie; 1 where all bodies are points."""
+    bodies = [[planar(place) for place in points.values()] for points in machine.bodies.values()]
+    return max(abs(a - b) for places in bodies for a in places for b in places) or 1.0
+
+
+def shared(
+    builder: Builder, joints: Structure, pivot: str, groups: tuple[Group, ...]
+) -> Shared | None:
+    """The free bodies of a machine whose groups cannot tell the forces one after the other."""
+    count = "" if joints.mobility == 1 else no_motion(joints)
+    if not count and not any(group.through for group in groups):
+        return None
+    links = tuple(body for body in builder.rank if body != FRAME)
+    maker = Maker(builder, joints, links)
+    maker.anchors = {link: builder.anchors[link] for link in links}
+    loops = [*maker.pinned_and_sliding(), *map(maker.coupling, joints.couplings)]
+    loops.sort(key=lambda loop: (loop.name, loop.on.body) != (pivot, links[0]))
+    anchors = tuple(maker.anchors.values())
+    size = _largest_distance(builder.machine)
+    whole = LoopGroup(links, anchors, ((FRAME, pivot),), (), tuple(loops), (), size)
+    reactions = tuple(map(maker.reaction, loops))
+    return Shared(whole, tuple(loops), reactions, pivot, count, {}, groups)
