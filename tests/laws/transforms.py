@@ -15,8 +15,8 @@ import pint
 import equipoise as eq
 from equipoise.keys import Frozen, Kind, Point, Table, innermost
 from equipoise.keys.declaring import declarations
-from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.balance import Limit
+from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.field import Planting
 from equipoise.mechanism.model import FRAME, Vector
 from equipoise.mechanism.objectives import quantity_of

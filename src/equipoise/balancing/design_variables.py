@@ -19,10 +19,10 @@ from equipoise.balancing.program import Affine, Program, stacked
 from equipoise.balancing.workshop import Change
 from equipoise.i18n import Note
 from equipoise.mechanism.balance import CenterMove, SpringChoice
-from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import Link, Machine
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.parameters import parameters_of, spring_columns
+from equipoise.mechanism.springs import Spring
 from equipoise.mechanism.steps import size_of_bodies
 from equipoise.signals import Array
 

@@ -1,33 +1,16 @@
-"""What a motion does at the contact of a cam: pressure angle, and where a spring lets go."""
+"""Contact of cams and followers that springs press together: where, and when, it is lost."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.mechanism.cam_fits import fitted
 from equipoise.mechanism.cams import Cam
-from equipoise.mechanism.kernels import cross, dot
+from equipoise.mechanism.dynamics import Forces
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import reactions
 from equipoise.mechanism.steps import Array
-
-if TYPE_CHECKING:
-    from equipoise.mechanism.dynamics import Forces
-
-
-def pressure_angle(motion: Motion, name: str) -> Array:
-    """From the way in which a follower rises to the common normal (N,), rad, by the cam's name."""
-    linkage, state = motion.linkage, motion.state
-    cam = next(one for one in motion.machine.cams if one.name == name)
-    fit = fitted(motion.machine, linkage.joints, cam)
-    carrier, normal = state[f"u({cam.carrier})"], state[f"normal({name})"]
-    at = state[f"p(contact({name}))" if cam.rides == "flat" else f"p({cam.point})"]
-    forth = fit.path.forth((at - state[f"p({fit.cam_pin})"]) / carrier) * carrier
-    slant = np.arctan2(cross(forth, normal), dot(forth, normal))
-    return np.broadcast_to(slant, motion.crank_angle.shape)
 
 
 @dataclass(frozen=True, eq=False)

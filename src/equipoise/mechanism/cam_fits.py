@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import degrees, pi
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,15 +15,14 @@ from equipoise.mechanism.builder import Guide
 from equipoise.mechanism.cam_shapes import Array, Path, Shape, Sliding, Swinging, lowest
 from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.joints import Structure, place_in_file
-from equipoise.mechanism.kernels import dot
+from equipoise.mechanism.kernels import cross, dot
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.steps import planar
-
-if TYPE_CHECKING:
-    from equipoise.mechanism.linkage import Linkage
+from equipoise.mechanism.steps import State, planar
 
 STEEPEST = 1e-6
 """Cosine of the pressure angle at which the follower jams."""
+BOTH = {(1, 0), (0, 1)}
+"""Numbers of sliding joints and pins between follower and carrier: one of them."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +79,8 @@ def fitted(machine: Machine, joints: Structure, cam: Cam) -> Fit:
     ends = {cam.driven, cam.carrier}
     guides = [one for one in joints.sliders if {one.link, one.on} == ends]
     pins = joints.pins_between(cam.driven, cam.carrier)
-    if (len(guides), len(pins)) != ((1, 0) if cam.swing is None else (0, 1)):
+    wanted = {(1, 0)} if cam.lift is not None else {(0, 1)} if cam.swing is not None else BOTH
+    if (len(guides), len(pins)) not in wanted:
         raise ModelError(
             where,
             Note(
@@ -165,10 +165,19 @@ def _on_pin(machine: Machine, cam: Cam, cam_pin: str, pin: str, where: str) -> F
     return Fit(cam, cam_pin, pin, None, np.angle(turn), sense, face, path)
 
 
-def fits_of(linkage: Linkage) -> tuple[Fit, ...]:
-    """All cams of a linkage."""
-    machine, joints = linkage.machine, linkage.joints
+def fits_of(machine: Machine, joints: Structure) -> tuple[Fit, ...]:
+    """All cams of a machine."""
     return tuple(fitted(machine, joints, cam) for cam in machine.cams)
+
+
+def pressure_angle(fit: Fit, state: State) -> Array:
+    """From the way in which a follower rises to the common normal, rad, as of a motion's state."""
+    cam = fit.cam
+    carrier, normal = state[f"u({cam.carrier})"], state[f"normal({cam.name})"]
+    at = state[f"p(contact({cam.name}))" if cam.rides == "flat" else f"p({cam.point})"]
+    forth = fit.path.forth((at - state[f"p({fit.cam_pin})"]) / carrier) * carrier
+    slant: Array = np.arctan2(cross(forth, normal), dot(forth, normal))
+    return slant
 
 
 def sharpest(fit: Fit) -> tuple[float, float]:

@@ -50,7 +50,7 @@ def follower(builder: Builder, joints: Structure, cam: Cam) -> Group:
     motion += builder.reach(cam.driver, fit.cam_pin)
     lift = tuple(f"{y}({cam.name})" for y in ("y", "y1", "y2"))
     motion.append(Displacement(cam.driver, cam.carrier, cam.law, lift))  # type: ignore[arg-type]
-    motion += (_lifted if cam.swing is None else _swung)(builder, joints, fit, lift)
+    motion += (_swung if fit.guide is None else _lifted)(builder, joints, fit, lift)
     motion += builder.reach(cam.driven, cam.point)
     motion += _touch(fit)
     ground, push, *forces = _forces(builder, joints, fit)

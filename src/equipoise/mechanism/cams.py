@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Conditions, Frozen, Table, Text, declared, key
+from equipoise.keys import Conditions, Frozen, Table, Text, declared, key, not_both
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link, unknown_point
 from equipoise.mechanism.couplings import Relation, coupled
 from equipoise.mechanism.laws import AngleLaw, Law, LengthLaw, wrong_law
@@ -16,14 +16,16 @@ from equipoise.mechanism.laws import AngleLaw, Law, LengthLaw, wrong_law
 RIDES = ("roller", "flat", "knife")
 CLOSURES = ("spring", "groove", "ribs")
 LEFT_RIGHT = ("left", "right")
+ROUND = LengthLaw(between=(0.0, 0.0))
+"""Of a cam without a law."""
 
 
 @declared
 class Cam(Frozen):
     """A cam and its follower, both joined to the same carrier, with the motion of the follower.
 
-    Exactly one of lift and swing: of a follower that slides on the carrier, and of one that is
-    pinned to it.
+    One of lift and swing: of a follower that slides on the carrier, and of one that is pinned to
+    it.  Without either the cam is round, and the follower stays where it is.
     """
 
     called = to_say("{what} of cam {number}")
@@ -33,7 +35,7 @@ class Cam(Frozen):
     speed_ratio: ClassVar[float] = 0.0
     exact_ratio: ClassVar[Fraction] = Fraction(0)
     file_order = ("cam", "follower", "carrier", "rides", "point", "roller_radius", "base_radius")
-    conditions: ClassVar[Conditions] = {"oneOf": [{"required": ["lift"]}, {"required": ["swing"]}]}
+    conditions: ClassVar[Conditions] = not_both("lift", "swing")
 
     driver: str = key(
         Text(of="body"),
@@ -102,9 +104,7 @@ class Cam(Frozen):
     @property
     def law(self) -> Law:
         """Displacement over the angle that the cam has turned against the carrier."""
-        law = self.swing if self.lift is None else self.lift
-        assert law is not None
-        return law
+        return self.lift or self.swing or ROUND
 
     @property
     def relation(self) -> Relation:
@@ -126,8 +126,8 @@ def wrong_cam(where: str, cam: Cam, bodies: Bodies) -> Iterator[ModelError]:
     yield from unknown_point(f"{where}.point", cam.point, cam.driven, bodies)
     if len({cam.driver, cam.driven, cam.carrier}) < 3:
         yield ModelError(where, Note("cam, follower and carrier must be three different bodies"))
-    if (cam.lift is None) == (cam.swing is None):
-        yield ModelError(where, Note("give either lift or swing"))
+    if cam.lift is not None and cam.swing is not None:
+        yield ModelError(where, Note("give either lift or swing, not both"))
         return
     yield from _wrong_ride(where, cam)
     at = f"{where}.{'lift' if cam.swing is None else 'swing'}"

@@ -299,11 +299,9 @@ def _coupled(builder: Builder, joints: Structure, unknown: list[str]) -> Group |
     for one in joints.couplings:
         ready = one.driven in unknown and {one.driver, one.carrier} <= known.keys()
         if ready and joints.freedom([one.driven], known) == 0:
-            return (
-                follower(builder, joints, one)
-                if isinstance(one, Cam)
-                else groups.coupled(builder, joints, one)
-            )
+            build: Any = follower if isinstance(one, Cam) else groups.coupled
+            group: Group = build(builder, joints, one)
+            return group
     return None
 
 

@@ -45,13 +45,7 @@ from equipoise.mechanism.checks import (
 from equipoise.mechanism.couplings import Coupling
 from equipoise.mechanism.drives import Drive, wrong_drive
 from equipoise.mechanism.field import Planting, wrong_planting
-from equipoise.mechanism.force_elements import (
-    Load,
-    LoadTable,
-    Spring,
-    wrong_ends,
-    wrong_load,
-)
+from equipoise.mechanism.force_elements import Load, LoadTable, wrong_load
 from equipoise.mechanism.gears import Gear, wrong_gear
 from equipoise.mechanism.links import (
     MASS_FIELDS,
@@ -63,6 +57,7 @@ from equipoise.mechanism.links import (
 from equipoise.mechanism.parts import Slider, wrong_slider
 from equipoise.mechanism.places import Frame, Position
 from equipoise.mechanism.shown_units import ShownUnits
+from equipoise.mechanism.springs import Spring, wrong_ends
 from equipoise.mechanism.support import Row, Support, wrong_support
 
 if TYPE_CHECKING:
@@ -70,6 +65,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FRAME",
+    "Cam",
     "Drive",
     "Gear",
     "Link",

@@ -11,7 +11,6 @@ from collections.abc import Callable
 from typing import Any
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.cam_contacts import pressure_angle
 from equipoise.mechanism.checks import FRAME, bodies_at
 from equipoise.mechanism.declaring import (
     DECLARED,
@@ -319,7 +318,7 @@ of_cam(
 )
 of_slant = _alike(
     "cams.{}.",
-    lambda _, found, cam: pressure_angle(found.motion, cam),
+    lambda name, found, cam: found.motion.pressure_angles[cam],
     needs="motion",
     members=lambda machine: [cam.name for cam in machine.cams],
     spoken=lambda name: name.replace(" to ", " → "),

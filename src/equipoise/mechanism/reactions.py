@@ -19,10 +19,10 @@ from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.field import Soil
-from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.loads import load_at
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.springs import Spring
 from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, run
 from equipoise.mechanism.tip import surface_of, tip_link
 

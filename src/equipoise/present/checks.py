@@ -122,7 +122,7 @@ def _springs(machine: Machine) -> Iterator[str]:
 
 
 def _cams(linkage: Linkage) -> Iterator[str]:
-    for fit in fits_of(linkage):
+    for fit in fits_of(linkage.machine, linkage.joints):
         cam, (radius, where) = fit.cam, sharpest(fit)
         law = f"{format_exact(cam.law.curve.extremes[1], cam.law.dimension)} at most"
         yield (

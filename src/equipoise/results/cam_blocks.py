@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import Note, all_of, say
-from equipoise.mechanism.cam_contacts import LetGo, let_go, pressure_angle
+from equipoise.mechanism.cam_contacts import LetGo, let_go
 from equipoise.mechanism.cam_fits import fits_of, sharpest
 from equipoise.mechanism.outputs import body_named
 from equipoise.quantities import PER_RPM, angle, told
@@ -28,9 +28,9 @@ def cam_blocks(analysis: Analysis) -> Iterator[Block]:
     found = () if analysis.solved is None else let_go(analysis.solved)
     limits = {one.cam.name: Value(one.speed, at=one.at) for one in found if np.isfinite(one.speed)}
     rows: list[tuple[Cell, ...]] = []
-    for fit in fits_of(analysis.motion.linkage):
+    for fit in fits_of(analysis.machine, analysis.motion.linkage.joints):
         name = fit.cam.name
-        steep = figures(analysis.crank_angle, abs(pressure_angle(analysis.motion, name)))
+        steep = figures(analysis.crank_angle, abs(analysis.motion.pressure_angles[name]))
         row: tuple[Cell, ...] = (
             name.replace(" to ", " → "),
             Value(sharpest(fit)[0]),

@@ -155,6 +155,14 @@ def test_a_camshaft_at_half_the_speed_takes_two_turns() -> None:
     np.testing.assert_allclose(rises, RISE.value(angle)[0], atol=1e-15)
 
 
+def test_a_cam_without_a_law_is_round() -> None:
+    """What it lifts stands still, and it bears the weight, on a guide and on a pin."""
+    found = eq.analyze(tappet(cam(lift=None))).forces
+    np.testing.assert_allclose(found.motion.points["R"].y, 0.03, atol=1e-16)
+    np.testing.assert_allclose(found.cams["crank to tappet"].normal, MASS * GRAVITY, rtol=1e-13)
+    assert np.ptp(eq.move(lever(swing=None)).links["tappet"].angle) == 0
+
+
 def test_a_spring_between_two_links() -> None:
     """It bears on both, nothing of it on the frame, and its energy comes back by the drive."""
     spring = eq.Spring("tappet", "T", "B", 800.0, 0.01, "crank")
@@ -179,8 +187,7 @@ BOTH = {"swing": AngleLaw(between=(0.0, 0.3)), "lift": LengthLaw(between=(0.0, 0
 @pytest.mark.parametrize(
     ("changes", "where", "words"),
     [
-        (BOTH, "cams[1]", "give either lift or swing"),
-        ({"lift": None}, "cams[1]", "give either lift or swing"),
+        (BOTH, "cams[1]", "give either lift or swing, not both"),
         ({"driver": "tappet"}, "cams[1]", "cam, follower and carrier must be ..."),
         ({"driver": "drum"}, "cams[1].cam", "no link is called 'drum'; ..."),
         ({"driven": "drum"}, "cams[1].follower", "no link is called 'drum'; ..."),

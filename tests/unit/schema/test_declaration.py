@@ -17,6 +17,7 @@ from equipoise.keys import Frozen, Number, Table, Tables, Text, declared, key, w
 from equipoise.mechanism import (
     balance,
     bodies,
+    cams,
     counterweights,
     field,
     force_elements,
@@ -29,8 +30,8 @@ from equipoise.mechanism import (
     support,
     weights,
 )
-from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import Frame, Machine, Position
+from equipoise.mechanism.springs import Spring
 from equipoise.schema import finding, models, schemas
 from equipoise.schema.documents import dumps, loads
 from equipoise.schema.places import Context
@@ -51,7 +52,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
     for of in (
         Machine, shown_units.ShownUnits, parts.Drive, laws.AngleLaw,
         laws.AngleSegment, force_elements.Motor, Frame, links.Link,
-        bodies.Body, bodies.Hole, parts.Slider, parts.Gear,
+        bodies.Body, bodies.Hole, parts.Slider, parts.Gear, cams.Cam,
         force_elements.Load, Spring, Position, field.Planting, field.PlantingArm,
         field.Soil, support.Support,
         mounts.Mount, support.Row, balance.Balance, weights.CenterMove,
