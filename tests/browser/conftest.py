@@ -2,7 +2,7 @@
 
 Where there is no Chromium or no bundle the tests are skipped, and fail if EQUIPOISE_BROWSER is
 ``required``.  A test fails too if its page reports an error or asks for anything beyond the server.
-A picture of each page at the end of its test is kept in ``build/screenshots``.
+A picture of each page of a test that fails is kept in ``build/screenshots``.
 """
 
 from __future__ import annotations
@@ -83,8 +83,10 @@ def new_page(
         page.on("websocket", lambda socket: watch(socket.url))
         return page
 
+    failed = request.session.testsfailed
     yield new
-    for number, page in enumerate(page for context in contexts for page in context.pages):
+    pages = [page for context in contexts for page in context.pages]
+    for number, page in enumerate(pages if request.session.testsfailed > failed else []):
         name = re.sub(r"[^\w.-]+", "-", request.node.name) + (f"-{number + 1}" if number else "")
         page.screenshot(path=SCREENSHOTS / f"{name}.png", full_page=True)
     for context in contexts:

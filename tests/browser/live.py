@@ -17,6 +17,8 @@ SCREENSHOTS = ROOT / "build" / "screenshots"
 AXE = ROOT / "page" / "node_modules" / "axe-core" / "axe.min.js"
 FITS = "document.documentElement.scrollWidth <= document.documentElement.clientWidth"
 """Nothing is to be moved from side to side."""
+LONGEST = 60
+"""s that an answer may take on a processor that others keep busy."""
 NUMBER = re.compile(r"[-−]?\d+(?:\.\d+)?")
 
 
@@ -39,7 +41,8 @@ class Live:
 
     def settled(self) -> None:
         """Wait until the page shows all that there is to what was done last."""
-        expect(self.page.locator(".equipoise")).to_have_attribute("data-settled", "")
+        root = self.page.locator(".equipoise")
+        expect(root).to_have_attribute("data-settled", "", timeout=LONGEST * 1000)
 
     # -- parts of it -------------------------------------------------------------------------------
 

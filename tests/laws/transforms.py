@@ -76,7 +76,11 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
             for s in machine.sliders
         ),
         gears=tuple(
-            replace(g, start=float(start.links[g.driven].angle[0]) + angle) for g in machine.gears
+            put_off(
+                replace(g, start=float(start.links[g.driven].angle[0]) + angle),
+                angle * ((g.carrier == FRAME) - (g.driver == FRAME)),
+            )
+            for g in machine.gears
         ),
         cams=tuple(
             later(cam, angle * ((cam.carrier == FRAME) - (cam.driver == FRAME)))
@@ -86,6 +90,12 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
         position=None if machine.position is None else turned_position(machine.position, angle),
         planting=None,
     )
+
+
+def put_off(gear: eq.Gear, later: float) -> eq.Gear:
+    """A pair whose driver, seen from the carrier, comes to the same pitch points so much later."""
+    shape = gear.shape
+    return gear if shape is None else replace(gear, shape=replace(shape, phase=shape.phase + later))
 
 
 def swung(
@@ -168,12 +178,21 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
         sliders=tuple(
             replace(s, direction=-s.direction, angle=-s.angle) for s in machine.sliders
         ),
-        gears=tuple(replace(g, start=-g.start) for g in machine.gears),
+        gears=tuple(mirrored_gear(gear) for gear in machine.gears),
         cams=tuple(mirrored_cam(cam) for cam in machine.cams),
         loads=tuple(mirrored_load(load) for load in machine.loads),
         gravity=vector(np.conj, machine.gravity),
         position=position,
     )  # fmt: skip
+
+
+def mirrored_gear(gear: eq.Gear) -> eq.Gear:
+    shape = gear.shape
+    if shape is not None:
+        values = {key: getattr(shape, key)[::-1] for key in ("ratio", "radius")}
+        sines, angles = tuple(-b for b in shape.sines), tuple(-a for a in shape.angle[::-1])
+        shape = replace(shape, phase=-shape.phase, sines=sines, angle=angles, **values)
+    return replace(gear, start=-gear.start, shape=shape)
 
 
 def mirrored_link(link: eq.Link) -> eq.Link:
@@ -354,7 +373,13 @@ def with_axes(machine: eq.Machine, link: str, angle: float, shift: complex) -> e
             )
             for s in machine.sliders
         ),
-        gears=tuple(replace(g, start=g.start + angle * (g.driven == link)) for g in machine.gears),
+        gears=tuple(
+            put_off(
+                replace(g, start=g.start + angle * (g.driven == link)),
+                angle * (int(g.driver == link) - (g.carrier == link)),
+            )
+            for g in machine.gears
+        ),
         cams=tuple(
             later(
                 cam

@@ -74,8 +74,10 @@ def same_reaction(name: str, got: Any, want: Reaction, force: float, moment: flo
 
 
 def same_totals(forces: Any, solved: FreeBodies, force: float, moment: float) -> None:
-    """Compare drive torque and what the frame bears."""
-    agree("drive torque", forces.drive_torque, solved.drive_torque, TOLERANCE, moment)
+    """Compare what the drive exerts and what the frame bears."""
+    pushes = forces.motion.machine.drive.pushes
+    drive = forces.drive_force if pushes else forces.drive_torque
+    agree("drive", drive, solved.drive, TOLERANCE, force if pushes else moment)
     agree("frame force", vector(forces.frame_force), solved.frame_force, TOLERANCE, force)
     agree("frame moment", forces.frame_moment, solved.frame_moment, TOLERANCE, moment)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
-from equipoise.mechanism.laws import AngleLaw
+from equipoise.mechanism.laws import AngleLaw, LengthLaw
 from equipoise.mechanism.model import Drive
 
 Rates = tuple[float, float, float]
@@ -49,7 +49,7 @@ def driven(drive: Drive, crank_angle: float) -> Rates:
     return (crank_angle, 1.0, 0.0) if drive.motion is None else followed(drive.motion, crank_angle)
 
 
-def followed(law: AngleLaw, crank_angle: float) -> Rates:
+def followed(law: AngleLaw | LengthLaw, crank_angle: float) -> Rates:
     """Return what a motion law tells at a crank angle, segment by segment."""
     period = 2 * pi * law.turns
     cycles, since = divmod(crank_angle - law.phase, period)

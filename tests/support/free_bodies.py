@@ -22,6 +22,7 @@ from equipoise.mechanism.model import FRAME, Gear, Machine
 from support.cams import line_of_force
 from support.loads import on_links, springs_on_links
 from support.poses import Array, Poses, cross, drive_pivot, pin_between, pins, quarter
+from support.rolling_reference import Rolling
 
 
 @dataclass(frozen=True)
@@ -57,12 +58,14 @@ class Reaction:
 
 @dataclass(frozen=True)
 class FreeBodies:
-    """Everything that the free bodies tell, one value a crank angle."""
+    """Everything that the free bodies tell, one value a crank angle; `drive` is the torque of the
+    drive, or its force.
+    """
 
     joints: Mapping[str, Reaction]
     gears: Mapping[str, Reaction]
     cams: Mapping[str, Reaction]
-    drive_torque: Array
+    drive: Array
     frame_force: Array
     frame_moment: Array
 
@@ -149,9 +152,7 @@ def solved(system: System, joints: list[Contact], gears: list[Contact]) -> dict[
         if contact.couple:
             columns.append(system.pair(contact, np.zeros_like(contact.at), 1.0))
         owners += [contact.name] * contact.size
-    torque = np.zeros_like(system.known)
-    torque[:, system.rows[system.machine.drive.link] + 2] = 1.0
-    columns, owners = [*columns, torque], [*owners, ""]
+    columns, owners = [*columns, driving(system)], [*owners, ""]
     matrix = np.stack(columns, -1)
     if matrix.shape[1] == matrix.shape[2]:
         found = np.linalg.solve(matrix, system.known[..., None])[..., 0]
@@ -161,6 +162,33 @@ def solved(system: System, joints: list[Contact], gears: list[Contact]) -> dict[
         pairs = zip(matrix * units, system.known, strict=True)
         found = units * np.array([np.linalg.lstsq(*pair)[0] for pair in pairs])
     return {name: found[:, [o == name for o in owners]] for name in dict.fromkeys(owners)}
+
+
+def driving(system: System) -> Array:
+    """Return the column of the drive: a torque on its link, or a force between two bodies."""
+    machine = system.machine
+    if machine.drive.stroke is not None:
+        push = cylinder(machine, system.poses)
+        return system.pair(push, push.directions[0], 0.0)
+    torque = np.zeros_like(system.known)
+    torque[:, system.rows[machine.drive.link] + 2] = 1.0
+    return torque
+
+
+def cylinder(machine: Machine, poses: Poses) -> Contact:
+    """Return where a drive that pushes acts, and along which line."""
+    drive = machine.drive
+    if drive.slider:
+        one = next(one for one in machine.sliders if one.name == drive.slider)
+        at = poses.place(one.link, machine.links[one.link].points[one.point])
+        line = (float(np.cos(one.direction)), float(np.sin(one.direction)))
+        return Contact("", one.link, one.on, at, (poses.turned(one.on, line),))
+    assert drive.between is not None
+    bodies = drive.ends(machine.bodies)
+    ends = zip(bodies, drive.between, strict=True)
+    a, b = (poses.place(body, machine.points_of(body)[point]) for body, point in ends)
+    along = (b - a) / np.linalg.norm(b - a, axis=-1, keepdims=True)
+    return Contact("", bodies[1], bodies[0], b, (along,))
 
 
 def extent(machine: Machine) -> float:
@@ -214,15 +242,26 @@ def centre_line(gear: Gear, machine: Machine, poses: Poses) -> tuple[Array, Arra
     """Return pitch point and unit vector from the driver's to the driven gear's axis.
 
     On the carrier the pitch point, at the part s of the centre distance from the driver's axis,
-    has the speed s w of the driver and (s - 1) r w of the driven gear; hence s = r / (r - 1).
+    has the speed s w of the driver and (s - 1) r w of the driven gear; hence s = r / (r - 1).  Here
+    r is the ratio at each crank angle.
     """
     axes = []
     for body in (gear.driver, gear.driven):
         label = pin_between(machine, body, gear.carrier)
         axes.append(poses.place(gear.carrier, machine.points_of(gear.carrier)[label]))
     between = axes[1] - axes[0]
-    part = gear.speed_ratio / (gear.speed_ratio - 1)
-    return axes[0] + part * between, between / np.linalg.norm(between, axis=-1, keepdims=True)
+    ratio = np.asarray(gear.speed_ratio)
+    if gear.shape is not None:
+        ratio = Rolling(gear).ratio(seen_from_carrier(gear, poses))
+    part = ratio / (ratio - 1)
+    return axes[0] + part[..., None] * between, between / np.linalg.norm(
+        between, axis=-1, keepdims=True
+    )
+
+
+def seen_from_carrier(gear: Gear, poses: Poses) -> Array:
+    """Return the driver's angle, as one on the carrier sees it."""
+    return poses.angle_of(gear.driver) - poses.angle_of(gear.carrier)
 
 
 def gear_contact(gear: Gear, machine: Machine, poses: Poses) -> Contact:
@@ -238,12 +277,27 @@ def separating(gear: Gear, machine: Machine, poses: Poses, tangential: Array) ->
     pair have such teeth, and of an internal pair the smaller one.
     """
     unit = centre_line(gear, machine, poses)[1]
+    if gear.shape is not None:
+        return leaning(gear, poses, tangential, unit)
     size = np.abs(tangential) * np.tan(gear.pressure_angle)
     # External: from the pitch point the driven gear's axis lies along +unit.  Internal with a
     # small driven gear: along -unit.  Internal with a small driver: its axis lies along +unit,
     # so it is pushed that way and the driven ring the other way.
     towards = 1.0 if gear.speed_ratio < 0 else -1.0
     return towards * size[:, None] * unit
+
+
+def leaning(gear: Gear, poses: Poses, tangential: Array, unit: Array) -> Array:
+    """Return the same where the pitch curves lean: the tooth pushes along their tangent, turned by
+    the pressure angle towards the driven gear.
+    """
+    tilt = Rolling(gear).tilt(seen_from_carrier(gear, poses))
+    way = np.where(tangential < 0, -1.0, 1.0)
+    push = way * (unit[:, 0] + 1j * unit[:, 1]) * 1j * np.exp(1j * tilt)
+    push *= np.exp(-1j * way * gear.pressure_angle)
+    toward = unit[:, 0] - 1j * unit[:, 1]
+    along, across = (push * toward).real, (push * toward).imag
+    return (along / across * tangential)[:, None] * unit
 
 
 def cam_contact(cam: Cam, machine: Machine, poses: Poses) -> Contact:
@@ -270,11 +324,15 @@ def gathered(
         apart = separating(gear, machine, poses, unknowns[contact.name][:, 0])
         force = tangential.force + apart
         meshed[gear.name] = Reaction(contact.on, contact.by, contact.at, force, tangential.couple)
-    torque = unknowns[""][:, 0]
+    drive, torque = unknowns[""][:, 0], 0.0
     pulls = [pull_on_frame(*acting) for acting in springs_on_links(machine, poses)]
+    if machine.drive.stroke is None:
+        torque = drive
+    else:
+        pulls.append(reaction(cylinder(machine, poses), unknowns[""]))
     force, moment = on_frame(machine, [*held.values(), *meshed.values(), *pulls])
     pressed = {cam.name: held.pop(cam.name) for cam in machine.cams}
-    return FreeBodies(held, meshed, pressed, torque, force, moment - torque)
+    return FreeBodies(held, meshed, pressed, drive, force, moment - torque)
 
 
 def reaction(contact: Contact, unknowns: Array) -> Reaction:

@@ -704,10 +704,18 @@ def planetary_arm(rng: np.random.Generator) -> Case:
     return draft.case("arm")
 
 
+def _more() -> Iterable[Callable[[np.random.Generator], Case]]:
+    """Makers from other modules, which draw on what stands above."""
+    from support import machines_ratio as ratio
+
+    return (ratio.rolling_counterweight, ratio.rolling_coupler, ratio.rolling_planet)
+
+
 MOVED = [moved(maker) for maker in (slider_crank, watt, geared_counterweight)]
 KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
     maker.__name__: maker
     for maker in (
+        *_more(),
         crank_rocker,
         slider_crank,
         stephenson,

@@ -57,9 +57,11 @@ def demands(
     machine: Machine, poses: Poses, gravity: Vector, springs: Sequence[Spring] = ()
 ) -> Demands:
     """Return what MuJoCo's inverse dynamics asks for at every crank angle beside some springs."""
+    even = tuple(replace(gear, shape=None) for gear in machine.gears)  # the file has no other
     alone = replace(
-        machine, gravity=gravity, support=None, rows=(), balance=None, springs=tuple(springs)
-    )
+        machine, gravity=gravity, support=None, rows=(), balance=None, springs=tuple(springs),
+        gears=even,
+    )  # fmt: skip
     model = mujoco.MjModel.from_xml_string(made(Job(alone)))
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     for name, link in machine.links.items():  # what the file makes a little heavier than it is

@@ -15,7 +15,9 @@ import numpy as np
 
 from equipoise.mechanism.model import FRAME, Gear, Machine, Slider, Vector
 from support.driving import driven
+from support.driving import followed as followed_law
 from support.poses import Array, Poses, cross, pins, quarter, turned
+from support.rolling_reference import Rolling
 
 
 class NotAssembledError(RuntimeError):
@@ -60,14 +62,56 @@ class Constraints:
             for body in bodies[1:]
         ]
         rows += [row for slider in self.machine.sliders for row in self._slider(q, rate, slider)]
-        rows += [self._gear(q, gear) for gear in self.machine.gears]
-        drive = self.machine.drive
-        rows.append(self._turn({drive.link: 1.0}, q, -driven(drive, crank_angle)[0]))
+        rows += [self._gear(q, rate, gear) for gear in self.machine.gears]
+        rows.append(self._driven(q, rate, self.commanded(crank_angle)[0]))
         return Row(
             np.concatenate([row.residual for row in rows]),
             np.concatenate([row.jacobian for row in rows]),
             np.concatenate([row.bend for row in rows]),
         )
+
+    def commanded(self, crank_angle: float) -> tuple[float, float, float]:
+        """Return what the drive commands, and its derivatives by crank angle."""
+        drive = self.machine.drive
+        if drive.stroke is None:
+            return driven(drive, crank_angle)
+        return followed_law(drive.stroke, crank_angle)
+
+    def _driven(self, q: Array, rate: Array, wanted: float) -> Row:
+        """Return the equation of the drive: an angle, or the length that pushes."""
+        drive = self.machine.drive
+        if drive.stroke is None:
+            return self._turn({drive.link: 1.0}, q, -wanted)
+        if drive.slider:
+            one = next(one for one in self.machine.sliders if one.name == drive.slider)
+            return self._travel(q, rate, one, wanted)
+        assert drive.between is not None
+        ends = zip(drive.ends(self.machine.bodies), drive.between, strict=True)
+        a, b = (self._place(q, rate, body, self.machine.points_of(body)[at]) for body, at in ends)
+        way, jacobian = b.residual - a.residual, b.jacobian - a.jacobian
+        length = float(np.hypot(*way))
+        along, drift = way / length, jacobian @ rate
+        turning = (drift @ drift - (along @ drift) ** 2) / length
+        bend = along @ (b.bend - a.bend) + turning
+        return Row(np.array([length - wanted]), (along @ jacobian)[None], np.array([-bend]))
+
+    def _travel(self, q: Array, rate: Array, slider: Slider, wanted: float) -> Row:
+        """Return the equation of the way along a guide, which may turn."""
+        point = self.machine.links[slider.link].points[slider.point]
+        a = self._place(q, rate, slider.on, self.machine.points_of(slider.on)[slider.through])
+        b = self._place(q, rate, slider.link, point)
+        k = None if slider.on == FRAME else self.columns[slider.on] + 2
+        angle, spin = (0.0, 0.0) if k is None else (q[k], rate[k])
+        line = turned(angle, (np.cos(slider.direction), np.sin(slider.direction)))
+        across, way = quarter(line), b.residual - a.residual
+        jacobian = line @ (b.jacobian - a.jacobian)
+        drift = (b.jacobian - a.jacobian) @ rate
+        bend = line @ (b.bend - a.bend)
+        if k is not None:
+            jacobian[k] += across @ way
+            bend += 2 * spin * (across @ drift) - spin**2 * (line @ way)
+        residual = line @ way - wanted
+        return Row(np.array([residual]), jacobian[None], np.array([-bend]))
 
     def _place(self, q: Array, rate: Array, body: str, local: Vector) -> Row:
         """Return position, its Jacobian and centripetal acceleration of a point."""
@@ -107,12 +151,25 @@ class Constraints:
         distance = Row(np.array([across @ apart]), jacobian[None], np.array([-bend]))
         return [distance, self._turn(weights, q, -slider.direction - slider.angle)]
 
-    def _gear(self, q: Array, gear: Gear) -> Row:
-        ratio = gear.speed_ratio
+    def _gear(self, q: Array, rate: Array, gear: Gear) -> Row:
         if gear.name not in self.gear_constants:
             return self._turn({gear.driven: 1.0}, q, -gear.start)
+        constant = self.gear_constants[gear.name]
+        if gear.shape is not None:
+            return self._rolling(q, rate, gear, constant)
+        ratio = gear.speed_ratio
         weights = {gear.driven: 1.0, gear.driver: -ratio, gear.carrier: ratio - 1.0}
-        return self._turn(weights, q, -self.gear_constants[gear.name])
+        return self._turn(weights, q, -constant)
+
+    def _rolling(self, q: Array, rate: Array, gear: Gear, constant: float) -> Row:
+        """A pair whose ratio varies with the driver's angle seen from the carrier."""
+        pair = Rolling(gear)
+        slip = {gear.driver: 1.0, gear.carrier: -1.0}
+        seen = self._turn(slip, q, 0.0)
+        x, speed = float(seen.residual[0]), float(seen.jacobian[0] @ rate)
+        rest = self._turn({gear.driven: 1.0, gear.carrier: -1.0}, q, -constant - pair.angle(x))
+        jacobian = rest.jacobian - float(pair.ratio(x)) * seen.jacobian
+        return Row(rest.residual, jacobian, np.array([float(pair.bend(x)) * speed**2]))
 
     def _turn(self, weights: dict[str, float], q: Array, constant: float) -> Row:
         """Return an equation of angles alone."""
@@ -125,9 +182,9 @@ class Constraints:
     def mesh(self, q: Array) -> None:
         """Let the gears mesh as they stand at `q`."""
         for gear in self.machine.gears:
-            weights = {gear.driven: 1.0, gear.driver: -gear.speed_ratio}
-            weights[gear.carrier] = gear.speed_ratio - 1.0
-            self.gear_constants[gear.name] = float(self._turn(weights, q, 0.0).residual[0])
+            self.gear_constants[gear.name] = 0.0
+            row = self._gear(q, np.zeros_like(q), gear)
+            self.gear_constants[gear.name] = float(row.residual[0])
 
 
 def closed(constraints: Constraints, q: Array, crank_angle: float, steps: int = 40) -> Array:
@@ -220,7 +277,7 @@ def followed(constraints: Constraints, q: Array, here: float, there: float) -> A
 def slope(constraints: Constraints, q: Array, crank_angle: float) -> Array:
     """Return the derivative of the coordinates with respect to the crank angle."""
     row = constraints.at(q, np.zeros_like(q), crank_angle)
-    rate = driven(constraints.machine.drive, crank_angle)[1]
+    rate = constraints.commanded(crank_angle)[1]
     return solved(row.jacobian, np.eye(len(row.jacobian))[-1] * rate)
 
 
@@ -233,7 +290,7 @@ def moving(constraints: Constraints, angles: Array | list[float], found: list[Ar
         rate = slope(constraints, q, angle) * drive.speed
         row = constraints.at(q, rate, angle)
         rates.append(rate)
-        _, first, second = driven(drive, angle)
+        _, first, second = constraints.commanded(angle)
         asked = first * drive.acceleration + second * drive.speed**2
         changes.append(solved(row.jacobian, row.bend + last * asked))
     q, v, a = np.array(found), np.array(rates), np.array(changes)

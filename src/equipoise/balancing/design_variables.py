@@ -252,10 +252,14 @@ class FreeSpring(DesignVariables):
         )
 
     def columns(self, motion: Motion, output: str) -> Array:
-        """Effect (2, N) on the drive's torque or on a joint's force."""
+        """Effect (2, N) on what the drive exerts or on a joint's force."""
         choice = self.choice
-        torque, joints = spring_columns(motion, choice.link, choice.point, choice.to)
-        found = torque if output == "drive_torque" else joints[output.removeprefix("joints.")]
+        effort, joints = spring_columns(motion, choice.link, choice.point, choice.to)
+        found = (
+            effort
+            if output == motion.machine.drive.effort
+            else joints[output.removeprefix("joints.")]
+        )
         units = self._units * np.array([1.0, -1.0])  # the pull is towards the frame's point
         return np.asarray(found * units[:, None])
 

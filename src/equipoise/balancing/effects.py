@@ -115,7 +115,8 @@ class Effects:
     def _declared(self, output: str) -> tuple[Declared, str]:
         joints = self.start.joints
         for one, item in matches(output):
-            if one.needs == "masses" and not one.reason and (not item or item in joints):
+            known = item in joints if item else "" in one.members(self.machine)
+            if one.needs == "masses" and not one.reason and known:
                 return one, item
         if output.startswith("joints."):
             raise UsageError(unknown(output.removeprefix("joints."), joints, "joint"))
@@ -235,6 +236,10 @@ class Present:
         return self.effects.start.drive_torque
 
     @property
+    def drive_force(self) -> Array:
+        return self.effects.start.drive_force
+
+    @property
     def joints(self) -> Mapping[str, JointForce]:
         return self.effects.start.solved_like(self.effects.flanks).joints
 
@@ -270,6 +275,10 @@ class Unit:
     @property
     def drive_torque(self) -> Array:
         return self.effects.with_springs(self.effects.solved.drive_torque, "drive_torque")
+
+    @property
+    def drive_force(self) -> Array:
+        return self.effects.with_springs(self.effects.solved.drive_force, "drive_force")
 
     @property
     def joints(self) -> Mapping[str, JointForce]:

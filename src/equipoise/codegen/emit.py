@@ -13,6 +13,7 @@ from equipoise.codegen.lines import Writer, write_demands, write_joints, write_m
 from equipoise.codegen.loops import can_write
 from equipoise.codegen.source import Source, source_of
 from equipoise.errors import MassError, UsageError
+from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.family import can_vary
 from equipoise.mechanism.linkage import Linkage, assemble
@@ -111,16 +112,18 @@ def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
 
 
 def can_emit(linkage: Linkage) -> bool:
-    """Whether the steps of a linkage can be written out: no soil, no gears beside loops, and no
-    joints whose forces only all free bodies together tell.
+    """Whether the steps of a linkage can be written out: no soil, no gears beside loops or of
+    varying ratio, no drive that pushes, and no joints whose forces only all free bodies
+    together tell.
     """
-    if linkage.shared is not None:
+    if linkage.shared is not None or linkage.machine.drive.pushes:
         return False
     machine = linkage.machine
     if machine.planting is not None and machine.planting.soil is not None:
         return False
     loops = [step for step in linkage.motion if isinstance(step, LoopGroup)]
-    return all(map(can_write, loops)) and not (loops and machine.couplings)
+    even = all(one.relation[0] is kernels.gear for one in machine.couplings)
+    return even and all(map(can_write, loops)) and not (loops and machine.couplings)
 
 
 def emit(linkage: Linkage, gathered: Gathered) -> Source:
@@ -133,8 +136,8 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     """
     if not can_emit(linkage):
         raise UsageError(
-            "large groups of loops, fingers in soil, parallel cranks and double guides cannot be "
-            "computed in a loop"
+            "large groups of loops, fingers in soil, parallel cranks, double guides and drives "
+            "that push cannot be computed in a loop"
         )
     writer = Writer(linkage)
     write_motion(writer)

@@ -11,6 +11,8 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
+
 from equipoise.errors import UsageError, needed
 from equipoise.exchange.formats import Job
 from equipoise.exchange.parts import Part, parts
@@ -73,7 +75,14 @@ def _linkage(space: Any, scene: Scene) -> None:
         space.add_line(*_points([at[one], at[other]]), dxfattribs=_layer("springs"))
     for wheel in scene.wheels:
         (center,) = _points([at[wheel.center]])
-        space.add_circle(center, MM * abs(wheel.radius), dxfattribs=_layer("gears", wheel.link))
+        layer = _layer("gears", wheel.link)
+        if wheel.curve is None:
+            space.add_circle(center, MM * abs(wheel.radius), dxfattribs=layer)
+        else:
+            turned = wheel.curve * np.exp(
+                1j * (scene.angles[wheel.link][0] if wheel.link in scene.angles else 0.0)
+            )
+            space.add_lwpolyline(_points(at[wheel.center] + turned), close=True, dxfattribs=layer)
     for name, spot in zip(at, _points(at.values()), strict=True):
         held = FRAME if name in scene.frame else "points"
         space.add_point(spot, dxfattribs=_layer(held))

@@ -13,6 +13,7 @@ from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import (
     Tree,
     constant_loads,
+    even_ratio,
     mass_of,
     moment_of,
     preloads,
@@ -55,9 +56,7 @@ def _model(job: Job) -> Data:
         "crank_angle": job.crank_angle,
         "gravity": list(machine.gravity),
         "bodies": {} if support is None else {BASE: _support(machine, support)},
-        **{
-            kind: [] for kind in ("pins", "sliders", "geared", "springs", "loads", "mounts", "held")
-        },
+        **{kind: [] for kind in LISTS},
     }
     for tree in drawn:
         _row(model, tree, job, machine.drive.flywheel if tree is drawn[0] else 0.0)
@@ -132,7 +131,7 @@ def _geared(tree: Tree) -> list[Data]:
     """
     shares: dict[str, dict[str, float]] = {}
     for gear in tree.machine.gears:
-        ratio, total = gear.speed_ratio, dict[str, float]()
+        ratio, total = even_ratio(gear), dict[str, float]()
         for body, share in ((gear.driver, ratio), (gear.carrier, 1 - ratio)):
             for root, factor in shares.get(body, {body: 1.0}).items():
                 total[root] = total.get(root, 0.0) + share * factor

@@ -17,7 +17,7 @@ from equipoise.errors import MassError, UsageError
 from equipoise.exchange.formats import Job
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import FRAME, Link, Load, Machine, Slider, Vector
+from equipoise.mechanism.model import FRAME, Gear, Link, Load, Machine, Slider, Vector
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.support import Row, Support
 from equipoise.vibration.free import modes
@@ -107,12 +107,27 @@ class Tree:
     def gears(self) -> Iterator[tuple[str, dict[str, float]]]:
         """Of each pair of gears its name, and link -> factor of its hinge in a sum that is 0."""
         for gear in self.machine.gears:
-            ratio, factors = gear.speed_ratio, dict[str, float]()
+            ratio, factors = even_ratio(gear), dict[str, float]()
             shares = ((gear.driven, 1.0), (gear.driver, -ratio), (gear.carrier, ratio - 1))
             for body, share in shares:
                 for link in self.turning(body):
                     factors[link] = factors.get(link, 0.0) + share
             yield gear.name, {link: one for link, one in factors.items() if one}
+
+
+def even_ratio(gear: Gear) -> float:
+    """Speed ratio of a pair of gears.
+
+    Raises
+    ------
+    UsageError : it varies.
+    """
+    if gear.shape is not None:
+        raise UsageError(
+            f"the ratio of the gears {gear.name} varies, which this format has no joint for; give "
+            "another format, or gears without a shape"
+        )
+    return gear.speed_ratio
 
 
 def trees(job: Job) -> tuple[Tree, ...]:

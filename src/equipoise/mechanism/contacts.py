@@ -13,7 +13,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism import joint_kernels, kernels
 from equipoise.mechanism.builder import Builder
 from equipoise.mechanism.cams import Cam
-from equipoise.mechanism.couplings import Coupling
+from equipoise.mechanism.couplings import Coupling, Law
 from equipoise.mechanism.gears import Gear
 from equipoise.mechanism.joints import Structure, coupling_pins, place_in_file
 from equipoise.mechanism.loops import Contact, End, Poses
@@ -71,7 +71,65 @@ class Mesh:
         return [(joint_kernels.tooth(turn, sense, self.lever, self.radial), 0.0)]
 
 
-def mesh_of(builder: Builder, joints: Structure, gear: Gear) -> Mesh:
+@dataclass(frozen=True)
+class RollingMesh:
+    """Where and how a pair of gears touches whose ratio varies, in the carrier's axes.
+
+    driver, law : whose angle, seen from the carrier, tells the ratio, and how.
+    centres : from the driven gear's pin to the driver's.  radial : as of `Mesh`, where the pitch
+    curves lie square to the line of centres.
+    """
+
+    driver_pin: str
+    driven_pin: str
+    driver: str
+    law: Law
+    centres: Any
+    radial: Any
+
+    def steps(self, coupling: Coupling, ground: Reaction) -> tuple[Reaction, tuple[Step, ...]]:
+        link, name, carrier = coupling.driven, coupling.name, coupling.carrier
+        pitch, tooth, sense = f"pitch({name})", f"R({name}/{link})", f"flank({name})"
+        lever, slope = f"lever({name})", f"slope({name})"
+        angles = (f"phi({self.driver})", f"phi({carrier})")
+        push = Reaction(name, coupling.kind, link, coupling.driver, pitch, tooth)
+        return push, (
+            Call(rolled, angles, (self.law, self.centres), (lever, slope)),
+            Call(
+                joint_kernels.place, (f"p({self.driven_pin})", f"u({carrier})", lever), (),
+                (f"p({pitch})",),
+            ),
+            Call(joint_kernels.flank, (f"M({link})",), (), (sense,)),
+            Call(
+                joint_kernels.rolling_forces,
+                (*demand_names(link), f"u({carrier})", sense, lever, slope),
+                (self.radial,),
+                (ground.force, tooth, f"T({name})"),
+            ),
+        )  # fmt: skip
+
+    def rolled(self, poses: Poses, carrier: str) -> tuple[Any, Any]:
+        return rolled(poses[self.driver].angle, poses[carrier].angle, self.law, self.centres)
+
+    def place(self, poses: Poses, on: End, carrier: str) -> Any:
+        """The pitch point."""
+        lever, _ = self.rolled(poses, carrier)
+        return poses[on.body].point(on.arm)[0] + poses[carrier].turn[0] * lever
+
+    def wrenches(self, poses: Poses, on: End, carrier: str, sense: Any) -> list[tuple[Any, float]]:
+        """The pitch curves and the flank in contact, told by `sense`, set the line of action."""
+        lever, slope = self.rolled(poses, carrier)
+        turn, slant = poses[carrier].turn[0], joint_kernels.slant(sense, self.radial, slope)
+        return [(joint_kernels.tooth(turn, 1.0, lever, slant), 0.0)]
+
+
+def rolled(angle_r: Any, angle_c: Any, law: Law, centres: Any) -> tuple[Any, Any]:
+    """Lever of the pitch point and slope of the pitch curves there; see `kernels.pitch_slope`."""
+    _, ratio, bend = law(angle_r - angle_c)
+    return centres / (1 - ratio), kernels.pitch_slope(ratio, bend)
+
+
+def mesh_of(builder: Builder, joints: Structure, gear: Gear) -> Contact:
     """The pitch point divides the line of centres so that both gears move alike there."""
     driver_pin, driven_pin = coupling_pins(joints, gear)
     ratio = gear.speed_ratio
@@ -83,6 +141,8 @@ def mesh_of(builder: Builder, joints: Structure, gear: Gear) -> Mesh:
         )
     ring_driven = 0 < ratio < 1
     radial = np.tan(gear.pressure_angle) * (1 if ring_driven else -1)
+    if gear.law is not None:
+        return RollingMesh(driver_pin, driven_pin, gear.driver, gear.law, centres, radial)
     return Mesh(driver_pin, driven_pin, centres / (1 - ratio), radial)
 
 

@@ -4,30 +4,45 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import copysign
-from typing import Any
+from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import NO_INERTIA, Frozen, Listing, Quantity, Table, Text, declared, key
-from equipoise.mechanism.checks import wrong_speeds
+from equipoise.keys import (
+    NO_INERTIA,
+    Conditions,
+    Frozen,
+    Listing,
+    Quantity,
+    Table,
+    Text,
+    declared,
+    key,
+)
+from equipoise.mechanism.checks import Bodies, bodies_at, unknown, wrong_speeds
 from equipoise.mechanism.force_elements import Motor, wrong_motor
-from equipoise.mechanism.laws import AngleLaw, wrong_law
+from equipoise.mechanism.laws import AngleLaw, LengthLaw, wrong_law
 
 
 @declared
 class Drive(Frozen):
-    """The link that is driven.
+    """The link that is driven, or that tells the pose of a machine that is pushed.
 
     The crank angle is the phase of the cycle, and turns at `speed`.  Without a motion of its own
-    the driven link's angle is the crank angle; with one it follows that law.
+    the driven link's angle is the crank angle; with one it follows that law.  A stroke is the
+    length of a cylinder between two points, or the travel of a sliding joint, whose force drives.
     """
 
     called = to_say("{what} of the drive")
     file_order = ("link", "speed", "speeds")
+    conditions: ClassVar[Conditions] = {
+        "dependentRequired": {"between": ["stroke"], "slider": ["stroke"], "start": ["stroke"]}
+    }
 
     link: str = key(
         Text(of="link"),
-        "the driven link; it shares exactly one point with the frame, about which it turns",
+        "the driven link; it shares exactly one point with the frame, about which it turns; of a "
+        "machine that a cylinder drives a link that does so and whose angle tells the pose",
         example="crank",
     )
     speed: float = key("angular speed", "positive is counterclockwise", example="193 rpm")
@@ -56,6 +71,48 @@ class Drive(Frozen):
         "the same where it is left out",
         default=None,
     )
+    between: tuple[str, str] | None = key(
+        Listing(Text(of="point"), (2,)),
+        "points of two bodies that a cylinder without mass drives, by the length between them; at "
+        "a pin of several bodies it acts on the first of these",
+        default=None,
+        example=["A", "B"],
+    )
+    slider: str = key(
+        Text(),
+        "a sliding joint that is driven instead, by its travel, such as `rod on barrel`",
+        default="",
+        example="rod on barrel",
+    )
+    stroke: LengthLaw | None = key(
+        Table(LengthLaw, headed=True),
+        "length of the cylinder, or travel of the sliding joint, over the cycle; `speed` tells how "
+        "fast the cycle goes on",
+        default=None,
+    )
+    start: float | None = key(
+        "angle",
+        "of the link at crank angle 0, roughly, where a stroke can be had in several poses",
+        default=None,
+        word=to_say("angle at the start"),
+    )
+
+    @property
+    def pushes(self) -> bool:
+        """Whether a force drives the machine, and not a torque."""
+        return self.stroke is not None
+
+    @property
+    def effort(self) -> str:
+        """The output that tells what the drive exerts."""
+        return "drive_force" if self.pushes else "drive_torque"
+
+    def ends(self, bodies: Bodies) -> tuple[str, str]:
+        """The bodies between which a cylinder acts."""
+        assert self.between is not None
+        at = bodies_at(bodies)
+        first, second = (at[point] for point in self.between)
+        return first[0], next((body for body in second if body != first[0]), first[0])
 
     @property
     def range(self) -> tuple[float, float] | None:
@@ -71,25 +128,61 @@ class Drive(Frozen):
 
     @property
     def turns(self) -> int:
-        """Turns of the crank after which the driven link moves as before."""
-        return 1 if self.motion is None else self.motion.turns
+        """Turns of the crank after which the drive is back."""
+        return next((law.turns for law in (self.motion, self.stroke) if law), 1)
 
 
 # -- checks ----------------------------------------------------------------------------------------
 
 
-def wrong_drive(drive: Drive) -> Iterator[ModelError]:
+def wrong_drive(drive: Drive, bodies: Bodies, sliders: list[str]) -> Iterator[ModelError]:
     """Everything that is wrong with the drive, but for its link."""
     if drive.speeds:
         yield from wrong_speeds("drive.speeds", drive.speeds)
     if drive.motor is not None:
         yield from wrong_motor("drive.motor", drive.motor)
-    if drive.motion is None:
+    yield from _wrong_push(drive, bodies, sliders)
+    if drive.motion is not None:
+        yield from wrong_law("drive.motion", drive.motion)
+    if drive.motion is None and drive.stroke is None:
         return
-    yield from wrong_law("drive.motion", drive.motion)
     for name, given in (("motor", drive.motor), ("flywheel", drive.flywheel)):
         if given:
             yield ModelError(
                 f"drive.{name}",
                 Note("turns with the crank, and here the driven link has a motion; leave it out"),
             )
+
+
+def _wrong_push(drive: Drive, bodies: Bodies, sliders: list[str]) -> Iterator[ModelError]:
+    """Everything that is wrong with a stroke and what has it."""
+    law = drive.stroke
+    if law is None:
+        for name in ("between", "slider", "start"):
+            if getattr(drive, name) not in (None, ""):
+                told = Note("is given, but no stroke; say how long it is in [drive.stroke]")
+                yield ModelError(f"drive.{name}", told)
+        return
+    if (drive.between is None) == (not drive.slider):
+        yield ModelError("drive.stroke", Note("give either between or slider with it"))
+    elif drive.motion is not None:
+        yield ModelError("drive.motion", Note("a stroke moves the link already; leave it out"))
+    else:
+        yield from _wrong_ends(drive, bodies, sliders)
+        yield from wrong_law("drive.stroke", law)
+
+
+def _wrong_ends(drive: Drive, bodies: Bodies, sliders: list[str]) -> Iterator[ModelError]:
+    if drive.between is None:
+        if drive.slider not in sliders:
+            yield ModelError("drive.slider", unknown(drive.slider, sliders, "slider"))
+        return
+    known = bodies_at(bodies)
+    for number, point in enumerate(drive.between, 1):
+        if point not in known:
+            yield ModelError(f"drive.between[{number}]", unknown(point, known, "point"))
+            return
+    first, second = drive.ends(bodies)
+    if first == second:
+        told = Note("both points are of {body!r}; give points of two bodies", body=first)
+        yield ModelError("drive.between", told)

@@ -21,6 +21,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.pushing import lengths
 from equipoise.mechanism.reactions import (
     CamForce,
     Demand,
@@ -31,6 +32,7 @@ from equipoise.mechanism.reactions import (
     VectorSignal,
     full,
     load_demands,
+    pushed,
     reactions,
     spring_demands,
 )
@@ -117,10 +119,18 @@ class Forces:
         return self.solved.drive_torque
 
     @property
+    def drive_force(self) -> Array:
+        """Force with which a drive pushes its ends apart, N; of one that does."""
+        return self.solved.drive_force
+
+    @property
     def power(self) -> Array:
         """Power fed in by the drive, W."""
-        drive = self.motion.machine.drive.link
-        return self.drive_torque * self.motion.links[drive].angular_velocity
+        motion = self.motion
+        drive = motion.machine.drive
+        if drive.pushes:
+            return self.drive_force * lengths(motion)[1] * motion.speed
+        return self.drive_torque * motion.links[drive.link].angular_velocity
 
     @cached_property
     def joints(self) -> Mapping[str, JointForce]:
@@ -166,6 +176,7 @@ class Shares:
     """Outputs told apart: arrays (..., N), whose first axes are what they are shares of.
 
     shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
+    drive_force : N, of a drive that pushes.
     joints, gears, cams : name -> force whose arrays have those axes.
     """
 
@@ -177,6 +188,7 @@ class Shares:
     joints: Mapping[str, JointForce]
     gears: Mapping[str, MeshForce]
     cams: Mapping[str, CamForce]
+    drive_force: Array | None = field(default=None, kw_only=True)
 
     @property
     def of_machine(self) -> dict[str, Array]:
@@ -301,6 +313,7 @@ def split(whole: Forces) -> Split:
         solved.gears,
         solved.cams,
         links,
+        drive_force=pushed(solved),
     )
 
 

@@ -28,7 +28,18 @@ from equipoise.mechanism.bodies import Body
 from equipoise.mechanism.body_checks import outlined_by_columns
 from equipoise.mechanism.linkage import Linkage, ordered
 from equipoise.mechanism.model import FRAME, Machine, Vector
-from equipoise.mechanism.steps import Array, Call, State, Step, p, planar, run, u
+from equipoise.mechanism.steps import (
+    Array,
+    Call,
+    Rotation,
+    RunningAngle,
+    State,
+    Step,
+    p,
+    planar,
+    run,
+    u,
+)
 from equipoise.quantities.units import HUGE, TINY
 
 Triple = tuple[Array, Array, Array]
@@ -48,11 +59,27 @@ class Family:
             name: column(complex(*k.machine.frame[name]) for k in self.linkages)
             for name in self.first.machine.frame
         }
-        self.steps: list[Step] | None = None
-        if all(isinstance(step, Call) for step in self.first.motion):
-            self.steps = [
-                _stacked(calls) for calls in zip(*(k.motion for k in linkages), strict=True)
-            ]
+        self.steps = self._side_by_side()
+
+    def _side_by_side(self) -> list[Step] | None:
+        """Steps that solve all machines at once; None where a running angle has to be counted on
+        from a machine's own cycle.
+        """
+        if any(one.machine.drive.pushes for one in self.linkages):
+            return None
+        known = (FRAME, self.first.machine.drive.link)
+        steps: list[Step] = []
+        for same in zip(*(k.motion for k in self.linkages), strict=True):
+            match same[0]:
+                case Call():
+                    steps.append(_stacked(same))
+                case Rotation() as turned:
+                    steps.append(turned)
+                case RunningAngle(link) if link in known:
+                    pass  # that of the frame and of the drive is there from the start
+                case _:
+                    return None
+        return steps
 
     def solve(self, theta: Array) -> State:
         """Every link known at crank angles (P, K), rad."""
@@ -105,10 +132,10 @@ class Family:
             (drives[0].link, np.exp(1j * angle), w, a),
         ):
             state.update(zip(u(link), values, strict=True))
-        return state
+        return state | {f"phi({FRAME})": np.zeros_like(theta), f"phi({drives[0].link})": angle}
 
     def _one_by_one(self, theta: Array) -> State:
-        """Gears and loops follow their own cycle, which stacked parameters do not tell."""
+        """Some couplings and loops follow their own cycle, which stacked parameters do not tell."""
         rows = [k.solve(row) for k, row in zip(self.linkages, theta, strict=True)]
         names = [name for name, value in rows[0].items() if np.ndim(value) < 2]
         return {
@@ -122,8 +149,22 @@ class Family:
 def _stacked(calls: Sequence[Any]) -> Call:
     """The same call of all machines, with columns (P, 1) for parameters."""
     first = calls[0]
-    columns = (column(values) for values in zip(*(c.parameters for c in calls), strict=True))
+    columns = (_beside(values) for values in zip(*(c.parameters for c in calls), strict=True))
     return Call(first.kernel, first.inputs, tuple(columns), first.outputs)
+
+
+def _beside(values: tuple[Any, ...]) -> Any:
+    """Numbers as a column (P, 1); laws as one that takes angles (P, K), a row for each machine."""
+    if not callable(values[0]):
+        return column(values)
+    if all(law == values[0] for law in values):
+        return values[0]
+
+    def law(angles: Any) -> tuple[Array, ...]:
+        rows = (one(row) for one, row in zip(values, angles, strict=True))
+        return tuple(map(np.array, zip(*rows, strict=True)))
+
+    return law
 
 
 def column(values: Iterable[Any]) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from math import pi, radians
+from math import dist, pi, radians
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
@@ -16,6 +16,7 @@ from equipoise.keys import (
     Keys,
     Listing,
     Number,
+    Table,
     Text,
     Whole,
     declared,
@@ -24,7 +25,8 @@ from equipoise.keys import (
 )
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body
-from equipoise.mechanism.couplings import Relation
+from equipoise.mechanism.couplings import Law, Relation, coupled
+from equipoise.mechanism.gear_shapes import GearShape, wrong_shape
 
 MESHES = ("external", "internal")
 
@@ -86,6 +88,11 @@ class Gear(Frozen):
         below=pi / 2,
         why=Note("give an angle from 0 deg to less than 90 deg"),
     )
+    shape: GearShape | None = key(
+        Table(GearShape, headed=True),
+        "pitch curves, where the ratio varies; `ratio` or `teeth` then tell its mean",
+        default=None,
+    )
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Gear:
@@ -120,7 +127,27 @@ class Gear(Frozen):
 
     @property
     def relation(self) -> Relation:
+        if self.law is not None:
+            return coupled, (self.law,)
         return kernels.gear, (self.speed_ratio,)
+
+    @property
+    def law(self) -> Law | None:
+        """The driven gear's angle by the driver's, seen from the carrier, if the ratio varies."""
+        if self.shape is None:
+            return None
+        from equipoise.mechanism.pitch_curves import law_of
+
+        return law_of(self.shape, self.speed_ratio)
+
+    @property
+    def ratios(self) -> tuple[float, float]:
+        """The smallest and the largest size of the ratio, with its sign."""
+        if self.shape is None:
+            return self.speed_ratio, self.speed_ratio
+        from equipoise.mechanism.pitch_curves import ratios_of
+
+        return ratios_of(self.shape, self.speed_ratio)
 
     @property
     def exact_ratio(self) -> Fraction | None:
@@ -161,3 +188,27 @@ def wrong_gear(where: str, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:
                 speed_ratio=gear.speed_ratio,
             ),
         )
+    elif gear.shape is not None:
+        yield from _wrong_shape(f"{where}.shape", gear.shape, gear, bodies)
+
+
+def _wrong_shape(where: str, shape: GearShape, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:
+    problems = wrong_shape(shape, gear)
+    if not problems:
+        from equipoise.mechanism.pitch_curves import wrong_curve
+
+        problems = [*wrong_curve(shape, gear, _distance(gear, bodies))]
+    for name, told in problems:
+        yield ModelError(f"{where}.{name}".rstrip("."), told)
+
+
+def _distance(gear: Gear, bodies: Bodies) -> float | None:
+    """Between the axes of a pair, m; None where either does not share exactly one point with the
+    carrier.
+    """
+    points = bodies.get(gear.carrier, {})
+    pins = [points.keys() & bodies.get(body, {}).keys() for body in (gear.driver, gear.driven)]
+    if any(len(shared) != 1 for shared in pins):
+        return None
+    driver, driven = (points[next(iter(shared))] for shared in pins)
+    return dist(driver, driven)

@@ -90,3 +90,21 @@ def gear_forces(force, moment, u, sense, lever, radial):
     tangential = moment / length(lever)
     mesh = tooth(u, sense, lever, radial) * tangential
     return force - mesh, mesh, tangential
+
+
+def place(p, u, arm):
+    """Place at an arm, in the axes of a body with the rotation u, from its point p."""
+    return (p + u * arm,)
+
+
+def slant(sense, radial, slope):
+    """Radial part of a tooth force, per unit of tangential force, where the pitch curves are turned
+    from the line square to that of the centres; slope : tangent of that angle, others as of
+    `gear_forces`.  The tangent of a sum of angles.
+    """
+    return (radial * sense - slope) / (1 + radial * sense * slope)
+
+
+def rolling_forces(force, moment, u, sense, lever, slope, radial):
+    """As `gear_forces`, of gears whose ratio varies; lever : along the line of centres."""
+    return gear_forces(force, moment, u, 1.0, lever, slant(sense, radial, slope))

@@ -79,6 +79,15 @@ def gear(angle_r, w_r, a_r, angle_c, w_c, a_c, ratio, offset):
     )
 
 
+def pitch_slope(ratio, bend):
+    """Tangent of the angle, counterclockwise, by which two pitch curves at the pitch point are
+    turned from the line square to that of the centres.
+
+    bend : derivative of the ratio by the driver's angle relative to the carrier.
+    """
+    return bend / (ratio * (1 - ratio))
+
+
 def along_line(d, d1, d2, n, w, a):
     """Vector d and its derivatives in axes along the unit vector n, which turns by w, a."""
     back = n.conjugate()

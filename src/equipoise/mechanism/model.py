@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
@@ -81,6 +83,8 @@ __all__ = [
 ]
 
 
+MOVING = ("link", "motion", "between", "slider", "stroke", "start")
+"""What of the drive sets how the links move."""
 MOST = {
     "links": 100,
     "points": 2000,
@@ -170,6 +174,18 @@ class Machine(Frozen):
         """Points of the frame and of every link, in their own axes."""
         return {FRAME: self.frame} | {name: link.points for name, link in self.links.items()}
 
+    @cached_property
+    def turning(self) -> Any:
+        """What tells the angle of the drive's link where a stroke does; None elsewhere."""
+        if not self.drive.pushes:
+            return None
+        return import_module("equipoise.mechanism.cylinders").commanded(self)  # which needs this
+
+    def turned(self, crank_angle: Any) -> tuple[Any, Any, Any]:
+        """Angle of the drive's link at crank angles (...), and its two derivatives by them."""
+        law = self.turning
+        return self.drive.turned(crank_angle) if law is None else law.value(crank_angle)
+
     @property
     def couplings(self) -> tuple[Coupling, ...]:
         """Joints by which one body's angle tells another's, in the order of the file."""
@@ -210,7 +226,7 @@ class Machine(Frozen):
     def with_drive(self, **changes: Any) -> Machine:
         """Return the machine with fields of its drive changed."""
         changed = replace(self, drive=replace(self.drive, **changes))
-        return self._same_motion(changed, "link" not in changes)
+        return self._same_motion(changed, not {*changes} & {*MOVING})
 
     def with_number(self, steps: Sequence[str], number: float) -> Machine:
         """Return the machine with another number, by the keys and names on the way to it such as
@@ -257,6 +273,8 @@ class Machine(Frozen):
         """Hand on how the linkage is solved, where neither lengths nor joints have changed."""
         if same and "_linkage" in self.__dict__:
             changed.__dict__["_linkage"] = self.__dict__["_linkage"].of(changed)
+            if "turning" in self.__dict__:
+                changed.__dict__["turning"] = self.__dict__["turning"]
         return changed
 
     def points_of(self, body: str) -> Mapping[str, Vector]:
@@ -299,7 +317,7 @@ def _problems(machine: Machine) -> Iterator[ModelError]:
         for name in machine.position.angles:
             yield from unknown_link(f"position.angles.{name}", name, bodies)
     yield from wrong_planting(machine.planting, bodies)
-    yield from wrong_drive(machine.drive)
+    yield from wrong_drive(machine.drive, bodies, [one.name for one in machine.sliders])
     yield from wrong_support(machine.support, machine.rows)
     if machine.balance is not None:
         yield from machine.balance.problems(machine)

@@ -155,23 +155,32 @@ class Outline:
 
     def _meshed(self, drive: str) -> Iterator[Gear]:
         """Gears that start so that they come to where they are drawn, as far as that is known."""
-        turned = {FRAME: 0.0}  # since crank angle 0
+        angles = {FRAME: (0.0, 0.0)}  # at crank angle 0, and as drawn
         if drive in self.links:
-            turned[drive] = self.pose(drive).angle
+            angles[drive] = 0.0, self.pose(drive).angle
         for gear in self.gears:
             start = gear.start
-            if {gear.driver, gear.carrier} <= turned.keys() and gear.driven not in turned:
-                carrier = turned[gear.carrier]
-                way = carrier + gear.speed_ratio * (turned[gear.driver] - carrier)
-                turned[gear.driven] = way
+            if {gear.driver, gear.carrier} <= angles.keys() and gear.driven not in angles:
+                way = _way(gear, angles[gear.driver], angles[gear.carrier])
                 drawn = self.pose(gear.driven).angle - way
                 if abs(remainder(drawn - start, 2 * pi)) > MESHING:
                     start = clean(remainder(drawn, 2 * pi), "angle")
+                angles[gear.driven] = start, start + way
             yield gear if start == gear.start else replace(gear, start=start)
 
     def _usual_drive(self) -> Drive:
         """In the place of one that has not been chosen."""
         return Drive(next(iter(self.links), ""), 0.0)
+
+
+def _way(gear: Gear, driver: tuple[float, float], carrier: tuple[float, float]) -> float:
+    """How far a driven gear turns while driver and carrier turn from one angle to another."""
+    kernel, numbers = gear.relation
+    before, after = (
+        float(kernel(one, 0.0, 0.0, other, 0.0, 0.0, *numbers, 0.0)[0])
+        for one, other in zip(driver, carrier, strict=True)
+    )
+    return after - before
 
 
 def pose_between(start: complex, end: complex) -> Pose:

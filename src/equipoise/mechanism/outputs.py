@@ -215,7 +215,22 @@ linear("shaking_force", "force", to_say("shaking force"), XY, ordered=True, comp
 linear(
     "shaking_moment", "torque", to_say("shaking moment"), about=True, ordered=True, compared=MOMENT
 )
-linear("drive_torque", "torque", to_say("drive torque"), ordered=True, compared=TORQUE)
+EFFORT: dict[str, Any] = {"ordered": True, "compared": TORQUE}
+linear(
+    "drive_torque",
+    "torque",
+    to_say("drive torque"),
+    members=lambda machine: () if machine.drive.pushes else ("",),
+    **EFFORT,
+)
+linear(
+    "drive_force",
+    "force",
+    to_say("drive force"),
+    members=lambda machine: ("",) if machine.drive.pushes else (),
+    loop=None,
+    **EFFORT,
+)
 linear("frame_force", "force", to_say("force on the frame"), XY, summed=(True, False))
 linear("frame_moment", "torque", to_say("moment on the frame"), about=True)
 of_weight = _alike(

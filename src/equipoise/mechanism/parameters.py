@@ -35,6 +35,7 @@ from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.reactions import (
     Demand,
     demands_of,
+    pushed,
     reactions,
     spring_direction,
     spring_vector,
@@ -123,6 +124,7 @@ def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Re
         solved.cams,
         parameter_names(machine),
         values,
+        drive_force=pushed(solved),
     )
 
 
@@ -226,7 +228,7 @@ def independent_columns(matrix: Array, tolerance: float = 1e-9) -> tuple[list[in
 def spring_columns(
     motion: Motion, link: str, point: str, to: str
 ) -> tuple[Array, dict[str, Array]]:
-    """Drive torque (2, N) and the force in each joint by name (2, N), complex.
+    """Drive torque or force (2, N) and the force in each joint by name (2, N), complex.
 
     First row: of a spring of 1 N/m without a free length; second row: of a pull of 1 N towards the
     frame's point; each alone.  Shaking force and moment, and force and moment on the frame, have
@@ -251,4 +253,6 @@ def spring_columns(
     demands |= demands_of(motion, [(link, point, units, 0.0)])
     like = forces(motion).solved if motion.machine.gears else None
     solved = reactions(motion, demands, like)
-    return solved.drive_torque, {name: joint.value for name, joint in solved.joints.items()}
+    effort = pushed(solved)
+    effort = solved.drive_torque if effort is None else effort
+    return effort, {name: joint.value for name, joint in solved.joints.items()}

@@ -22,10 +22,13 @@ from equipoise.mechanism.field import Soil
 from equipoise.mechanism.loads import load_at
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.pushing import pushes
 from equipoise.mechanism.springs import Spring
 from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, run
 from equipoise.mechanism.tip import surface_of, tip_link
 
+PUSH = "D"
+"""Name of the force of a drive that pushes, among the values of a pass."""
 JOINTS = ("pin", "slider")
 """Kinds of reactions that are no push of a coupling."""
 Demand = tuple[Any, Any]
@@ -116,6 +119,11 @@ class Pass:
         return full(self.motion, self.state[f"M({self.motion.machine.drive.link})"], float)
 
     @cached_property
+    def drive_force(self) -> Array:
+        """Force with which the drive pushes its ends apart, or its sliding link ahead, N."""
+        return full(self.motion, self.state[PUSH], float)
+
+    @cached_property
     def frame_force(self) -> Array:
         """Sum of the forces of all joints on the frame, N, complex."""
         drive = self.motion.machine.drive.link
@@ -187,10 +195,35 @@ def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None =
     demands : link -> force and moment about its anchor, of shapes (..., N).
     like : a pass whose gears are in contact on the same flanks; without it the demands tell.
     """
+    if motion.machine.drive.pushes:
+        return _pushed(motion, demands, like)
+    return _passed(motion, demands, like)
+
+
+def _pushed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) -> Pass:
+    """The same where a force drives: as large as it takes for the link to need no torque."""
+    drive = f"M({motion.machine.drive.link})"
+    acting = ((body, at, way, 0.0) for body, at, way in pushes(motion))
+    units = demands_of(motion, acting)
+    still = dict.fromkeys(motion.machine.links, (0j, 0.0)) | units
+    force = -_passed(motion, demands, like).state[drive] / _passed(motion, still, like).state[drive]
+    total = dict(demands)
+    for body, (unit, turning) in units.items():
+        own = demands.get(body, (0j, 0.0))
+        total[body] = own[0] + force * unit, own[1] + force * turning
+    found = _passed(motion, total, like)
+    found.state.update({drive: 0.0 * force, PUSH: force})
+    return found
+
+
+def _passed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) -> Pass:
+    """The run over the joints, which ends at a torque on the drive's link."""
     state = dict(motion.state)
-    for link, (force, moment) in demands.items():
+    of_links = dict(demands)
+    on_frame = of_links.pop(FRAME, (0j, 0.0))
+    of_links[FRAME] = 0j, 0.0
+    for link, (force, moment) in of_links.items():
         state[f"F({link})"], state[f"M({link})"] = force, moment
-    state[f"F({FRAME})"], state[f"M({FRAME})"] = 0j, 0.0
     known = {} if like is None else like.flanks
     state.update(known)
 
@@ -198,9 +231,16 @@ def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None =
         return isinstance(step, Call) and set(step.outputs) <= known.keys()
 
     run([step for step in motion.linkage.forces if not is_known(step)], state)
+    for name, more in zip((f"F({FRAME})", f"M({FRAME})"), on_frame, strict=True):
+        state[name] = state[name] + more
     drive = motion.machine.drive.link
     state[f"R({motion.linkage.pivot}/{drive})"] = state[f"F({drive})"]
     return Pass(motion, state)
+
+
+def pushed(found: Pass) -> Array | None:
+    """Force of a drive that pushes, None of any other."""
+    return found.drive_force if found.motion.machine.drive.pushes else None
 
 
 def full(motion: Motion, value: Any, kind: type) -> Array:
@@ -213,8 +253,8 @@ def full(motion: Motion, value: Any, kind: type) -> Array:
     return np.broadcast_to(value, (*np.shape(value)[:-1], count))
 
 
-Acting = tuple[str, str | None, Array, Any]
-"""Link, its point or None for a torque, force and torque."""
+Acting = tuple[str, Any, Array, Any]
+"""Link, its point, a place (N,) or None for a torque, force and torque."""
 
 MEETING = 1e-12
 """Of the coordinates of its ends: where they are closer, rounding decides where a spring points."""
@@ -249,7 +289,8 @@ def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
     result: dict[str, Demand] = {}
     for link, point, force, torque in acting:
         anchor = motion.state[f"p({motion.linkage.anchors[link]})"]
-        at = anchor if point is None else motion.points[point].place
+        named = isinstance(point, str)
+        at = anchor if point is None else motion.points[point].place if named else point
         f, m = kernels.load_demand(anchor, at, force, torque)
         before = result.get(link, (0.0, 0.0))
         result[link] = (before[0] + f, before[1] + m)

@@ -172,7 +172,7 @@ def initial_state(machine: Machine, theta: Array) -> State:
         here = planar(place) + np.complex128()  # unlike Python's, it divides by 0 without an error
         state.update({f"p({name})": here, f"p1({name})": 0j, f"p2({name})": 0j})
     state.update({f"u({FRAME})": 1 + 0j, f"w({FRAME})": 0.0, f"a({FRAME})": 0.0})
-    drive, (angle, w, a) = machine.drive.link, machine.drive.turned(theta)
+    drive, (angle, w, a) = machine.drive.link, machine.turned(theta)
     state.update({f"u({drive})": np.exp(1j * angle), f"w({drive})": w, f"a({drive})": a})
     state.update({f"phi({FRAME})": np.zeros_like(theta), f"phi({drive})": angle})
     return state

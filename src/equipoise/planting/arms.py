@@ -9,6 +9,8 @@ import numpy as np
 
 from equipoise.mechanism.tip import TipCurve
 from equipoise.planting.figures import tip_figures
+from equipoise.planting.names import SHAKEN
+from equipoise.planting.shaking import shaking
 from equipoise.planting.stroke import Figures, release, soil_crossings
 from equipoise.signals import Array
 
@@ -16,6 +18,8 @@ Value = TypeVar("Value")
 
 SHARED = ("surface", "speed", "forward_speed", "hill_spacing", "planting_frequency")
 """Figures that are the same of all arms."""
+SHAKING = {name.partition(".")[0] for name in SHAKEN}
+"""First parts of the names of what inertia does."""
 
 
 def of_arm(tip: str, figures: Mapping[str, Value]) -> Iterator[tuple[str, Value]]:
@@ -24,18 +28,30 @@ def of_arm(tip: str, figures: Mapping[str, Value]) -> Iterator[tuple[str, Value]
 
 
 def machine_figures(curve: TipCurve, wanted: Collection[str] | None = None) -> Figures:
-    """Every figure of the first arm, of the further ones, and of the hills of all.
+    """Every figure of the first arm, of the further ones, of the hills of all, and of what shakes.
 
-    wanted : first parts of the names that are needed, such as ``curve``; None for all.
+    wanted : names of those that are needed; None for all.
     """
     first, *further = curve.arms
-    found = tip_figures(first, *soil_crossings(first), wanted=wanted)
-    if wanted is None or "hills" in wanted:
+    groups = None if wanted is None else {_group(name) for name in wanted}
+    found = tip_figures(first, *soil_crossings(first), wanted=groups)
+    if groups is None or "hills" in groups:
         found |= hills(curve)
-    if wanted is None or "arms" in wanted:
-        for arm in further:
-            found |= of_arm(arm.arm.tip, tip_figures(arm, *soil_crossings(arm)))
+    if groups is None or not SHAKING.isdisjoint(groups):
+        found |= shaking(curve)
+    for arm in further:
+        begin = f"arms.{arm.arm.tip}."
+        own = {name.removeprefix(begin) for name in wanted or () if name.startswith(begin)}
+        if wanted is None or own:
+            groups = {_group(name) for name in own} or None
+            figures = tip_figures(arm, *soil_crossings(arm), wanted=groups)
+            found |= of_arm(arm.arm.tip, figures)
     return found
+
+
+def _group(name: str) -> str:
+    """The first part of a figure's name, such as ``curve``."""
+    return name.partition(".")[0]
 
 
 def hills(curve: TipCurve) -> Figures:

@@ -36,7 +36,7 @@ def fit_blocks(fit: Fit) -> Iterator[Block]:
 
 
 def _told(figures: PlantingFigures | None, name: str) -> Cell:
-    value = None if figures is None else figures.figures.get(name)
+    value = None if figures is None else figures.get(name)
     return say("none") if value is None else _figure(value, name)
 
 
@@ -80,7 +80,7 @@ def _figures(fit: Fit) -> Table:
     asked = {goal.figure for goal in fit.goals}
     rows: list[tuple[Cell, ...]] = []
     for name in (*FIGURES, *OTHERS):
-        known = [f for f in (fit.before, fit.after) if f is not None and name in f.figures]
+        known = any(f.get(name) is not None for f in (fit.before, fit.after) if f is not None)
         if name not in asked and known:
             rows.append((figure_named(name), _told(fit.before, name), _told(fit.after, name)))
     columns = (Column(""), Column(say("before")), Column(say("after")))

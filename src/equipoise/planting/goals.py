@@ -65,11 +65,6 @@ class Goal:
             raise UsageError(f"{self.figure}: the tolerance must be more than 0")
 
     @property
-    def group(self) -> str:
-        """First part of the figure's name."""
-        return self.figure.partition(".")[0]
-
-    @property
     def turning(self) -> bool:
         """Whether the figure is an angle that is the same after a turn."""
         return self.figure.rpartition(".")[2] in TURNING
@@ -169,10 +164,9 @@ class Problem:
     def __init__(self, designs: Designs, goals: Sequence[Goal]) -> None:
         self.designs, self.goals = designs, tuple(goals)
         self.judged = 0
-        self.groups = {goal.group for goal in goals}
         if not self.goals:
             raise UsageError("goals: there is none; give at least one")
-        known = _figures([designs.machine])
+        known, self.turns = _figures([designs.machine]), assemble(designs.machine).cycle.turns
         for goal in goals:
             if goal.figure not in known:
                 raise UsageError(f"goals: {unknown(goal.figure, known, 'figure')}")
@@ -191,7 +185,7 @@ class Problem:
         found = {goal.figure: np.full(len(values), np.nan) for goal in self.goals}
         if np.any(good):
             some = [m for m, g in zip(machines, good, strict=True) if g and m is not None]
-            computed = _figures(some, self.groups, turns=1)  # dyads alone are back after one
+            computed = _figures(some, [*found], self.turns)
             for name, column in found.items():
                 column[good] = computed[name]
         off, slack, size = [], [], np.zeros(len(values))
@@ -213,7 +207,8 @@ class Problem:
                 families[k], machines[k] = assemble(machine), machine
         if families:
             family, count = Family([*families.values()]), len(families)
-            theta = np.broadcast_to(np.linspace(0, 2 * np.pi, GRID + 1), (count, GRID + 1))
+            ahead = np.linspace(0, 2 * np.pi * self.turns, GRID * self.turns + 1)
+            theta = np.broadcast_to(ahead, (count, len(ahead)))
             with np.errstate(all="ignore"):
                 numbers = family.margins(family.solve(theta))
             worst[[*families]] = np.min(np.nan_to_num(numbers, nan=-1.0), axis=1)

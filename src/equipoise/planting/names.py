@@ -77,11 +77,21 @@ FIGURES = {
     **SOIL,
     **{f"{name}.value": one for name, one in EXTREMES.items()},
 }
+SHAKEN = {
+    "shaking_force.rms": Named(to_say("RMS of the shaking force"), "force"),
+    "shaking_force.peak": Named(to_say("largest shaking force"), "force"),
+    "shaking_moment.rms": Named(to_say("RMS of the shaking moment"), "torque"),
+    "shaking_moment.peak": Named(to_say("largest shaking moment"), "torque"),
+    "drive_torque.rms": Named(to_say("RMS of the drive torque in the air"), "torque"),
+    "drive_torque.peak": Named(to_say("largest drive torque in the air"), "torque"),
+}
+"""Of inertia, which a search may ask for; the moment is about the drive's pivot."""
 LINKAGE = {"transmission.min": Named(to_say("smallest transmission angle"), "angle")}
 OF_INSTANTS = ("crank_angle", "velocity.size", "acceleration.size", "attitude")
 OTHERS = (
     *(f"{name}.{key}" for name in ("pick_up", "entry", "lowest", "exit") for key in OF_INSTANTS),
     *LINKAGE,
+    *SHAKEN,
 )
 """Further ones that a search tells before and after."""
 DIMENSIONS: dict[str, Dimension] = {
@@ -115,7 +125,7 @@ def dimension_of(figure: str) -> Dimension | None:
         return "angle"
     if first == "clearance" and last == "value":
         return "length"
-    known = (FIGURES | LINKAGE).get(figure)
+    known = (FIGURES | LINKAGE | SHAKEN).get(figure)
     if first in INSTANTS:
         known = OF_AN_INSTANT.get(rest.removeprefix("ground_"))
     if known is not None:
@@ -127,7 +137,7 @@ def figure_named(name: str) -> str:
     """A figure, such as ``pick_up.velocity.size``, in words, where there are any."""
     if arm := ARM.match(name):
         return say("{what}, tip {tip}", what=figure_named(name[arm.end() :]), tip=arm["tip"])
-    known = FIGURES | LINKAGE
+    known = FIGURES | LINKAGE | SHAKEN
     if name in known:
         return say(known[name].words)
     instant, _, key = name.partition(".")

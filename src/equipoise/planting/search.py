@@ -15,9 +15,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.errors import EquipoiseError, UsageError
+from equipoise.mechanism.family import Family
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.steps import Call
 from equipoise.planting.designs import Designs, Sense
 from equipoise.planting.goals import LIMITS, Goal, Problem
 from equipoise.planting.summary import PlantingFigures, plant
@@ -76,7 +76,8 @@ class Fit(Result):
         met: dict[str, bool] = {}
         for goal, step in zip(self.goals, self.steps, strict=True):
             if goal.asks:
-                here = goal.met(self.after[goal.figure], step)
+                value = self.after.get(goal.figure)
+                here = value is not None and goal.met(value, step)
                 met[goal.figure] = met.get(goal.figure, True) and here
         return met
 
@@ -86,10 +87,16 @@ class Fit(Result):
             "seed": self.seed,
             "judged": self.judged,
             "values": dict(self.values),
-            "goals": [{**asdict(goal), "met": self.met.get(goal.figure)} for goal in self.goals],
+            "goals": [self._told(goal) for goal in self.goals],
             "before": None if self.before is None else self.before.to_dict(),
             "after": self.after.to_dict(),
         }
+
+    def _told(self, goal: Goal) -> dict[str, Any]:
+        """A goal, whether it is met, and its figure before and after."""
+        figures = {"before": self.before, "after": self.after}
+        values = {when: one and one.get(goal.figure) for when, one in figures.items()}
+        return {**asdict(goal), "met": self.met.get(goal.figure), **values}
 
 
 Progress = Callable[[int, int, float], None]
@@ -111,11 +118,13 @@ def fit_planting(
 
     Parameters
     ----------
-    machine : where to start, with a `planting`; made of dyads, without gears or loop groups.
+    machine : where to start, with a `planting`; made of dyads, and of gears which the crank, the
+        frame or each other drive.
     goals : what the figures have to be.
-    vary : names of numbers that may change, with their limits in m or rad; by default every
+    vary : names of numbers that may change, with their limits in m, rad or plain; by default every
         length between the joints of links with two joints, the direction of the frame (keys of
-        links, ``frame``, ``ground_angle``) and the tip (``tip.x``, ``tip.y``).
+        links, ``frame``, ``ground_angle``), the tips of arms that are alike (``tip.x``, ``tip.y``)
+        and the eccentricity of gears (``gears.shape.eccentricity``).
     sense : in which the crank may turn.
     seed : of the random numbers; the same seed gives the same result.
     generations, population : of the global search.
@@ -150,9 +159,10 @@ def fit_planting(
 
 
 def _check(machine: Machine, seed: int, generations: int, population: int) -> None:
-    if not all(isinstance(step, Call) for step in assemble(machine).motion):
+    if Family([assemble(machine)]).steps is None:
         raise UsageError(
-            "the search varies linkages of dyads; this one has gears or a group of loops"
+            "the search varies linkages of dyads, and gears driven by the crank or the frame; this "
+            "one has gears on other links, or a group of loops"
         )
     if seed < 0 or generations < 1 or population < SMALLEST_POPULATION:
         raise UsageError(
@@ -294,7 +304,7 @@ def _best(problem: Problem, candidates: Array) -> tuple[Array, PlantingFigures]:
     outcome = problem.judge(candidates)
     for k in np.lexsort([outcome.cost, ~outcome.kept]):
         after = _figures(problem.designs.build(candidates[k]))
-        if after is not None and all(goal.figure in after.figures for goal in problem.goals):
+        if after is not None and all(after.get(goal.figure) is not None for goal in problem.goals):
             return candidates[k], after
     raise UsageError(
         "no design was found that turns fully, reaches the soil and has every figure asked for; "

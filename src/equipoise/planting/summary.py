@@ -22,6 +22,7 @@ from equipoise.mechanism.tip import TipCurve
 from equipoise.planting.arms import SHARED, hills, of_arm
 from equipoise.planting.figures import tip_figures
 from equipoise.planting.ground import GroundPath, Loop
+from equipoise.planting.shaking import shaking
 from equipoise.planting.stroke import Visit, finger_base, tray_crossings, visits, wrapped
 from equipoise.results.result import Result
 from equipoise.signals import Array, Figures, figures
@@ -84,6 +85,15 @@ class PlantingFigures(Result):
 
     def __getitem__(self, name: str) -> float:
         return self.figures[name]
+
+    def get(self, name: str) -> float | None:
+        """A figure of the tips, or of what shakes the machine; None where there is none."""
+        return self.figures.get(name, self.shaken.get(name))
+
+    @cached_property
+    def shaken(self) -> Mapping[str, float]:
+        """What inertia does to frame and drive, which goals may ask for, by dotted name."""
+        return {name: float(value[0]) for name, value in shaking(self.curve).items()}
 
     @property
     def machine(self) -> Machine:

@@ -188,13 +188,22 @@ def _parts(machine: Machine) -> Iterator[str]:
             angle=angle(slider.direction),
         )
     for gear in machine.gears:
-        yield say(
-            "Gears: {driver} drives {driven} on {carrier} with the speed ratio {ratio}",
-            driver=gear.driver,
-            driven=gear.driven,
-            carrier=body_named(gear.carrier),
-            ratio=number(gear.speed_ratio),
-        )
+        named = {"driver": gear.driver, "driven": gear.driven, "carrier": body_named(gear.carrier)}
+        if gear.shape is None:
+            yield say(
+                "Gears: {driver} drives {driven} on {carrier} with the speed ratio {ratio}",
+                ratio=number(gear.speed_ratio),
+                **named,
+            )
+        else:
+            low, high = gear.ratios
+            yield say(
+                "Gears: {driver} drives {driven} on {carrier} with a speed ratio from {low} to "
+                "{high}",
+                low=number(low),
+                high=number(high),
+                **named,
+            )
     for cam in machine.cams:
         yield say(
             "Cam: {cam} moves {follower} on {carrier}",

@@ -29,6 +29,7 @@ from equipoise.planting.designs import Sense
 from equipoise.planting.goals import Goal
 from equipoise.planting.names import dimension_of
 from equipoise.planting.search import GENERATIONS, POPULATION
+from equipoise.planting.variables import dimension_of_number
 from equipoise.schema.files import FileError, printable, read_text
 from equipoise.schema.numbers import si_value
 from equipoise.schema.opening import in_file, toml_content
@@ -149,6 +150,6 @@ def _limits(
             continue
         if not isinstance(value, list) or len(value) != 2:
             raise ModelError(f"vary.{name}", 'give two limits, such as ["20 mm", "60 mm"]')
-        dimension = "angle" if name == "ground_angle" else "length"
+        dimension = dimension_of_number(name)
         low, high = (si_value(f"vary.{name}", limit, dimension) for limit in value)
         yield name, (low, high)

@@ -299,8 +299,7 @@ def planting_figures(machines: Sequence[Machine], steps: Sequence[Sequence[Step]
     curve = TipCurve(machines)
     plants = np.all([both_sides(one) for one in curve.arms], axis=0) & (curve.speed[:, 0] != 0)
     names = [".".join(map(str, one)) for one in steps]
-    wanted = {str(one[0]) for one in steps}
-    found = machine_figures(curve, wanted)
+    found = machine_figures(curve, names)
     columns = [found.get(name, np.full(len(machines), np.nan)) for name in names]
     table: Array = np.where(plants[:, None], np.stack(columns, axis=1), np.nan)
     return table

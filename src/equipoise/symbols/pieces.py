@@ -26,6 +26,7 @@ from equipoise.symbols.shapes import (
     pivot,
     plate,
     rails,
+    rim,
     slot,
     soil,
     wheel,
@@ -153,17 +154,18 @@ def _wheels(scene: Scene) -> Iterator[Piece]:
     bodies = {body.name: body for body in scene.bodies}
     seen = set()
     for gear in sorted(scene.wheels, key=lambda gear: -gear.radius):
-        if (key := (gear.link, gear.center, round(gear.radius / scene.unit))) in seen:
+        key = (gear.link, gear.center, round(gear.radius / scene.unit))
+        if gear.curve is None and key in seen:
             continue
         seen.add(key)
         part = "gears", gear.pair
         if gear.link == FRAME:
             still = complex(scene.places[gear.center][0])
-            yield Piece("wheels", (circle("wheel", still, gear.radius),), part=part)
+            yield Piece("wheels", (rim(still, gear.radius, gear.curve),), part=part)
             continue
         body = bodies[gear.link]
         center = scene.local(body, scene.places[gear.center])
-        yield Piece("wheels", tuple(wheel(center, gear.radius)), _with(body), part=part)
+        yield Piece("wheels", tuple(wheel(center, gear.radius, gear.curve)), _with(body), part=part)
 
 
 def _stands(scene: Scene) -> Iterator[Piece]:

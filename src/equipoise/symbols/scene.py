@@ -12,15 +12,13 @@ import numpy as np
 from equipoise.errors import EquipoiseError
 from equipoise.mechanism.bodies import place_of
 from equipoise.mechanism.body_checks import Outline, outlines
-from equipoise.mechanism.checks import Bodies
-from equipoise.mechanism.gears import Gear
-from equipoise.mechanism.joints import Structure, coupling_pins
 from equipoise.mechanism.model import FRAME, Link
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.tip import surface_of
 from equipoise.symbols.carrier import MOUNT, Carrier, Swing
 from equipoise.symbols.rows import ONE, Rows, rows_of
 from equipoise.symbols.shapes import Array, hull
+from equipoise.symbols.wheels import Wheel, wheels_of
 
 
 @dataclass(frozen=True)
@@ -44,20 +42,6 @@ class Body:
         box = np.array([1 + 1j, 1 - 1j, -1 + 1j, -1 - 1j])
         around = [corners[0] + size * box if size else corners for corners, size in self.solids]
         return np.concatenate([np.zeros(0, complex), *map(np.asarray, around)])
-
-
-@dataclass(frozen=True)
-class Wheel:
-    """The pitch circle of a gear.
-
-    link : what turns with it, maybe the frame.  center : the point in its middle.  radius : m.
-    pair : name of the gears that it is one of.
-    """
-
-    link: str
-    center: str
-    radius: float
-    pair: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,6 +131,7 @@ class Scene:
         """Everything of a motion that can be seen."""
         machine, joints = motion.machine, motion.linkage.joints
         places = {name: point.place for name, point in motion.points.items()}
+        angles = {name: float(link.angle[0]) for name, link in motion.links.items()}
         planned = machine.balance.springs if machine.balance is not None else ()
         return cls(
             motion.crank_angle,
@@ -155,7 +140,7 @@ class Scene:
             places,
             frozenset(joints.pins),
             {name: center.place for name, center in motion.mass_centers.items()},
-            tuple(wheels_of(motion.linkage.joints, machine.bodies)),
+            tuple(wheels_of(joints, machine.bodies, angles)),
             tuple(_guides(motion)),
             springs := tuple((spring.point, spring.to) for spring in machine.springs),
             {name: link.angle for name, link in motion.links.items()},
@@ -312,19 +297,6 @@ def _solids(link: Link) -> Iterator[Outline]:
         holes = [([place_of(hole.at, link.points)], -hole.radius) for hole in body.holes]
         for corners, radius in (*outlines(body, link.points), *holes):
             yield [corner - origin for corner in corners], radius
-
-
-def wheels_of(joints: Structure, bodies: Bodies) -> Iterator[Wheel]:
-    """The gears, of which each has its pin on the carrier."""
-    for gear in joints.couplings:
-        if not isinstance(gear, Gear):
-            continue
-        driver, driven = coupling_pins(joints, gear)
-        carrier = bodies[gear.carrier]
-        apart = abs(complex(*carrier[driver]) - complex(*carrier[driven]))
-        radius = apart / abs(1 - gear.speed_ratio)
-        yield Wheel(gear.driver, driver, radius * abs(gear.speed_ratio), gear.name)
-        yield Wheel(gear.driven, driven, radius, gear.name)
 
 
 def _guides(motion: Motion) -> Iterator[Guide]:

@@ -89,11 +89,26 @@ def plate(corners: Array, roles: Sequence[str] = ("edge", "body")) -> list[Shape
     return [line(role, *corners, closed=len(corners) > 2) for role in roles]
 
 
-def wheel(center: complex, radius: float) -> list[Shape]:
-    """A gear: its pitch circle with three spokes, so that one sees it turn."""
-    ways = 0.94 * radius * np.exp(2j * np.pi * np.arange(3) / 3)
-    spokes = [line("spoke", center, center + way) for way in ways]
-    return [circle("wheel", center, radius), *spokes]
+def wheel(center: complex, radius: float, curve: Array | None = None) -> list[Shape]:
+    """A gear: its pitch circle, or the curve around its center that it has instead, with three
+    spokes, so that one sees it turn.
+    """
+    ways = radius * np.exp(2j * np.pi * np.arange(3) / 3) if curve is None else _thirds(curve)
+    spokes = [line("spoke", center, center + 0.94 * way) for way in ways]
+    return [rim(center, radius, curve), *spokes]
+
+
+def rim(center: complex, radius: float, curve: Array | None = None) -> Shape:
+    """The pitch circle of a gear, or its curve."""
+    if curve is None:
+        return circle("wheel", center, radius)
+    return line("wheel", *(center + curve), closed=True)
+
+
+def _thirds(curve: Array) -> Array:
+    """Corners of a curve in three directions from its center, about equally far from each other."""
+    ways = np.exp(2j * np.pi * np.arange(3) / 3) * curve[np.argmax(abs(curve))]
+    return np.array([curve[np.argmin(abs(np.angle(curve / way)))] for way in ways])
 
 
 def pivot(place: complex, grounded: bool = True, way: complex = -1j) -> list[Shape]:

@@ -13,7 +13,8 @@ from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.quantities import DIGITS, display
-from equipoise.symbols.scene import Drive, Guide, Scene, Wheel, bodies_of, wheels_of
+from equipoise.symbols.scene import Drive, Guide, Scene, bodies_of
+from equipoise.symbols.wheels import Wheel, wheels_of
 from equipoise.web.block import Block, Values
 from equipoise.web.design import Design
 from equipoise.web.drawing import moves_of, stage_of
@@ -246,9 +247,10 @@ def scene_of(sketch: Sketch) -> Scene:
 
 
 def _wheels(sketch: Sketch) -> list[Wheel]:
-    """Pitch circles, as far as their gears have their pins by now."""
+    """Pitch curves, as far as their gears have their pins by now."""
     try:
-        return [*wheels_of(sketch.joints, sketch.bodies)]
+        angles = {name: pose.angle for name, pose in sketch.poses.items()}
+        return [*wheels_of(sketch.joints, sketch.bodies, angles)]
     except EquipoiseError:
         return []
 

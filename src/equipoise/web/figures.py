@@ -34,7 +34,7 @@ def signals_of(analysis: Analysis) -> Signals:
     signals |= {
         name: analysis.outputs[name].values
         for name, one in told_signals().items()
-        if one.group == "forces" and not one.part
+        if one.group == "forces" and not one.part and name in analysis.outputs
     }
     signals |= {f"joint.{name}": joint.size for name, joint in found.joints.items()}
     return signals | _together(analysis)

@@ -7,6 +7,7 @@ Every page has at most one job of a kind in a queue, so that pages take turns.
 from __future__ import annotations
 
 import ctypes
+import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import Executor
@@ -19,6 +20,21 @@ Found = TypeVar("Found")
 
 MOMENT = 0.1
 """s of computing, below which an answer is quick."""
+HEAPS, LARGE = (-8, 2), (-3, 256 * 1024)
+"""Of glibc's `mallopt`: how many heaps threads share; bytes from where on memory is given back to
+the system as soon as it is free."""
+
+
+def share_heaps() -> None:
+    """Let threads share heaps, where the C library can be told to.
+
+    Else each has its own, where what it has freed is kept for itself in pieces, and a server that
+    lives long grows though it holds no more than before.
+    """
+    library = ctypes.CDLL(None) if sys.platform == "linux" else None
+    if library is not None and hasattr(library, "mallopt"):  # musl has none
+        for option in HEAPS, LARGE:
+            library.mallopt(*option)
 
 
 class EndedError(BaseException):
@@ -35,6 +51,7 @@ class Lanes(AbstractContextManager["Lanes"]):
     """
 
     def __init__(self) -> None:
+        share_heaps()
         self._stack = ExitStack()
         self.quick: Executor = self._stack.enter_context(Threads(2, "quick"))
         self.heavy: Executor = self._stack.enter_context(Threads(1, "heavy"))

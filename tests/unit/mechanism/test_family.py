@@ -87,10 +87,15 @@ def test_other_linkages_of_dyads(kind: str) -> None:
     assert family.steps is not None
 
 
-@pytest.mark.parametrize("name", ["planetary-planting-arm", "geared-counterweight", "class-three"])
-def test_gears_and_loops_are_solved_one_by_one(name: str) -> None:
-    """Their steps tell turns and poses of one machine."""
-    family = same_as_alone(designs_of(eq.load(name), 3))
+def test_gears_whose_turns_are_those_of_the_crank() -> None:
+    family = same_as_alone(designs_of(eq.load("planetary-planting-arm"), 3))
+    assert family.steps is not None
+
+
+@pytest.mark.parametrize("given", [*map(eq.load, ("class-three", "geared-counterweight"))])
+def test_what_has_a_cycle_of_its_own_is_solved_one_by_one(given: Machine) -> None:
+    """The steps tell turns and poses of one machine."""
+    family = same_as_alone(designs_of(given, 3))
     assert family.steps is None
 
 
@@ -159,7 +164,8 @@ def parameters(linkage: Linkage) -> Iterable[tuple[str, Any]]:
     """Every number of the steps, by the outputs of its step."""
     for step in (*linkage.motion, *linkage.forces):
         for k, value in enumerate(getattr(step, "parameters", ())):
-            yield f"{step.outputs} {k}", value  # type: ignore[attr-defined]
+            if not callable(value):  # the law of a coupling
+                yield f"{step.outputs} {k}", value  # type: ignore[attr-defined]
 
 
 def row_of(value: Any, k: int) -> Any:

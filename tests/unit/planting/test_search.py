@@ -13,6 +13,8 @@ from equipoise.mechanism.linkage import Linkage
 from equipoise.planting.designs import Designs
 from equipoise.planting.goals import Goal, Problem
 from equipoise.planting.search import Fit, fit_planting
+from support.machines import make
+from unit.planting.build import two_arms
 
 FIGURES_OF_A = (
     "curve.height",
@@ -164,12 +166,51 @@ def test_wrong_arguments(change: dict[str, object], said: str) -> None:
         fit_planting(eq.load("kim-chung-a"), **(arguments | change))  # type: ignore[arg-type]
 
 
-def test_gears_are_refused() -> None:
-    machine = eq.load("planetary-planting-arm").with_planting(
-        tip="P", forward_speed=0.3, depth=0.03
-    )
-    with pytest.raises(UsageError, match="this one has gears"):
+def test_gears_on_other_links_are_refused() -> None:
+    machine = make("geared_coupler", 1).machine
+    machine = machine.with_planting(tip="P", forward_speed=0.3, surface=0.0)
+    with pytest.raises(UsageError, match="this one has gears on other links"):
         fit_planting(machine, [Goal("curve.height", target=0.25)])
+
+
+def test_arms_on_gears_are_found_again() -> None:
+    """Of two arms that are alike the tips move together, and phases of gears turn together."""
+    wanted = two_arms()
+    figures = eq.plant(wanted)
+    names = ("curve.height", "curve.width", "lowest.crank_angle", "arms.Q.lowest.crank_angle")
+    start = replace(
+        wanted,
+        gears=tuple(
+            replace(gear, start=gear.start + (0.4 if k % 2 else 0.0))
+            for k, gear in enumerate(wanted.gears)
+        ),
+    )
+    vary = {"tip.x": (0.03, 0.07), "gears[2,4].start": (2.0, 3.2)}
+    goals = [Goal(name, target=figures[name]) for name in names]
+    fit = fit_planting(start, goals, vary, generations=30, population=15)
+    assert all(fit.met.values())
+    for link, tip in (("planet", "P"), ("planet 2", "Q")):
+        assert fit.machine.links[link].points[tip] == pytest.approx((0.05, 0.0), abs=1e-6)
+    starts = [[gear.start for gear in machine.gears] for machine in (fit.machine, wanted)]
+    assert starts[0] == pytest.approx(starts[1], abs=1e-6)
+
+
+def test_shaking_is_kept_small() -> None:
+    """It is that of `analyze`, and falls where the second arm moves against the first."""
+    machine = two_arms(np.radians(100))
+    vary = {"carrier.D,E.direction": (0.0, np.pi)}
+    goals = [Goal("shaking_force.rms", make="smallest")]
+    fit = fit_planting(machine, goals, vary, generations=8, population=6)
+    analysis = eq.analyze(fit.machine, 720)
+    force = analysis.forces.shaking_force.size
+    assert fit.after.get("shaking_force.rms") == pytest.approx(np.sqrt(np.mean(force**2)))
+    assert fit.after.get("shaking_force.peak") == pytest.approx(np.max(force), rel=1e-4)
+    moment, torque = analysis.forces.shaking_moment, analysis.forces.drive_torque
+    assert fit.after.get("shaking_moment.rms") == pytest.approx(np.sqrt(np.mean(moment**2)))
+    assert fit.after.get("drive_torque.rms") == pytest.approx(np.sqrt(np.mean(torque**2)))
+    assert fit.before.get("shaking_force.rms") > 2 * fit.after.get("shaking_force.rms")
+    told = fit.to_dict()["goals"][0]
+    assert told["after"] == fit.after.get("shaking_force.rms") < told["before"]
 
 
 def test_no_design_that_plants() -> None:

@@ -21,6 +21,7 @@ from equipoise.mechanism import (
     counterweights,
     field,
     force_elements,
+    gear_shapes,
     laws,
     links,
     mounts,
@@ -51,8 +52,9 @@ DOCUMENTED: dict[str, type[Frozen]] = {
     of.__name__: of
     for of in (
         Machine, shown_units.ShownUnits, parts.Drive, laws.AngleLaw,
-        laws.AngleSegment, force_elements.Motor, Frame, links.Link,
-        bodies.Body, bodies.Hole, parts.Slider, parts.Gear, cams.Cam,
+        laws.AngleSegment, laws.LengthLaw, laws.LengthSegment, force_elements.Motor, Frame,
+        links.Link,
+        bodies.Body, bodies.Hole, parts.Slider, parts.Gear, gear_shapes.GearShape, cams.Cam,
         force_elements.Load, Spring, Position, field.Planting, field.PlantingArm,
         field.Soil, support.Support,
         mounts.Mount, support.Row, balance.Balance, weights.CenterMove,

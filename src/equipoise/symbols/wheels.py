@@ -1,0 +1,68 @@
+"""Pitch curves of gears, as what is drawn of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from equipoise.mechanism.checks import Bodies
+from equipoise.mechanism.couplings import Law
+from equipoise.mechanism.gears import Gear
+from equipoise.mechanism.joints import Structure, coupling_pins
+from equipoise.mechanism.model import FRAME
+from equipoise.symbols.shapes import Array
+
+CORNERS = 180
+"""Of a pitch curve that is no circle."""
+Curves = Iterator[Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Wheel:
+    """The pitch curve of a gear.
+
+    link : what turns with it, maybe the frame.  center : the point on its axis.
+    radius : of a circle, or the largest, m.  pair : name of the gears that it is one of.
+    curve : (n,) of what is no circle: from the center, in the link's axes, complex, m.
+    """
+
+    link: str
+    center: str
+    radius: float
+    pair: str
+    curve: Array | None = None
+
+
+def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) -> Iterator[Wheel]:
+    """The gears, of which each has its pin on the carrier.
+
+    angles : of the links in one pose, rad, which tell how curves lie that are no circles.
+    """
+    for gear in joints.couplings:
+        if not isinstance(gear, Gear):
+            continue
+        pins = coupling_pins(joints, gear)
+        driver, driven = (complex(*bodies[gear.carrier][pin]) for pin in pins)
+        links = zip((gear.driver, gear.driven), pins, strict=True)
+        if gear.law is not None:
+            curves = _curves(gear, gear.law, driver - driven, angles)
+            for (link, pin), curve in zip(links, curves, strict=True):
+                yield Wheel(link, pin, float(np.max(np.abs(curve))), gear.name, curve)
+            continue
+        radius = abs(driver - driven) / abs(1 - gear.speed_ratio)
+        for (link, pin), share in zip(links, (abs(gear.speed_ratio), 1.0), strict=True):
+            yield Wheel(link, pin, radius * share, gear.name)
+
+
+def _curves(gear: Gear, law: Law, centres: complex, angles: Mapping[str, float]) -> Curves:
+    """Corners of driver's and driven gear's curve, in their axes: where the pitch point comes."""
+    turned = {FRAME: 0.0, **angles}
+    driver, driven = (turned[one] - turned[gear.carrier] for one in (gear.driver, gear.driven))
+    offset = driven - law(driver)[0]
+    for turns, of_driver in ((1.0, True), (1 / abs(gear.speed_ratio), False)):
+        x = np.linspace(0.0, 2 * np.pi * turns, CORNERS, endpoint=False)
+        y, ratio, _ = law(x)
+        angle, share = (x, ratio) if of_driver else (y + offset, 1.0)
+        yield centres * share / (1 - ratio) * np.exp(-1j * angle)

@@ -1,0 +1,54 @@
+"""Machines that are pushed, against Newton's method, free bodies and a power balance."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.mechanism.model import FRAME
+from laws.subjects import gravity_power, kinetic_power, load_power, spring_power
+from laws.subjects import same as alike
+from secondroute.test_free_bodies import acting_on_the_later, same_forces
+from secondroute.test_motion import same_motion
+from support import newton
+from support.analyses import ANGLES, Subject
+from support.machines_strokes import SLIDING, TURNING, stroked
+from support.poses import from_motion
+
+SUBJECTS = [(kind, False) for kind in TURNING] + [(kind, True) for kind in SLIDING]
+each = pytest.mark.parametrize(("kind", "by_slider"), SUBJECTS)
+SEEDS = (0, 1)
+
+
+def subject_of(kind: str, seed: int, by_slider: bool) -> Subject:
+    case = stroked(kind, seed, by_slider)
+    analysis = eq.analyze(case.machine, angles=ANGLES)
+    return Subject(case.machine, analysis.motion, analysis, case)
+
+
+def turned_alike(machine: eq.Machine, q: np.ndarray) -> np.ndarray:
+    """Coordinates in whose angles no whole turns lie between the bodies of a sliding joint."""
+    place = {name: 3 * k + 2 for k, name in enumerate(machine.links)}
+    for slider in machine.sliders * len(machine.sliders):
+        base = 0.0 if slider.on == FRAME else q[place[slider.on]]
+        gap = base + slider.direction + slider.angle - q[place[slider.link]]
+        q[place[slider.link]] += 2 * np.pi * np.round(gap / (2 * np.pi))
+    return q
+
+
+@each
+@pytest.mark.parametrize("seed", SEEDS)
+def test_motion_forces_and_power(kind: str, seed: int, by_slider: bool) -> None:
+    """Only the branch at crank angle 0 is taken from the motion itself."""
+    subject = subject_of(kind, seed, by_slider)
+    first = from_motion(subject.machine, eq.move(subject.machine, [0.0]))
+    same_motion(subject, turned_alike(subject.machine, newton.coordinates(first, 0)))
+    same_forces(subject)
+    acting_on_the_later(subject)
+    found = subject.forces
+    rows = [*kinetic_power(found), *-gravity_power(found), *-load_power(found)]
+    rows = [*rows, *-spring_power(found)]
+    size = np.max(np.sum(np.abs(rows), axis=0) + np.abs(found.power))
+    alike(found.power, np.sum(rows, axis=0), 1e-12, float(size))
+    assert not np.any(found.drive_torque)

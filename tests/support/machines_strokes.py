@@ -1,0 +1,123 @@
+"""Random machines that are pushed: by a cylinder between two points, or along a sliding joint.
+
+A machine that turns fully is taken and its crank let go; what pushes has a stroke that moves it
+within a part of the turn over which the length only rises or only falls.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import permutations, product
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import EquipoiseError, UsageError
+from equipoise.mechanism.drives import Drive
+from equipoise.mechanism.laws import LengthLaw, LengthSegment
+from equipoise.mechanism.model import FRAME, Machine
+from equipoise.mechanism.motion import move
+from support.machines import CYCLE, KINDS, Case, make
+from support.poses import Array, from_motion
+
+SHARES = 0.8, 0.3
+"""Of the part of the turn over which the length rises or falls, what the stroke takes at most."""
+
+LEAST = 0.03
+"""Over the largest length, or the whole travel: by how much the length changes with the crank's
+angle, or the equations have lost digits.
+"""
+
+
+def lengths(machine: Machine, drive: Drive) -> Array:
+    """Length that a drive has over a turn of the crank, (N,)."""
+    poses = from_motion(machine, move(machine, CYCLE))
+    if drive.slider:
+        one = next(one for one in machine.sliders if one.name == drive.slider)
+        point = machine.links[one.link].points[one.point]
+        way = poses.place(one.link, point) - poses.place(
+            one.on, machine.points_of(one.on)[one.through]
+        )
+        line = poses.turned(one.on, (float(np.cos(one.direction)), float(np.sin(one.direction))))
+        return np.asarray(np.sum(way * line, -1))
+    assert drive.between is not None
+    ends = zip(drive.ends(machine.bodies), drive.between, strict=True)
+    a, b = (poses.place(body, machine.points_of(body)[point]) for body, point in ends)
+    return np.asarray(np.linalg.norm(b - a, axis=-1))
+
+
+def rising(values: Array) -> slice:
+    """The longest part of a turn over which values only rise or only fall, from 0 on."""
+    signs = np.sign(np.diff(values))
+    cuts = [0, *(1 + np.flatnonzero(signs[1:] != signs[:-1])), len(signs)]
+    k = int(np.argmax(np.diff(cuts)))
+    return slice(cuts[k], cuts[k + 1] + 1)
+
+
+def law(rng: np.random.Generator, first: float, last: float) -> LengthLaw:
+    """From one length to another and back: by a sine, or with a rest at either end."""
+    if rng.random() < 0.5:
+        return LengthLaw(between=(first, last), phase=float(rng.uniform(0, 6)))
+    parts = 2 * np.pi * rng.dirichlet([20.0] * 4)
+    ends = (last, last, first, first)
+    laws = ("cycloidal", "cycloidal", "modified sine", "cycloidal")
+    each = zip(parts.tolist(), ends, laws, strict=True)
+    return LengthLaw(start=first, segments=tuple(LengthSegment(*one) for one in each))
+
+
+def pushed(machine: Machine, drive: Drive, share: float, rng: np.random.Generator) -> Machine:
+    """The machine with a drive that pushes, and a stroke that it can do."""
+    values = lengths(machine, drive)
+    part = rising(values)
+    span = part.stop - 1 - part.start
+    low, high = part.start + 0.5 * (1 - share) * span, part.stop - 1 - 0.5 * (1 - share) * span
+    ends = [round(float(rng.uniform(low, low + 0.3 * share * span))), round(high)]
+    first, last = (float(values[k]) for k in ends[:: int(rng.choice([-1, 1]))])
+    slope = np.min(np.abs(np.diff(values[round(low) : round(high) + 1]))) / CYCLE[1]
+    if slope < LEAST * float(np.ptp(values) if drive.slider else np.max(values)):
+        raise UsageError("hardly anything moves")
+    stroke = law(rng, first, last)
+    start = np.interp(float(stroke.value(0.0)[0]), *_sorted(values[part], CYCLE[part]))
+    pushing = replace(drive, stroke=stroke, start=float(start))
+    return replace(machine, drive=pushing)
+
+
+def _sorted(values: Array, angles: Array) -> tuple[Array, Array]:
+    order = slice(None) if values[-1] > values[0] else slice(None, None, -1)
+    return values[order], angles[order]
+
+
+def drives(machine: Machine, by_slider: bool) -> list[dict[str, Any]]:
+    """Every pair of points of two bodies, or every sliding joint, that could be driven."""
+    if by_slider:
+        return [{"slider": slider.name} for slider in machine.sliders]
+    bodies = machine.bodies
+    ends = [(body, point) for body in (FRAME, *machine.links) for point in bodies[body]]
+    found = []
+    for (one, a), (other, b) in permutations(ends, 2):
+        drive = Drive(machine.drive.link, 1.0, between=(a, b))
+        if a != b and one != other and drive.ends(bodies) == (one, other):
+            found.append({"between": (a, b)})
+    return found
+
+
+def stroked(kind: str, seed: int, by_slider: bool = False) -> Case:
+    """A random machine of a kind of `machines` that is pushed, the same at every call."""
+    case = make(kind, seed)
+    rng = np.random.default_rng([seed, by_slider, *kind.encode()])
+    own = replace(case.machine.drive, flywheel=0.0, motor=None)
+    machine = replace(case.machine, drive=own)
+    found = drives(machine, by_slider)
+    for share, k in product(SHARES, rng.permutation(len(found))):
+        try:
+            drive = replace(own, **found[k], stroke=LengthLaw(between=(0.0, 1.0)))
+            pushing = pushed(machine, drive, share, rng)
+            move(pushing, [0.0])
+        except EquipoiseError:  # the points hang on gears, whose start is another one then
+            continue
+        return replace(case, machine=pushing)
+    raise AssertionError(f"{kind}:{seed} cannot be pushed")
+
+
+TURNING = [kind for kind in KINDS if make(kind, 0).machine.drive.motion is None]
+SLIDING = [kind for kind in TURNING if make(kind, 0).machine.sliders]

@@ -1,0 +1,101 @@
+"""A boom on a pivot and a cylinder: the law of cosines, and strokes that cannot be had."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import hypot
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import ModelError
+from equipoise.mechanism.drives import Drive
+from equipoise.mechanism.laws import LengthLaw
+from equipoise.mechanism.parameters import parameter_values, regressor
+from unit.mechanism.build import ORIGIN, heavy, machine, refused
+
+A, B = (0.3, -0.4), (0.5, 0.1)
+
+
+def boom(**changes: Any) -> eq.Machine:
+    """A boom that turns about P, with the cylinder below it."""
+    given: dict[str, Any] = {
+        "between": ("A", "B"), "stroke": LengthLaw(between=(0.55, 0.8)), "start": 0.5
+    }  # fmt: skip
+    links = {"boom": heavy(P=ORIGIN, B=B, C=(2.0, 0.0))}
+    drive = Drive("boom", 2.0, **given | changes)
+    return machine({"P": ORIGIN, "A": A}, links, drive=drive)
+
+
+def test_the_law_of_cosines() -> None:
+    motion = eq.move(boom(), 90)
+    length = motion.machine.drive.stroke.value(motion.crank_angle)[0]  # type: ignore[union-attr]
+    a, b = hypot(*A), hypot(*B)
+    opened = np.arccos((a * a + b * b - length**2) / (2 * a * b))
+    angle = opened + np.angle(complex(*A)) - np.angle(complex(*B))
+    np.testing.assert_allclose(motion.links["boom"].angle, angle, rtol=0, atol=1e-12)
+
+
+def test_the_force_at_rest_holds_the_weight_by_its_lever() -> None:
+    found = eq.analyze(boom(), 30, speed=0.0)
+    motion = found.motion
+    a, b = complex(*A), motion.points["B"].place
+    lever = (b.conj() * (b - a)).imag / np.abs(b - a)
+    weight = 0.5 * 9.80665 * motion.mass_centers["boom"].x
+    np.testing.assert_allclose(found.forces.drive_force * lever, weight, rtol=1e-12)
+    pin, push = found.forces.joints["P"], found.forces.drive_force * (b - a) / np.abs(b - a)
+    np.testing.assert_allclose(pin.value + push, 0.5j * 9.80665, rtol=1e-12)
+    assert "drive_torque" not in found.outputs
+    assert "drive_force" in found.outputs
+
+
+def test_the_regressor_and_the_parts_add_up_to_the_force() -> None:
+    found = eq.analyze(boom(), 24)
+    whole = found.forces.drive_force
+    columns = regressor(found.motion).drive_force
+    np.testing.assert_allclose(parameter_values(boom()) @ columns, whole, rtol=1e-12)
+    np.testing.assert_allclose(sum(found.forces.split.by_cause("drive_force").values()), whole)
+
+
+def test_the_other_side_of_the_dead_point() -> None:
+    """Above the line from P to A the same lengths are had, too."""
+    below, above = (eq.move(boom(start=angle), 24) for angle in (0.5, -2.5))
+    turned = np.exp(1j * (below.links["boom"].angle + np.angle(complex(*B))))
+    line = complex(*A) / hypot(*A)
+    mirrored = np.exp(1j * (above.links["boom"].angle + np.angle(complex(*B))))
+    np.testing.assert_allclose(turned / line, (mirrored / line).conj(), atol=1e-12)
+
+
+def test_a_stroke_that_cannot_be_had() -> None:
+    refused(
+        "drive.stroke",
+        "it runs from 550 mm to 1.2 m, and the linkage lets it be between 9.902 mm and 1009.9 mm "
+        "only; stay within these, short of the dead points at both ends",
+        lambda: eq.move(boom(stroke=LengthLaw(between=(0.55, 1.2)))),
+    )
+
+
+def test_a_stroke_that_can_be_had_in_two_ways() -> None:
+    with pytest.raises(ModelError, match=r"the stroke can be had with 'boom' from .* and from"):
+        eq.move(boom(start=None))
+
+
+@pytest.mark.parametrize(
+    ("where", "words", "changes"),
+    [
+        ("drive.stroke", "give either between or slider with it", {"slider": "rod on barrel"}),
+        ("drive.between", "is given, but no stroke; ...", {"stroke": None}),
+        ("drive.between[2]", "no point is called 'X'; ...", {"between": ("A", "X")}),
+        ("drive.between", "both points are of 'boom'; ...", {"between": ("B", "C")}),
+        ("drive.flywheel", "turns with the crank, ...", {"flywheel": 1.0}),
+    ],
+)
+def test_what_is_refused(where: str, words: str, changes: dict[str, Any]) -> None:
+    refused(where, words, lambda: boom(**changes))
+
+
+def test_a_file_of_it_is_read_as_it_was_written() -> None:
+    own = replace(boom(), title="boom")
+    assert eq.loads(eq.dumps(own)) == own
