@@ -17,11 +17,12 @@ from equipoise.errors import UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics import Forces, demand_of_inertia, forces, place_of
+from equipoise.mechanism.joint_forces import JointForce, VectorSignal
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.objectives import balanced_names
 from equipoise.mechanism.outputs import Declared, Found, matches
-from equipoise.mechanism.reactions import JointForce, Pass, VectorSignal, reactions
+from equipoise.mechanism.reactions import Pass, reactions
 from equipoise.signals import Array
 
 Demand = tuple[Array, Array]

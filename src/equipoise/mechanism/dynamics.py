@@ -19,17 +19,19 @@ import numpy as np
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism import kernels
+from equipoise.mechanism.joint_forces import (
+    CamForce,
+    JointForce,
+    MeshForce,
+    SliderForce,
+    VectorSignal,
+)
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.pushing import lengths
 from equipoise.mechanism.reactions import (
-    CamForce,
     Demand,
-    JointForce,
-    MeshForce,
     Pass,
-    SliderForce,
-    VectorSignal,
     full,
     load_demands,
     pushed,
@@ -39,8 +41,7 @@ from equipoise.mechanism.reactions import (
 from equipoise.mechanism.steps import Array, p, planar, u
 
 CAUSES = ("translation", "rotation", "weight", "load", "spring")
-"""Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside, and
-springs."""
+"""Inertia of the centres of mass and of rotation about them, weight, loads from outside, springs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,8 +127,7 @@ class Forces:
     @property
     def power(self) -> Array:
         """Power fed in by the drive, W."""
-        motion = self.motion
-        drive = motion.machine.drive
+        motion, drive = self.motion, self.motion.machine.drive
         if drive.pushes:
             return self.drive_force * lengths(motion)[1] * motion.speed
         return self.drive_torque * motion.links[drive.link].angular_velocity

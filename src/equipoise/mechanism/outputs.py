@@ -309,36 +309,19 @@ of_gear(
 of_gear(".tangential", "force", to_say("tangential tooth force {name}"), summed=False)
 of_gear(".radial", "force", to_say("radial tooth force {name}"), summed=False)
 
+CAMMED: dict[str, Any] = {
+    "members": lambda machine: [cam.name for cam in machine.cams],
+    "spoken": lambda name: name.replace(" to ", " → "),
+}
 of_cam = _alike(
-    "cams.{}",
-    lambda name, found, cam: _members(found.forces.cams, name, cam),
-    members=lambda machine: [cam.name for cam in machine.cams],
-    spoken=lambda name: name.replace(" to ", " → "),
+    "cams.{}", lambda name, found, cam: _members(found.forces.cams, name, cam), **CAMMED
 )
-of_cam(
-    "",
-    "force",
-    to_say("contact force {name}"),
-    FORCES,
-    linear=True,
-    loop="{joint force:name}",
-    summed=(True, False),
-    compared=FORCE,
-)
-of_cam(
-    ".normal",
-    "force",
-    to_say("contact force along the normal {name}"),
-    linear="{what} is only read; take the whole contact force instead",
-)
-of_slant = _alike(
-    "cams.{}.",
-    lambda name, found, cam: found.motion.pressure_angles[cam],
-    needs="motion",
-    members=lambda machine: [cam.name for cam in machine.cams],
-    spoken=lambda name: name.replace(" to ", " → "),
-)
-of_slant("pressure_angle", "angle", to_say("pressure angle {name}"))
+of_cam("", "force", to_say("contact force {name}"), FORCES, linear=True,
+       loop="{joint force:name}", summed=(True, False), compared=FORCE)  # fmt: skip
+READ = "{what} is only read; take the whole contact force instead"
+of_cam(".normal", "force", to_say("contact force along the normal {name}"), linear=READ)
+slant = _alike("cams.{}.", lambda _, found, cam: found.motion.pressure_angles[cam], **CAMMED)
+slant("pressure_angle", "angle", to_say("pressure angle {name}"), needs="motion")
 
 # -- rows and support ------------------------------------------------------------------------------
 
