@@ -41,7 +41,7 @@ from equipoise.mechanism.reactions import (
 from equipoise.mechanism.steps import Array, p, planar, u
 
 CAUSES = ("translation", "rotation", "weight", "load", "spring")
-"""Inertia of the centres of mass and of rotation about them, weight, loads from outside, springs."""
+"""Inertia of centres of mass and of rotation about them, weight, loads from outside, springs."""
 
 
 @dataclass(frozen=True, eq=False)
