@@ -26,7 +26,7 @@ import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import MEASURES, Balance, Objective, Weight
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.outputs import joint_names
+from equipoise.mechanism.spoken import joint_names
 from support.balancing_reference import (
     FreeShaft,
     Problem,

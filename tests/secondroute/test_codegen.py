@@ -17,6 +17,7 @@ from equipoise.mechanism.model import Gear, Machine
 from support.batches import by_numpy, every_dyad, known_of, same_figures, signals_of, wanted_of
 from support.designs import design, drawn, named, numbers_of, paths_of, reason_of
 from support.machines import KINDS, make
+from support.machines_planes import set_apart
 from unit.mechanism.build import heavy, machine
 
 ANGLES = 60
@@ -81,6 +82,32 @@ def test_example(name: str, numpy_engine: None) -> None:
 @pytest.mark.parametrize(("kind", "seed"), RANDOM)
 def test_random_machine(kind: str, seed: int, numpy_engine: None) -> None:
     assert compared(make(kind, seed).machine, 4, seed, polar=seed == 1)
+
+
+@pytest.mark.parametrize("kind", ["slider_crank", "geared_counterweight", "v_twin"])
+def test_links_beside_each_other(kind: str, numpy_engine: None) -> None:
+    """Rocking moments and bearings too."""
+    base = set_apart(make(kind, 1).machine, np.random.default_rng(2), flat=True)
+    known = {*signals_of(base)}
+    assert known > {"rocking_moment.x", "frame_rocking_moment"}
+    assert known > {f"bearings.{name}.force_x" for name in base.bearings}
+    assert compared(base, 3, 1)
+
+
+def test_masses_in_planes_of_their_own(numpy_engine: None) -> None:
+    """Of links that are made of bodies."""
+    base = set_apart(make("slider_crank", 3).machine, np.random.default_rng(5))
+    link = next(name for name, one in base.links.items() if one.bodies)
+    path, wanted = f"links.{link}.bodies[2].mass", [Figure("rocking_moment", "rms")]
+    wanted += [Figure(f"bearings.{name}", "peak") for name in base.bearings]
+    masses = np.array([[0.3], [1.7]])
+    figures, reasons = Batch(base, [path], wanted, angles=ANGLES)(masses)
+    assert not reasons.any()
+    for (mass,), got in zip(masses, figures, strict=True):
+        heavier = base.with_number(("links", link, "bodies", "2", "mass"), float(mass))
+        summary = eq.analyze(heavier, ANGLES).summary
+        for value, figure in zip(got, wanted, strict=True):
+            assert value == pytest.approx(getattr(summary[figure.signal], figure.name), rel=1e-10)
 
 
 def test_every_dyad_compiled() -> None:

@@ -5,12 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 
 from equipoise.mechanism.model import FRAME
-from support import free_bodies
+from support import free_bodies, machines_planes
 from support.analyses import (
     Subject,
     agree,
+    analysed,
     every_subject,
     force_size,
     moment_size,
@@ -19,6 +21,7 @@ from support.analyses import (
 )
 from support.conformance import compared
 from support.free_bodies import FreeBodies, Reaction
+from support.machines import KINDS
 from support.poses import pins
 from support.sources import FREE_BODIES
 
@@ -100,3 +103,40 @@ def test_forces_in_all_joints(name: str) -> None:
     subject = subject_of(name)
     same_forces(subject)
     acting_on_the_later(subject)
+
+
+# -- links beside each other -----------------------------------------------------------------------
+
+BESIDE = [f"{kind}:{seed}" for kind in KINDS for seed in range(2)]
+
+
+def apart(name: str, flat: bool = False) -> Subject:
+    """Return a random machine with its links beside each other."""
+    subject = subject_of(name)
+    rng = np.random.default_rng([*name.encode()])
+    return analysed(machines_planes.set_apart(subject.machine, rng, flat), subject.case)
+
+
+@compared(FREE_BODIES, "rocking moments, tilting moments in joints, forces of bearings", TOLERANCE)
+@pytest.mark.parametrize("name", BESIDE)
+def test_everything_across_the_plane(name: str) -> float:
+    """Rocking moments, couples of joints and forces of bearings."""
+    subject = apart(name)
+    machine, poses, across = subject.machine, subject.poses, subject.forces.across
+    flat = free_bodies.solve(machine, poses, pairs(subject))
+    solved = machines_planes.solve(machine, poses, flat)
+    span = max(abs(one.plane) for one in machine.bearings.values())
+    force = FLOOR * force_size(machine, poses)
+    moment = force * span
+    assert set(across.tilting_moments) == set(solved.couples)
+    assert set(across.bearings) == set(solved.bearings) == set(machine.bearings)
+    found = [
+        agree("rocking", vector(across.rocking_moment), solved.rocking, TOLERANCE, moment),
+        agree("frame", vector(across.frame_rocking_moment), solved.on_frame, TOLERANCE, moment),
+    ]
+    for key, want in solved.couples.items():
+        got = across.tilting_moments[key]
+        found.append(agree(f"couple in {key}", vector(got), want, TOLERANCE, moment))
+    for key, want in solved.bearings.items():
+        found.append(agree(key, vector(across.bearings[key]), want, TOLERANCE, force))
+    return max(found)

@@ -71,7 +71,7 @@ def signals_of(design: Machine) -> list[str]:
     for name in (one.name for one in analysis.outputs.arrays):
         kind, part = name.partition(".")[0], name.rpartition(".")[2]
         moving = kind in ("points", "links") and part in MOTIONS
-        if moving or (kind in ("joints", "gears") and part in ("force_x", "force_y")):
+        if moving or (kind in ("joints", "gears", "bearings") and part in ("force_x", "force_y")):
             names[name] = None
     found = [*names, "frame_force.x", "frame_force.y"]
     if any(isinstance(step, LoopGroup) for step in assemble(design).motion):

@@ -66,7 +66,10 @@ def machine_of(base: Machine, plain: Plain) -> Machine:
     for name, link in plain["links"].items():
         center = None if link["center"] is None else tuple(link["center"])
         points = {point: tuple(place) for point, place in link["points"].items()}
-        links[name] = eq.Link(points, link["mass"], center, link["inertia"])
+        own = base.links[name]
+        links[name] = eq.Link(
+            points, link["mass"], center, link["inertia"], plane=own.plane, planes=own.planes
+        )
     listed = {
         key: tuple(
             replace(value, **changes)
@@ -82,6 +85,7 @@ def machine_of(base: Machine, plain: Plain) -> Machine:
         assembly=dict(base.assembly),
         position=base.position,
         loads=base.loads,
+        bearings=base.bearings,
         gravity=tuple(plain["gravity"]),
         **listed,
     )

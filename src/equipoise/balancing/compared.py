@@ -157,7 +157,7 @@ def figures_of(machine: Machine) -> dict[str, float]:
     motion = move(machine, ANGLES, acceleration=0.0)
     figures = {"mass": machine.mass}
     for one in Outputs(Analysis(motion, forces(motion))):
-        for measure in one.declared.compared if one.declared.needs == "masses" else ():
+        for measure in one.declared.compared if one.declared.is_of_row else ():
             figures[f"{one.name}.{measure}"] = measured(one.component, measure)
     return figures | _of_rows(machine) | _of_support(machine) | _of_planting(machine)
 

@@ -9,7 +9,8 @@ it above; such squares are told, and `branch_and_bound` makes equalities of them
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from math import hypot, inf
 
 import numpy as np
@@ -21,7 +22,12 @@ from equipoise.i18n import Note
 from equipoise.mechanism.balance import CenterMove, SpringChoice
 from equipoise.mechanism.model import Link, Machine
 from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.parameters import parameters_of, spring_columns
+from equipoise.mechanism.parameters import (
+    parameter_values,
+    parameters_of,
+    spring_columns,
+    spring_units,
+)
 from equipoise.mechanism.springs import Spring
 from equipoise.mechanism.steps import size_of_bodies
 from equipoise.signals import Array
@@ -49,18 +55,21 @@ class LinkParameters:
     link: str
     count: int = 4
     effect: Array = field(default_factory=lambda: np.eye(4))
+    plane: float | None = None
 
 
 class DesignVariables(ABC):
     """Numbers that are free, of one link.
 
     count : how many.  mass_place : which of them is an added mass (and its unit, kg), or None.
+    plane : z of where their masses are, m; that of the link where it is None.
     """
 
     link: str
     count: int
     mass_place: int | None = None
     mass_unit: float = 1.0
+    plane: float | None = None
 
     @property
     @abstractmethod
@@ -252,7 +261,7 @@ class FreeSpring(DesignVariables):
         )
 
     def columns(self, motion: Motion, output: str) -> Array:
-        """Effect (2, N) on what the drive exerts or on a joint's force."""
+        """Effect (2, N) on what the drive exerts or on the force in a joint or mesh."""
         choice = self.choice
         effort, joints = spring_columns(motion, choice.link, choice.point, choice.to)
         found = (
@@ -261,6 +270,13 @@ class FreeSpring(DesignVariables):
             else joints[output.removeprefix("joints.")]
         )
         units = self._units * np.array([1.0, -1.0])  # the pull is towards the frame's point
+        return np.asarray(found * units[:, None])
+
+    def pulls(self, motion: Motion) -> Array:
+        """Force (2, N) on the link's point, of a unit of each number."""
+        choice = self.choice
+        units = self._units * np.array([1.0, -1.0])
+        found = spring_units(motion, choice.link, choice.point, choice.to)
         return np.asarray(found * units[:, None])
 
     def spring(self, numbers: Array) -> Spring | None:
@@ -279,3 +295,38 @@ class FreeSpring(DesignVariables):
         values = {"point": self.choice.point, "to": self.choice.to}
         sized = {"stiffness": sizes[0], "free_length": sizes[1]}
         return [Change("spring", self.link, values | sized)]
+
+
+# -- the machine that numbers make -----------------------------------------------------------------
+
+
+def with_numbers(machine: Machine, each: Sequence[tuple[DesignVariables, Array]]) -> Machine:
+    """The machine with what the numbers of each part make of its link, and with its springs."""
+    springs, beside = list(machine.springs), []
+    values = dict(zip(machine.links, parameter_values(machine).reshape(-1, 4), strict=True))
+    changed: dict[str, Array] = {}
+    for part, own in each:
+        if isinstance(part, FreeSpring):
+            springs += filter(None, [part.spring(own)])
+        elif part.plane in (None, machine.links[part.link].plane):
+            before = changed.get(part.link, values[part.link])
+            changed[part.link] = before + own @ part.effect
+        else:
+            beside.append((part, own))
+    added = len(springs) > len(machine.springs)
+    for link, parameters in changed.items():
+        machine = with_parameters(machine, link, parameters)
+    for part, own in beside:
+        machine = _with_mass_beside(machine, part, own)
+    return replace(machine, springs=tuple(springs)) if added else machine
+
+
+def _with_mass_beside(machine: Machine, part: DesignVariables, numbers: Array) -> Machine:
+    """The machine with the mass of a part that lies beside the plane of its link."""
+    mass, x, y, inertia = (float(value) for value in numbers @ part.effect)
+    if mass <= 0:
+        return machine
+    own = inertia - (x * x + y * y) / mass
+    own = own if own > ROUNDING * inertia else 0.0
+    link = machine.links[part.link].with_added(mass, (x / mass, y / mass), own, part.plane)
+    return machine.with_link(part.link, bodies=link.bodies)

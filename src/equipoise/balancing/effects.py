@@ -15,14 +15,14 @@ import numpy as np
 from equipoise.balancing.design_variables import DesignVariables, FreeSpring, LinkParameters
 from equipoise.errors import UsageError
 from equipoise.mechanism import kernels
+from equipoise.mechanism.across import Across
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics import Forces, demand_of_inertia, forces, place_of
-from equipoise.mechanism.joint_forces import JointForce, VectorSignal
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.objectives import balanced_names
 from equipoise.mechanism.outputs import Declared, Found, matches
-from equipoise.mechanism.reactions import Pass, reactions
+from equipoise.mechanism.reactions import JointForce, Pass, VectorSignal, reactions
 from equipoise.signals import Array
 
 Demand = tuple[Array, Array]
@@ -114,10 +114,11 @@ class Effects:
         return Signal(start, self.full(columns), self.motion.turns)
 
     def _declared(self, output: str) -> tuple[Declared, str]:
-        joints = self.start.joints
+        joints, bearings = self.start.joints, self.machine.bearings
         for one, item in matches(output):
-            known = item in joints if item else "" in one.members(self.machine)
-            if one.needs == "masses" and not one.reason and known:
+            forces = bearings if one.group == "bearings" else joints
+            known = item in forces if item else "" in one.members(self.machine)
+            if one.is_of_row and not one.reason and known:
                 return one, item
         if output.startswith("joints."):
             raise UsageError(unknown(output.removeprefix("joints."), joints, "joint"))
@@ -195,6 +196,24 @@ class Effects:
             full[rows] = spring.columns(self.motion, output)
         return full
 
+    @cached_property
+    def across(self) -> Across:
+        """What a unit of each number does across the plane."""
+        links, count = self.machine.links, (self.count, len(self.motion.crank_angle))
+        inertia, weights, springs = (
+            {link: np.zeros(count, complex) for link in links} for _ in range(3)
+        )
+        for part, rows in self.masses:
+            plane = links[part.link].plane if part.plane is None else part.plane
+            inertia[part.link][rows] = plane * self.inertia[0][rows]
+            weights[part.link][rows] = plane * self.weight[0][rows]
+        for spring, rows in self.springs:
+            plane = links[spring.link].plane_of(spring.choice.point)
+            springs[spring.link][rows] = -plane * spring.pulls(self.motion)
+        exerted = _JointsOfUnit(self)
+        named = {name: exerted[name] for name, _ in self.motion.linkage.named_reactions}
+        return Across(self.motion, inertia, weights, {}, springs, named)
+
     def moment(self, demands: Demand, about: complex) -> Array:
         """Moment on the frame (K, N) of demands."""
         total = -demands[1]
@@ -242,11 +261,20 @@ class Present:
 
     @property
     def joints(self) -> Mapping[str, JointForce]:
-        return self.effects.start.solved_like(self.effects.flanks).joints
+        return self.solved.joints
 
     @property
     def cams(self) -> Mapping[str, JointForce]:
-        return self.effects.start.solved_like(self.effects.flanks).cams
+        return self.solved.cams
+
+    @property
+    def solved(self) -> Pass:
+        """The run over the joints, with teeth on the flanks that count."""
+        return self.effects.start.solved_like(self.effects.flanks)
+
+    @property
+    def across(self) -> Across:
+        return replace(self.effects.start.across, exerted=self.solved.exerted)
 
 
 @dataclass(frozen=True)
@@ -283,21 +311,24 @@ class Unit:
 
     @property
     def joints(self) -> Mapping[str, JointForce]:
-        return _JointsOfUnit(self.effects, "joints")
+        return _JointsOfUnit(self.effects)
 
     @property
     def cams(self) -> Mapping[str, JointForce]:
-        return _JointsOfUnit(self.effects, "cams")
+        return _JointsOfUnit(self.effects)
+
+    @property
+    def across(self) -> Across:
+        return self.effects.across
 
 
 class _JointsOfUnit(dict[str, JointForce]):
-    """Forces in joints, or of cams, (K, N) of a unit of each number, each made when asked for."""
+    """Forces of joints and cams (K, N) of a unit of each number, each made when it is asked for."""
 
-    def __init__(self, effects: Effects, family: str) -> None:
+    def __init__(self, effects: Effects) -> None:
         super().__init__()
-        self.effects, self.family = effects, family
+        self.effects = effects
 
     def __missing__(self, name: str) -> JointForce:
-        joint: JointForce = getattr(self.effects.solved, self.family)[name]
-        output = f"{self.family}.{name}"
-        return replace(joint, value=self.effects.with_springs(joint.value, output))
+        joint = self.effects.solved.exerted[name]
+        return replace(joint, value=self.effects.with_springs(joint.value, f"joints.{name}"))

@@ -206,7 +206,10 @@ class Gearing:
         machine, geared = self.machine, self.geared
         place: Vector = (self.axis(mesh).real, self.axis(mesh).imag)
         mass, inertia = self._gear(mesh.shaft)
-        shaft = Link({self.name: (0.0, 0.0)}, mass, (0.0, 0.0), inertia)
+        plane = geared.weight.plane
+        if plane is None:
+            plane = machine.links[geared.driver].plane
+        shaft = Link({self.name: (0.0, 0.0)}, mass, (0.0, 0.0), inertia, plane=plane)
         turning = {"ratio": -mesh.ratio} if mesh.teeth is None else {"teeth": mesh.teeth}
         machine = _with_gear(machine, geared.driver, self.pin, *self._gear(mesh.driver))
         machine = replace(
@@ -272,9 +275,14 @@ def with_shafts(machine: Machine, shafts: BalanceShafts) -> tuple[Machine, list[
     """
     names = [f"{shafts.name}-{k}" for k in (1, 2)]
     points = dict(zip(names, (f"{name}-axis" for name in names), strict=True))
-    empty = {name: Link({at: (0.0, 0.0)}, 0.0, (0.0, 0.0), 0.0) for name, at in points.items()}
+    drive, plane = machine.drive.link, shafts.weight.plane
+    plane = machine.links[drive].plane if plane is None else plane
+    empty = {
+        name: Link({at: (0.0, 0.0)}, 0.0, (0.0, 0.0), 0.0, plane=plane)
+        for name, at in points.items()
+    }
     gears = (
-        Gear(machine.drive.link, names[0], ratio=-float(shafts.order)),
+        Gear(drive, names[0], ratio=-float(shafts.order)),
         Gear(names[0], names[1], ratio=-1.0),
     )
     machine = replace(

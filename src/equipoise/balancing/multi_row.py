@@ -18,14 +18,14 @@ from typing import Any, Literal
 
 import numpy as np
 
-from equipoise.balancing.objectives import arm_of, moment_of_row, read_rows
+from equipoise.balancing.levers import lever, signals_of_row
+from equipoise.balancing.objectives import read_rows
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Measure, Objective
 from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.objectives import GAUGES, JOINTS, output_of, wrong_objective
-from equipoise.mechanism.support import Row
 from equipoise.results.analysis import Analysis
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.forced import chosen_model, steady_speed, usual_step
@@ -34,10 +34,6 @@ from equipoise.vibration.linkages import rows_of
 
 Combine = Literal["sum", "squares"]
 
-SHAKING, FRAME = 0, 3
-"""Among signals of one row: force x, y and moment about the drive's pivot, twice."""
-UNIT = np.array([1.0, 1j, 0.0]), np.array([0.0, 0.0, 1.0])
-"""Force and moment of which force x, y and moment are 1 in turn."""
 AREA_SAMPLES = 1440
 """In a turn, from which an area is summed."""
 SAMPLES, NEAR, NEWTON_ROUNDS, REACH = 360, 0.03, 4, 0.03
@@ -110,7 +106,7 @@ class Rows:
         for problem in wrong_objective(where, objective, self.machine):
             raise problem
         output = objective.output
-        if output.startswith(JOINTS):
+        if output.startswith(JOINTS) or output_of(output, self.machine).needs == "planes":
             raise UsageError(
                 f"{output} acts within one row, so that no phase changes it; choose an output of "
                 "all rows"
@@ -121,19 +117,10 @@ class Rows:
             rows, one = rows_of(self.machine), self._alike(output) or self._one
             levers = np.ones((len(rows), 1, 1))
             if one is self._one:
-                levers = np.array([self._lever(output, row, objective.about) for row in rows])
+                about, motion = objective.about, self._motion
+                levers = np.array([lever(motion, output, row, about) for row in rows])
             found = RowSignals((levers @ one.amplitudes)[None], one.turns)
         return found.kept(objective.orders)
-
-    def _lever(self, output: str, row: Row, about: str | None) -> Array:
-        """Rows (C, 6) by which an output reads the signals of one row."""
-        first = FRAME if output.startswith("frame") else SHAKING
-        kind = output.removeprefix("frame_").removeprefix("shaking_")
-        whole = np.eye(6)[first : first + 3]
-        if output.endswith("_moment"):
-            arm = arm_of(self.machine, self._motion, row, about)
-            return moment_of_row(output, row, arm, *UNIT)[None] @ whole
-        return whole[{"force": [0, 1], "force.x": [0], "force.y": [1]}[kind]]
 
     @cached_property
     def _motion(self) -> Motion:
@@ -143,12 +130,9 @@ class Rows:
 
     @cached_property
     def _one(self) -> Periodic:
-        """Signals of one row (6, K + 1), each cut off where its own rounding begins."""
-        found = forces(self._motion)
-        shaking, frame = found.shaking_force, found.frame_force
-        signals = (shaking.x, shaking.y, found.shaking_moment, frame.x, frame.y, found.frame_moment)
-        turns = self._motion.turns
-        return Periodic(_padded([Periodic.of(one, turns).amplitudes for one in signals]), turns)
+        """Signals of one row (8, K + 1), each cut off where its own rounding begins."""
+        each, turns = signals_of_row(self._motion), self._motion.turns
+        return Periodic(_padded([Periodic.of(one, turns).amplitudes for one in each]), turns)
 
     def _alike(self, output: str) -> Periodic | None:
         """A signal (1, K + 1) that is the same wherever its row is, such as the drive torque."""

@@ -16,16 +16,15 @@ import numpy as np
 
 from equipoise.balancing.design_variables import with_parameters
 from equipoise.balancing.effects import Effects, Signal
+from equipoise.balancing.levers import OWN, arm_of, moment_of_row
 from equipoise.balancing.program import Affine, Block, Program
 from equipoise.errors import ModelError
 from equipoise.mechanism.balance import Measure, Objective
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics import place_of
-from equipoise.mechanism.kernels import cross
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of, quantity_of
 from equipoise.mechanism.parameters import parameter_values
+from equipoise.mechanism.planes import beside
 from equipoise.mechanism.support import Row
 from equipoise.quantities import SI
 from equipoise.signals import Array, Periodic
@@ -86,7 +85,9 @@ def of_rows_alone(effects: Effects, output: str, about: str | None = None) -> li
         return [Signal(part(one.start), part(one.columns), one.turns) for one in whole]
     machine = effects.machine
     force = effects.signal("frame_force" if output.startswith("frame") else "shaking_force")
-    one = force if output in OF_ROWS else effects.signal(output)
+    one = force.divided(np.inf)
+    if output not in OWN or beside(machine):
+        one = effects.signal(OWN.get(output, output))
     if not output.endswith("_moment"):
         return [one] * len(machine.rows)
     found = []
@@ -96,24 +97,6 @@ def of_rows_alone(effects: Effects, output: str, about: str | None = None) -> li
         by_number = moment_of_row(output, row, arm, force.columns, one.columns)
         found.append(Signal(there, by_number, one.turns))
     return found
-
-
-def arm_of(machine: Machine, motion: Motion, row: Row, about: str | None) -> complex:
-    """From the point about which moments are taken to a row's drive pivot, m."""
-    pivot = complex(*machine.frame[motion.linkage.pivot])
-    return pivot + complex(*row.offset) - (pivot if about is None else place_of(machine, about))
-
-
-def moment_of_row(output: str, row: Row, arm: complex, force: Array, moment: Array) -> Array:
-    """What a row adds to a moment: (x, y, z) x F, with (x, y) the arm and z to the side, N m.
-
-    force : complex, in the row's plane, N.  moment : of the row about its own drive pivot, N m.
-    """
-    if output == "roll_moment":
-        return np.asarray(-row.lateral * force.imag)
-    if output == "yaw_moment":
-        return np.asarray(row.lateral * force.real)
-    return np.asarray(moment + cross(arm, force))
 
 
 # -- gauges of the support -------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from equipoise.balancing.design_variables import (
     DesignVariables,
     FreeSpring,
     MovedCenter,
-    with_parameters,
+    with_numbers,
 )
 from equipoise.balancing.effects import Effects, Signal
 from equipoise.balancing.objectives import Near, bound_measure, measured, signals_of, supports_more
@@ -23,7 +23,6 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.parameters import parameter_values
 from equipoise.signals import Array
 
 WITHOUT_EFFECT = 1e-9
@@ -313,19 +312,7 @@ class Problem:
 
     def machine_with(self, numbers: list[Array]) -> Machine:
         """The machine that the parts' numbers make."""
-        machine, springs = self.start, list(self.start.springs)
-        values = dict(zip(machine.links, parameter_values(machine).reshape(-1, 4), strict=True))
-        changed = {part.link: values[part.link] for part in self.parts}
-        for part, own in self.with_numbers(numbers):
-            if isinstance(part, FreeSpring):
-                springs += filter(None, [part.spring(own)])
-            else:
-                changed[part.link] = changed[part.link] + own @ part.effect
-        for part in self.parts:
-            if not isinstance(part, FreeSpring):
-                machine = with_parameters(machine, part.link, changed[part.link])
-        added = len(springs) > len(machine.springs)
-        return replace(machine, springs=tuple(springs)) if added else machine
+        return with_numbers(self.start, [*self.with_numbers(numbers)])
 
 
 @dataclass(frozen=True, eq=False)

@@ -61,6 +61,7 @@ class AddedWeight(DesignVariables):
     def __init__(self, machine: Machine, link: str, at: str, weight: Weight) -> None:
         body = machine.links[link]
         self.link, self.at, self.weight = link, at, weight
+        self.plane = weight.plane
         self.center = complex(*body.points[at])
         self.names = NAMES[weight.shape]
         self.count = len(self.names)

@@ -19,8 +19,10 @@ from equipoise.mechanism.family import can_vary
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.newton import LoopGroup
-from equipoise.mechanism.outputs import DECLARED, declared
-from equipoise.mechanism.reactions import JOINTS
+from equipoise.mechanism.outputs import DECLARED, Declared, declared
+from equipoise.mechanism.parts import JOINTS
+from equipoise.mechanism.planes import beside
+from equipoise.mechanism.statics import statics
 
 _LOOKED_UP = re.compile(r"\{([^}:]+)(:name)?\}")
 """Values in the expression of an output: of the machine, or of the member of a family."""
@@ -37,7 +39,7 @@ def expression(writer: Writer, signal: str) -> str:
     UsageError : there is no such signal, or a loop cannot have it.
     """
     one, item = declared(signal) or (None, "")
-    if one is None or not one.loop:
+    if one is None or not one.loop or not _has(writer, one):
         raise UsageError(unknown(signal, _known(writer), "signal"))
     try:
         whole = _LOOKED_UP.sub(lambda value: _identified(writer, value, item), one.loop)
@@ -55,7 +57,14 @@ def _known(writer: Writer) -> Sequence[str]:
     named = writer.linkage.named_reactions
     families = {"gear": "gears", "cam": "cams"}
     joints = [f"{families.get(r.kind, 'joints')}.{name}" for name, r in named]
-    return [*(one.name for one in DECLARED.values() if one.loop and not one.is_family), *joints]
+    ones = (one for one in DECLARED.values() if one.loop and not one.is_family)
+    bearings = [f"bearings.{name}" for name in writer.machine.bearings]
+    return [*(one.name for one in ones if _has(writer, one)), *joints, *bearings]
+
+
+def _has(writer: Writer, one: Declared) -> bool:
+    """Whether the machine has what an output tells of, as far as that depends on no member."""
+    return one.needs != "planes" or beside(writer.machine)
 
 
 def _identified(writer: Writer, looked_up: re.Match[str], item: str) -> str:
@@ -63,6 +72,8 @@ def _identified(writer: Writer, looked_up: re.Match[str], item: str) -> str:
     value, of_member = looked_up.groups()
     if not of_member:
         return writer.rate(value) if value in ("speed", "acceleration") else writer.name(value)
+    if value == "bearing force":
+        return _bearing(writer, item)
     if value in ORDERS:
         return _in_time(writer, _point(writer, item), ORDERS[value])
     if value not in TURNING:
@@ -89,6 +100,20 @@ def _reaction(writer: Writer, item: str, value: str) -> str:
     to, *_ = writer.point(slider.link, slider.point)
     at = writer.name(f"p({reaction.at})")
     return f"{sign} * {writer.name(reaction.couple)} + cross({at} - {to}, {force})"
+
+
+def _bearing(writer: Writer, item: str) -> str:
+    """Both bearings of a link bear what its pin in the frame does, with the pin's couple."""
+    given = writer.machine.bearings
+    if item not in given:
+        raise _Missing
+    found, own = statics(writer.linkage), given[item]
+    pin, needed, exerted = found.pin_of(own.link)
+    other = sum(one.plane for one in given.values() if one.link == own.link) - own.plane
+    exerted = {**exerted, pin.name: exerted.get(pin.name, 0.0) + pin.plane - other}
+    terms = [f"{factor!r} * {writer.name(f'Q({link})')}" for link, factor in needed.items()]
+    terms += [f"{f!r} * {_reaction(writer, name, 'joint force')}" for name, f in exerted.items()]
+    return f"({1 / (own.plane - other)!r} * ({' + '.join(terms)}))"
 
 
 def _point(writer: Writer, name: str) -> list[str]:
@@ -142,9 +167,10 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     writer = Writer(linkage)
     write_motion(writer)
     wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]
-    if any(one.needs == "masses" for one in wanted):
+    if any(one.is_of_row for one in wanted):
         write_demands(writer)
-    passed = ["{joint "] if linkage.machine.drive.motion is None else ["{joint ", "{drive torque"]
+    passed = ["{joint ", "{bearing "]
+    passed += [] if linkage.machine.drive.motion is None else ["{drive torque"]
     if any(value in (one.loop or "") for one in wanted for value in passed):
         if any(isinstance(step, LoopGroup) for step in linkage.motion):
             raise UsageError("joint forces of groups of loops cannot be computed in a loop")

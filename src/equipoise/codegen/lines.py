@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.codegen.across import write_across
 from equipoise.codegen.angles import turned, write_running_angle
 from equipoise.codegen.loops import write_loops
 from equipoise.codegen.source import Read, Sheet
@@ -22,6 +23,7 @@ from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.loads import load_at
 from equipoise.mechanism.model import FRAME, Load, Spring
 from equipoise.mechanism.newton import LoopGroup
+from equipoise.mechanism.planes import beside
 from equipoise.mechanism.steps import (
     Call,
     Rotation,
@@ -240,6 +242,9 @@ def write_demands(writer: Writer) -> None:
     springs = [
         held for k, one in enumerate(machine.springs) for held in _write_spring(writer, k, one)
     ]
+    if beside(machine):
+        held = [[force for _, force, _ in each] for each in (loads, springs)]
+        write_across(writer.sheet, writer.linkage, writer.body, *held)
     _write_frame(writer, "shaking", moving)
     _write_frame(writer, "frame", [*moving, *weights, *loads])
     for link in links:
@@ -289,7 +294,7 @@ def _write_load(writer: Writer, number: int, load: Load) -> Held:
 
 
 def _write_spring(writer: Writer, number: int, spring: Spring) -> Iterator[Held]:
-    """Write a spring's pull, and what holds it at each of its ends that is on a link."""
+    """Write a spring's pull, and what holds it at each of its ends on a link."""
     sheet, cause = writer.sheet, number + 1
     place, *_ = writer.point(spring.link, spring.point)
     stiffness = sheet.slot(
@@ -301,9 +306,8 @@ def _write_spring(writer: Writer, number: int, spring: Spring) -> Iterator[Held]
     to = (writer.name(f"p({spring.to})") if spring.on == FRAME
           else writer.point(spring.on, spring.to)[0])  # fmt: skip
     pull = sheet.put(f"pull({cause})", f"spring({place}, {to}, {stiffness}, {free})")
-    yield _write_held(writer, spring.link, spring.point, pull, "0.0", f"S{cause}")
-    if spring.on != FRAME:
-        yield _write_held(writer, spring.on, spring.to, f"(-{pull})", "0.0", f"S{cause}")
+    for (link, point), force in zip(spring.ends, (pull, f"(-{pull})"), strict=False):
+        yield _write_held(writer, link, point, force, "0.0", f"S{cause}")
 
 
 def _write_held(

@@ -19,8 +19,8 @@ from equipoise.figures.shared import (
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
-from equipoise.mechanism.outputs import joint_named
 from equipoise.mechanism.poles import guided, pinned
+from equipoise.mechanism.spoken import joint_named
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
 

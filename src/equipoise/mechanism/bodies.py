@@ -56,14 +56,14 @@ NEEDS: Mapping[str, tuple[str, ...]] = {
     "point": ("at", "mass"),
 }
 """Keys that each shape has to have."""
-_CUT = ("thickness", "material", "density", "mass", "holes")
+_CUT = ("thickness", "material", "density", "mass", "holes", "plane")
 _SECTION = ("width", "wall", "outer_diameter", "inner_diameter", "mass_per_length")
 TAKES: Mapping[str, tuple[str, ...]] = {
     "bar": ("overhang", *_SECTION, *_CUT),
     "plate": _CUT,
     "disc": _CUT,
     "ring": _CUT,
-    "point": ("inertia",),
+    "point": ("inertia", "plane"),
 }
 """Keys that each may have."""
 MASSES = ("material", "density", "mass", "mass_per_length")
@@ -217,6 +217,9 @@ class Body(Frozen):
         why=NO_INERTIA,
     )
     holes: tuple[Hole, ...] = key(Tables(Table(Hole)), "round holes, all through", default=())
+    plane: float | None = key(
+        "length", "z of its middle; that of the link if left out", default=None, example="20 mm"
+    )
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Body:

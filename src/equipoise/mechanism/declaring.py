@@ -22,7 +22,7 @@ from equipoise.i18n import Note, say, speaking, spoken, to_say
 from equipoise.quantities import SI, Dimension
 
 Array = np.ndarray[Any, Any]
-Needs = Literal["motion", "masses", "rows", "support"]
+Needs = Literal["motion", "masses", "planes", "rows", "support"]
 Measure = Literal["rms", "ripple", "peak", "peak_to_peak", "area"]
 """What is told of an output as one number; see `mechanism.objectives`."""
 Part = Literal["", "x", "y", "size"]
@@ -40,6 +40,7 @@ GROUPS = {
     "centers": to_say("instant centres"),
     "forces": to_say("frame and drive"),
     "joints": to_say("joints"),
+    "bearings": to_say("bearings"),
     "gears": to_say("gears"),
     "cams": to_say("cams"),
     "rows": to_say("all rows together"),
@@ -72,7 +73,7 @@ class Declared:
     read : has it from an analysis, as values or with values as its `value`; None where it is told
         of a response instead (gauges).
     part : of the vector that `read` gives, where that is one; its size goes by the vector's name.
-    needs : what a machine must have.
+    needs : what a machine must have; planes of links go with masses.
     members : from a machine to the members that it may have; ``""`` where it is no family.
     items : from an analysis to those that it has, where the machine alone does not tell.
     spoken : a member in words.
@@ -131,7 +132,12 @@ class Declared:
 
         Gears are too, on the flank that the whole load decides.
         """
-        return self.needs == "masses" and (not self.reason or self.name == "gears.{}")
+        return self.is_of_row and (not self.reason or self.name == "gears.{}")
+
+    @property
+    def is_of_row(self) -> bool:
+        """Whether it is a force, or a moment, of one row."""
+        return self.needs in ("masses", "planes")
 
     def named(self, item: str) -> str:
         """The name of a member."""
@@ -169,7 +175,7 @@ class Declared:
 
         of_one : whether it is of one row of several.
         """
-        return _said(self, item, of_one and self.needs == "masses", spoken())
+        return _said(self, item, of_one and self.is_of_row, spoken())
 
     def items_of(self, found: Any) -> Iterable[str]:
         """Members that an analysis has; ``""`` where it is no family."""

@@ -9,7 +9,7 @@ stack of them.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cached_property
 from math import hypot
 from typing import Any
@@ -19,29 +19,25 @@ import numpy as np
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism import kernels
-from equipoise.mechanism.joint_forces import (
-    CamForce,
-    JointForce,
-    MeshForce,
-    SliderForce,
-    VectorSignal,
-)
+from equipoise.mechanism.across import Across, masses_across, pushes_across
+from equipoise.mechanism.acting import acting_loads, acting_springs, load_demands, spring_demands
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.planes import beside
 from equipoise.mechanism.pushing import lengths
 from equipoise.mechanism.reactions import (
+    CamForce,
     Demand,
+    JointForce,
+    MeshForce,
     Pass,
+    VectorSignal,
     full,
-    load_demands,
     pushed,
     reactions,
-    spring_demands,
 )
+from equipoise.mechanism.shares import CAUSES, Split
 from equipoise.mechanism.steps import Array, p, planar, u
-
-CAUSES = ("translation", "rotation", "weight", "load", "spring")
-"""Inertia of centres of mass and of rotation about them, weight, loads from outside, springs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +123,8 @@ class Forces:
     @property
     def power(self) -> Array:
         """Power fed in by the drive, W."""
-        motion, drive = self.motion, self.motion.machine.drive
+        motion = self.motion
+        drive = motion.machine.drive
         if drive.pushes:
             return self.drive_force * lengths(motion)[1] * motion.speed
         return self.drive_torque * motion.links[drive.link].angular_velocity
@@ -146,6 +143,14 @@ class Forces:
     def cams(self) -> Mapping[str, CamForce]:
         """Force of each cam on its follower."""
         return self.solved.cams
+
+    @cached_property
+    def across(self) -> Across:
+        """What links beside each other do across the plane."""
+        motion = self.motion
+        loads = pushes_across(motion, acting_loads(motion))
+        springs = pushes_across(motion, acting_springs(motion))
+        return Across(motion, *masses_across(motion), loads, springs, self.solved.exerted)
 
     @cached_property
     def split(self) -> Split:
@@ -169,62 +174,6 @@ class Forces:
     def anchor(self, link: str) -> str:
         """The point of a link about which its demand's moment is taken."""
         return self.motion.linkage.anchors[link]
-
-
-@dataclass(frozen=True, eq=False)
-class Shares:
-    """Outputs told apart: arrays (..., N), whose first axes are what they are shares of.
-
-    shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
-    drive_force : N, of a drive that pushes.
-    joints, gears, cams : name -> force whose arrays have those axes.
-    """
-
-    shaking_force: Array
-    shaking_moment: Array
-    frame_force: Array
-    frame_moment: Array
-    drive_torque: Array
-    joints: Mapping[str, JointForce]
-    gears: Mapping[str, MeshForce]
-    cams: Mapping[str, CamForce]
-    drive_force: Array | None = field(default=None, kw_only=True)
-
-    @property
-    def of_machine(self) -> dict[str, Array]:
-        """All but the forces in joints, gears and cams, by name."""
-        known = {one.name: getattr(self, one.name) for one in fields(Shares)}
-        return {name: value for name, value in known.items() if isinstance(value, np.ndarray)}
-
-
-@dataclass(frozen=True, eq=False)
-class Split(Shares):
-    """Outputs by cause and link: arrays (5, L, N), causes as in `CAUSES`, links in file order.
-
-    Gears are taken with the flank in contact that the whole load gives.
-    """
-
-    links: tuple[str, ...]
-
-    def by_cause(self, output: str) -> dict[str, Array]:
-        """An output, such as ``drive_torque`` or ``joints.B``, summed over links."""
-        return dict(zip(CAUSES, self._array(output).sum(axis=1), strict=True))
-
-    def by_link(self, output: str) -> dict[str, Array]:
-        """An output, such as ``drive_torque`` or ``joints.B``, summed over causes."""
-        return dict(zip(self.links, self._array(output).sum(axis=0), strict=True))
-
-    def _array(self, output: str) -> Array:
-        found = self.of_machine
-        for name, joint in self.joints.items():
-            found[f"joints.{name}"] = joint.value
-            if isinstance(joint, SliderForce):
-                found[f"joints.{name}.moment"] = joint.moment
-        found |= {f"gears.{name}": mesh.value for name, mesh in self.gears.items()}
-        found |= {f"cams.{name}": pressed.value for name, pressed in self.cams.items()}
-        if output not in found:
-            raise UsageError(unknown(output, found, "output"))
-        return found[output]
 
 
 def forces(motion: Motion, about: str | Vector | complex | None = None) -> Forces:
@@ -312,9 +261,26 @@ def split(whole: Forces) -> Split:
         solved.joints,
         solved.gears,
         solved.cams,
+        _across_apart(whole, solved, shape) if beside(motion.machine) else None,
         links,
         drive_force=pushed(solved),
     )
+
+
+def _across_apart(whole: Forces, solved: Pass, shape: tuple[int, ...]) -> Across:
+    """What links do across the plane, by cause and link."""
+    one = whole.across
+    parts = (one.inertia, one.weights, one.loads, one.springs)
+
+    def apart(cause: int, needed: Mapping[str, Any]) -> dict[str, Array]:
+        found = {}
+        for k, link in enumerate(whole.inertia):
+            found[link] = np.zeros(shape, complex)
+            found[link][cause, k] = needed.get(link, 0.0)
+        return found
+
+    inertia, weights, loads, springs = map(apart, (0, 2, 3, 4), parts)
+    return Across(whole.motion, inertia, weights, loads, springs, solved.exerted)
 
 
 def _causes(whole: Forces, link: str) -> list[Demand]:

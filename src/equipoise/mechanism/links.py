@@ -27,7 +27,7 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.bodies import Body, together, weighed
 from equipoise.mechanism.body_checks import demands, wrong_bodies
-from equipoise.mechanism.checks import FRAME, Vector, unknown
+from equipoise.mechanism.checks import FRAME, Vector, unknown, unknown_point
 
 MASS_FIELDS = {"mass", "center_of_mass", "inertia"}
 FLAT = 1e-12
@@ -101,6 +101,13 @@ class Link(Frozen):
         above=0,
         word=to_say("side {name}"),
     )
+    plane: float = key("length", "z of the plane in which it moves", default=0.0)
+    planes: Mapping[str, float] = key(
+        Named(Quantity("length")),
+        "z of points that lie beside that plane, such as the pins of a crankshaft: `planes.B`",
+        factory=dict,
+        word=to_say("plane of {name}"),
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -163,18 +170,33 @@ class Link(Frozen):
         if self.bodies:
             self.__dict__.update(weighed(self.bodies, self.points))
 
-    def with_added(self, mass: float, place: Vector, inertia: float = 0.0) -> Link:
+    def with_added(
+        self, mass: float, place: Vector, inertia: float = 0.0, plane: float | None = None
+    ) -> Link:
         """With a mass (kg) at a place (m) in its axes, with so much inertia (kg m2) of its own:
         as one more of its bodies, or in its numbers where it has none.
+
+        plane : in which the mass lies, where that is another than the link's; then the link is one
+            of bodies.
         """
-        if self.bodies:
-            more = Body("point", at=place, mass=mass, inertia=inertia)
-            return self.altered(bodies=(*self.bodies, more))
+        beside = plane is not None and plane != self.plane
+        if self.bodies or beside:
+            more = Body(
+                "point", at=place, mass=mass, inertia=inertia, plane=plane if beside else None
+            )
+            return self.altered(bodies=(*(self.bodies or self._as_body), more))
         assert self.center_of_mass is not None
         own = self.mass, complex(*self.center_of_mass), self.inertia
         whole, center, second = together([own, (mass, complex(*place), inertia)])
         center_of_mass = (center.real, center.imag)
         return self.altered(mass=whole, center_of_mass=center_of_mass, inertia=second)
+
+    @property
+    def _as_body(self) -> tuple[Body, ...]:
+        """Its mass as one body; none where there is no mass."""
+        if not self.mass or self.inertia is None:
+            return ()
+        return (Body("point", at=self.center_of_mass, mass=self.mass, inertia=self.inertia),)
 
     def demands(self) -> Iterator[Any]:
         """What has to be true of lengths and bodies: flags, or columns of them."""
@@ -184,6 +206,10 @@ class Link(Frozen):
             yield _apex(*_sides_of(tuple(self.points), self.sides))[2]
         for body in self.bodies:
             yield from demands(body, self.points)
+
+    def plane_of(self, point: str | None) -> float:
+        """z of one of its points, m; of the link itself where none is told."""
+        return self.plane if point is None else self.planes.get(point, self.plane)
 
     @property
     def has_mass(self) -> bool:
@@ -277,6 +303,8 @@ def wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
             where, Note("a link cannot be called {name!r}; choose another name", name=name)
         )
     yield from wrong_points(where, link.points)
+    for point in link.planes:
+        yield from unknown_point(f"{where}.planes", point, name, {name: link.points})
     given = {"mass": link.mass, "center_of_mass": link.center_of_mass, "inertia": link.inertia}
     missing = [key for key, value in given.items() if value is None]
     if 0 < len(missing) < 3:

@@ -56,8 +56,9 @@ from equipoise.mechanism.links import (
     wrong_link,
     wrong_points,
 )
-from equipoise.mechanism.parts import Slider, wrong_slider
+from equipoise.mechanism.parts import Bearing, Slider, wrong_slider
 from equipoise.mechanism.places import Frame, Position
+from equipoise.mechanism.planes import wrong_planes
 from equipoise.mechanism.shown_units import ShownUnits
 from equipoise.mechanism.springs import Spring, wrong_ends
 from equipoise.mechanism.support import Row, Support, wrong_support
@@ -95,6 +96,10 @@ MOST = {
     "springs": 200,
 }
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
+BESIDE = ("bodies", "plane", "planes")
+"""Keys of a link that change nothing about the motion, beside its mass."""
+STILL = {"planting", "support", "rows", "springs", "bearings"}
+"""Keys under which no number changes the motion."""
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 
 
@@ -104,8 +109,8 @@ class Machine(Frozen):
 
     beside: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "description", "units", "gravity", "drive", "frame", "links",
-                  "assembly", "sliders", "gears", "cams", "loads", "springs", "position",
-                  "planting", "support", "rows", "balance")  # fmt: skip
+                  "bearings", "assembly", "sliders", "gears", "cams", "loads", "springs",
+                  "position", "planting", "support", "rows", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(Table(Drive), "the link that is driven")
@@ -149,6 +154,12 @@ class Machine(Frozen):
     )
     springs: tuple[Spring, ...] = key(
         Tables(Table(Spring)), "linear springs between links, or links and frame", default=()
+    )
+
+    bearings: Mapping[str, Bearing] = key(
+        Named(Table(Bearing)),
+        "in which links turn about their pins in the frame, two of each, by name",
+        factory=dict,
     )
 
     units: ShownUnits | None = key(
@@ -202,7 +213,7 @@ class Machine(Frozen):
             raise ModelError(f"links.{name}", unknown(name, self.links, "link"))
         check_kept(f"links.{name}.points", self.links[name].points, changes.get("points"))
         found = self._with_link(name, lambda link: link.altered(**changes))
-        return self._same_motion(found, set(changes) <= {*MASS_FIELDS, "bodies"})
+        return self._same_motion(found, set(changes) <= {*MASS_FIELDS, *BESIDE})
 
     def _with_link(self, name: str, change: Callable[[Link], Link]) -> Machine:
         try:
@@ -237,8 +248,8 @@ class Machine(Frozen):
         def put(_: Any) -> float:
             return number
 
-        massive = first == "links" and bool({*steps[2:3]} & {*MASS_FIELDS, "bodies"})
-        same = massive or first in {"planting", "support", "rows", "springs"} or last == "speed"
+        massive = first == "links" and bool({*steps[2:3]} & {*MASS_FIELDS, *BESIDE})
+        same = massive or first in STILL or last == "speed"
         if first == "links":
             found = self._with_link(steps[1], lambda link: changed(link, steps[2:], put))
         else:
@@ -318,6 +329,7 @@ def _problems(machine: Machine) -> Iterator[ModelError]:
             yield from unknown_link(f"position.angles.{name}", name, bodies)
     yield from wrong_planting(machine.planting, bodies)
     yield from wrong_drive(machine.drive, bodies, [one.name for one in machine.sliders])
+    yield from wrong_planes(machine)
     yield from wrong_support(machine.support, machine.rows)
     if machine.balance is not None:
         yield from machine.balance.problems(machine)

@@ -6,12 +6,11 @@ all rows.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from typing import Any
 
-from equipoise.i18n import say, to_say
-from equipoise.mechanism.checks import FRAME, bodies_at
+from equipoise.i18n import to_say
+from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.declaring import (
     DECLARED,
     GROUPS,
@@ -23,7 +22,9 @@ from equipoise.mechanism.declaring import (
     matches,
     output,
 )
+from equipoise.mechanism.planes import beside
 from equipoise.mechanism.poles import advantage, guided, instant_center, pairs, pinned
+from equipoise.mechanism.spoken import joint_named, joint_names, pair_named, slider_names
 from equipoise.quantities import Dimension
 
 __all__ = ["DECLARED", "GROUPS", "Declared", "Found", "declared", "declaring", "matches", "output"]
@@ -35,52 +36,6 @@ TORQUE: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak")
 """Measures that are told of an output before and after balancing."""
 XY, FORCES = (".x", ".y"), (".force_x", ".force_y")
 """Components of vectors, behind their names."""
-
-
-# -- members of families ---------------------------------------------------------------------------
-
-
-def joint_names(machine: Any) -> list[str]:
-    """Names of pins and sliders, as far as the names in the model tell.
-
-    At a pin of several bodies each moving link has one; which of them carries the others is found
-    only when the linkage is put together.
-    """
-    shared = bodies_at(machine.bodies).items()
-    pins = [point for point, bodies in shared if len(bodies) == 2]
-    several = [(point, bodies) for point, bodies in shared if len(bodies) > 2]
-    held = [f"{point}/{body}" for point, bodies in several for body in bodies if body != FRAME]
-    return [*pins, *held, *slider_names(machine)]
-
-
-def slider_names(machine: Any) -> list[str]:
-    """Names of sliding joints, such as ``ram on frame``."""
-    return [slider.name for slider in machine.sliders]
-
-
-def body_named(name: str) -> str:
-    """A link, or the frame, in words."""
-    return say("frame") if name == FRAME else name
-
-
-LETTER = re.compile(r"[A-Z]'?[0-9]*")
-
-
-def named(name: str) -> str:
-    """A name of a file as a sentence has it: in quotation marks, but for letters such as ``B2``."""
-    return name if LETTER.fullmatch(name) else say("“{name}”", name=name)
-
-
-def joint_named(name: str) -> str:
-    """A joint in words; a slider, such as ``ram on frame``, by its link and what it slides on."""
-    link, _, on = name.partition(" on ")
-    return say("{link} on {on}", link=link, on=body_named(on)) if on else name
-
-
-def pair_named(name: str) -> str:
-    """A pair of bodies, such as ``coupler/frame``, in words."""
-    one, _, other = name.rpartition("/")
-    return f"{one}/{body_named(other)}"
 
 
 def _alike(where: str, read: Callable[..., Any], **shared: Any) -> Callable[..., None]:
@@ -233,6 +188,22 @@ linear(
 )
 linear("frame_force", "force", to_say("force on the frame"), XY, summed=(True, False))
 linear("frame_moment", "torque", to_say("moment on the frame"), about=True)
+of_space = _alike(
+    "",
+    lambda name, found: getattr(found.forces.across, name),
+    needs="planes",
+    members=lambda machine: ("",) if beside(machine) else (),
+    linear=True,
+    loop=True,
+)
+of_space("rocking_moment", "torque", to_say("rocking moment"), XY, ordered=True, compared=FORCE)
+of_space(
+    "frame_rocking_moment",
+    "torque",
+    to_say("rocking moment on the frame"),
+    XY,
+    summed=(True, False),
+)
 of_weight = _alike(
     "",
     _force,
@@ -265,9 +236,15 @@ def _members(forces: Any, name: str, member: str) -> Any:
     return getattr(forces[member], name[1:]) if name else forces[member]
 
 
+def _of_joint(name: str, found: Any, joint: str) -> Any:
+    if name == "tilting_moments":
+        return found.forces.across.tilting_moments[joint]
+    return _members(found.forces.joints, name, joint)
+
+
 of_joint = _alike(
     "joints.{}",
-    lambda name, found, joint: _members(found.forces.joints, name, joint),
+    _of_joint,
     spoken=joint_named,
 )
 of_joint(
@@ -289,6 +266,35 @@ RAILS: dict[str, Any] = {
 }
 of_joint(".normal", "force", to_say("normal force in joint {name}"), summed=False, **RAILS)
 of_joint(".moment", "torque", to_say("moment in joint {name}"), loop="{joint moment:name}", **RAILS)
+
+of_joint(
+    ".tilting_moment",
+    "torque",
+    to_say("tilting moment in joint {name}"),
+    XY,
+    members=lambda machine: joint_names(machine) if beside(machine) else (),
+    items=lambda found: found.forces.across.tilting_moments if beside(found.machine) else (),
+    had="tilting_moments",
+    needs="planes",
+    linear=True,
+    summed=(True, False),
+)
+of_bearing = _alike(
+    "bearings.{}",
+    lambda _, found, bearing: found.forces.across.bearings[bearing],
+    needs="planes",
+    members=lambda machine: machine.bearings,
+)
+of_bearing(
+    "",
+    "force",
+    to_say("force of bearing {name}"),
+    FORCES,
+    linear=True,
+    loop="{bearing force:name}",
+    summed=(True, False),
+    compared=FORCE,
+)
 
 of_gear = _alike(
     "gears.{}",

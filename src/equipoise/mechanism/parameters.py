@@ -14,7 +14,7 @@ without the spring, plus k times the first row and f times the second.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,9 +22,10 @@ import numpy as np
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism import kernels
+from equipoise.mechanism.across import Across, needed_by_inertia
+from equipoise.mechanism.acting import spring_direction, spring_vector
 from equipoise.mechanism.dynamics import (
     Forces,
-    Shares,
     demand_of_inertia,
     forces,
     massless,
@@ -32,18 +33,15 @@ from equipoise.mechanism.dynamics import (
 )
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.reactions import (
-    Demand,
-    demands_of,
-    pushed,
-    reactions,
-    spring_direction,
-    spring_vector,
-)
+from equipoise.mechanism.planes import beside, moments_across
+from equipoise.mechanism.reactions import Demand, Pass, demands_of, pushed, reactions
+from equipoise.mechanism.shares import Shares
 from equipoise.mechanism.steps import Array, planar
 
 QUANTITIES = ("mass", "moment_x", "moment_y", "inertia")
 """Inertial parameters of a link: kg, kg m, kg m, kg m2; moments and inertia about its origin."""
+ACROSS = ("moment_z", "product_zx", "product_yz")
+"""More of them, which matter to what links do across the plane: kg m, kg m2, kg m2."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +50,7 @@ class Regressor(Shares):
 
     Arrays are (P, N).  parameters : P pairs of link and quantity; values : (P,) those of the
     machine.  What loads and springs add is `Forces.split` of causes "load" and "spring".
+    across : arrays (P + 3 L, N), by the parameters of `values_across`.
     """
 
     parameters: tuple[tuple[str, str], ...]
@@ -122,10 +121,51 @@ def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Re
         solved.joints,
         solved.gears,
         solved.cams,
+        _across(motion, solved) if beside(machine) else None,
         parameter_names(machine),
         values,
         drive_force=pushed(solved),
     )
+
+
+def _across(motion: Motion, solved: Pass) -> Across:
+    """What a unit of each parameter does across the plane, and then of each link's sums of mass
+    times plane (kg m) and of that times x and y (kg m2, about its origin).
+    """
+    machine = motion.machine
+    count, width = len(machine.links), len(QUANTITIES) + len(ACROSS)
+    size, angles = width * count, len(motion.crank_angle)
+    gravity = complex(*machine.gravity)
+    inertia: dict[str, Array] = {}
+    weights: dict[str, Array] = {}
+    for k, (name, link) in enumerate(machine.links.items()):
+        shift = complex(*link.points[motion.linkage.anchors[name]])
+        unit = np.eye(len(ACROSS))[:, :, None]
+        own = unit[0], unit[1] + 1j * unit[2] - shift * unit[0]
+        rows = slice(len(QUANTITIES) * count + len(ACROSS) * k, None)
+        parts = (
+            needed_by_inertia(motion, name, own),
+            kernels.weight_demand(motion.state[f"u({name})"], *own, gravity)[0],
+        )
+        for found, part in zip((inertia, weights), parts, strict=True):
+            found[name] = np.zeros((size, angles), complex)
+            found[name][rows][: len(ACROSS)] = part
+    exerted = {
+        name: replace(one, value=np.pad(one.value, ((0, len(ACROSS) * count), (0, 0))))
+        for name, one in solved.exerted.items()
+    }
+    return Across(motion, inertia, weights, {}, {}, exerted)
+
+
+def values_across(machine: Machine) -> Array:
+    """Parameters of `Regressor.across`: those of `parameter_values`, then each link's sums of mass
+    times plane, and of that times x and y.
+    """
+    more = []
+    for link in machine.links.values():
+        mass, moment = moments_across(link)
+        more += [mass, moment.real, moment.imag]
+    return np.concatenate([parameter_values(machine), more])
 
 
 def _unit_demands(motion: Motion) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -228,7 +268,7 @@ def independent_columns(matrix: Array, tolerance: float = 1e-9) -> tuple[list[in
 def spring_columns(
     motion: Motion, link: str, point: str, to: str
 ) -> tuple[Array, dict[str, Array]]:
-    """Drive torque or force (2, N) and the force in each joint by name (2, N), complex.
+    """Drive torque or force (2, N) and the force in each joint and mesh by name (2, N), complex.
 
     First row: of a spring of 1 N/m without a free length; second row: of a pull of 1 N towards the
     frame's point; each alone.  Shaking force and moment, and force and moment on the frame, have
@@ -247,7 +287,7 @@ def spring_columns(
         raise UsageError(unknown(point, points, Note("point of {body}", body=link)))
     if to not in frame:
         raise UsageError(unknown(to, frame, "point of the frame"))
-    units = np.stack([spring_vector(motion, point, to), spring_direction(motion, link, point, to)])
+    units = spring_units(motion, link, point, to)
     zero = np.zeros(units.shape)
     demands: dict[str, Demand] = dict.fromkeys(motion.machine.links, (zero + 0j, zero))
     demands |= demands_of(motion, [(link, point, units, 0.0)])
@@ -255,4 +295,10 @@ def spring_columns(
     solved = reactions(motion, demands, like)
     effort = pushed(solved)
     effort = solved.drive_torque if effort is None else effort
-    return effort, {name: joint.value for name, joint in solved.joints.items()}
+    return effort, {name: one.value for name, one in solved.exerted.items()}
+
+
+def spring_units(motion: Motion, link: str, point: str, to: str) -> Array:
+    """Force (2, N) on a link's point of these two springs, N, complex."""
+    along = spring_direction(motion, link, point, to)
+    return np.stack([spring_vector(motion, point, to), along])

@@ -1,4 +1,4 @@
-"""Sliding joints as frozen values, and what a machine is to those who only look at its parts."""
+"""Sliding joints and bearings as frozen values; what a machine is to those who see its parts."""
 
 from __future__ import annotations
 
@@ -19,6 +19,9 @@ from equipoise.mechanism.drives import Drive
 from equipoise.mechanism.gears import Gear
 from equipoise.mechanism.links import Link
 from equipoise.mechanism.support import Row, Support
+
+JOINTS = ("pin", "slider")
+"""Kinds of what holds bodies together, which is no push of a coupling."""
 
 
 @declared
@@ -45,6 +48,18 @@ class Slider(Frozen):
         return self.label or f"{self.link} on {self.on}"
 
 
+@declared
+class Bearing(Frozen):
+    """One of both bearings in which a link turns about its pin in the frame."""
+
+    called = to_say("{what} of bearing {name}")
+
+    link: str = key(
+        Text(of="link"), "that turns in it; it has one pin in the frame", example="crank"
+    )
+    plane: float = key("length", "z of its middle", example="-20 mm")
+
+
 class Mechanism(Protocol):
     """What a machine is to those who only look at its parts."""
 
@@ -62,6 +77,8 @@ class Mechanism(Protocol):
     def gears(self) -> Sequence[Gear]: ...
     @property
     def rows(self) -> Sequence[Row]: ...
+    @property
+    def bearings(self) -> Mapping[str, Bearing]: ...
     @property
     def support(self) -> Support | None: ...
 

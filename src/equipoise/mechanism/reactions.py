@@ -7,33 +7,93 @@ and springs make demands of their own.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from math import degrees
 from typing import Any
 
 import numpy as np
 
-from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import Named
-from equipoise.mechanism.field import Soil
-from equipoise.mechanism.joint_forces import CamForce, JointForce, MeshForce, SliderForce
-from equipoise.mechanism.loads import load_at
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.parts import JOINTS
 from equipoise.mechanism.pushing import pushes
-from equipoise.mechanism.springs import Spring
 from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, run
-from equipoise.mechanism.tip import surface_of, tip_link
 
 PUSH = "D"
 """Name of the force of a drive that pushes, among the values of a pass."""
-JOINTS = ("pin", "slider")
-"""Kinds of reactions that are no push of a coupling."""
 Demand = tuple[Any, Any]
 """Force (complex) and moment about a link's anchor, each (..., N) or the same at all angles."""
+
+
+@dataclass(frozen=True, eq=False)
+class VectorSignal:
+    """A planar vector against crank angle; `value` is complex, x + i y, (..., N)."""
+
+    value: Array
+
+    @property
+    def x(self) -> Array:
+        return self.value.real
+
+    @property
+    def y(self) -> Array:
+        return self.value.imag
+
+    @property
+    def size(self) -> Array:
+        """Length of the vector."""
+        return np.abs(self.value)
+
+    @property
+    def direction(self) -> Array:
+        """Angle of the vector from the x axis, rad."""
+        return np.angle(self.value)
+
+
+@dataclass(frozen=True, eq=False)
+class JointForce(VectorSignal):
+    """Force in a pin, N: exerted on body `on` by body `by`."""
+
+    on: str
+    by: str
+
+
+@dataclass(frozen=True, eq=False)
+class SliderForce(JointForce):
+    """Force in a sliding joint, N.
+
+    normal : its part across the line, positive to the left of the line's direction.
+    moment : couple about the slider's point, N m.
+    """
+
+    normal: Array
+    moment: Array
+
+
+@dataclass(frozen=True, eq=False)
+class MeshForce(JointForce):
+    """Force between teeth, N, along the line of action at the pitch point.
+
+    tangential : part that transmits torque, positive where it turns the gear `on`
+        counterclockwise.  radial : part along the line of centres, positive towards the pin of
+        the gear `on`.
+    """
+
+    tangential: Array
+    radial: Array
+
+
+@dataclass(frozen=True, eq=False)
+class CamForce(JointForce):
+    """Force of a cam on its follower, N, along their common normal.
+
+    normal : it along the normal away from the cam; below 0 where the follower is held back.
+    """
+
+    normal: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +146,16 @@ class Pass:
         """Cams, by name; the force is on the follower."""
         cams = (r for r in self.motion.linkage.reactions if r.kind == "cam")
         return Named("cam", ((r.name, self._pressed(r)) for r in cams))
+
+    @cached_property
+    def exerted(self) -> dict[str, JointForce]:
+        """All of these, and whatever else bodies push each other with, by name."""
+        named = self.motion.linkage.named_reactions
+        pushes = {name: one for name, one in named if one.kind not in JOINTS}
+        return self.joints | {name: self._push(one) for name, one in pushes.items()}
+
+    def _push(self, one: Reaction) -> JointForce:
+        return JointForce(full(self.motion, self.state[one.force], complex), one.on, one.by)
 
     @property
     def flanks(self) -> State:
@@ -189,33 +259,6 @@ def full(motion: Motion, value: Any, kind: type) -> Array:
 Acting = tuple[str, Any, Array, Any]
 """Link, its point, a place (N,) or None for a torque, force and torque."""
 
-MEETING = 1e-12
-"""Of the coordinates of its ends: where they are closer, rounding decides where a spring points."""
-
-
-def load_demands(motion: Motion) -> dict[str, Demand]:
-    """What holds the loads, for every link that has one."""
-    return demands_of(motion, _loads(motion))
-
-
-def spring_demands(motion: Motion) -> dict[str, Demand]:
-    """What holds the springs, for every link that has one.
-
-    Raises
-    ------
-    ModelError : the ends of a spring with a free length meet.
-    """
-    return demands_of(motion, _pulls(motion))
-
-
-def _pulls(motion: Motion) -> Iterator[Acting]:
-    """Link, point and force of each end of a spring that is on a link."""
-    for one in motion.machine.springs:
-        force = spring_force(motion, one)
-        yield one.link, one.point, force, 0.0
-        if one.on != FRAME:
-            yield one.on, one.to, -force, 0.0
-
 
 def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
     """What holds forces (complex, N) and torques (N m), for every link that has one."""
@@ -228,83 +271,3 @@ def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
         before = result.get(link, (0.0, 0.0))
         result[link] = (before[0] + f, before[1] + m)
     return result
-
-
-def _loads(motion: Motion) -> Iterator[Acting]:
-    """Link, point, force and torque of each load."""
-    machine = motion.machine
-    for load in machine.loads:
-        yield load.link, load.point, *load_at(load, motion.crank_angle)
-    if machine.planting is not None and machine.planting.soil is not None:
-        for arm in machine.planting.every_arm:
-            yield tip_link(machine, arm.tip), arm.tip, soil_force(motion, arm.tip), 0.0
-
-
-def soil_force(motion: Motion, tip: str | None = None) -> Array:
-    """Force of the soil on a tip (N,), N, complex; 0 above the surface.
-
-    tip : of any arm; of the first where not given.
-
-    Raises
-    ------
-    ModelError : the machine has no `[planting]`.
-    MotionError : its crank cannot turn fully, so that no lowest point tells where the surface is.
-    """
-    planting = motion.machine.planting
-    if planting is None or planting.soil is None:
-        return np.zeros(len(motion.crank_angle), complex)
-    point = motion.points[tip or planting.tip]
-    depth = surface_of(motion.machine) - point.y
-    over_ground = point.velocity + planting.forward(motion.speed)
-    speed = np.abs(over_ground)
-    size = np.where(depth > 0, resistance(planting.soil, depth, speed), 0.0)
-    against = np.divide(-over_ground, speed, out=np.zeros_like(over_ground), where=speed > 0)
-    return size * against
-
-
-def resistance(soil: Soil, depth: Array, speed: Array) -> Array:
-    """Size of the force (N,), N, at depths (N,), m, and speeds over ground (N,), m/s."""
-    size = soil.resistance + soil.per_depth * depth + soil.per_speed * speed
-    size = size + soil.per_depth_and_speed * depth * speed
-    if soil.table is not None:
-        size = size + np.interp(depth, soil.table.depth, soil.table.resistance)
-    return size
-
-
-def spring_force(motion: Motion, spring: Spring) -> Any:
-    """Force of a spring on its link's point (N,), N, complex; minus this on its other end.
-
-    Raises
-    ------
-    ModelError : its ends meet, so that a spring with a free length points nowhere.
-    """
-    if spring.free_length:
-        spring_direction(motion, spring.link, spring.point, spring.to)
-    place, to = motion.points[spring.point].place, motion.points[spring.to].place
-    return kernels.spring(place, to, spring.stiffness, spring.free_length)
-
-
-def spring_vector(motion: Motion, point: str, to: str) -> Any:
-    """From a point to another, both ends of a spring (N,), m, complex."""
-    return motion.points[to].place - motion.points[point].place
-
-
-def spring_direction(motion: Motion, link: str, point: str, to: str) -> Any:
-    """Unit vector from a spring's end on a link to its other end (N,), complex.
-
-    Raises
-    ------
-    ModelError : they meet.
-    """
-    along = spring_vector(motion, point, to)
-    length = abs(along)
-    coordinates = abs(motion.points[point].place) + abs(motion.points[to].place)
-    meeting = length <= MEETING * coordinates
-    if meeting.any():
-        angle = degrees(motion.crank_angle[meeting.argmax()])
-        raise ModelError(
-            "springs",
-            f"{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a spring "
-            "with a free length points nowhere; give another point, or a free_length of 0",
-        )
-    return along / length

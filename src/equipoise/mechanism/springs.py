@@ -35,6 +35,12 @@ class Spring(Frozen):
     )
     on: str = key(Text(of="body"), "the body of its other point", default=FRAME)
 
+    @property
+    def ends(self) -> tuple[tuple[str, str], ...]:
+        """Link and point of each end that is on a link; it pulls the second the other way."""
+        first = (self.link, self.point)
+        return (first,) if self.on == FRAME else (first, (self.on, self.to))
+
 
 def wrong_ends(where: str, spring: Any, bodies: Bodies) -> Iterator[ModelError]:
     """What is wrong with the two points of a spring, or of one that may be set."""

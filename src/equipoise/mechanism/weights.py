@@ -106,6 +106,9 @@ class Weight(Frozen):
     at_most: float | None = key(
         "mass", "the most that it may be, instead of `mass`", default=None, example="800 g", above=0
     )
+    plane: float | None = key(
+        "length", "z of its middle; that of its link if left out", default=None, example="40 mm"
+    )
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Weight:
@@ -253,6 +256,12 @@ def wrong_move(where: str, move: CenterMove, machine: Mechanism) -> Iterator[Mod
         yield ModelError(
             f"{where}.link",
             f"{move.link!r} has no mass whose centre could be moved; give it one, or another link",
+        )
+    elif any(body.plane is not None for body in links[move.link].bodies):
+        yield ModelError(
+            f"{where}.link",
+            f"{move.link!r} has bodies in planes of their own, which have no one centre to move; "
+            "give another link",
         )
     yield from wrong_range(f"{where}.x", move.x, 1e3, " mm")
     yield from wrong_range(f"{where}.y", move.y, 1e3, " mm")

@@ -14,10 +14,12 @@ from equipoise.mechanism import kernels
 from equipoise.mechanism.assessment import FourBar, four_bar
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dwell import Dwell
-from equipoise.mechanism.dynamics import CAUSES, Forces, forces, massless, place_of
+from equipoise.mechanism.dynamics import Forces, forces, massless, place_of
 from equipoise.mechanism.model import Machine, Vector
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
+from equipoise.mechanism.planes import beside
+from equipoise.mechanism.shares import CAUSES
 from equipoise.mechanism.strokes import Stroke, dwell, strokes
 from equipoise.quantities import Dimension
 from equipoise.results.outputs import Outputs
@@ -121,15 +123,17 @@ class Analysis(Result):
         found, count = self.solved, len(self.crank_angle)
         force = found.shaking_force
         signals = np.array([force.x, force.y, found.shaking_moment, found.drive_torque])
+        rocking = found.across.rocking_moment.value if beside(self.machine) else np.zeros(count)
+        signals = np.vstack([signals, np.real(rocking), np.imag(rocking)])
         one = Periodic.of(signals, self.motion.turns)
         whole = {"shaking_force": np.zeros(count, complex)}
         whole |= {name: np.zeros(count) for name in ("shaking_moment", *LATERAL, "drive_torque")}
         for row in rows:
-            x, y, moment, torque = one.shifted(row.phase).samples(count)
+            x, y, moment, torque, roll, yaw = one.shifted(row.phase).samples(count)
             whole["shaking_force"] += x + 1j * y
             whole["shaking_moment"] += moment + kernels.cross(complex(*row.offset), x + 1j * y)
-            whole["roll_moment"] -= row.lateral * y
-            whole["yaw_moment"] += row.lateral * x
+            whole["roll_moment"] += roll - row.lateral * y
+            whole["yaw_moment"] += yaw + row.lateral * x
             whole["drive_torque"] += torque
         return whole
 

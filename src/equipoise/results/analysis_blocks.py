@@ -10,8 +10,8 @@ import numpy as np
 from equipoise.i18n import say
 from equipoise.mechanism.dwell import Dwell
 from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.joint_forces import JointForce, SliderForce
-from equipoise.mechanism.outputs import body_named, joint_named
+from equipoise.mechanism.reactions import JointForce, SliderForce
+from equipoise.mechanism.spoken import body_named, joint_named
 from equipoise.mechanism.strokes import SHARE
 from equipoise.quantities import Dimension, angle, percent
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value

@@ -11,7 +11,7 @@ import numpy as np
 from equipoise.i18n import Note, all_of, say
 from equipoise.mechanism.cam_contacts import LetGo, let_go
 from equipoise.mechanism.cam_fits import fits_of, sharpest
-from equipoise.mechanism.outputs import body_named
+from equipoise.mechanism.spoken import body_named
 from equipoise.quantities import PER_RPM, angle, told
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest

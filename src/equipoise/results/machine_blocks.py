@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.bodies import inertia_of, together
-from equipoise.mechanism.outputs import body_named
+from equipoise.mechanism.spoken import body_named
 from equipoise.quantities import PER_RPM, Dimension, Display, angle, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
 from equipoise.signals import Array, Figures, figures

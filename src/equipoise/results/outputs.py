@@ -174,7 +174,7 @@ class Outputs:
 def _can_be_had(one: Declared, analysis: Any) -> bool:
     if one.needs == "motion":
         return True
-    return analysis.solved is not None and (one.needs == "masses" or bool(analysis.together))
+    return analysis.solved is not None and (one.is_of_row or bool(analysis.together))
 
 
 def unit_of(name: str) -> str:

@@ -24,11 +24,12 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import MassError
+from equipoise.mechanism.acting import load_demands, spring_demands
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.kernels import cross, dot
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.reactions import Demand, Pass, load_demands, reactions, spring_demands
+from equipoise.mechanism.reactions import Demand, Pass, reactions
 from equipoise.mechanism.steps import p, u
 from equipoise.mechanism.support import Row
 from equipoise.signals import Array

@@ -10,10 +10,10 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, MotionError, UsageError
+from equipoise.mechanism.acting import resistance, soil_force, spring_force
 from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.field import Planting, Soil, SoilTable
 from equipoise.mechanism.parameters import spring_columns
-from equipoise.mechanism.reactions import resistance, soil_force, spring_force
 from equipoise.mechanism.tip import surface_of
 from support.machines import make
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, refused
@@ -315,7 +315,9 @@ def test_outputs_are_linear_in_stiffness_and_pull(kind: str) -> None:
     np.testing.assert_allclose(bare.drive_torque + factors @ torque, found.drive_torque,
                                rtol=0, atol=1e-12 * size)  # fmt: skip
     if machine.gears:
-        split = {name: found.split.by_cause(f"joints.{name}")["spring"] for name in found.joints}
+        names = [("joints", name) for name in found.joints]
+        names += [("gears", name) for name in found.gears]
+        split = {name: found.split.by_cause(f"{of}.{name}")["spring"] for of, name in names}
     else:
         split = {name: joint.value - bare.joints[name].value
                  for name, joint in found.joints.items()}  # fmt: skip

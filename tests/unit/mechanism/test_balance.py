@@ -26,7 +26,7 @@ from equipoise.mechanism.balance import (
     largest_mass,
 )
 from equipoise.mechanism.objectives import output_of, quantity_of
-from equipoise.mechanism.outputs import joint_names
+from equipoise.mechanism.spoken import joint_names
 from equipoise.mechanism.support import Row
 from unit.mechanism.balances import ALONE, DISC, FOUR, GEARED, ROOM, SHAFTS, SPRING, STEEL, refused
 from unit.mechanism.build import ORIGIN, body, slider_crank

@@ -1,0 +1,130 @@
+"""What acts on links from outside of their joints: loads, soil and springs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import degrees
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.mechanism import kernels
+from equipoise.mechanism.field import Soil
+from equipoise.mechanism.loads import load_at
+from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.reactions import Acting, Demand, demands_of
+from equipoise.mechanism.springs import Spring
+from equipoise.mechanism.steps import Array
+from equipoise.mechanism.tip import surface_of, tip_link
+
+MEETING = 1e-12
+"""Of the coordinates of its ends: where they are closer, rounding decides where a spring points."""
+
+
+def load_demands(motion: Motion) -> dict[str, Demand]:
+    """What holds the loads, for every link that has one."""
+    return demands_of(motion, acting_loads(motion))
+
+
+def spring_demands(motion: Motion) -> dict[str, Demand]:
+    """What holds the springs, for every link that has one.
+
+    Raises
+    ------
+    ModelError : the ends of a spring with a free length meet.
+    """
+    return demands_of(motion, acting_springs(motion))
+
+
+def acting_springs(motion: Motion) -> Iterator[Acting]:
+    """Link, point and force of each end of a spring on a link; it has no torque.
+
+    Raises
+    ------
+    ModelError : the ends of a spring with a free length meet.
+    """
+    for spring in motion.machine.springs:
+        force = spring_force(motion, spring)
+        for (link, point), pull in zip(spring.ends, (force, -force), strict=False):
+            yield link, point, pull, 0.0
+
+
+def acting_loads(motion: Motion) -> Iterator[Acting]:
+    """Link, point, force and torque of each load."""
+    machine = motion.machine
+    for load in machine.loads:
+        yield load.link, load.point, *load_at(load, motion.crank_angle)
+    if machine.planting is not None and machine.planting.soil is not None:
+        for arm in machine.planting.every_arm:
+            yield tip_link(machine, arm.tip), arm.tip, soil_force(motion, arm.tip), 0.0
+
+
+def soil_force(motion: Motion, tip: str | None = None) -> Array:
+    """Force of the soil on a tip (N,), N, complex; 0 above the surface.
+
+    tip : of any arm; of the first where not given.
+
+    Raises
+    ------
+    ModelError : the machine has no `[planting]`.
+    MotionError : its crank cannot turn fully, so that no lowest point tells where the surface is.
+    """
+    planting = motion.machine.planting
+    if planting is None or planting.soil is None:
+        return np.zeros(len(motion.crank_angle), complex)
+    point = motion.points[tip or planting.tip]
+    depth = surface_of(motion.machine) - point.y
+    over_ground = point.velocity + planting.forward(motion.speed)
+    speed = np.abs(over_ground)
+    size = np.where(depth > 0, resistance(planting.soil, depth, speed), 0.0)
+    against = np.divide(-over_ground, speed, out=np.zeros_like(over_ground), where=speed > 0)
+    return size * against
+
+
+def resistance(soil: Soil, depth: Array, speed: Array) -> Array:
+    """Size of the force (N,), N, at depths (N,), m, and speeds over ground (N,), m/s."""
+    size = soil.resistance + soil.per_depth * depth + soil.per_speed * speed
+    size = size + soil.per_depth_and_speed * depth * speed
+    if soil.table is not None:
+        size = size + np.interp(depth, soil.table.depth, soil.table.resistance)
+    return size
+
+
+def spring_force(motion: Motion, spring: Spring) -> Any:
+    """Force of a spring on its link's point (N,), N, complex; minus this on its other end.
+
+    Raises
+    ------
+    ModelError : its ends meet, so that a spring with a free length points nowhere.
+    """
+    if spring.free_length:
+        spring_direction(motion, spring.link, spring.point, spring.to)
+    place, to = motion.points[spring.point].place, motion.points[spring.to].place
+    return kernels.spring(place, to, spring.stiffness, spring.free_length)
+
+
+def spring_vector(motion: Motion, point: str, to: str) -> Any:
+    """From a point to another, both ends of a spring (N,), m, complex."""
+    return motion.points[to].place - motion.points[point].place
+
+
+def spring_direction(motion: Motion, link: str, point: str, to: str) -> Any:
+    """Unit vector from a spring's end on a link to its other end (N,), complex.
+
+    Raises
+    ------
+    ModelError : they meet.
+    """
+    along = spring_vector(motion, point, to)
+    length = abs(along)
+    coordinates = abs(motion.points[point].place) + abs(motion.points[to].place)
+    meeting = length <= MEETING * coordinates
+    if meeting.any():
+        angle = degrees(motion.crank_angle[meeting.argmax()])
+        raise ModelError(
+            "springs",
+            f"{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a spring "
+            "with a free length points nowhere; give another point, or a free_length of 0",
+        )
+    return along / length

@@ -1,0 +1,104 @@
+"""Links beside each other: in which planes their masses and their bearings lie."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+from typing import Any
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note
+from equipoise.mechanism.bodies import inertia_of
+from equipoise.mechanism.checks import FRAME, bodies_at, unknown
+from equipoise.mechanism.links import Link
+from equipoise.mechanism.parts import Bearing, Mechanism
+
+
+def beside(machine: Mechanism) -> bool:
+    """Whether a machine tells where its parts lie across the plane of its motion."""
+    return bool(machine.bearings) or any(
+        link.plane or link.planes or any(body.plane is not None for body in link.bodies)
+        for link in machine.links.values()
+    )
+
+
+def masses_of(link: Link) -> Iterator[tuple[float, complex, float]]:
+    """Mass (kg), centre (complex, m, in the link's axes) and plane (m) of each part of a link."""
+    for body in link.bodies:
+        mass, center, _ = inertia_of(body, link.points)
+        yield mass, center, link.plane if body.plane is None else body.plane
+    if not link.bodies and link.mass is not None and link.center_of_mass is not None:
+        x, y = link.center_of_mass
+        yield link.mass, x + 1j * y, link.plane
+
+
+def moments_across(link: Link, point: str | None = None) -> tuple[Any, Any]:
+    """Sums of mass times plane (kg m), and of that times the arm from a point, or from the origin
+    of the link's axes (kg m2, complex).
+    """
+    x, y = (0.0, 0.0) if point is None else link.points[point]
+    parts = [(mass * z, center - (x + 1j * y)) for mass, center, z in masses_of(link)]
+    return sum(m for m, _ in parts), sum((m * arm for m, arm in parts), start=0j)
+
+
+# -- checks ----------------------------------------------------------------------------------------
+
+
+def wrong_planes(machine: Mechanism) -> Iterator[ModelError]:
+    """Everything that is wrong with planes of pins and with bearings."""
+    if machine.drive.pushes and beside(machine):
+        yield ModelError(
+            "drive",
+            Note(
+                "a drive that pushes is computed with in one plane; leave out plane and planes of "
+                "links and bodies, and bearings"
+            ),
+        )
+    for point, bodies in bodies_at(machine.bodies).items():
+        told = [(k, machine.links[k].planes[point]) for k in bodies if _tells(machine, k, point)]
+        for (one, here), (other, there) in combinations(told, 2):
+            if here != there:
+                yield ModelError(
+                    f"links.{other}.planes.{point}",
+                    Note(
+                        "got {there:g} mm, and {here:g} mm in the {one}; a pin lies in one plane, "
+                        "give it once",
+                        there=1e3 * there,
+                        here=1e3 * here,
+                        one=one,
+                    ),
+                )
+    for name, bearing in machine.bearings.items():
+        yield from _wrong_bearing(f"bearings.{name}", bearing, machine)
+
+
+def _tells(machine: Mechanism, body: str, point: str) -> bool:
+    return body != FRAME and point in machine.links[body].planes
+
+
+def _wrong_bearing(where: str, bearing: Bearing, machine: Mechanism) -> Iterator[ModelError]:
+    if bearing.link not in machine.links:
+        yield ModelError(f"{where}.link", unknown(bearing.link, machine.links, "link"))
+        return
+    pins = [point for point in machine.links[bearing.link].points if point in machine.frame]
+    if len(pins) != 1:
+        yield ModelError(
+            f"{where}.link",
+            Note(
+                "{link!r} has {pins} pins in the frame; bearings hold a link that turns about one",
+                link=bearing.link,
+                pins=len(pins),
+            ),
+        )
+        return
+    planes = [one.plane for one in machine.bearings.values() if one.link == bearing.link]
+    if len(planes) != 2 or planes[0] == planes[1]:
+        yield ModelError(
+            where,
+            Note(
+                "{link!r} has {count} bearings in different planes; give it two, whose forces "
+                "statics can tell",
+                link=bearing.link,
+                count=len({*planes}),
+            ),
+        )

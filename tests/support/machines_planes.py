@@ -1,0 +1,212 @@
+"""Random machines whose links lie beside each other, and what they bear across the plane.
+
+The second route cuts every link free in space.  Couples go by the displacement method: a link that
+no joint holds in the frame tilts until its joints, all of one stiffness, hold it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import chain
+
+import numpy as np
+
+from equipoise.mechanism.bodies import Body
+from equipoise.mechanism.links import Link
+from equipoise.mechanism.model import FRAME, Machine
+from equipoise.mechanism.parts import Bearing
+from support.free_bodies import FreeBodies
+from support.loads import has_soil, on_links, springs_on_links, tips_of
+from support.poses import Array, Poses
+
+
+def set_apart(machine: Machine, rng: np.random.Generator, flat: bool = False) -> Machine:
+    """Put the links of a machine beside each other, and hold what turns in the frame in bearings.
+
+    flat : keep every link's mass, joints and loads in its own plane.
+    """
+    size = float(np.ptp(list(machine.frame.values()))) + 0.1
+    links = {}
+    for name, link in machine.links.items():
+        given = {"plane": float(rng.normal()) * size}
+        if not flat:
+            given |= _in_two_planes(link, rng, size)
+            label = str(rng.choice(list(link.points)))
+            told = (label in other.planes for other in links.values())
+            if rng.random() < 0.3 and not any(told):
+                given["planes"] = {label: float(rng.normal()) * size}
+        links[name] = link.altered(**given)
+    shafts = [name for name, k in links.items() if len(k.points.keys() & machine.frame.keys()) == 1]
+    bearings = {
+        f"{side} of {name}": Bearing(name, place * size * float(rng.uniform(0.5, 2)))
+        for name in shafts
+        for side, place in (("left", -1.0), ("right", 1.0))
+    }
+    return replace(machine, links=links, bearings=bearings)
+
+
+def _in_two_planes(link: Link, rng: np.random.Generator, size: float) -> dict[str, object]:
+    """Split the mass of a link, a part of it beside its plane."""
+    if not link.mass or not link.inertia or rng.random() < 0.4:
+        return {}
+    half, (x, y) = link.mass / 2, link.center_of_mass or (0.0, 0.0)
+    z = float(rng.normal()) * size
+    one = Body("point", at=(x, y), mass=half, inertia=link.inertia / 2)
+    return {"bodies": (one, replace(one, at=(x + size / 7, y - size / 5), plane=z))}
+
+
+# -- free bodies in space --------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Spatial:
+    """Moments about x and y and forces, each (N, 2)."""
+
+    rocking: Array
+    on_frame: Array
+    couples: Mapping[str, Array]
+    bearings: Mapping[str, Array]
+
+
+def about_axes(plane: float, force: Array) -> Array:
+    """Moment about x and y of forces (N, 2) in a plane."""
+    arm = np.array([0.0, 0.0, plane])
+    return np.cross(arm, np.column_stack([force, np.zeros(len(force))]))[:, :2]
+
+
+def pieces(link: Link) -> Iterator[tuple[float, tuple[float, float], float, float]]:
+    """Mass, place, plane and inertia of each piece of a link."""
+    for body in link.bodies:
+        assert body.mass is not None
+        assert isinstance(body.at, tuple)
+        yield body.mass, body.at, link.plane if body.plane is None else body.plane, body.inertia
+    if not link.bodies:
+        assert link.center_of_mass is not None
+        yield link.mass or 0.0, link.center_of_mass, link.plane, link.inertia or 0.0
+
+
+def solve(machine: Machine, poses: Poses, flat: FreeBodies) -> Spatial:
+    """Find what goes across the plane, from the forces within it."""
+    nothing = np.zeros((poses.crank_angle.size, 2))
+    rocking, on_frame = nothing, nothing
+    asked = dict.fromkeys(machine.links, nothing)
+    for name, link in machine.links.items():
+        for mass, at, plane, _ in pieces(link):
+            moved = about_axes(plane, mass * poses.change(name, at))
+            carried = about_axes(plane, nothing + mass * np.array(machine.gravity))
+            rocking, on_frame = rocking - moved, on_frame + carried - moved
+            asked[name] = asked[name] + moved - carried
+    loads = zip(_of_loads(machine), on_links(machine, poses), strict=True)
+    springs = zip(_of_springs(machine), springs_on_links(machine, poses), strict=True)
+    for acting, whole in ((loads, 1.0), (springs, 0.0)):
+        for plane, (body, _, force, _) in acting:
+            moment = about_axes(plane, force)
+            asked[body] = asked[body] - moment
+            on_frame = on_frame + whole * moment
+    held = {one.on for one in flat.joints.values() if one.by == FRAME}
+    held |= {one.by for one in flat.joints.values() if one.on == FRAME}
+    planes = {}
+    for name, one in chain(flat.joints.items(), flat.gears.items()):
+        planes[name] = joint_plane(machine, name, one.on, one.by, held)
+        moment = about_axes(planes[name], one.force)
+        for body, sign in ((one.on, 1.0), (one.by, -1.0)):
+            if body != FRAME:
+                asked[body] = asked[body] - sign * moment
+    couples = tilted(machine, flat, asked, held)
+    shafts = {one.link for one in machine.bearings.values()}
+    bearings = {}
+    for shaft in shafts:
+        bearings |= borne(machine, shaft, flat, planes, couples)
+    return Spatial(rocking, on_frame, couples, bearings)
+
+
+def _of_loads(machine: Machine) -> list[float]:
+    """Planes of loads and of the soil."""
+    found = [point_plane(machine, load.link, load.point or "") for load in machine.loads]
+    if has_soil(machine):
+        found += [point_plane(machine, link, point) for link, point, _ in tips_of(machine)]
+    return found
+
+
+def _of_springs(machine: Machine) -> list[float]:
+    return [point_plane(machine, spring.link, spring.point) for spring in machine.springs]
+
+
+def point_plane(machine: Machine, body: str, point: str) -> float:
+    """Return the plane of a point."""
+    link = machine.links[body]
+    return link.planes.get(point, link.plane)
+
+
+def joint_plane(machine: Machine, name: str, on: str, by: str, held: set[str]) -> float:
+    """Return the plane of a joint or mesh."""
+    if name in {gear.name for gear in machine.gears}:
+        return machine.links[on].plane
+    ends = {body: name.split("/", maxsplit=1)[0] for body in (on, by) if body != FRAME}
+    for slider in machine.sliders:
+        if slider.name == name:
+            ends = {slider.link: slider.point, slider.on: slider.through}
+    ends = {body: point for body, point in ends.items() if body != FRAME}
+    for body, point in ends.items():
+        if point in machine.links[body].planes:
+            return machine.links[body].planes[point]
+    loose = [body for body in ends if body not in held]
+    chosen = loose if len(loose) == 1 else [*ends]
+    return float(np.mean([machine.links[body].plane for body in chosen]))
+
+
+def tilted(
+    machine: Machine, flat: FreeBodies, asked: Mapping[str, Array], held: set[str]
+) -> dict[str, Array]:
+    """Let the links that nothing holds tilt, and give the rest to the joints in the frame."""
+    loose = [name for name in machine.links if name not in held]
+    stiffness = np.zeros((len(loose), len(loose)))
+    for one in flat.joints.values():
+        at = [loose.index(body) for body in (one.on, one.by) if body in loose]
+        for row in at:
+            stiffness[row, row] += 1.0
+        if len(at) == 2:
+            stiffness[at[0], at[1]] -= 1.0
+            stiffness[at[1], at[0]] -= 1.0
+    tilts = {name: np.zeros_like(one) for name, one in asked.items()}
+    if loose:
+        moments = np.stack([asked[name] for name in loose])
+        found = np.linalg.solve(stiffness, moments.reshape(len(loose), -1)).reshape(moments.shape)
+        tilts |= dict(zip(loose, found, strict=True))
+    left, couples = dict(asked), {}
+    for name, one in flat.joints.items():
+        if FRAME not in (one.on, one.by):
+            couples[name] = tilts[one.on] - tilts[one.by]
+            left[one.on] = left[one.on] - couples[name]
+            left[one.by] = left[one.by] + couples[name]
+    for name, one in flat.joints.items():
+        if FRAME in (one.on, one.by):
+            couples[name] = left[one.on] if one.by == FRAME else -left[one.by]
+    return couples
+
+
+def borne(
+    machine: Machine,
+    shaft: str,
+    flat: FreeBodies,
+    planes: Mapping[str, float],
+    couples: Mapping[str, Array],
+) -> dict[str, Array]:
+    """Return the forces of both bearings of a shaft on it, which make up for those of its pin."""
+    pin, one = next(
+        (name, one)
+        for name, one in flat.joints.items()
+        if {one.on, one.by} == {shaft, FRAME} and " on " not in name
+    )
+    sign = 1.0 if one.on == shaft else -1.0
+    force = sign * one.force
+    moment = about_axes(planes[pin], force) + sign * couples[pin]
+    names = [name for name, bearing in machine.bearings.items() if bearing.link == shaft]
+    first, second = (machine.bearings[name].plane for name in names)
+    # forces x, y and moments x, y of both bearings
+    both = np.array(
+        [[1, 0, 1, 0], [0, 1, 0, 1], [0, -first, 0, -second], [first, 0, second, 0]], dtype=float
+    )
+    found = np.linalg.solve(both, np.column_stack([force, moment])[..., None])[..., 0]
+    return {names[0]: found[:, :2], names[1]: found[:, 2:]}
