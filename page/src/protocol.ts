@@ -169,6 +169,8 @@ export interface Sign {
     guide?: string;
     to?: string;
     length?: number;
+    /** Whether it keeps that length between two points. */
+    rigid?: boolean;
     /** Of a mount: its place on the support at rest, m, and from there to its ground, pixels. */
     mount?: string;
     at?: Pair;

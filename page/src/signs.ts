@@ -77,7 +77,7 @@ export class Piece {
     }
     const to = pairAt(numbers, `place.${hold.to}`, k);
     const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
-    const longer = Math.hypot(dx, dy) / (hold.length || 1);
+    const longer = hold.rigid ? 1 : Math.hypot(dx, dy) / (hold.length || 1);
     this.place(view.px(...from), `${turned(Math.atan2(dy, dx))} scale(${longer.toFixed(4)} 1)`);
   }
 

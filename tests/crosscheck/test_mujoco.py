@@ -11,6 +11,7 @@ from support import mujoco_engine
 from support.analyses import (
     Subject,
     agree,
+    every_apart,
     every_subject,
     force_size,
     moment_size,
@@ -72,3 +73,9 @@ def test_totals_and_what_each_link_carries(name: str) -> float:
             agree(f"moment on {link}", got[:, 2], want[:, 2], TOLERANCE, moment),
         ]
     return max(apart)
+
+
+@compared(MUJOCO, f"{TOTALS}, of links beside each other", TOLERANCE)
+@every_apart
+def test_totals_of_links_beside_each_other(name: str) -> float:
+    return same_totals(subject_of(name), mujoco_engine.totals)

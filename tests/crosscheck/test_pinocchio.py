@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from support import pinocchio_engine
-from support.analyses import every_subject, subject_of
+from support.analyses import every_apart, every_subject, subject_of
 from support.conformance import compared
 from support.engines import TOLERANCE, TOTALS, same_totals
 from support.sources import PINOCCHIO
@@ -12,4 +12,10 @@ from support.sources import PINOCCHIO
 @compared(PINOCCHIO, TOTALS, TOLERANCE)
 @every_subject
 def test_totals(name: str) -> float:
+    return same_totals(subject_of(name), pinocchio_engine.totals)
+
+
+@compared(PINOCCHIO, f"{TOTALS}, of links beside each other", TOLERANCE)
+@every_apart
+def test_totals_of_links_beside_each_other(name: str) -> float:
     return same_totals(subject_of(name), pinocchio_engine.totals)

@@ -54,7 +54,8 @@ def test_power_fed_in_is_the_rate_of_change_of_energy(
 def test_no_work_is_left_after_a_cycle(name: str) -> None:
     machine = replace(without_loads(machine_of(name)), springs=machine_of(name).springs)
     found = forces(machine, 720, acceleration=0.0)
-    assert abs(np.mean(found.power)) < 1e-9 * np.max(np.abs(kinetic_power(found)))
+    size = np.max(np.abs([*kinetic_power(found), found.power]))  # equal cranks keep their energy
+    assert abs(np.mean(found.power)) < 1e-9 * size
 
 
 @every_subject

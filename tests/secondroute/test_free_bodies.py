@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pytest
 
 from equipoise.mechanism.model import FRAME
 from support import free_bodies, machines_planes
 from support.analyses import (
     Subject,
     agree,
-    analysed,
+    every_apart,
     every_subject,
     force_size,
     moment_size,
@@ -21,7 +20,6 @@ from support.analyses import (
 )
 from support.conformance import compared
 from support.free_bodies import FreeBodies, Reaction
-from support.machines import KINDS
 from support.poses import pins
 from support.sources import FREE_BODIES
 
@@ -107,21 +105,12 @@ def test_forces_in_all_joints(name: str) -> None:
 
 # -- links beside each other -----------------------------------------------------------------------
 
-BESIDE = [f"{kind}:{seed}" for kind in KINDS for seed in range(2)]
-
-
-def apart(name: str, flat: bool = False) -> Subject:
-    """Return a random machine with its links beside each other."""
-    subject = subject_of(name)
-    rng = np.random.default_rng([*name.encode()])
-    return analysed(machines_planes.set_apart(subject.machine, rng, flat), subject.case)
-
 
 @compared(FREE_BODIES, "rocking moments, tilting moments in joints, forces of bearings", TOLERANCE)
-@pytest.mark.parametrize("name", BESIDE)
+@every_apart
 def test_everything_across_the_plane(name: str) -> float:
     """Rocking moments, couples of joints and forces of bearings."""
-    subject = apart(name)
+    subject = subject_of(name)
     machine, poses, across = subject.machine, subject.poses, subject.forces.across
     flat = free_bodies.solve(machine, poses, pairs(subject))
     solved = machines_planes.solve(machine, poses, flat)

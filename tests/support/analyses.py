@@ -15,6 +15,7 @@ from equipoise.mechanism.field import PlantingArm, Soil, SoilTable
 from equipoise.mechanism.model import Machine
 from support.loads import springs_on_links
 from support.machines import KINDS, Case, make
+from support.machines_planes import set_apart
 from support.machines_redundant import REDUNDANT
 from support.poses import Array, Poses, from_motion
 
@@ -24,8 +25,11 @@ ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 EXAMPLES = sorted(eq.examples("linkage"))
 RANDOM = [f"{kind}:{seed}" for kind in (*KINDS, *REDUNDANT) for seed in range(10)]
 PLANTED = [f"{kind} in soil:{seed}" for kind in KINDS for seed in range(2)]
+APART = [f"{kind} apart:{seed}" for kind in KINDS for seed in range(2)]
 every_subject = pytest.mark.parametrize("name", [*EXAMPLES, *RANDOM, *PLANTED])
 """Bundled examples, and random machines by kind and seed, also with a point in the soil."""
+every_apart = pytest.mark.parametrize("name", APART)
+"""Random machines whose links lie beside each other."""
 
 
 @dataclass(frozen=True)
@@ -63,8 +67,11 @@ def subject_of(name: str) -> Subject:
     if not seed:
         return analysed(eq.load(name))
     kind, soil, _ = kind.partition(" in soil")
+    kind, apart, _ = kind.partition(" apart")
     case = make(kind, int(seed))
     machine = case.machine
+    if apart:
+        machine = set_apart(machine, np.random.default_rng([*name.encode()]))
     return analysed(planted(machine, np.random.default_rng(int(seed))) if soil else machine, case)
 
 

@@ -10,7 +10,7 @@ from support.mujoco_engine import Totals
 from support.poses import Poses
 
 TOLERANCE = 1e-9
-TOTALS = "shaking force, shaking moment, drive torque"
+TOTALS = "shaking force, shaking and rocking moment, drive torque"
 FLOOR = 1e-3
 """Part of the size of all forces below which an output counts as vanishing (balanced machines)."""
 
@@ -24,7 +24,9 @@ def same_totals(subject: Subject, engine: Engine) -> float:
     force, moment = FLOOR * force_size(machine, poses), FLOOR * moment_size(machine, poses)
     rate = poses.omega[machine.drive.link] / machine.drive.speed  # what engines tell is work
     torque = forces.drive_torque * rate
+    across = subject.forces.across
     return max(
+        agree("rocking", vector(across.rocking_moment), told.rocking_moment, TOLERANCE, moment),
         agree("shaking force", vector(forces.shaking_force), told.shaking_force, TOLERANCE, force),
         agree("shaking moment", forces.shaking_moment, told.shaking_moment, TOLERANCE, moment),
         agree("drive torque", torque, told.drive_torque, TOLERANCE, moment),

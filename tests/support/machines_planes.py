@@ -12,7 +12,7 @@ from itertools import chain
 
 import numpy as np
 
-from equipoise.mechanism.bodies import Body
+from equipoise.mechanism.bodies import Body, inertia_of
 from equipoise.mechanism.links import Link
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.parts import Bearing
@@ -78,12 +78,12 @@ def about_axes(plane: float, force: Array) -> Array:
 def pieces(link: Link) -> Iterator[tuple[float, tuple[float, float], float, float]]:
     """Mass, place, plane and inertia of each piece of a link."""
     for body in link.bodies:
-        assert body.mass is not None
-        assert isinstance(body.at, tuple)
-        yield body.mass, body.at, link.plane if body.plane is None else body.plane, body.inertia
+        mass, at, inertia = inertia_of(body, link.points)
+        plane = link.plane if body.plane is None else body.plane
+        yield mass, (at.real, at.imag), plane, inertia
     if not link.bodies:
-        assert link.center_of_mass is not None
-        yield link.mass or 0.0, link.center_of_mass, link.plane, link.inertia or 0.0
+        x, y = link.center_of_mass or (0.0, 0.0)
+        yield link.mass or 0.0, (x, y), link.plane, link.inertia or 0.0
 
 
 def solve(machine: Machine, poses: Poses, flat: FreeBodies) -> Spatial:

@@ -29,9 +29,11 @@ class Demands:
     base : force and moment about the drive pivot on all bodies together, (N, 3).
     links : force and moment about the link's origin on each link, (N, 3).
     work : of the joints on all links, over the crank's speed, (N,).
+    across : moment about x and y in the plane 0 on all bodies together, (N, 2).
     """
 
     base: Array
+    across: Array
     links: Mapping[str, Array]
     work: Array
 
@@ -43,6 +45,7 @@ class Totals:
     shaking_force: Array
     shaking_moment: Array
     drive_torque: Array
+    rocking_moment: Array
 
 
 def totals(machine: Machine, poses: Poses) -> Totals:
@@ -50,7 +53,7 @@ def totals(machine: Machine, poses: Poses) -> Totals:
     bare = demands(machine, poses, (0.0, 0.0))
     work = demands(machine, poses, machine.gravity, machine.springs).work
     loads = work_per_crank_angle(machine.with_springs(()), poses)
-    return Totals(-bare.base[:, :2], -bare.base[:, 2], work - loads)
+    return Totals(-bare.base[:, :2], -bare.base[:, 2], work - loads, -bare.across)
 
 
 def demands(
@@ -65,11 +68,13 @@ def demands(
     model = mujoco.MjModel.from_xml_string(made(Job(alone)))
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     for name, link in machine.links.items():  # what the file makes a little heavier than it is
+        if any(body.plane is not None for body in link.bodies):
+            continue
         model.body(name).mass[:] = max(link.mass or 0.0, LEAST)
         model.body(name).inertia[:] = max(link.inertia or 0.0, LEAST)
     data = mujoco.MjData(model)
     states = np.stack([coordinate(model, poses, joint) for joint in range(model.njnt)], -1)
-    links, work = {name: np.empty((len(states[0]), 3)) for name in machine.links}, []
+    links, work = {name: np.empty((len(states[0]), 5)) for name in machine.links}, []
     for number, (data.qpos[:], data.qvel[:], data.qacc[:]) in enumerate(zip(*states, strict=True)):
         mujoco.mj_inverse(model, data)
         mujoco.mj_rnePostConstraint(model, data)
@@ -77,8 +82,10 @@ def demands(
         for name, demand in links.items():
             demand[number] = asked(model, data, name)
     arms = {name: poses.origin[name] - machine.frame[drive_pivot(machine)] for name in links}
-    base = sum(one + about(cross(arms[name], one[:, :2])) for name, one in links.items())
-    return Demands(np.asarray(base), links, np.array(work))
+    base = sum(one[:, :3] + about(cross(arms[name], one[:, :2])) for name, one in links.items())
+    across = sum(one[:, 3:] for one in links.values())
+    flat = {name: one[:, :3] for name, one in links.items()}
+    return Demands(np.asarray(base), np.asarray(across), flat, np.array(work))
 
 
 def about(moment: Array) -> Array:
@@ -87,15 +94,16 @@ def about(moment: Array) -> Array:
 
 
 def asked(model: mujoco.MjModel, data: mujoco.MjData, link: str) -> list[float]:
-    """Return force and moment about its origin that move one link.
+    """Return force, moment about its origin, and moments about x and y in the plane 0, that move
+    one link.
 
     MuJoCo tells what goes through each joint, about the centre of mass of the whole tree.
     """
     body = model.body(link).id
     through = data.cfrc_int[body] - data.cfrc_int[model.body_parentid == body].sum(0)
-    arm = data.subtree_com[model.body_rootid[body]] - data.xpos[body]
+    arm = data.subtree_com[model.body_rootid[body]] - data.xpos[body] * [1.0, 1.0, 0.0]
     force, moment = through[3:], through[:3] + np.cross(arm, through[3:])
-    return [force[0], force[1], moment[2]]
+    return [force[0], force[1], moment[2], moment[0], moment[1]]
 
 
 def coordinate(model: mujoco.MjModel, poses: Poses, number: int) -> Array:

@@ -14,6 +14,7 @@ import pinocchio as pin
 
 from equipoise.mechanism.model import FRAME, Link, Machine, Vector
 from support.loads import work_per_crank_angle
+from support.machines_planes import pieces
 from support.mujoco_engine import Totals
 from support.poses import Array, Poses, drive_pivot, pins
 
@@ -36,18 +37,29 @@ class Tree:
     held: dict[str, Vector] = field(default_factory=dict)
     motion: list[Coordinate] = field(default_factory=list)
 
-    def joint(self, parent: int, kind: object, place: Vector, name: str, motion: Coordinate) -> int:
+    def joint(
+        self,
+        parent: int,
+        kind: object,
+        place: Vector,
+        name: str,
+        motion: Coordinate,
+        across: float = 0.0,
+    ) -> int:
         """Add one joint and how it moves."""
-        shift = pin.SE3(np.eye(3), np.array([*place, 0.0]))
+        shift = pin.SE3(np.eye(3), np.array([*place, across]))
         self.motion.append(motion)
         return int(self.model.addJoint(parent, kind, shift, name))
 
     def loose(self, parent: int, name: str, place: Vector, motion: list[Coordinate]) -> int:
-        """Add two slides and a hinge."""
-        for kind, part in zip((pin.JointModelPX(), pin.JointModelPY()), motion, strict=False):
+        """Add two slides and a hinge, or two slides and three hinges."""
+        kinds = [pin.JointModelPX(), pin.JointModelPY(), pin.JointModelRX(), pin.JointModelRY()]
+        *before, last = motion
+        for kind, part in zip(kinds, before, strict=False):
             parent = self.joint(parent, kind, place, f"{name} {len(self.motion)}", part)
             place = (0.0, 0.0)
-        return self.joint(parent, pin.JointModelRZ(), place, name, motion[2])
+        plane = 0.0 if name == FRAME else self.machine.links[name].plane
+        return self.joint(parent, pin.JointModelRZ(), place, name, last, plane)
 
     def hang(self, name: str, parent: str, label: str) -> None:
         """Hang a link by a pin on a body that is in the tree already."""
@@ -64,7 +76,10 @@ class Tree:
             before = (p.angle[parent], p.omega[parent], p.alpha[parent])
             relative = [a - b for a, b in zip(relative, before, strict=True)]
         a, v, c = relative
-        number = self.joint(self.numbers[parent], pin.JointModelRZ(), place, name, (a, v, c))
+        across = self.machine.links[name].plane
+        across -= 0.0 if parent == FRAME else self.machine.links[parent].plane
+        kind = pin.JointModelRZ()
+        number = self.joint(self.numbers[parent], kind, place, name, (a, v, c), across)
         self._finish(name, number, own)
 
     def float(self, name: str) -> None:
@@ -80,11 +95,10 @@ class Tree:
         link: Link = self.machine.links[name]
         self.numbers[name] = number
         self.held[name] = held
-        center = link.center_of_mass or (0.0, 0.0)
-        lever = np.array([center[0] - held[0], center[1] - held[1], 0.0])
-        inertia = np.eye(3) * (link.inertia or 0.0)
-        body = pin.Inertia(link.mass or 0.0, lever, inertia)
-        self.model.appendBodyToJoint(number, body, pin.SE3.Identity())
+        for mass, at, plane, inertia in pieces(link):
+            lever = np.array([at[0] - held[0], at[1] - held[1], plane - link.plane])
+            body = pin.Inertia(mass, lever, np.eye(3) * inertia)
+            self.model.appendBodyToJoint(number, body, pin.SE3.Identity())
 
 
 def tree(machine: Machine, poses: Poses) -> Tree:
@@ -92,7 +106,7 @@ def tree(machine: Machine, poses: Poses) -> Tree:
     grown = Tree(machine, poses)
     nothing = np.zeros_like(poses.crank_angle)
     pivot = machine.frame[drive_pivot(machine)]
-    grown.numbers[FRAME] = grown.loose(0, FRAME, pivot, [(nothing, nothing, nothing)] * 3)
+    grown.numbers[FRAME] = grown.loose(0, FRAME, pivot, [(nothing, nothing, nothing)] * 5)
     while len(grown.numbers) <= len(machine.links):
         name, parent, label = _next(machine, grown)
         if parent:
@@ -119,7 +133,7 @@ def totals(machine: Machine, poses: Poses) -> Totals:
     rates = np.column_stack([velocity for _, velocity, _ in grown.motion])
     work = np.sum(heavy * rates, -1) / machine.drive.speed
     torque = work - work_per_crank_angle(machine, poses)
-    return Totals(-bare[:, :2], -bare[:, 2], torque)
+    return Totals(-bare[:, :2], -bare[:, 4], torque, -bare[:, 2:4])
 
 
 def demanded(grown: Tree, gravity: Vector) -> Array:

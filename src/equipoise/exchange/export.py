@@ -7,8 +7,10 @@ from importlib import import_module
 from math import isfinite
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.errors import UsageError, needed, unknown
+from equipoise.errors import ChangePointError, RangeError, UsageError, needed, unknown
 from equipoise.exchange.formats import FORMATS, Format, Job
+from equipoise.i18n import Note, to_say
+from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.schema.files import printable, write
 from equipoise.studies.selection import write_designs
@@ -69,9 +71,30 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
     if one.needs:
         needed(one.needs, f"a file of {one.title}")
     machine, changes = (what.machine, what.changes) if isinstance(what, Balanced) else (what, ())
+    if one.turns:
+        check_turning(machine, one.title)
     job = Job(machine, crank_angle, changes)
+    if machine.drive.pushes:
+        job.leave_out("what pushes the machine, and its stroke")
     data: str | bytes = import_module(f"equipoise.exchange.{one.name}").made(job)
     return job, data
+
+
+def check_turning(machine: Machine, title: str) -> None:
+    """Refuse a machine whose driven link does not turn evenly, all the way round.
+
+    Raises
+    ------
+    UsageError : it does not; the sentence tells why.
+    """
+    refusal = to_say("a file of {title} turns the driven link evenly all the way round: {why}")
+    if machine.drive.pushes or machine.drive.motion is not None:
+        why = Note("this drive has a motion of its own")
+        raise UsageError(Note(refusal, title=title, why=why))
+    try:
+        _ = assemble(machine).cycle
+    except (RangeError, ChangePointError) as error:
+        raise UsageError(Note(refusal, title=title, why=error.note)) from error
 
 
 def format_of(path: str | os.PathLike[str], name: str | None = None) -> Format:

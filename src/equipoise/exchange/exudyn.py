@@ -51,6 +51,7 @@ def _model(job: Job) -> Data:
     if not machine.drive.speed:
         raise UsageError("the drive stands still, and a script runs for a turn; give it a speed")
     job.leave_out_motor()
+    job.leave_out_planes()
     support, base = machine.support, "" if machine.support is None else BASE
     model: Data = {
         "crank_angle": job.crank_angle,

@@ -48,6 +48,7 @@ def made(job: Job) -> bytes:
             job.leave_out(what)
     job.leave_out_forces()
     job.leave_out_motor()
+    job.leave_out_planes()
     outputs = _outputs(analyze(machine, [job.crank_angle]))
     code = _code(machine, [one.name for one in outputs], job.crank_angle)
     guid = hashlib.sha256(code.encode()).hexdigest()[:32]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.planes import beside
 
 if TYPE_CHECKING:
     from equipoise.balancing.workshop import Change
@@ -21,6 +22,7 @@ class Format:
     ending : of its files, with the dot.  holds : what is in it.  needs : a library of the extra
     `exchange`.  of_store : whether it is of the designs of a study, not of a machine.
     posed : whether it shows the machine at a crank angle, or begins there.
+    turns : whether it turns the driven link all the way round at constant speed.
     """
 
     name: str
@@ -30,6 +32,7 @@ class Format:
     needs: str = ""
     of_store: bool = False
     posed: bool = True
+    turns: bool = False
 
 
 FORMATS: Mapping[str, Format] = {
@@ -41,6 +44,7 @@ FORMATS: Mapping[str, Format] = {
             "MuJoCo (MJCF)",
             "bodies, pins, sliders, gears, springs, constant loads, rows, the support on its "
             "mounts, the drive at constant speed",
+            turns=True,
         ),
         Format(
             "exudyn",
@@ -48,6 +52,7 @@ FORMATS: Mapping[str, Format] = {
             "Exudyn",
             "a script that builds and runs bodies, pins, sliders, gears, springs, constant loads, "
             "rows, the support on its mounts in the plane, the drive at constant speed",
+            turns=True,
         ),
         Format(
             "urdf",
@@ -61,6 +66,7 @@ FORMATS: Mapping[str, Format] = {
             "co-simulation (FMI 2.0)",
             "motion and forces as outputs, speed and acceleration of the crank as inputs; gears, "
             "springs, constant loads; C sources, and a library where a C compiler is found",
+            turns=True,
         ),
         Format(
             "modelica",
@@ -68,6 +74,7 @@ FORMATS: Mapping[str, Format] = {
             "Modelica",
             "one flat model: equations of motion of each link, pins, sliders, gears, springs, "
             "constant loads, the drive at constant speed",
+            turns=True,
         ),
         Format(
             "dxf",
@@ -135,6 +142,11 @@ class Job:
         planting = self.machine.planting
         if planting is not None and planting.soil is not None:
             self.leave_out("the soil's force")
+
+    def leave_out_planes(self) -> None:
+        """Tell that everything lies in one plane."""
+        if beside(self.machine):
+            self.leave_out("the planes of links beside each other, and their bearings")
 
     def leave_out_motor(self) -> None:
         """Tell that the drive has its speed, whatever turns it."""

@@ -19,16 +19,17 @@ from equipoise.exchange.tree import (
     Hung,
     Tree,
     constant_loads,
-    mass_of,
     moment_of,
     preloads,
+    tensor_of,
     trees,
     weighed,
 )
 from equipoise.mechanism.dynamics import forces
-from equipoise.mechanism.links import size_of
-from equipoise.mechanism.model import FRAME, Machine, Vector
+from equipoise.mechanism.links import Link, size_of
+from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.motion import move
+from equipoise.mechanism.steps import Array
 from equipoise.mechanism.support import FREEDOMS, Support, unit_vector
 
 STEPS = 2000
@@ -112,21 +113,29 @@ def _links(base: ET.Element, tree: Tree, job: Job, flywheel: float) -> None:
     least = LIGHT * machine.mass, LIGHT * machine.mass * size**2
     for link in tree.links:
         place, turned = tree.beside(link)
-        across = tree.row.lateral if link.parent == FRAME else 0.0
         name = f"{link.name}{tree.suffix}"
-        pose = {"pos": _row((place.real, place.imag, across)), "euler": _row((0, 0, turned))}
+        spot = place.real, place.imag, tree.across(link)
+        pose = {"pos": _row(spot), "euler": _row((0, 0, turned))}
         body = ET.SubElement(bodies[link.parent], "body", pose, name=name)
         bodies[link.name] = body
         _joint(body, name, link)
-        mass, center, inertia = mass_of(machine.links[link.name])
-        if mass < least[0] or inertia < least[1]:
+        mass, center, tensor = tensor_of(machine.links[link.name])
+        if mass < least[0] or tensor[2, 2] < least[1]:
             job.leave_out(
                 f"that {link.name!r} has no mass or no inertia: MuJoCo wants some, and gets as "
                 "little as it takes"
             )
-        inertia += flywheel if link.name == machine.drive.link else 0.0
-        _inertial(body, max(mass, least[0]), center, (max(inertia, least[1]),) * 3)
-        _shape(body, name, machine.links[link.name].points, size / 100)
+        if link.name == machine.drive.link:
+            tensor = tensor + flywheel * np.eye(3)
+        _inertial(body, max(mass, least[0]), center, _moments(tensor, least[1]))
+        _shape(body, name, machine.links[link.name], size / 100)
+
+
+def _moments(tensor: Array, least: float) -> Sequence[float]:
+    """Moments of inertia, at least so large, and the products where there are any."""
+    products = [float(tensor[place]) for place in ((0, 1), (0, 2), (1, 2))]
+    moments = [max(float(one), least) for one in np.diagonal(tensor)]
+    return [*moments, *products] if any(products) else moments
 
 
 def _size(machine: Machine) -> float:
@@ -151,11 +160,11 @@ def _inertial(
     ET.SubElement(body, "inertial", {"pos": place, "mass": repr(mass), kind: _row(moments)})
 
 
-def _shape(body: ET.Element, name: str, points: Mapping[str, Vector], thin: float) -> None:
+def _shape(body: ET.Element, name: str, link: Link, thin: float) -> None:
     """Sites at the points of a link, and lines from its first one to be seen."""
-    first, *others = points.values()
-    for point, place in points.items():
-        _site(body, f"{name} {point}", place)
+    first, *others = link.points.values()
+    for point, place in link.points.items():
+        _site(body, f"{name} {point}", (*place, link.plane_of(point) - link.plane))
     if not others:
         ET.SubElement(body, "geom", type="sphere", size=repr(2 * thin), pos=_row((*first, 0)))
     for place in others:
@@ -194,7 +203,9 @@ def _part(root: ET.Element, name: str) -> ET.Element:
 def _held(root: ET.Element, tree: Tree) -> None:
     """Pins that close loops, and gears: sums of angles that stay what they are."""
     for loop in tree.loops:
-        sites = {f"site{n}": _place(tree, b, loop.pin) for n, b in ((1, loop.one), (2, loop.other))}
+        plane = _plane(tree, loop.other, loop.pin)
+        ends = _in_plane(root, tree, loop.one, loop.pin, plane), _place(tree, loop.other, loop.pin)
+        sites = {f"site{number}": name for number, name in enumerate(ends, 1)}
         ET.SubElement(_part(root, "equality"), "connect", sites)
     for gear, factors in tree.gears:
         _kept(root, f"{gear}{tree.suffix}", {f"{k}{tree.suffix}": v for k, v in factors.items()})
@@ -205,6 +216,23 @@ def _place(tree: Tree, body: str, point: str) -> str:
     if body == FRAME:
         return f"{FRAME} {point}{tree.suffix}"
     return f"{body}{tree.suffix} {point}"
+
+
+def _plane(tree: Tree, body: str, point: str) -> float:
+    return 0.0 if body == FRAME else tree.machine.links[body].plane_of(point)
+
+
+def _in_plane(root: ET.Element, tree: Tree, body: str, point: str, plane: float) -> str:
+    """Name of a site of a point in a plane; of another where the point's own lies beside it."""
+    name, beyond = _place(tree, body, point), plane - _plane(tree, body, point)
+    other = f"{name} at {plane!r}"
+    if not beyond:
+        return name
+    if root.find(f".//site[@name={other!r}]") is None:
+        holder = next(one for one in root.iter() if one.find(f"site[@name={name!r}]") is not None)
+        x, y, z = map(float, holder.find(f"site[@name={name!r}]").get("pos", "").split())  # type: ignore[union-attr]
+        _site(holder, other, (x, y, z + beyond))
+    return other
 
 
 def _kept(root: ET.Element, name: str, factors: Mapping[str, float]) -> None:
@@ -219,8 +247,9 @@ def _springs(root: ET.Element, tree: Tree) -> None:
     for spring in tree.machine.springs:
         rates = {"stiffness": repr(spring.stiffness), "springlength": repr(spring.free_length)}
         tendon = ET.SubElement(_part(root, "tendon"), "spatial", rates)
+        plane = _plane(tree, spring.link, spring.point)
         for body, point in ((spring.link, spring.point), (spring.on, spring.to)):
-            ET.SubElement(tendon, "site", site=_place(tree, body, point))
+            ET.SubElement(tendon, "site", site=_in_plane(root, tree, body, point, plane))
 
 
 def _loads(root: ET.Element, world: ET.Element, tree: Tree, job: Job) -> None:

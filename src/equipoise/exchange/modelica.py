@@ -82,6 +82,7 @@ def made(job: Job) -> str:
         if given:
             job.leave_out(what)
     job.leave_out_motor()
+    job.leave_out_planes()
     model = Flat(machine, _identifiers(machine))
     motion = move(machine, [job.crank_angle], acceleration=0.0)
     for name in machine.links:

@@ -15,10 +15,12 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.exchange.formats import Job
+from equipoise.mechanism.bodies import inertia_of
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import FRAME, Gear, Link, Load, Machine, Slider, Vector
 from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.steps import Array
 from equipoise.mechanism.support import Row, Support
 from equipoise.vibration.free import modes
 from equipoise.vibration.linkages import rows_of
@@ -95,6 +97,12 @@ class Tree:
             shift = complex(*self.row.offset)
         return (link.place - place) * np.exp(-1j * angle) + shift, link.angle - angle
 
+    def across(self, link: Hung) -> float:
+        """z of a link's axes from those of its parent, m; in the frame of the file."""
+        links = self.machine.links
+        below = -self.row.lateral if link.parent == FRAME else links[link.parent].plane
+        return links[link.name].plane - below
+
     def turning(self, body: str) -> Iterator[str]:
         """Links whose hinges add up to the angle of a body: from it down to the frame."""
         while body != FRAME:
@@ -168,6 +176,26 @@ def mass_of(link: Link) -> tuple[float, Vector, float]:
     """Mass, centre of mass and inertia about it."""
     assert link.mass is not None and link.center_of_mass is not None and link.inertia is not None
     return link.mass, link.center_of_mass, link.inertia
+
+
+def tensor_of(link: Link) -> tuple[float, list[float], Array]:
+    """Mass, centre of mass (3,) from the link's axes, and inertia about it (3, 3): alike about all
+    axes where the mass lies in one plane, as nothing is known of it.
+    """
+    mass, center, inertia = mass_of(link)
+    if not any(body.plane is not None for body in link.bodies):
+        return mass, [*center, 0.0], inertia * np.eye(3)
+    parts = []
+    for body in link.bodies:
+        own, place, second = inertia_of(body, link.points)
+        z = 0.0 if body.plane is None else body.plane - link.plane
+        parts.append((own, np.array([place.real, place.imag, z]), second))
+    middle = sum(own * place for own, place, _ in parts) / mass
+    tensor = np.zeros((3, 3))
+    for own, place, second in parts:
+        arm = place - middle
+        tensor += second * np.eye(3) + own * ((arm @ arm) * np.eye(3) - np.outer(arm, arm))
+    return mass, middle.tolist(), tensor
 
 
 def moment_of(support: Support) -> float:

@@ -5,13 +5,14 @@ A link's frame is at its joint there, with the axes of the link.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import atan2, hypot
 from xml.etree import ElementTree as ET
 
 import numpy as np
 
 from equipoise.exchange.formats import Job
-from equipoise.exchange.tree import Hung, Tree, mass_of, trees, weighed
+from equipoise.exchange.tree import Hung, Tree, tensor_of, trees, weighed
 from equipoise.mechanism.links import size_of
 from equipoise.mechanism.model import FRAME, Machine, Vector
 from equipoise.mechanism.motion import move
@@ -58,12 +59,13 @@ def _link(root: ET.Element, tree: Tree, link: Hung) -> None:
     """Mass, and lines from its joint to its points to be seen."""
     body = tree.machine.links[link.name]
     part = ET.SubElement(root, "link", name=f"{link.name}{tree.suffix}")
-    mass, center, inertia = mass_of(body)
+    mass, (*center, across), tensor = tensor_of(body)
     inertial = ET.SubElement(part, "inertial")
-    ET.SubElement(inertial, "origin", xyz=_row(*_from(link, center), 0.0), rpy="0 0 0")
+    ET.SubElement(inertial, "origin", xyz=_row(*_from(link, center), across), rpy="0 0 0")
     ET.SubElement(inertial, "mass", value=repr(mass))
-    moments = {"ixx": inertia, "iyy": inertia, "izz": inertia, "ixy": 0.0, "ixz": 0.0, "iyz": 0.0}
-    ET.SubElement(inertial, "inertia", {name: repr(value) for name, value in moments.items()})
+    axes = [(i, k) for i in range(3) for k in range(i, 3)]
+    moments = {f"i{'xyz'[i]}{'xyz'[k]}": repr(float(tensor[i, k])) for i, k in axes}
+    ET.SubElement(inertial, "inertia", moments)
     thin = size_of(body.points) / 40
     for place in body.points.values():
         _bar(part, _from(link, place), thin)
@@ -88,7 +90,7 @@ def _end(root: ET.Element, tree: Tree, body: str, pin: str) -> str:
     return name
 
 
-def _from(link: Hung, place: Vector) -> Vector:
+def _from(link: Hung, place: Sequence[float]) -> Vector:
     """A place in a link's axes, from its joint."""
     return place[0] - link.at[0], place[1] - link.at[1]
 
@@ -110,12 +112,9 @@ def _joint(root: ET.Element, tree: Tree, link: Hung) -> None:
     joint = ET.SubElement(root, "joint", name=name, type="continuous" if hinge else "prismatic")
     place, turned = tree.beside(link)
     spot = place + complex(*link.at) * np.exp(1j * turned)
-    across = 0.0
-    if link.parent == FRAME:
-        across = tree.row.lateral
-    else:
+    if link.parent != FRAME:
         spot -= complex(*tree.hung[link.parent].at)
-    origin = _row(spot.real, spot.imag, across)
+    origin = _row(spot.real, spot.imag, tree.across(link))
     ET.SubElement(joint, "origin", xyz=origin, rpy=_row(0.0, 0.0, turned))
     parent = FRAME if link.parent == FRAME else f"{link.parent}{tree.suffix}"
     ET.SubElement(joint, "parent", link=parent)

@@ -45,6 +45,8 @@ SIGNALS = {
     "torque": ("drive_torque", to_say("Drive torque"), to_say("drive torque")),
 }
 """Picture -> column, title, and label of the axis."""
+PUSHED = "torque", ("drive_force", to_say("Drive force"), to_say("drive force"))
+"""What stands in the place of the torque where a force drives."""
 SAMPLES, SAMPLES_OF_ROWS = 360, 720
 """Crank angles in a turn from which it is told what is rounding, and of rows together."""
 NEAR = 0.015
@@ -100,10 +102,12 @@ def signals(found: Balanced) -> dict[str, Chart]:
         drawn["force"] = Chart("force", title, what, panels, keys=keys(*moved.values()))
         drawn["polar"] = polar(found, angles, force)
     aimed = {one.output for one in found.plan.objectives} if len(found.original.rows) < 2 else ()
-    for name, (output, told, label) in SIGNALS.items():
-        pair = pair_of(output, least_moment)
+    shown = SIGNALS | dict([PUSHED] if drive.pushes else [])
+    for name, (output, told, label) in shown.items():
+        kind = drive.effort_in if output == drive.effort else "torque"
+        pair = pair_of(output, least_force if kind == "force" else least_moment)
         if changed(pair) and output not in aimed:
-            panel = compare(drive, angles, pair, say(label), "torque")
+            panel = compare(drive, angles, pair, say(label), kind)
             drawn[name] = Chart(name, title, f"{say(told)}, {when}", (panel,), keys=keys(pair))
     return drawn
 

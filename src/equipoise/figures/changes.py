@@ -110,7 +110,7 @@ def changes(found: Balanced) -> Chart:
     scene = _without_new(Scene.of(posed.motion), Scene.of(move(original, [0.0])), found.changes)
     changed = any(one.kind != "room" for one in new)
     what = say("What to change, to scale") if changed else say("Nothing to change, to scale")
-    told = told_angle(float(posed.motion.crank_angle[posed.number]))
+    told = told_angle(posed.angle(machine.drive.link))
     drive = short(machine.drive.link)
     what += "; " + say("angle of {link} in the frame: {angle}", link=drive, angle=told)
     panel = _panel(scene, posed.number, new)

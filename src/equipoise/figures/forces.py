@@ -30,7 +30,7 @@ from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Arrow, Axis, Bars, Chart, Curve, Line, Mark, Panel
-from equipoise.results.outputs import CAUSES
+from equipoise.results.outputs import CAUSES, output_named
 from equipoise.signals import Periodic, highest_at
 
 if TYPE_CHECKING:
@@ -102,11 +102,13 @@ def moment(analysis: Analysis) -> Chart:
 
 
 def torque(analysis: Analysis) -> Chart:
-    """Torque of the drive over crank angle, and below it what makes it."""
-    signals = each(analysis, "drive_torque")
-    drive = short(analysis.machine.drive.link, 16)
-    what = title(analysis, say("Torque of the drive on {link}", link=drive))
-    chart = over_crank(analysis, "torque", what, [(say("drive torque"), "torque", signals)])
+    """What the drive exerts over crank angle, a torque or a force, and below it what makes it."""
+    drive = analysis.machine.drive
+    signals = each(analysis, drive.effort)
+    told = say("Torque of the drive on {link}", link=short(drive.link, 16))
+    what = title(analysis, say("Force of the drive") if drive.pushes else told)
+    one = (output_named(drive.effort), drive.effort_in, signals)
+    chart = over_crank(analysis, "torque", what, [one])
     (whole,) = chart.panels
     if analysis.motion.whole_cycle:
         whole = with_mean(whole, signals[ALL])
@@ -126,7 +128,8 @@ def with_mean(panel: Panel, values: Array) -> Panel:
 
 def _causes(analysis: Analysis) -> Panel:
     """The torque of each cause that there is; of one row."""
-    parts = analysis.forces.split.by_cause("drive_torque")
+    drive = analysis.machine.drive
+    parts = analysis.forces.split.by_cause(drive.effort)
     largest = max(float(np.max(np.abs(part))) for part in parts.values())
     curves = [
         Curve(*over(analysis, parts[name]), say(CAUSES[name]), f"several {number}")
@@ -136,7 +139,7 @@ def _causes(analysis: Analysis) -> Panel:
     if not curves:
         curves = [Curve(*over(analysis, 0 * analysis.crank_angle))]
     every = np.concatenate([curve.y for curve in curves])
-    y = Axis.of(say("by cause"), "torque", every, room=ROOM / 2)
+    y = Axis.of(say("by cause"), drive.effort_in, every, room=ROOM / 2)
     remark = say("of one row") if analysis.together else ""
     return Panel(angle_axis(analysis), y, tuple(curves), title=remark, keyed=True)
 
@@ -219,7 +222,8 @@ def spectrum(analysis: Analysis) -> Chart:
     ]
     about_point = say("shaking moment about {point}", point=about(analysis))
     signals.append((about_point, "torque", each(analysis, "shaking_moment")))
-    signals.append((say("drive torque"), "torque", each(analysis, "drive_torque")))
+    drive = analysis.machine.drive
+    signals.append((output_named(drive.effort), drive.effort_in, each(analysis, drive.effort)))
     turns = analysis.motion.turns
     read = [
         {BAR_ROLES[role]: orders_of(values, turns) for role, values in by.items()}

@@ -56,13 +56,12 @@ def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
         moved = move(analysis.machine, every, motion.speed, motion.acceleration)
         scene = Scene.of(moved).with_rows(moved)
         which = [*range(count, len(every))]
-    angles = scene.crank_angle[which]
-    if not 1 <= len(angles) <= MOST:
-        raise UsageError(f"got {len(angles)} crank angles; a picture shows 1 to {MOST}")
-    columns = 1 if len(angles) == 1 else 2 if len(angles) <= 4 else MANY
+    if not 1 <= len(which) <= MOST:
+        raise UsageError(f"got {len(which)} crank angles; a picture shows 1 to {MOST}")
+    columns = 1 if len(which) == 1 else 2 if len(which) <= 4 else MANY
     paths = tuple(_paths(motion))
     panels = tuple(_panel(scene, k, paths, columns) for k in which)
-    told = {"link": short(analysis.machine.drive.link), "angle": told_angle(angles[0])}
+    told = {"link": short(analysis.machine.drive.link), "angle": told_pose(scene, which[0])}
     what = say("Linkage, to scale; above each: angle of {link} in the frame", **told)
     if columns == 1:
         what = say("Linkage, to scale; angle of {link} in the frame: {angle}", **told)
@@ -73,6 +72,11 @@ def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
 def told_angle(angle: float) -> str:
     """A crank angle (rad) in words."""
     return f"{shown(round(float(np.degrees(angle)), 2))}°"
+
+
+def told_pose(scene: Scene, k: int) -> str:
+    """The angle of the driven link at the k-th crank angle, in words."""
+    return told_angle(float(scene.angles[scene.drive.link][k]))
 
 
 def plane_axes(scene: Scene) -> tuple[Axis, Axis]:
@@ -96,7 +100,7 @@ def _panel(scene: Scene, k: int, paths: tuple[Curve, ...], columns: int) -> Pane
         *plane_axes(scene),
         paths,
         (*joint_names(scene, k), *(_other_names(scene, k) if alone else ())),
-        title="" if alone else told_angle(float(scene.crank_angle[k])),
+        title="" if alone else told_pose(scene, k),
         equal=True,
         zero=False,
         held=scene.box,
@@ -119,6 +123,8 @@ def joint_names(scene: Scene, k: int, optional: bool = False) -> Iterator[Mark]:
         z = complex(place[k])
         met = [body for body in scene.bodies if name in body.points]
         ways = [complex(np.mean(_outline(scene, body.outline, k))) - z for body in met]
+        ends = scene.drive.between or ()
+        ways += [complex(scene.places[to][k]) - z for to in ends if name in ends and to != name]
         out = -sum(way / abs(way) for way in ways if way)
         wish = float(np.degrees(np.angle(out))) if abs(out) > 0.1 else 45.0
         yield Mark.of(z, short(name), "strong", wish, False, optional, near=5.0, bold=True)
@@ -214,7 +220,7 @@ def centrodes(analysis: Analysis, links: Sequence[str] | None = None) -> Chart:
             **drawn(scene, k),
         )
         panels.append(panel)
-    told = {"link": short(analysis.machine.drive.link), "angle": told_angle(scene.crank_angle[k])}
+    told = {"link": short(analysis.machine.drive.link), "angle": told_pose(scene, k)}
     what = say("Centrodes of links in the frame; angle of {link}: {angle}", **told)
     columns = 1 if len(panels) == 1 else 2
     return Chart("centrodes", analysis.machine.title, what, tuple(panels), columns)

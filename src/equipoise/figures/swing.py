@@ -17,7 +17,8 @@ from equipoise.mechanism.support import AXES, FREEDOMS, PLANAR
 from equipoise.results.charts import quantity, shown
 from equipoise.symbols.carrier import Swing
 from equipoise.symbols.clear import clear_angle
-from equipoise.symbols.scene import Drive, Scene
+from equipoise.symbols.drives import Drive
+from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Array
 
 if TYPE_CHECKING:

@@ -13,7 +13,10 @@ from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import FRAME, Machine, size_of
 from equipoise.mechanism.steps import Call
+from equipoise.mechanism.undecided import undecided
 
+BARS = (kernels.rrr, kernels.parallelogram)
+"""Kernels of two links and three pins."""
 TYPES = {
     "frame": "double-crank (drag link)",
     "crank": "crank-rocker",
@@ -67,7 +70,7 @@ def four_bar(machine: Machine) -> FourBar | None:
     linkage = assemble(machine)
     drive, pivot = machine.drive.link, linkage.pivot
     for group in linkage.groups:
-        if not any(isinstance(s, Call) and s.kernel is kernels.rrr for s in group.motion):
+        if not any(isinstance(s, Call) and s.kernel in BARS for s in group.motion):
             continue
         first, second, inner = group.reactions
         if first.by == FRAME:
@@ -163,7 +166,11 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
     machine = linkage.machine
     if missing := massless(machine):
         yield missing
+    yield from undecided(linkage).told()
+    through = {group.joint for group in linkage.groups if group.through}
     for joint, (number, angle) in linkage.cycle.weakest.items():
+        if joint in through:
+            continue
         transmission = degrees(asin(sqrt(min(number, 1.0))))
         if transmission < POOR_TRANSMISSION:
             yield (
@@ -187,6 +194,7 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
     yield from _turned_axes(machine)
     used = {slider.through for slider in machine.sliders if slider.on == FRAME}
     used |= {spring.to for spring in machine.springs} | linkage.joints.pins.keys()
+    used |= {*(machine.drive.between or ())}
     for point in machine.frame:
         if point not in used:
             yield f"frame.points.{point} is not used by any joint or spring"

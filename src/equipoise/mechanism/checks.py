@@ -10,6 +10,7 @@ from equipoise.errors import ModelError, form_of, meant, unknown
 from equipoise.i18n import Note, Worded
 
 __all__ = [
+    "ALTERNATIVES",
     "FRAME",
     "LONGEST_NAME",
     "MODE",
@@ -37,7 +38,8 @@ __all__ = [
 FRAME = "frame"
 MODE, MODES = "mode", ("parallel", "antiparallel")
 """How dyads that close four-bars of equal opposite sides go on through their change points."""
-SIDES = ("left", "right", "forward", "backward", *MODES)
+ALTERNATIVES = (("left", "right"), ("forward", "backward"), MODES)
+SIDES = tuple(word for pair in ALTERNATIVES for word in pair)
 Vector = tuple[float, float]
 """Components along x (forward) and y (up)."""
 Bodies = Mapping[str, Mapping[str, Vector]]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import copysign
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
@@ -106,6 +106,11 @@ class Drive(Frozen):
     def effort(self) -> str:
         """The output that tells what the drive exerts."""
         return "drive_force" if self.pushes else "drive_torque"
+
+    @property
+    def effort_in(self) -> Literal["force", "torque"]:
+        """What that measures."""
+        return "force" if self.pushes else "torque"
 
     def ends(self, bodies: Bodies) -> tuple[str, str]:
         """The bodies between which a cylinder acts."""

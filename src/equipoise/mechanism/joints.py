@@ -11,6 +11,7 @@ from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.checks import Bodies, bodies_at, form_of
 from equipoise.mechanism.couplings import Coupling
 from equipoise.mechanism.model import FRAME, Machine, Slider
+from equipoise.mechanism.steps import Reaction
 
 MOST_SUBSETS = 10_000
 
@@ -66,6 +67,12 @@ def structure(machine: Machine) -> Structure:
     _check_apart(machine, result.pins)
     _check_mobility(result, machine.drive.link, _alike(machine.bodies, result.pins))
     return result
+
+
+def name_in_outputs(joints: Structure, joint: Reaction) -> str:
+    """A pin of several bodies goes by its point and by the link it holds."""
+    several = joint.kind == "pin" and len(joints.pins[joint.name]) > 2
+    return f"{joint.name}/{joint.on}" if several else joint.name
 
 
 def joined(

@@ -23,7 +23,14 @@ from equipoise.mechanism.cam_groups import follower
 from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.checks import MODE, MODES, meant
 from equipoise.mechanism.cycle import Cycle, close
-from equipoise.mechanism.joints import Structure, drive_pivot, held_fast, structure, subsets
+from equipoise.mechanism.joints import (
+    Structure,
+    drive_pivot,
+    held_fast,
+    name_in_outputs,
+    structure,
+    subsets,
+)
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.parallels import pointed, surplus_cranks
 from equipoise.mechanism.shared import Shared, shared
@@ -89,13 +96,8 @@ class Linkage:
 
     @cached_property
     def named_reactions(self) -> tuple[tuple[str, Reaction], ...]:
-        """Joints by name: a pin of several bodies goes by its point and by the link it holds."""
-
-        def named(one: Reaction) -> str:
-            several = one.kind == "pin" and len(self.joints.pins[one.name]) > 2
-            return f"{one.name}/{one.on}" if several else one.name
-
-        return tuple((named(one), one) for one in self.reactions)
+        """Joints by their names in outputs."""
+        return tuple((name_in_outputs(self.joints, one), one) for one in self.reactions)
 
     @cached_property
     def cycle(self) -> Cycle:

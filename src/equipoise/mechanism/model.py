@@ -56,7 +56,7 @@ from equipoise.mechanism.links import (
     wrong_link,
     wrong_points,
 )
-from equipoise.mechanism.parts import Bearing, Slider, wrong_slider
+from equipoise.mechanism.parts import Bearing, JointStiffness, Slider, wrong_joint, wrong_slider
 from equipoise.mechanism.places import Frame, Position
 from equipoise.mechanism.planes import wrong_planes
 from equipoise.mechanism.shown_units import ShownUnits
@@ -86,15 +86,8 @@ __all__ = [
 
 MOVING = ("link", "motion", "between", "slider", "stroke", "start")
 """What of the drive sets how the links move."""
-MOST = {
-    "links": 100,
-    "points": 2000,
-    "sliders": 200,
-    "gears": 200,
-    "cams": 100,
-    "loads": 500,
-    "springs": 200,
-}
+MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "cams": 100, "loads": 500,
+        "springs": 200, "joints": 500}  # fmt: skip
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 BESIDE = ("bodies", "plane", "planes")
 """Keys of a link that change nothing about the motion, beside its mass."""
@@ -109,7 +102,7 @@ class Machine(Frozen):
 
     beside: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "description", "units", "gravity", "drive", "frame", "links",
-                  "bearings", "assembly", "sliders", "gears", "cams", "loads", "springs",
+                  "bearings", "assembly", "sliders", "gears", "cams", "loads", "springs", "joints",
                   "position", "planting", "support", "rows", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
@@ -155,13 +148,17 @@ class Machine(Frozen):
     springs: tuple[Spring, ...] = key(
         Tables(Table(Spring)), "linear springs between links, or links and frame", default=()
     )
-
+    joints: tuple[JointStiffness, ...] = key(
+        Tables(Table(JointStiffness)),
+        "stiffness of joints, by which they share forces that statics leaves open; those left out "
+        "are rigid",
+        default=(),
+    )
     bearings: Mapping[str, Bearing] = key(
         Named(Table(Bearing)),
         "in which links turn about their pins in the frame, two of each, by name",
         factory=dict,
     )
-
     units: ShownUnits | None = key(
         Table(ShownUnits), "in which values are shown, as by `--units`", default=None
     )
@@ -302,6 +299,7 @@ LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
     "cams": wrong_cam,
     "loads": wrong_load,
     "springs": wrong_ends,
+    "joints": wrong_joint,
 }
 """What is wrong with each of the lists."""
 

@@ -142,4 +142,4 @@ def pointed(builder: Builder, held: list[Outer]) -> Group | None:
     reach = [step for outer in held for step in builder.reach(outer.body, outer.point)]
     builder.add({link: first})
     motion = Call(kernels.pointed, (*p(first), *p(second)), (arm,), u(link))
-    return Group("pointed", (link,), (*reach, motion), (), ())
+    return Group("pointed", (link,), (*reach, motion), (), tuple(one.reaction() for one in held))

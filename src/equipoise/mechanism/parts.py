@@ -48,6 +48,20 @@ class Slider(Frozen):
         return self.label or f"{self.link} on {self.on}"
 
 
+OF_JOINT = "joints."
+"""Begin of the names of outputs of joints."""
+
+
+@declared
+class JointStiffness(Frozen):
+    """How stiff a joint is, where joints share a force that statics leaves open."""
+
+    called = to_say("{what} of stiff joint {number}")
+
+    joint: str = key(Text(), "its force, as outputs call it", example="joints.B")
+    stiffness: float = key("stiffness", "more than 0", example="20000 kN/m", above=0)
+
+
 @declared
 class Bearing(Frozen):
     """One of both bearings in which a link turns about its pin in the frame."""
@@ -97,3 +111,11 @@ def wrong_slider(where: str, slider: Slider, bodies: Bodies) -> Iterator[ModelEr
     if slider.on in bodies:
         yield from unknown_point(f"{where}.through", slider.through, slider.on, bodies)
     yield from unknown_point(f"{where}.point", slider.point, slider.link, bodies)
+
+
+def wrong_joint(where: str, one: JointStiffness, bodies: Bodies) -> Iterator[ModelError]:
+    """Complain of what is no joint's force; which joints there are, assembling tells."""
+    if not one.joint.startswith(OF_JOINT):
+        yield ModelError(
+            f"{where}.joint", Note("got {joint!r}; give a joint as joints.B", joint=one.joint)
+        )

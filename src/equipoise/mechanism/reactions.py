@@ -21,6 +21,7 @@ from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.parts import JOINTS
 from equipoise.mechanism.pushing import pushes
 from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, run
+from equipoise.mechanism.undecided import hidden
 
 PUSH = "D"
 """Name of the force of a drive that pushes, among the values of a pass."""
@@ -131,8 +132,9 @@ class Pass:
 
     @property
     def joints(self) -> dict[str, JointForce]:
-        """Pins and sliders, by name."""
-        named = self.motion.linkage.named_reactions
+        """Pins and sliders, by name, but those whose force has no bound."""
+        left_out = hidden(self.motion)
+        named = ((n, r) for n, r in self.motion.linkage.named_reactions if n not in left_out)
         return Named("joint", ((n, self._joint(r)) for n, r in named if r.kind in JOINTS))
 
     @property

@@ -10,7 +10,7 @@ Drive torque, and force and moment on the frame as a whole, follow from the dema
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import degrees
 from typing import Any
@@ -21,12 +21,14 @@ from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism import kernels
 from equipoise.mechanism.builder import Builder, Group
-from equipoise.mechanism.joints import Structure, no_motion
+from equipoise.mechanism.checks import numbered, unknown
+from equipoise.mechanism.joints import Structure, name_in_outputs, no_motion
 from equipoise.mechanism.loop_forces import LoopForces
 from equipoise.mechanism.loopgroup import Maker
 from equipoise.mechanism.loops import CouplingLoop, Loop, Poses, SlideLoop
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.newton import LoopGroup, poses_in
+from equipoise.mechanism.parts import OF_JOINT
 from equipoise.mechanism.steps import Array, State, planar
 
 AGREES = 1e-9
@@ -35,7 +37,7 @@ OPEN = 1e-9
 """Share of a joint in forces that hold each other, up to which it has none."""
 ROUNDING = 1e-11
 """Share of a singular value in the largest that rounding explains."""
-WEAK = 1e-7
+WEAK = 1e-6
 """Smallest over largest stiffness against motion, up to which joints do not hold the machine."""
 BESIDE = 1e-3
 """rad: how far from a change point it is looked at which forces grow without bound there."""
@@ -89,7 +91,7 @@ class Shared(LoopForces):
 
     def solve(self, state: State, poses: Poses, senses: Sequence[Any]) -> list[list[Array]]:
         matrix, rows, units = self.balance(state, poses, senses)
-        inverse, loose, _ = _parts(matrix)
+        inverse, loose = _parts(matrix)
         if self.compliance:
             inverse = self.by_stiffness(inverse, loose)
         right = (self.demand(state) / rows)[..., None]
@@ -120,32 +122,25 @@ class Shared(LoopForces):
         return np.concatenate([matrix, torque], axis=-1) / rows[:, None] * units, rows, units
 
     def by_stiffness(self, inverse: Array, loose: Array) -> Array:
-        """Of solutions that differ by `loose` forces (N, m, k), the one of least energy.
+        """Of solutions that differ by `loose` forces (N, m, k), the one of least energy."""
+        weighed, energy = self.energy(loose)
+        return np.asarray(inverse - loose @ np.linalg.solve(energy, weighed @ inverse))
 
-        Raises
-        ------
-        ModelError : the joints that have a stiffness leave it open.
-        """
+    def energy(self, loose: Array) -> tuple[Array, Array]:
+        """What unknowns (N, k, m), and loose forces themselves (N, k, k), store with loose ones."""
         soft = np.array([
             self.compliance.get(reaction.force, 0.0)
             for loop, reaction in zip(self.loops, self.reactions, strict=True)
             for _ in range(loop.unknowns)
         ] + [0.0])  # fmt: skip
         weighed = np.swapaxes(loose * soft[:, None], -1, -2)
-        energy = weighed @ loose
-        if np.any(np.linalg.eigvalsh(energy)[..., 0] < AGREES * np.max(soft)):
-            raise ModelError(
-                "joints",
-                "the stiffness given does not decide the forces that statics leaves open; give "
-                "that of further joints, or of none",
-            )
-        return np.asarray(inverse - loose @ np.linalg.solve(energy, weighed @ inverse))
+        return weighed, weighed @ loose
 
     # -- what statics decides ----------------------------------------------------------------------
 
     def open_joints(self, state: State) -> frozenset[str]:
         """Names of forces that statics leaves open at some crank angle."""
-        _, loose, _ = _parts(self.unsensed(state))
+        _, loose = _parts(self.unsensed(state))
         if not loose.shape[-1]:
             return frozenset()
         share = np.max(np.abs(loose), axis=(0, -1))
@@ -177,9 +172,16 @@ class Shared(LoopForces):
     # -- whether lengths agree ---------------------------------------------------------------------
 
     def check(self, state: State) -> None:
-        """Raise a `MobilityError` where a joint that is not needed for the motion does not fit."""
+        """Raise an error where a joint that is not needed for the motion does not fit, or where
+        stiffness leaves forces open.
+        """
         if not self.count:
             return
+        self.check_fit(state)
+        if self.compliance:
+            self.check_stiffness(state)
+
+    def check_fit(self, state: State) -> None:
         theta, poses = state["theta"], self.poses(state)
         gaps = [self.gap(loop, poses) for loop in self.loops]
         misfits = np.array([np.broadcast_to(gap, np.shape(theta)) for gap in gaps])
@@ -195,6 +197,17 @@ class Shared(LoopForces):
             angle=degrees(theta[at]),
         )
         raise MobilityError(Note("{count}: {told}", count=self.count, told=told))
+
+    def check_stiffness(self, state: State) -> None:
+        """Raise a `ModelError` where the stiffness of joints leaves forces open."""
+        _, loose = _parts(self.unsensed(state))
+        _, energy = self.energy(loose)
+        if np.any(np.linalg.eigvalsh(energy)[..., 0] < AGREES * max(self.compliance.values())):
+            raise ModelError(
+                "joints",
+                "the stiffness given does not decide the forces that statics leaves open; give "
+                "that of further joints, or of none",
+            )
 
     def gap(self, loop: Loop, poses: Poses) -> Any:
         """By how much a joint does not fit, m."""
@@ -242,16 +255,16 @@ MOVING = to_say(
 )
 
 
-def _parts(matrix: Array) -> tuple[Array, Array, Array]:
-    """Least-squares inverse of matrices (N, n, m), unknowns (N, m, k) that they make nothing of,
-    and their singular values (N, n).
+def _parts(matrix: Array) -> tuple[Array, Array]:
+    """Least-squares inverse of matrices (N, n, m), and unknowns (N, m, k) that they make nothing
+    of.
     """
     left, sizes, right = np.linalg.svd(matrix, full_matrices=True)
     rank = sizes.shape[-1]
     kept = sizes > ROUNDING * sizes[:, :1]
     over = np.where(kept, 1 / np.where(kept, sizes, 1.0), 0.0)
     right = np.swapaxes(right, -1, -2)
-    return right[..., :rank] * over[:, None] @ np.swapaxes(left, -1, -2), right[..., rank:], sizes
+    return right[..., :rank] * over[:, None] @ np.swapaxes(left, -1, -2), right[..., rank:]
 
 
 def _largest_distance(machine: Machine) -> float:
@@ -265,6 +278,10 @@ def shared(
 ) -> Shared | None:
     """The free bodies of a machine whose groups cannot tell the forces one after the other."""
     count = "" if joints.mobility == 1 else no_motion(joints)
+    if not count and builder.machine.joints:
+        raise ModelError(
+            "joints", "statics decides all joint forces of this linkage; leave their stiffness out"
+        )
     if not count and not any(group.through for group in groups):
         return None
     links = tuple(body for body in builder.rank if body != FRAME)
@@ -276,4 +293,14 @@ def shared(
     size = _largest_distance(builder.machine)
     whole = LoopGroup(links, anchors, ((FRAME, pivot),), (), tuple(loops), (), size)
     reactions = tuple(map(maker.reaction, loops))
-    return Shared(whole, tuple(loops), reactions, pivot, count, {}, groups)
+    named = {OF_JOINT + name_in_outputs(joints, one): one.force for one in reactions}
+    compliance = dict(_compliances(builder.machine, named))
+    return Shared(whole, tuple(loops), reactions, pivot, count, compliance, groups)
+
+
+def _compliances(machine: Machine, named: Mapping[str, str]) -> Iterator[tuple[str, float]]:
+    """Of joints by the name of their force, m/N."""
+    for where, one in numbered("joints", machine.joints):
+        if one.joint not in named:
+            raise ModelError(f"{where}.joint", unknown(one.joint, named, "joint"))
+        yield named[one.joint], 1 / one.stiffness

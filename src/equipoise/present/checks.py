@@ -22,7 +22,7 @@ from equipoise.mechanism.support import idle_parts
 from equipoise.quantities import PER_RPM, SI, Dimension, display, format_exact, number, told
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import lost_told
-from equipoise.results.machine_blocks import bodies_tables, place_told
+from equipoise.results.machine_blocks import bodies_tables, driven, place_told
 from equipoise.vibration.body import Body, at_rest
 from equipoise.vibration.linear import Excitation as Shaking
 
@@ -43,14 +43,15 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     """How the linkage is built up, and what to look at again."""
     linkage = assemble(machine)
     cycle, drive = linkage.cycle, machine.drive
-    yield Text(
-        f"{len(machine.links)} moving links, one free motion; driven: {drive.link} at "
-        f"{number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
-    )
+    about = f"{drive.link} at {number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
+    if drive.pushes or drive.motion is not None:
+        about = driven(machine, drive.speed)
+    yield Text(f"{len(machine.links)} moving links, one free motion; driven: {about}")
     yield from map(Text, _build_up(linkage))
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
     repeats = "motion repeats" if turns_given(machine) == 1 else "motion and loads repeat"
-    yield Text(f"the crank turns fully; the {repeats} after {turns}")
+    fully = "" if drive.pushes or drive.motion is not None else "the crank turns fully; "
+    yield Text(f"{fully}the {repeats} after {turns}")
     yield from bodies_tables(machine)
     parts = (*_springs(machine), *_cams(linkage), *_drive_train(machine), *_support(machine))
     yield from map(Text, parts)
@@ -78,7 +79,10 @@ def _uncarried(machine: Machine) -> Iterator[str]:
         yield f"{error}; respond and modes need that"
 
 
-HOW = {"loops": "by Newton's method on the loop equations"}
+HOW = {
+    "loops": "by Newton's method on the loop equations",
+    "pointed": "where its pins are brought",
+}
 """How a group of links is solved, where that is not its kind."""
 
 

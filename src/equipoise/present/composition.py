@@ -27,7 +27,7 @@ from equipoise.present.tool_headlines import judged
 from equipoise.present.tool_summary import tool_answers, tool_tiles
 from equipoise.quantities import PER_RPM, chosen_units, number, showing_by_default
 from equipoise.results.analysis import Analysis
-from equipoise.results.analysis_blocks import force_blocks, joint_table, motion_blocks
+from equipoise.results.analysis_blocks import force_blocks, motion_blocks
 from equipoise.results.blocks import (
     Block,
     Facts,
@@ -38,6 +38,7 @@ from equipoise.results.blocks import (
     Text,
     beside,
 )
+from equipoise.results.joint_blocks import joint_blocks
 from equipoise.results.machine_blocks import angles_told, driven, model_blocks
 from equipoise.vibration.blocks import model_told, response_blocks
 from equipoise.vibration.sweep_blocks import resonances_table
@@ -124,7 +125,7 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
 
 
 def _joints(analysis: Analysis) -> Iterator[Block]:
-    yield joint_table(analysis)
+    yield from joint_blocks(analysis)
 
 
 def _with_after(

@@ -167,11 +167,14 @@ def topped(what: str, found: Figures, dimension: Dimension) -> str:
 
 
 def caused(analysis: Analysis) -> str:
-    """What most of the swing of the drive torque comes from."""
-    parts = analysis.forces.split.by_cause("drive_torque")
+    """What most of the swing of the drive's torque or force comes from."""
+    drive = analysis.machine.drive
+    parts = analysis.forces.split.by_cause(drive.effort)
     name, share = next(iter(shares({k: part - np.mean(part) for k, part in parts.items()}).items()))
     values = {"share": percent(share), "cause": say(CAUSES[name])}
-    return say("{share} % of the swing of the drive torque comes from: {cause}", **values)
+    of_force = to_say("{share} % of the swing of the drive force comes from: {cause}")
+    of_torque = to_say("{share} % of the swing of the drive torque comes from: {cause}")
+    return say(of_force if drive.pushes else of_torque, **values)
 
 
 def ordered(found: Findings) -> str:
@@ -183,6 +186,8 @@ def ordered(found: Findings) -> str:
 
 def carried(analysis: Analysis) -> str:
     """Which joint carries most."""
+    if not analysis.forces.joints:
+        return say("The forces in the joints grow without bound where links lie in line")
     name, found = largest_joint(analysis)
     size = told(found.peak, "force", digits=3)
     return say("Joint {name} carries most: up to {peak}", name=named(joint_named(name)), peak=size)
@@ -229,7 +234,6 @@ COMPARED = {
     "force": "shaking_force.rms",
     "polar": "shaking_force.peak",
     "moment": "shaking_moment.rms",
-    "torque": "drive_torque.rms",
     "rows": "rows.shaking_force.rms",
 }
 """Picture of before and after -> the figure that its line tells."""
@@ -238,6 +242,8 @@ COMPARED = {
 def compared(found: Findings, picture: str) -> str:
     """A figure before and after."""
     balanced, name = found.balanced, COMPARED.get(picture, "")
+    if picture == "torque":
+        name = f"{found.machine.drive.effort}.rms"
     assert balanced is not None
     if name not in balanced.before:
         return ""

@@ -158,7 +158,7 @@ def _forces(found: Findings) -> Iterator[Entry]:
 
 
 def _joints(found: Findings) -> Iterator[Entry]:
-    if found.analysis.solved is None:
+    if found.analysis.solved is None or not found.analysis.forces.joints:
         return
     from equipoise.figures.analysis import joint_polars, joints
 

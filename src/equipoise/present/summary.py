@@ -62,16 +62,18 @@ def tiles(found: Findings) -> Iterator[Tile]:
     after = None if later is None else Shaking.of(later).size.peak
     yield _tile(say("shaking force, peak"), size.peak, "force", _at(size.peak_at), after=after)
     template = to_say("one row: {what}") if len(found.machine.rows) > 1 else "{what}"
-    labels = {
-        "shaking_moment": say("shaking moment, peak"),
-        "drive_torque": say("drive torque, peak"),
+    drive = found.machine.drive
+    effort = say("drive force, peak") if drive.pushes else say("drive torque, peak")
+    kinds: dict[str, tuple[str, Dimension]] = {
+        "shaking_moment": (say("shaking moment, peak"), "torque"),
+        drive.effort: (effort, drive.effort_in),
     }
-    for name, label in labels.items():
+    for name, (label, kind) in kinds.items():
         one = analysis.summary[name]
         after = None if later is None else later.analysis.summary[name].peak
-        scale = analysis.summary["frame_moment"].peak
+        scale = analysis.summary["frame_moment" if kind == "torque" else "frame_force"].peak
         note = _at(one.peak_at) if brief(one.peak, scale) != "0" else ""
-        yield _tile(say(template, what=label), one.peak, "torque", note, scale, after)
+        yield _tile(say(template, what=label), one.peak, kind, note, scale, after)
     if analysis.forces.joints:
         name, largest = largest_joint(analysis)
         after = None if later is None else largest_joint(later.analysis)[1].peak
@@ -168,11 +170,12 @@ def _why(found: Findings) -> Iterator[str]:
         yield say("The shaking force comes from: {parts}.", parts=_parts(by_link))
         if min(by_link.values()) <= -SMALL:
             yield say("A minus means that the link works against the others.")
-    torque = summary["drive_torque"]
-    if torque.rms > 0:
+    drive = found.machine.drive
+    effort = summary[drive.effort]
+    if effort.rms > 0:
         by_cause = {
             say(CAUSES[name]): part - np.mean(part)
-            for name, part in split.by_cause("drive_torque").items()
+            for name, part in split.by_cause(drive.effort).items()
         }
         of_rows = to_say(
             "The drive torque of one row swings between {low} and {high}; that comes from: {parts}."
@@ -180,10 +183,13 @@ def _why(found: Findings) -> Iterator[str]:
         of_one = to_say(
             "The drive torque swings between {low} and {high}; that comes from: {parts}."
         )
-        unit = display("torque", [torque.peak])
-        low, high = (unit.text(end, torque.peak, 3) for end in (torque.min, torque.max))
+        of_force = to_say(
+            "The drive force swings between {low} and {high}; that comes from: {parts}."
+        )
+        unit = display(drive.effort_in, [effort.peak])
+        low, high = (unit.text(end, effort.peak, 3) for end in (effort.min, effort.max))
         yield say(
-            of_rows if len(found.machine.rows) > 1 else of_one,
+            of_force if drive.pushes else of_rows if len(found.machine.rows) > 1 else of_one,
             low=low,
             high=unit.with_unit(high),
             parts=_parts(shares(by_cause)),

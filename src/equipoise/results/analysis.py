@@ -15,12 +15,14 @@ from equipoise.mechanism.assessment import FourBar, four_bar
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dwell import Dwell
 from equipoise.mechanism.dynamics import Forces, forces, massless, place_of
+from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.model import Machine, Vector
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.mechanism.planes import beside
 from equipoise.mechanism.shares import CAUSES
 from equipoise.mechanism.strokes import Stroke, dwell, strokes
+from equipoise.mechanism.undecided import undecided
 from equipoise.quantities import Dimension
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
@@ -188,6 +190,7 @@ class Analysis(Result):
             for family, joints in (families | ({"cams": found.cams} if found.cams else {})).items():
                 ends = {name: {"on": one.on, "by": one.by} for name, one in joints.items()}
                 result[family] = ends
+            result.update(_undecided(self.motion.linkage))
             result["about"] = {"x": found.about.real, "y": found.about.imag}
         for one in self.outputs.arrays:
             *keys, last = one.path
@@ -272,6 +275,18 @@ def _split(found: Forces) -> Values:
                 for step in one.path(item)[:-1]:
                     values = values.setdefault(step, {})
                 values[one.path(item)[-1]] = {name: _parts(part) for name, part in parts}
+    return result
+
+
+def _undecided(linkage: Linkage) -> Values:
+    """Joints of which statics does not tell the force, where there are such."""
+    found = undecided(linkage)
+    result: Values = {}
+    if found.open:
+        rule = "stiffness" if found.by_stiffness else "least squares"
+        result["open"] = {"joints": [*found.open], "rule": rule}
+    if found.unbounded:
+        result["unbounded"] = {"joints": [*found.unbounded], "crank_angle": found.at}
     return result
 
 

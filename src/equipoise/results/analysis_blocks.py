@@ -10,12 +10,12 @@ import numpy as np
 from equipoise.i18n import say
 from equipoise.mechanism.dwell import Dwell
 from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.reactions import JointForce, SliderForce
-from equipoise.mechanism.spoken import body_named, joint_named
+from equipoise.mechanism.spoken import joint_named
 from equipoise.mechanism.strokes import SHARE
 from equipoise.quantities import Dimension, angle, percent
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import cam_blocks
+from equipoise.results.joint_blocks import joint_blocks
 from equipoise.results.machine_blocks import (
     angles_told,
     driven,
@@ -51,7 +51,7 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
         yield Notes((massless(machine),))
         return
     yield from force_blocks(analysis)
-    yield joint_table(analysis)
+    yield from joint_blocks(analysis)
 
 
 # -- motion ----------------------------------------------------------------------------------------
@@ -192,17 +192,19 @@ def shares(parts: Mapping[str, Array]) -> dict[str, float]:
 
 
 def _causes(analysis: Analysis) -> Table:
-    scale, forces = analysis.summary["drive_torque"].peak, analysis.forces
+    drive, forces = analysis.machine.drive, analysis.forces
+    scale = analysis.summary[drive.effort].peak
     given = {"load": forces.loads, "spring": forces.springs}
     rows: list[tuple[Cell, ...]] = []
-    for cause, values in forces.split.by_cause("drive_torque").items():
+    for cause, values in forces.split.by_cause(drive.effort).items():
         if given.get(cause, True):
             found = figures(analysis.crank_angle, values)
             told = (found.mean, found.rms, found.max, found.min)
             rows.append((say(CAUSES[cause]), *(Value(value, scale) for value in told)))
     labels = (say("mean"), say("RMS"), say("largest"), say("smallest"))
-    columns = (Column(label, "torque") for label in labels)
-    return Table.of(say("Drive torque by cause"), ("", *columns), rows)
+    columns = (Column(label, drive.effort_in) for label in labels)
+    title = say("Drive force by cause") if drive.pushes else say("Drive torque by cause")
+    return Table.of(title, ("", *columns), rows)
 
 
 def orders_table(analysis: Analysis) -> Table:
@@ -233,29 +235,6 @@ def loud(sizes: list[Array], most: int = MOST_ORDERS) -> list[int]:
     relative = [size / (np.max(size[1:], initial=0.0) or 1.0) for size in sizes]
     top = np.max(relative, axis=0)
     return [k for k in range(1, len(top)) if top[k] > 1e-6][:most]
-
-
-def joint_table(analysis: Analysis) -> Table:
-    """The force in every joint and mesh."""
-    forces = analysis.forces
-    joints: dict[str, JointForce] = {**forces.joints, **forces.gears, **forces.cams}
-    scale = analysis.summary["frame_moment"].peak
-    rows: list[tuple[Cell, ...]] = []
-    for name, joint in joints.items():
-        found = figures(analysis.crank_angle, joint.size)
-        couple = None
-        if isinstance(joint, SliderForce):
-            couple = Value(float(np.max(np.abs(joint.moment))), scale)
-        named = say("teeth") if name in forces.gears else joint_named(name)
-        named = say("cam") if name in forces.cams else named
-        ends = f"{body_named(joint.by)} → {body_named(joint.on)}"
-        rows.append((named, ends, Value(found.mean), Value(found.rms), largest(found), couple))
-    labels = (say("mean"), say("RMS"), say("largest"))
-    columns = ["", say("by → on"), *(Column(label, "force") for label in labels)]
-    columns.append(Column(say("moment"), "torque"))
-    shown = len(columns) if any(row[-1] is not None for row in rows) else -1
-    title = say("Force in each joint; largest with its crank angle")
-    return Table.of(title, columns[:shown], (row[:shown] for row in rows))
 
 
 # -- harmonics -------------------------------------------------------------------------------------

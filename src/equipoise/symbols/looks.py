@@ -108,6 +108,8 @@ LOOKS = {
     "mass": Look("paper", "ink", 0.9),
     "quarter": Look("ink", None),
     "tip": Look("main", "paper", 1.2),
+    "piston": Look(None, "ink", 3.4),
+    "barrel": Look("paper", "ink", 1.4),
     "driver": Look(None, "ink", 1.6),
     "driver-head": Look("ink", None),
     "force": Look(None, "stress", 2.6, flat=True),

@@ -18,6 +18,7 @@ from equipoise.symbols.shapes import (
     block,
     circle,
     coils,
+    cylinder,
     driver,
     hull,
     line,
@@ -40,6 +41,11 @@ AHEAD = np.radians(np.linspace(24, 84, 26))
 """Angles from the crank over which the arrow of its sense goes."""
 SENSE = 0.55, 30.0
 """Radius of that arrow: over the crank's length, and in units at least."""
+
+BARREL, ROD, INSIDE = 0.55, 0.95, 0.8
+"""Length of a cylinder's barrel over the largest stroke, of both over the smallest, and how much of
+the barrel the rod leaves free when it is out.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +82,7 @@ def pieces(scene: Scene, traced: Collection[str] = (), field: bool = True) -> li
     found = [*_soil(scene)] if field else []
     found += [*_carrier(scene), *_rows(scene), *_wheels(scene), *_stands(scene)]
     found += _links(scene)
-    found += [*_springs(scene), Piece("pivots", tuple(_pivots(scene)))]
+    found += [*_springs(scene), *_cylinder(scene), Piece("pivots", tuple(_pivots(scene)))]
     found += [
         Piece("blocks", tuple(block()), Hold(guide.point, guide=guide.name), part=_part(guide))
         for guide in scene.guides
@@ -257,6 +263,7 @@ def _marks(scene: Scene, body: Body, traced: Collection[str]) -> Iterator[Shape]
     """Pins, traced points and centre of mass of a link."""
     others = scene.bodies[: scene.bodies.index(body)]
     hung = {point for ends in (*scene.springs, *scene.planned) for point in ends}
+    hung |= {*(scene.drive.between or ())}
     drawn = {*scene.frame, *(point for other in others for point in other.points)}
     for point in body.points:
         if point in drawn:
@@ -274,17 +281,37 @@ def _marks(scene: Scene, body: Body, traced: Collection[str]) -> Iterator[Shape]
 
 
 def _sense(scene: Scene) -> Iterator[Piece]:
-    """An arrow about the drive's pivot in the sense in which it turns, ahead of the crank."""
+    """An arrow about the drive's pivot in the sense in which it turns, ahead of the crank; or one
+    with two heads over all angles that it goes to and fro.
+    """
     drive = scene.drive
-    if not drive.sense:
+    if not drive.sense and drive.swings is None:
         return
     (body,) = (body for body in scene.bodies if body.name == drive.link)
     center = scene.local(body, scene.places[drive.pivot])
     arms = scene.corners(body) - center
     arm = complex(arms[np.argmax(abs(arms))])
     radius = max(SENSE[0] * abs(arm), SENSE[1] * scene.unit)
+    if drive.swings is not None:
+        over = np.linspace(*drive.swings, len(AHEAD)) + np.angle(arm)
+        still = complex(scene.places[drive.pivot][0])
+        yield Piece("drive", tuple(driver(still, radius, over, both=True)))
+        return
     angles = np.angle(arm) + drive.sense * AHEAD
     yield Piece("drive", tuple(driver(center, radius, angles)), _with(body))
+
+
+def _cylinder(scene: Scene) -> Iterator[Piece]:
+    """A barrel at one point and a rod at the other, which keep their lengths."""
+    if scene.drive.between is None:
+        return
+    first, second = scene.drive.between
+    lengths = abs(scene.places[second] - scene.places[first])
+    short, long = float(lengths.min()), float(lengths.max())
+    barrel = min(max(BARREL * long, long - ROD * short), ROD * short)
+    shapes = cylinder(barrel, long - INSIDE * barrel)
+    for point, to, shape in ((second, first, shapes[0]), (first, second, shapes[1])):
+        yield Piece("drive", (shape,), Hold(point, to=to, rigid=True))
 
 
 # -- at one crank angle ----------------------------------------------------------------------------

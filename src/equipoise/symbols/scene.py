@@ -16,6 +16,7 @@ from equipoise.mechanism.model import FRAME, Link
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.tip import surface_of
 from equipoise.symbols.carrier import MOUNT, Carrier, Swing
+from equipoise.symbols.drives import Drive
 from equipoise.symbols.rows import ONE, Rows, rows_of
 from equipoise.symbols.shapes import Array, hull
 from equipoise.symbols.wheels import Wheel, wheels_of
@@ -60,15 +61,6 @@ class Guide:
     on: str
     behind: Array
     ahead: Array
-
-
-@dataclass(frozen=True)
-class Drive:
-    """The link that is driven, the point that it turns about, and its sense: 1, -1, or 0."""
-
-    link: str
-    pivot: str
-    sense: int
 
 
 @dataclass(frozen=True)
@@ -144,7 +136,7 @@ class Scene:
             tuple(_guides(motion)),
             springs := tuple((spring.point, spring.to) for spring in machine.springs),
             {name: link.angle for name, link in motion.links.items()},
-            Drive(machine.drive.link, motion.linkage.pivot, int(np.sign(motion.speed))),
+            Drive.of(motion),
             tuple((one.point, one.to) for one in planned if (one.point, one.to) not in springs),
             _field(motion),
             Carrier.of(machine),
@@ -160,6 +152,7 @@ class Scene:
     def standing(self) -> tuple[str, ...]:
         """Points of the frame at which something is held."""
         held = {to for _, to in (*self.springs, *self.planned)} | self.pins
+        held |= {*(self.drive.between or ())}
         return tuple(name for name in self.frame if name in held)
 
     def ground(self, point: str) -> complex:

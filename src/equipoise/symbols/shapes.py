@@ -177,12 +177,24 @@ def mass(center: complex) -> list[Shape]:
     return [circle("mass", center, grown=radius), *quarters]
 
 
-def driver(center: complex, radius: float, angles: Array) -> list[Shape]:
-    """An arrow about a drive's pivot: its arc over some angles, rad, at a radius in m."""
+def driver(center: complex, radius: float, angles: Array, both: bool = False) -> list[Shape]:
+    """An arrow about a drive's pivot: its arc over some angles, rad, at a radius in m.
+
+    both : whether it has a head at either end.
+    """
     arc = center + radius * np.exp(1j * angles)
     sense = np.sign(angles[-1] - angles[0])
     way = 1j * sense * np.exp(1j * (angles[-1] - 0.12 * sense))
-    return [line("driver", *arc), _head("driver-head", complex(arc[-1]), complex(way), 9.0)]
+    heads = [_head("driver-head", complex(arc[-1]), complex(way), 9.0)]
+    if both:
+        back = -1j * sense * np.exp(1j * (angles[0] + 0.12 * sense))
+        heads.append(_head("driver-head", complex(arc[0]), complex(back), 9.0))
+    return [line("driver", *arc), *heads]
+
+
+def cylinder(barrel: float, rod: float) -> tuple[Shape, Shape]:
+    """A cylinder's rod and barrel, each from its own pin along x, so long, m."""
+    return line("piston", 0, rod), _box("barrel", 0, barrel, 0.0, 6.0)
 
 
 def arrow(role: str, length: float) -> tuple[Shape, Shape]:

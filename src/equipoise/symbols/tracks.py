@@ -37,6 +37,7 @@ class Hold:
 
     point : its origin.  Its x axis is that of a link, the way of a guide, or points to another
     point, between which and the origin it is stretched; one of the three is given.
+    rigid : whether it keeps its length between two points.
     mount : between whose place on the support and its ground it is stretched, instead.
     row : which of the other rows that the scene shows it belongs to, from 1; 0 where to none.
     """
@@ -47,6 +48,7 @@ class Hold:
     to: str = ""
     mount: str = ""
     row: int = 0
+    rigid: bool = False
 
 
 def track_of(scene: Scene, hold: Hold | None, still: bool, unit: float) -> Track | None:
@@ -78,7 +80,7 @@ def _in_frame(scene: Scene, hold: Hold) -> Track:
         return Track(place, np.unwrap(np.angle(way)), np.ones(len(place)))
     way = scene.places[hold.to] - place
     length = abs(way)
-    usual = float(length.mean()) or 1.0
+    usual = length if hold.rigid else float(length.mean()) or 1.0
     return Track(place, np.unwrap(np.angle(way)), length / usual)
 
 

@@ -13,7 +13,8 @@ from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.quantities import DIGITS, display
-from equipoise.symbols.scene import Drive, Guide, Scene, bodies_of
+from equipoise.symbols.drives import Drive
+from equipoise.symbols.scene import Guide, Scene, bodies_of
 from equipoise.symbols.wheels import Wheel, wheels_of
 from equipoise.web.block import Block, Values
 from equipoise.web.design import Design

@@ -14,7 +14,7 @@ import numpy as np
 
 from equipoise.errors import EquipoiseError, MotionError, UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.checks import ALTERNATIVES, unknown
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, Position, Vector
 from equipoise.mechanism.motion import Motion
@@ -28,7 +28,7 @@ from equipoise.web.messages import Change, Drag, Setting
 
 ANGLES, MOST_SAMPLES = 720, 2880
 """Crank angles in a turn, and in a cycle of several turns, which has fewer in each."""
-OTHER_SIDE = {"left": "right", "right": "left", "forward": "backward", "backward": "forward"}
+OTHER_SIDE = {one: other for pair in ALTERNATIVES for one, other in (pair, pair[::-1])}
 THERE = 1e-5
 """Of the size of the machine: how near a dragged point has to come to where it was put."""
 

@@ -26,6 +26,10 @@ CHARTS = {
         "The torque that keeps the crank at its speed. Below zero the linkage drives the motor; "
         "the larger the swing, the more a flywheel or a larger motor is needed."
     ),
+    "drive_force": to_say(
+        "The force with which the drive pushes its ends apart. Below zero it holds back; its sign "
+        "tells which side of a cylinder bears the pressure."
+    ),
     "roll_moment": to_say(
         "The moment of all rows together about the direction of travel: it rolls the machine from "
         "side to side. Phases between the rows change it."

@@ -113,6 +113,7 @@ class Page:
             self._go_on(message)
         elif self.questions.full():
             await self._send(refused(message.seq, UsageError(BUSY)))
+            self._go_on(message)
         else:
             self.questions.put_nowait(message)
 

@@ -18,6 +18,7 @@ SAME = {
     "shaking_force": "force",
     "shaking_moment": "moment",
     "drive_torque": "torque",
+    "drive_force": "torque",
     "spectrum": "spectrum",
     "joint": "joints",
 }

@@ -10,11 +10,19 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.errors import ModelError
+from equipoise.errors import ModelError, UsageError
+from equipoise.exchange.export import made
+from equipoise.exchange.formats import FORMATS
+from equipoise.figures import render
 from equipoise.mechanism.drives import Drive
 from equipoise.mechanism.laws import LengthLaw
 from equipoise.mechanism.parameters import parameter_values, regressor
-from unit.mechanism.build import ORIGIN, heavy, machine, refused
+from equipoise.present.findings import Findings
+from equipoise.present.pictures import each
+from equipoise.web.design import Design
+from equipoise.web.messages import message_of
+from equipoise.web.session import Session
+from unit.mechanism.build import ORIGIN, four_bar, heavy, machine, refused
 
 A, B = (0.3, -0.4), (0.5, 0.1)
 
@@ -99,3 +107,36 @@ def test_what_is_refused(where: str, words: str, changes: dict[str, Any]) -> Non
 def test_a_file_of_it_is_read_as_it_was_written() -> None:
     own = replace(boom(), title="boom")
     assert eq.loads(eq.dumps(own)) == own
+
+
+@pytest.mark.parametrize("name", ["mjcf", "exudyn", "fmu", "modelica"])
+def test_programs_that_turn_a_crank_refuse_it(name: str) -> None:
+    words = "turns the driven link evenly all the way round: this drive has a motion of its own"
+    with pytest.raises(UsageError, match=words):
+        made(boom(), FORMATS[name], 0.0)
+    stuck = four_bar(1.0, 0.9, 0.5, 0.55)
+    with pytest.raises(UsageError, match="evenly all the way round: the crank cannot turn fully"):
+        made(stuck, FORMATS[name], 0.0)
+
+
+def test_everything_is_shown_of_it() -> None:
+    """Pictures and page have the force in the place of the torque, and the cylinder."""
+    found = Findings(boom(), "", "boom.toml", 120)
+    drawn = {one.name: one for one in each(found)}
+    assert "Force of the drive" in render(drawn["torque"].draw()).decode()
+    blocks = [getattr(one, "title", "") for one in found.analysis.blocks()]
+    assert "Drive force by cause" in blocks
+    told = " ".join(str(one) for one in found.analysis.blocks())
+    assert "cylinder A to B from 550.0 to 800.0 mm and back, 19.10 cycles a minute" in told
+
+
+def test_the_page_draws_barrel_and_rod_which_keep_their_lengths() -> None:
+    session = Session()
+    session.open(Design("boom.toml", boom()))
+    replies = [one.content for one in session.receive(message_of({"type": "ready"}))]
+    (state,) = [one for one in replies if one["type"] == "state"]
+    pushed = [sign for sign in state["scene"]["signs"] if (sign["hold"] or {}).get("rigid")]
+    assert [sign["shapes"][0][0] for sign in pushed] == ["piston", "barrel"]
+    assert [one["name"] for one in state["charts"] if one["name"].startswith("drive")] == [
+        "drive_force"
+    ]

@@ -55,6 +55,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         laws.AngleSegment, laws.LengthLaw, laws.LengthSegment, force_elements.Motor, Frame,
         links.Link,
         bodies.Body, bodies.Hole, parts.Bearing, parts.Slider, parts.Gear,
+        parts.JointStiffness,
         gear_shapes.GearShape, cams.Cam,
         force_elements.Load, Spring, Position, field.Planting, field.PlantingArm,
         field.Soil, support.Support,

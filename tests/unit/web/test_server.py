@@ -211,6 +211,29 @@ def test_dragging_goes_on_while_something_takes_long(
         assert "told" not in {one["type"] for one in rest}
 
 
+def test_a_question_too_many_has_all_its_answers_too(
+    here: Here, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else the page would wait for the rest of them for ever."""
+    rested = threading.Event()
+
+    def slowly(design: Design, hold: bool) -> Balanced:
+        assert rested.wait(20)
+        return balanced(design, hold)
+
+    monkeypatch.setattr(balanced_module, "balanced", slowly)
+    most = page_module.MOST_QUESTIONS + 2  # the first is being answered
+    with here.page() as page:
+        hear(page)
+        assert ask(page, {"type": "balance", "seq": 1})["type"] == "busy"
+        for seq in range(2, most + 1):
+            page.send(json.dumps({"type": "balance", "seq": seq}))
+        refused = hear(page)
+        assert (refused["type"], refused["seq"]) == ("refused", most)
+        rested.set()
+        assert any(hear(page) == {"type": "told", "seq": most} for _ in range(100))
+
+
 class Dragged:
     """The socket of a page that moves something on as soon as it knows the last move's state."""
 

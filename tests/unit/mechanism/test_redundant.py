@@ -1,0 +1,273 @@
+"""Joints that hold more than the motion needs, and parallel linkages at their change points."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import EquipoiseError, MobilityError, ModelError
+from equipoise.mechanism.model import FRAME, Link, Slider, Vector
+from equipoise.mechanism.parts import JointStiffness
+from equipoise.mechanism.undecided import undecided
+from unit.mechanism.build import ORIGIN, four_bar, heavy, machine
+
+CRANK, PIVOTS = 0.1, ((0.0, 0.0), (1.0, 0.0), (0.4, 0.3))
+LINE = ((0.0, 0.0), (1.0, 0.0), (2.0, 0.0))
+
+
+def cranks(pivots: tuple[Vector, ...] = PIVOTS, last: float = CRANK, **more: Any) -> eq.Machine:
+    """Equal cranks that carry a body, of which the last may have another length."""
+    frame = {f"A{k}": place for k, place in enumerate(pivots)}
+    links = {
+        f"crank{k}": heavy(**{f"A{k}": ORIGIN, f"B{k}": (CRANK, 0.0)}) for k in range(len(pivots))
+    }
+    final = len(pivots) - 1
+    links[f"crank{final}"] = heavy(**{f"A{final}": ORIGIN, f"B{final}": (last, 0.0)})
+    links["body"] = heavy(**{f"B{k}": place for k, place in enumerate(pivots)})
+    return machine(frame, links, drive=eq.Drive("crank0", 10.0), **more)
+
+
+def parallel(mode: str | None = "parallel") -> eq.Machine:
+    """Two cranks: a parallelogram without any joint too many."""
+    return cranks(PIVOTS[:2], assembly={} if mode is None else {"mode": mode})
+
+
+def guided(offset: float = 0.0, turn: float = 0.0) -> eq.Machine:
+    """A block that a crank and a rod push between two guides."""
+    return machine(
+        {"A": ORIGIN, "G": (0.0, -0.1), "H": (0.0, 0.1 + offset)},
+        {
+            "crank": heavy(A=ORIGIN, B=(0.2, 0.0)),
+            "rod": heavy(B=ORIGIN, C=(1.0, 0.0)),
+            "block": heavy(C=ORIGIN, U=(0.0, -0.1), V=(0.0, 0.1)),
+        },
+        sliders=(
+            Slider("block", "U", FRAME, "G", 0.0),
+            Slider("block", "V", FRAME, "H", turn, -turn, label="upper"),
+        ),
+        assembly={"C": "forward"},
+    )
+
+
+def told(given: eq.Machine) -> str:
+    with pytest.raises(EquipoiseError) as caught:
+        eq.analyze(given)
+    return str(caught.value)
+
+
+# -- motion ----------------------------------------------------------------------------------------
+
+
+def test_a_body_on_three_cranks_goes_round_without_turning() -> None:
+    motion = eq.move(cranks())
+    np.testing.assert_allclose(motion.links["body"].angle, 0.0, atol=1e-14)
+    for k in range(3):
+        link = motion.links[f"crank{k}"]
+        np.testing.assert_allclose(link.angle, motion.crank_angle, atol=1e-13)
+        np.testing.assert_allclose([link.angle_1 - 1, link.angle_2], 0.0, atol=1e-13)
+
+
+def test_further_cranks_wait_for_the_body_that_a_rod_pushes() -> None:
+    """By count the body on three hangers alone would stand still: the third decides nothing."""
+    three = cranks(((0.0, 0.0), (1.0, 0.0), (0.4, 0.3)))
+    links = {name.replace("crank", "hanger"): link for name, link in three.links.items()}
+    body = Link({**links["body"].points, "P": (-0.2, 0.1)}, 1.0, ORIGIN, 0.1)
+    links |= {
+        "body": body,
+        "crank": heavy(O=ORIGIN, Q=(0.02, 0.0)),
+        "rod": heavy(Q=ORIGIN, P=(0.5, 0.0)),
+    }
+    places = {"P": (-0.2, 0.2), "B0": (0.0, 0.1), "B1": (1.0, 0.1)}
+    angles = {"body": 0.0, "hanger0": np.pi / 2, "hanger1": np.pi / 2}
+    at = eq.mechanism.Position(0.0, places, angles)
+    given = machine({**three.frame, "O": (-0.72, 0.2)}, links, position=at)
+    found = eq.analyze(given)
+    np.testing.assert_allclose(found.motion.links["body"].angle, 0.0, atol=1e-10)
+    assert [g.kind for g in found.motion.linkage.groups] == ["loops", "pointed"]
+    assert np.all(np.isfinite(found.forces.drive_torque))
+
+
+def test_lengths_that_do_not_agree_are_told_with_what_would_fit() -> None:
+    sentence = told(cranks(last=0.1012))
+    assert sentence.startswith("the linkage has no free motion (count 0: 4 moving links, 6 pins,")
+    assert "B2 of 'crank2' comes 1.2 mm beside its pin, at crank angle " in sentence
+    assert sentence.endswith("A2 and B2 are 101.2 mm apart, and 100 mm would fit")
+
+
+def test_a_pivot_in_the_wrong_place_is_told_as_it_varies() -> None:
+    given = cranks()
+    sentence = told(replace(given, frame={**given.frame, "A2": (0.41, 0.3)}))
+    assert (
+        "A2 and B2 are 100 mm apart, and the others bring the pins 90 to 110 mm apart" in sentence
+    )
+
+
+@pytest.mark.parametrize(("offset", "turn", "misfit"), [(0.002, 0.0, "2"), (0.0, 0.01, "12")])
+def test_guides_that_do_not_agree(offset: float, turn: float, misfit: str) -> None:
+    sentence = told(guided(offset, turn))
+    assert "'upper' of 'block' is " + misfit in sentence
+    assert "mm beside where it should be at crank angle" in sentence
+
+
+def test_two_guides_move_as_one_does() -> None:
+    one = guided()
+    alone = eq.analyze(replace(one, sliders=one.sliders[:1]))
+    both = eq.analyze(one)
+    np.testing.assert_allclose(both.motion.points["C"].x, alone.motion.points["C"].x, atol=1e-15)
+    np.testing.assert_allclose(both.forces.drive_torque, alone.forces.drive_torque, atol=1e-11)
+    names = {"block on frame", "upper"}
+    total = sum(both.forces.joints[name].value for name in names)
+    np.testing.assert_allclose(total, alone.forces.joints["block on frame"].value, atol=1e-9)
+    np.testing.assert_allclose(
+        both.forces.joints["C"].value, alone.forces.joints["C"].value, atol=1e-9
+    )
+
+
+def test_two_guides_need_two_names() -> None:
+    given = guided()
+    same = replace(given, sliders=(given.sliders[0], replace(given.sliders[1], label="")))
+    assert "two joints would be called 'block on frame'" in told(same)
+
+
+# -- change points ---------------------------------------------------------------------------------
+
+
+def test_a_parallelogram_stays_parallel_through_its_change_points() -> None:
+    motion = eq.move(parallel(), np.array([0.0, np.pi - 1e-9, np.pi, np.pi + 1e-9, 2.0]))
+    rocker = motion.links["crank1"]
+    np.testing.assert_allclose(np.exp(1j * (rocker.angle - motion.crank_angle)), 1.0, atol=1e-13)
+    np.testing.assert_allclose([rocker.angle_1 - 1, rocker.angle_2], 0.0, atol=1e-12)
+
+
+def test_a_crossed_parallelogram_turns_as_elliptic_gears_do() -> None:
+    """Speed ratio of an elliptic pair: i = -(1 - k^2) / (1 + k^2 - 2 k cos theta), k = a / d."""
+    motion = eq.move(parallel("antiparallel"))
+    theta, k = motion.crank_angle, CRANK
+    bottom = 1 + k * k - 2 * k * np.cos(theta)
+    rocker = motion.links["crank1"]
+    np.testing.assert_allclose(rocker.angle_1, -(1 - k * k) / bottom, atol=1e-12)
+    second = (1 - k * k) * 2 * k * np.sin(theta) / bottom**2
+    np.testing.assert_allclose(rocker.angle_2, second, atol=1e-12)
+
+
+def test_forces_without_bound_are_not_told() -> None:
+    found = eq.analyze(parallel())
+    assert set(undecided(found.motion.linkage).unbounded) == {"A0", "B0", "A1", "B1"}
+    assert not found.forces.joints
+    assert found.to_dict()["unbounded"]["joints"] == ["A0", "A1", "B0", "B1"]
+    kinetic = found.forces.frame_force.value - found.forces.weight.value
+    np.testing.assert_allclose(kinetic, found.forces.shaking_force.value, atol=1e-10)
+    assert np.all(np.isfinite(found.forces.drive_torque))
+
+
+def test_forces_between_change_points_are_those_of_a_plain_four_bar() -> None:
+    theta = np.array([0.3, 1.0, 2.5])
+    given = parallel()
+    got = eq.analyze(given, theta).forces
+    want = eq.analyze(replace(given, assembly={"B1": "right"}), theta).forces
+    for name, joint in want.joints.items():
+        np.testing.assert_allclose(got.joints[name].value, joint.value, rtol=1e-10)
+    np.testing.assert_allclose(got.drive_torque, want.drive_torque, rtol=1e-10)
+
+
+def test_three_cranks_in_line_do_not_hold_the_change_point() -> None:
+    line = undecided(eq.analyze(cranks(LINE)).motion.linkage)
+    assert "B2" in line.unbounded
+    assert not undecided(eq.analyze(cranks()).motion.linkage).unbounded
+
+
+def test_a_mode_has_to_be_given() -> None:
+    sentence = told(parallel(None))
+    assert sentence.startswith('assembly.B1: missing; give "parallel" or "antiparallel"')
+
+
+def test_sides_that_are_nearly_equal_are_told_with_the_misfit() -> None:
+    given = cranks(PIVOTS[:2], last=0.1005, assembly={"mode": "parallel"})
+    assert told(given).startswith(
+        "assembly.mode: opposite sides of a parallel linkage are equal, and A0-B0 is 100 mm, "
+        "A1-B1 100.5 mm, 0.5 mm apart"
+    )
+
+
+def test_a_mode_without_change_points() -> None:
+    given = four_bar(1.0, 0.3, 0.9, 0.8)
+    mode = replace(given, assembly={**given.assembly, "mode": "parallel"})
+    assert told(mode).startswith("assembly.mode: no two links of this linkage close a four-bar")
+
+
+# -- forces ----------------------------------------------------------------------------------------
+
+
+def test_what_statics_decides_does_not_depend_on_the_rule() -> None:
+    """Forces that hold each other are added by other stiffness: nothing else may change."""
+    given = with_rocker(cranks())
+    found = eq.analyze(given)
+    assert set(undecided(found.motion.linkage).open) == {f"{p}{k}" for p in "AB" for k in range(3)}
+    assert found.to_dict()["open"]["rule"] == "least squares"
+    stiff = (JointStiffness("joints.B0", 1e6), JointStiffness("joints.A2", 3e5))
+    other = eq.analyze(replace(given, joints=stiff))
+    assert other.to_dict()["open"]["rule"] == "stiffness"
+    one, two = found.forces, other.forces
+    assert np.max(np.abs(one.joints["B0"].value - two.joints["B0"].value)) > 1.0
+    for name in ("drive_torque", "frame_moment", "shaking_moment"):
+        np.testing.assert_allclose(getattr(one, name), getattr(two, name), atol=1e-9)
+    np.testing.assert_allclose(one.frame_force.value, two.frame_force.value, atol=1e-9)
+    for name in ("P", "Q", "R"):
+        np.testing.assert_allclose(one.joints[name].value, two.joints[name].value, atol=1e-9)
+
+
+def with_rocker(given: eq.Machine) -> eq.Machine:
+    """A dyad that hangs on the body and on the frame."""
+    body = given.links["body"]
+    links = {**given.links, "body": replace(body, points={**body.points, "P": (0.5, 0.6)})}
+    links |= {"rod": heavy(P=ORIGIN, Q=(0.8, 0.0)), "rocker": heavy(R=ORIGIN, Q=(0.7, 0.0))}
+    frame = {**given.frame, "R": (1.3, 1.2)}
+    return replace(given, links=links, frame=frame, assembly={**given.assembly, "Q": "left"})
+
+
+def test_stiff_supports_share_a_weight_as_springs_do() -> None:
+    """Cranks upright under a beam: of equal springs in a row each bears W/3 + M x / sum x^2."""
+    given = cranks(LINE)
+    links = {name: replace(link, mass=0.0, inertia=0.0) for name, link in given.links.items()}
+    beam = replace(given.links["body"], mass=3.0, center_of_mass=(1.2, 0.0), inertia=0.0)
+    soft = tuple(JointStiffness(f"joints.B{k}", 1e6) for k in range(3))
+    still = replace(given, links={**links, "body": beam}, joints=soft, gravity=(0.0, -10.0))
+    found = eq.analyze(still, [np.pi / 2], speed=0.0).forces
+    got = [found.joints[f"B{k}"].y[0] for k in range(3)]
+    np.testing.assert_allclose(got, [30 * (1 / 3 + 0.2 * x / 2) for x in (-1, 0, 1)], rtol=1e-9)
+
+
+def test_stiffness_that_leaves_forces_open() -> None:
+    stiff = (JointStiffness("joints.C", 1e6),)
+    assert "does not decide the forces that statics leaves open" in told(
+        replace(guided(), joints=stiff)
+    )
+
+
+@pytest.mark.parametrize(
+    ("joint", "given", "words"),
+    [
+        ("joints.Q", guided(), "joints[1].joint: no joint is called 'joints.Q'"),
+        ("B", guided(), "joints[1].joint: got 'B'; give a joint as joints.B"),
+        ("joints.B1", parallel(), "joints: statics decides all joint forces"),
+    ],
+)
+def test_stiffness_of_no_use(joint: str, given: eq.Machine, words: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        eq.analyze(replace(given, joints=(JointStiffness(joint, 1e6),)))
+    assert str(caught.value).startswith(words)
+
+
+def test_a_brace_locks_a_four_bar() -> None:
+    given = four_bar(1.0, 0.3, 0.9, 0.8)
+    coupler = given.links["coupler"]
+    points = {**coupler.points, "P": (0.3, 0.3)}
+    braced = replace(given, frame={**given.frame, "E": (0.5, -1.0)},
+                     links={**given.links, "coupler": replace(coupler, points=points),
+                            "brace": heavy(E=ORIGIN, P=(1.2, 0.0))})  # fmt: skip
+    with pytest.raises(MobilityError, match="P of 'brace' comes "):
+        eq.move(braced)
