@@ -215,6 +215,7 @@ export class Conversation {
     if (this.repeating && !this.queue.length) this.repeating = false;
     question.answered?.(refusal, told);
     this.next();
+    if (this.calm) this.events.calm(true); // all else may have been told before
   }
 
   private land(): void {

@@ -91,3 +91,12 @@ def test_two_fingers_zoom_and_pan(new_page: Callable[..., Page], address: str) -
     moved = complex(*after[0]) - (fixed - 30j + 2 * (complex(*before[0]) - fixed))
     assert abs(moved) < 8
     expect(live.button("Undo")).to_be_disabled()
+
+
+def test_an_edit_while_examples_are_drawn_is_told_to_its_end(live: Live) -> None:
+    live.page.get_by_role("button", name="Open", exact=True).click()
+    expect(live.page.get_by_role("dialog", name="Open a machine")).to_be_visible()
+    live.page.keyboard.press("Escape")
+    live.joint("B").press("ArrowRight")
+    live.settled()
+    assert not live.button("Undo").is_disabled()

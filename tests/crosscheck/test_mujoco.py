@@ -53,7 +53,8 @@ def acting_on_links(subject: Subject) -> dict[str, Array]:
         on_links(machine, poses), springs_on_links(machine, poses)
     ):
         total[link] += action(subject, link, at, force, torque)
-    total[machine.drive.link][:, 2] += forces.drive_torque
+    for link, torque in forces.drives.items():
+        total[link][:, 2] += torque
     return total
 
 

@@ -18,11 +18,12 @@ from equipoise.keys.declaring import declarations
 from equipoise.mechanism.balance import Limit
 from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.field import Planting
-from equipoise.mechanism.model import FRAME, Vector
+from equipoise.mechanism.model import FRAME, FurtherDrive, Vector
 from equipoise.mechanism.objectives import quantity_of
 from equipoise.quantities import SI
 
 Value = TypeVar("Value")
+Driven = TypeVar("Driven", eq.Drive, FurtherDrive)
 Map = Callable[[complex], complex]
 
 
@@ -69,6 +70,7 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
     return replace(
         machine,
         drive=swung(machine.drive, lambda value: value + angle, lambda phase: phase + angle),
+        drives=tuple(later_drive(one, angle) for one in machine.drives),
         frame=mapped(machine.frame, lambda z: z * turn),
         gravity=vector(lambda z: z * turn, machine.gravity),
         sliders=tuple(
@@ -92,6 +94,13 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
     )
 
 
+def later_drive(drive: FurtherDrive, angle: float) -> FurtherDrive:
+    """Turn a further drive as the frame, at crank angles that grow by the same angle."""
+    if drive.motion is None:
+        return replace(drive, start=drive.start + angle * (1 - drive.ratio))
+    return swung(drive, lambda value: value + angle, lambda phase: phase + angle)
+
+
 def put_off(gear: eq.Gear, later: float) -> eq.Gear:
     """A pair whose driver, seen from the carrier, comes to the same pitch points so much later."""
     shape = gear.shape
@@ -99,8 +108,8 @@ def put_off(gear: eq.Gear, later: float) -> eq.Gear:
 
 
 def swung(
-    drive: eq.Drive, change: Callable[[float], float], later: Callable[[float], float]
-) -> eq.Drive:
+    drive: Driven, change: Callable[[float], float], later: Callable[[float], float]
+) -> Driven:
     """Change the angles between which a drive swings by a sine, and when it begins."""
     law = drive.motion
     if law is None:
@@ -172,6 +181,10 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
     return replace(
         machine,
         drive=replace(drive, speed=-drive.speed, acceleration=-drive.acceleration),
+        drives=tuple(
+            replace(swung(one, operator.neg, operator.neg), start=-one.start)
+            for one in machine.drives
+        ),
         frame=mapped(machine.frame, np.conj),
         links={name: mirrored_link(link) for name, link in machine.links.items()},
         assembly={joint: flip.get(side, side) for joint, side in machine.assembly.items()},
@@ -412,6 +425,7 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
     return replace(
         machine,
         drive=replace(machine.drive, link=body(machine.drive.link)),
+        drives=tuple(replace(one, link=body(one.link)) for one in machine.drives),
         frame=keys(machine.frame),
         links={
             names(name): replace(link, points=keys(link.points))

@@ -75,10 +75,14 @@ def same_reaction(name: str, got: Any, want: Reaction, force: float, moment: flo
 
 
 def same_totals(forces: Any, solved: FreeBodies, force: float, moment: float) -> None:
-    """Compare what the drive exerts and what the frame bears."""
-    pushes = forces.motion.machine.drive.pushes
-    drive = forces.drive_force if pushes else forces.drive_torque
-    agree("drive", drive, solved.drive, TOLERANCE, force if pushes else moment)
+    """Compare what the drives exert and what the frame bears."""
+    if forces.motion.machine.drive.pushes:
+        (push,) = solved.drives.values()
+        agree("drive", forces.drive_force, push, TOLERANCE, force)
+    else:
+        for link, torque in solved.drives.items():
+            agree(f"drive torque of {link}", forces.drives[link], torque, TOLERANCE, moment)
+        assert forces.drive_torque is next(iter(forces.drives.values()))
     agree("frame force", vector(forces.frame_force), solved.frame_force, TOLERANCE, force)
     agree("frame moment", forces.frame_moment, solved.frame_moment, TOLERANCE, moment)
 

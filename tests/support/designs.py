@@ -80,6 +80,7 @@ def machine_of(base: Machine, plain: Plain) -> Machine:
     return Machine(
         title=base.title,
         drive=replace(base.drive, **plain["drive"]),
+        drives=base.drives,
         frame={name: tuple(place) for name, place in plain["frame"].items()},
         links=links,
         assembly=dict(base.assembly),

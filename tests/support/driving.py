@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import cos, pi, sin
 
 from equipoise.mechanism.laws import AngleLaw, LengthLaw
-from equipoise.mechanism.model import Drive
+from equipoise.mechanism.model import Drive, FurtherDrive
 
 Rates = tuple[float, float, float]
 """A value and its first and second derivative."""
@@ -44,9 +44,13 @@ FORMULAS = {
 """Laws from 0 to 1, as of Norton, Cam Design and Manufacturing Handbook."""
 
 
-def driven(drive: Drive, crank_angle: float) -> Rates:
-    """Return the driven link's angle and its derivatives by crank angle."""
-    return (crank_angle, 1.0, 0.0) if drive.motion is None else followed(drive.motion, crank_angle)
+def driven(drive: Drive | FurtherDrive, crank_angle: float) -> Rates:
+    """Return a driven link's angle and its derivatives by crank angle."""
+    if drive.motion is not None:
+        return followed(drive.motion, crank_angle)
+    if isinstance(drive, Drive):
+        return crank_angle, 1.0, 0.0
+    return drive.start + drive.ratio * crank_angle, drive.ratio, 0.0
 
 
 def followed(law: AngleLaw | LengthLaw, crank_angle: float) -> Rates:

@@ -22,8 +22,9 @@ def same_totals(subject: Subject, engine: Engine) -> float:
     machine, poses, forces = subject.machine, subject.poses, subject.forces
     told = engine(machine, poses)
     force, moment = FLOOR * force_size(machine, poses), FLOOR * moment_size(machine, poses)
-    rate = poses.omega[machine.drive.link] / machine.drive.speed  # what engines tell is work
-    torque = forces.drive_torque * rate
+    # engines tell the work of all drives by crank angle
+    torque = sum(forces.drives[d.link] * poses.omega[d.link] for d in machine.driven)
+    torque = torque / machine.drive.speed
     across = subject.forces.across
     return max(
         agree("rocking", vector(across.rocking_moment), told.rocking_moment, TOLERANCE, moment),

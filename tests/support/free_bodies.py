@@ -18,7 +18,7 @@ from itertools import chain, combinations
 import numpy as np
 
 from equipoise.mechanism.cams import Cam
-from equipoise.mechanism.model import FRAME, Gear, Machine
+from equipoise.mechanism.model import FRAME, Drive, FurtherDrive, Gear, Machine
 from support.cams import line_of_force
 from support.loads import on_links, springs_on_links
 from support.poses import Array, Poses, cross, drive_pivot, pin_between, pins, quarter
@@ -65,7 +65,7 @@ class FreeBodies:
     joints: Mapping[str, Reaction]
     gears: Mapping[str, Reaction]
     cams: Mapping[str, Reaction]
-    drive: Array
+    drives: Mapping[str, Array]
     frame_force: Array
     frame_moment: Array
 
@@ -145,14 +145,15 @@ def equations(machine: Machine, poses: Poses) -> System:
 
 
 def solved(system: System, joints: list[Contact], gears: list[Contact]) -> dict[str, Array]:
-    """Solve for all unknowns, (N, how many) for each contact and for the drive, named ''."""
+    """Solve for all unknowns, (N, how many) for each contact and for each drive, by its link."""
     columns, owners = [], []
     for contact in (*joints, *gears):
         columns += [system.pair(contact, direction, 0.0) for direction in contact.directions]
         if contact.couple:
             columns.append(system.pair(contact, np.zeros_like(contact.at), 1.0))
         owners += [contact.name] * contact.size
-    columns, owners = [*columns, driving(system)], [*owners, ""]
+    for drive in system.machine.driven:
+        columns, owners = [*columns, driving(system, drive)], [*owners, drive]
     matrix = np.stack(columns, -1)
     if matrix.shape[1] == matrix.shape[2]:
         found = np.linalg.solve(matrix, system.known[..., None])[..., 0]
@@ -164,14 +165,14 @@ def solved(system: System, joints: list[Contact], gears: list[Contact]) -> dict[
     return {name: found[:, [o == name for o in owners]] for name in dict.fromkeys(owners)}
 
 
-def driving(system: System) -> Array:
-    """Return the column of the drive: a torque on its link, or a force between two bodies."""
+def driving(system: System, drive: Drive | FurtherDrive) -> Array:
+    """Return the column of a drive: a torque on its link, or a force between two bodies."""
     machine = system.machine
     if machine.drive.stroke is not None:
         push = cylinder(machine, system.poses)
         return system.pair(push, push.directions[0], 0.0)
     torque = np.zeros_like(system.known)
-    torque[:, system.rows[machine.drive.link] + 2] = 1.0
+    torque[:, system.rows[drive.link] + 2] = 1.0
     return torque
 
 
@@ -324,15 +325,15 @@ def gathered(
         apart = separating(gear, machine, poses, unknowns[contact.name][:, 0])
         force = tangential.force + apart
         meshed[gear.name] = Reaction(contact.on, contact.by, contact.at, force, tangential.couple)
-    drive, torque = unknowns[""][:, 0], 0.0
+    drives = {drive.link: unknowns[drive][:, 0] for drive in machine.driven}
     pulls = [pull_on_frame(*acting) for acting in springs_on_links(machine, poses)]
-    if machine.drive.stroke is None:
-        torque = drive
-    else:
-        pulls.append(reaction(cylinder(machine, poses), unknowns[""]))
+    torque = sum(drives.values())
+    if machine.drive.stroke is not None:
+        torque = 0.0
+        pulls.append(reaction(cylinder(machine, poses), unknowns[machine.drive]))
     force, moment = on_frame(machine, [*held.values(), *meshed.values(), *pulls])
     pressed = {cam.name: held.pop(cam.name) for cam in machine.cams}
-    return FreeBodies(held, meshed, pressed, drive, force, moment - torque)
+    return FreeBodies(held, meshed, pressed, drives, force, moment - torque)
 
 
 def reaction(contact: Contact, unknowns: Array) -> Reaction:

@@ -26,7 +26,7 @@ from equipoise.mechanism.model import (
     Spring,
     Vector,
 )
-from support.machines_drives import moved
+from support.machines_drives import moved, two_driven
 from support.newton import Side, assembled
 from support.poses import Array, Poses, turned
 
@@ -712,6 +712,7 @@ def _more() -> Iterable[Callable[[np.random.Generator], Case]]:
 
 
 MOVED = [moved(maker) for maker in (slider_crank, watt, geared_counterweight)]
+MOVED.append(two_driven(geared_five_bar))
 KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
     maker.__name__: maker
     for maker in (

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.mechanism.laws import AngleLaw, AngleSegment
+from equipoise.mechanism.model import FurtherDrive
 from support.driving import FORMULAS
 
 if TYPE_CHECKING:
@@ -29,6 +30,22 @@ def moved(maker: Maker, law: Law | None = None) -> Maker:
 
     made.__name__ = f"moved_{maker.__name__}"
     return made
+
+
+def two_driven(maker: Maker) -> Maker:
+    """Return a maker of such machines whose gears are replaced by drives of the driven gears."""
+
+    def five_bar(rng: np.random.Generator) -> Case:
+        case = maker(rng)
+        drives = []
+        for gear in case.machine.gears:
+            turning = FurtherDrive(gear.driven, round(gear.speed_ratio * 12) / 12, gear.start)
+            swinging = FurtherDrive(gear.driven, motion=swing(rng))
+            drives.append(swinging if rng.random() < 0.5 else turning)
+        machine = replace(case.machine, gears=(), drives=tuple(drives))
+        return replace(case, machine=machine)
+
+    return five_bar
 
 
 def swing(rng: np.random.Generator) -> AngleLaw:

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from equipoise.mechanism.model import FRAME, Gear, Machine, Slider, Vector
+from equipoise.mechanism.model import FRAME, Drive, FurtherDrive, Gear, Machine, Slider, Vector
 from support.driving import driven
 from support.driving import followed as followed_law
 from support.poses import Array, Poses, cross, pins, quarter, turned
@@ -63,24 +63,24 @@ class Constraints:
         ]
         rows += [row for slider in self.machine.sliders for row in self._slider(q, rate, slider)]
         rows += [self._gear(q, rate, gear) for gear in self.machine.gears]
-        rows.append(self._driven(q, rate, self.commanded(crank_angle)[0]))
+        rows += [self._driven(q, rate, one, self.commanded(one, crank_angle)[0])
+                 for one in self.machine.driven]  # fmt: skip
         return Row(
             np.concatenate([row.residual for row in rows]),
             np.concatenate([row.jacobian for row in rows]),
             np.concatenate([row.bend for row in rows]),
         )
 
-    def commanded(self, crank_angle: float) -> tuple[float, float, float]:
-        """Return what the drive commands, and its derivatives by crank angle."""
-        drive = self.machine.drive
-        if drive.stroke is None:
-            return driven(drive, crank_angle)
-        return followed_law(drive.stroke, crank_angle)
+    def commanded(
+        self, drive: Drive | FurtherDrive, crank_angle: float
+    ) -> tuple[float, float, float]:
+        """Return what a drive commands, and its derivatives by crank angle."""
+        stroke = getattr(drive, "stroke", None)
+        return driven(drive, crank_angle) if stroke is None else followed_law(stroke, crank_angle)
 
-    def _driven(self, q: Array, rate: Array, wanted: float) -> Row:
-        """Return the equation of the drive: an angle, or the length that pushes."""
-        drive = self.machine.drive
-        if drive.stroke is None:
+    def _driven(self, q: Array, rate: Array, drive: Drive | FurtherDrive, wanted: float) -> Row:
+        """Return the equation of a drive: an angle, or the length that pushes."""
+        if not isinstance(drive, Drive) or drive.stroke is None:
             return self._turn({drive.link: 1.0}, q, -wanted)
         if drive.slider:
             one = next(one for one in self.machine.sliders if one.name == drive.slider)
@@ -277,22 +277,26 @@ def followed(constraints: Constraints, q: Array, here: float, there: float) -> A
 def slope(constraints: Constraints, q: Array, crank_angle: float) -> Array:
     """Return the derivative of the coordinates with respect to the crank angle."""
     row = constraints.at(q, np.zeros_like(q), crank_angle)
-    rate = constraints.commanded(crank_angle)[1]
-    return solved(row.jacobian, np.eye(len(row.jacobian))[-1] * rate)
+    drives = constraints.machine.driven
+    asked = np.zeros(len(row.jacobian))
+    asked[-len(drives) :] = [constraints.commanded(one, crank_angle)[1] for one in drives]
+    return solved(row.jacobian, asked)
 
 
 def moving(constraints: Constraints, angles: Array | list[float], found: list[Array]) -> Poses:
     """Return poses with the velocities and accelerations that the drive forces on them."""
     drive = constraints.machine.drive
-    last = np.eye(len(constraints.at(found[0], 0 * found[0], 0.0).residual))[-1]
+    drives = constraints.machine.driven
     rates, changes = [], []
     for angle, q in zip(angles, found, strict=True):
         rate = slope(constraints, q, angle) * drive.speed
         row = constraints.at(q, rate, angle)
         rates.append(rate)
-        _, first, second = constraints.commanded(angle)
-        asked = first * drive.acceleration + second * drive.speed**2
-        changes.append(solved(row.jacobian, row.bend + last * asked))
+        asked = np.zeros(len(row.jacobian))
+        for number, one in enumerate(drives, -len(drives)):
+            _, first, second = constraints.commanded(one, angle)
+            asked[number] = first * drive.acceleration + second * drive.speed**2
+        changes.append(solved(row.jacobian, row.bend + asked))
     q, v, a = np.array(found), np.array(rates), np.array(changes)
     columns = constraints.columns.items()
     return Poses(

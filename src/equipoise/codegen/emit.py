@@ -76,6 +76,8 @@ def _identified(writer: Writer, looked_up: re.Match[str], item: str) -> str:
         return _bearing(writer, item)
     if value in ORDERS:
         return _in_time(writer, _point(writer, item), ORDERS[value])
+    if value == "drive torque" and item in [drive.link for drive in writer.machine.driven]:
+        return writer.name(f"M({item})")
     if value not in TURNING:
         return _reaction(writer, item, value)
     if item not in writer.machine.links:
@@ -170,7 +172,7 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     if any(one.is_of_row for one in wanted):
         write_demands(writer)
     passed = ["{joint ", "{bearing "]
-    passed += [] if linkage.machine.drive.motion is None else ["{drive torque"]
+    passed += [] if linkage.machine.has_crank else ["{drive torque"]
     if any(value in (one.loop or "") for one in wanted for value in passed):
         if any(isinstance(step, LoopGroup) for step in linkage.motion):
             raise UsageError("joint forces of groups of loops cannot be computed in a loop")

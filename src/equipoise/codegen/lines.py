@@ -21,7 +21,7 @@ from equipoise.mechanism import kernels
 from equipoise.mechanism.dynamics import inertia_about, massless
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.loads import load_at
-from equipoise.mechanism.model import FRAME, Load, Spring
+from equipoise.mechanism.model import FRAME, Drive, FurtherDrive, Load, Spring
 from equipoise.mechanism.newton import LoopGroup
 from equipoise.mechanism.planes import beside
 from equipoise.mechanism.steps import (
@@ -54,10 +54,9 @@ class Writer:
 
     def __init__(self, linkage: Linkage) -> None:
         self.linkage, self.machine, self.sheet = linkage, linkage.machine, Sheet()
-        drive = self.machine.drive
         steps = any(isinstance(step, RunningAngle) for step in linkage.motion)
-        self.counted = steps or drive.motion is not None
-        self.orders: dict[str, float] = {FRAME: 0.0, drive.link: 1.0}
+        self.counted = steps or not self.machine.has_crank
+        self.orders: dict[str, float] = {FRAME: 0.0, self.machine.drive.link: 1.0}
         self.points = set(self.machine.frame)
         self.apart: dict[str, str] = {}
 
@@ -104,34 +103,33 @@ class Writer:
 
 def write_motion(writer: Writer) -> None:
     """Write the steps from the crank angle to every link."""
-    sheet, drive = writer.sheet, writer.machine.drive.link
+    sheet, driven = writer.sheet, writer.machine.driven
     for name in writer.machine.frame:
         sheet.slot(f"p({name})", _frame_point(name), vector=True)
         sheet.put(f"p1({name})", "0j")
         sheet.put(f"p2({name})", "0j")
-    moved = _driven(writer)
-    for link, *values in ((FRAME, "1 + 0j", "0.0", "0.0"), (drive, *moved[1:])):
+    moved = {FRAME: ("0.0", "1 + 0j", "0.0", "0.0")}
+    for link, (angle, *values) in (moved | {d.link: _driven(writer, d) for d in driven}).items():
         for name, value in zip(u(link), values, strict=True):
             sheet.put(name, value)
-    if writer.counted:
-        sheet.put(f"phi({FRAME})", "0.0")
-        sheet.put(f"phi({drive})", moved[0])
+        if writer.counted:
+            sheet.put(f"phi({link})", angle)
     for number, step in enumerate(writer.linkage.motion):
         _write_step(writer, step, "motion", number)
 
 
-def _driven(writer: Writer) -> tuple[str, str, str, str]:
-    """Angle, rotation and rates of the driven link, which no design changes."""
-    sheet, drive = writer.sheet, writer.machine.drive
-    if drive.motion is None:
+def _driven(writer: Writer, drive: Drive | FurtherDrive) -> tuple[str, str, str, str]:
+    """Angle, rotation and rates of a driven link, which no design changes."""
+    sheet, turned = writer.sheet, drive.turned
+    if writer.machine.has_crank:
         angle = sheet.row("theta", lambda theta: theta, "theta") if writer.counted else ""
         return angle, writer.turned(1.0), "1.0", "0.0"
     rows = {
-        "angle": lambda theta: drive.turned(theta)[0],
-        "cos": lambda theta: np.cos(drive.turned(theta)[0]),
-        "sin": lambda theta: np.sin(drive.turned(theta)[0]),
-        "first": lambda theta: drive.turned(theta)[1],
-        "second": lambda theta: drive.turned(theta)[2],
+        "angle": lambda theta: turned(theta)[0],
+        "cos": lambda theta: np.cos(turned(theta)[0]),
+        "sin": lambda theta: np.sin(turned(theta)[0]),
+        "first": lambda theta: turned(theta)[1] + 0.0 * theta,
+        "second": lambda theta: turned(theta)[2] + 0.0 * theta,
     }
     angle, cos, sin, *rates = (sheet.row(f"{name}({drive.link})", of) for name, of in rows.items())
     return angle, f"({cos} + 1j * {sin})", rates[0], rates[1]
@@ -252,7 +250,7 @@ def write_demands(writer: Writer) -> None:
         force, moment = demand_names(link)
         writer.sheet.put(force, " + ".join(force for _, force, _ in parts))
         writer.sheet.put(moment, " + ".join(moment for _, _, moment in parts))
-    if writer.machine.drive.motion is None:  # else its work tells nothing where the link rests
+    if writer.machine.has_crank:  # else work does not tell the torque of each drive
         writer.sheet.put("drive torque", " + ".join(_drive_torques(writer)))
 
 
@@ -339,11 +337,12 @@ def _drive_torques(writer: Writer) -> Iterator[str]:
 
 def write_joints(writer: Writer) -> None:
     """Write the pass from demands to the force in every joint."""
-    drive = writer.machine.drive.link
     for name, nothing in zip(demand_names(FRAME), ("0j", "0.0"), strict=True):
         writer.sheet.put(name, nothing)
     for number, step in enumerate(writer.linkage.forces):
         _write_step(writer, step, "forces", number)
-    writer.sheet.put(f"R({writer.linkage.pivot}/{drive})", writer.name(f"F({drive})"))
-    if writer.machine.drive.motion is not None:
-        writer.sheet.put("drive torque", writer.name(f"M({drive})"))
+    for drive in writer.machine.driven:
+        pivot = writer.linkage.anchors[drive.link]
+        writer.sheet.put(f"R({pivot}/{drive.link})", writer.name(f"F({drive.link})"))
+    if not writer.machine.has_crank:
+        writer.sheet.put("drive torque", writer.name(f"M({writer.machine.drive.link})"))

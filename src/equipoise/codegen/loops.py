@@ -90,7 +90,7 @@ class _Group:
         x, x1, x2, t, t1, t2 = (Term(self.sheet.name(name)) for name in names)
         if body == FRAME:
             return Pose((x, 0.0, 0.0), (1.0, 0.0, 0.0))
-        if body == self.machine.drive.link and self.machine.drive.motion is None:
+        if body == self.machine.drive.link and self.machine.has_crank:
             return Pose((x, 0.0, 0.0), (t, 1.0, 0.0))
         return Pose((x, x1, x2), (t, t1, t2))
 

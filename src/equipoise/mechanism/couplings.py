@@ -54,6 +54,12 @@ class Coupling(Protocol):
         """
 
 
+def as_fraction(ratio: float) -> Fraction | None:
+    """The ratio of whole numbers that a number is, or None if it is none."""
+    near = Fraction(ratio).limit_denominator(100_000)
+    return near if abs(float(near) - ratio) <= 1e-13 * abs(near) else None
+
+
 def coupled(
     angle_r: Any,
     w_r: Any,

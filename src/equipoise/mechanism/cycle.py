@@ -71,9 +71,9 @@ class Cycle:
 
 
 def turns_given(machine: Machine) -> int:
-    """Turns of the crank after which the drive and all loads of a machine are back."""
+    """Turns of the crank after which all drives and loads of a machine are back."""
     loads = (load.table.turns for load in machine.loads if load.table is not None)
-    return lcm(machine.drive.turns, *loads)
+    return lcm(*(drive.turns for drive in machine.driven), *loads)
 
 
 def close(
@@ -133,11 +133,12 @@ class _Grid:
         for name, table in near.tables.items() if near is not None else ():
             self.state[f"near({name})"] = table
         self.done: list[Group] = []
-        drive = machine.drive.link
-        angle = self.state[f"phi({drive})"]
-        turned = round(float(angle[-1] - angle[0]) / (2 * pi))
-        self.windings: dict[str, int] = {FRAME: 0, drive: turned}
-        self.tables: dict[str, Array] = {drive: angle}
+        self.tables: dict[str, Array] = {
+            drive.link: self.state[f"phi({drive.link})"] for drive in machine.driven
+        }
+        self.windings: dict[str, int] = {FRAME: 0}
+        for link, angle in self.tables.items():
+            self.windings[link] = round(float(angle[-1] - angle[0]) / (2 * pi))
         self.weakest: dict[str, tuple[float, float]] = {}
 
     def add(self, group: Group) -> None:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from importlib import import_module
 from math import copysign
 from typing import Any, ClassVar, Literal
 
@@ -13,15 +15,17 @@ from equipoise.keys import (
     Conditions,
     Frozen,
     Listing,
+    Number,
     Quantity,
     Table,
     Text,
     declared,
     key,
 )
-from equipoise.mechanism.checks import Bodies, bodies_at, unknown, wrong_speeds
+from equipoise.mechanism.checks import Bodies, bodies_at, unknown, unknown_link, wrong_speeds
+from equipoise.mechanism.couplings import as_fraction
 from equipoise.mechanism.force_elements import Motor, wrong_motor
-from equipoise.mechanism.laws import AngleLaw, LengthLaw, wrong_law
+from equipoise.mechanism.laws import MOST_TURNS, AngleLaw, LengthLaw, wrong_law
 
 
 @declared
@@ -137,7 +141,117 @@ class Drive(Frozen):
         return next((law.turns for law in (self.motion, self.stroke) if law), 1)
 
 
+@declared
+class FurtherDrive(Frozen):
+    """Another driven link, whose motion has a common period with the crank angle."""
+
+    called = to_say("{what} of the drive of the {link}")
+    conditions: ClassVar[Conditions] = {
+        "dependentSchemas": {"motion": {"properties": {"ratio": False, "start": False}}}
+    }
+
+    link: str = key(
+        Text(of="link"),
+        "the driven link; it shares exactly one point with the frame, about which it turns",
+        example="second crank",
+    )
+    ratio: float = key(
+        Number(),
+        "turns in a turn of the crank; negative turns the other way",
+        default=1.0,
+        word=to_say("turns in a turn of the crank"),
+    )
+    start: float = key(
+        "angle", "in the frame at crank angle 0", default=0.0, word=to_say("angle at the start")
+    )
+    motion: AngleLaw | None = key(
+        Table(AngleLaw, headed=True),
+        "how its angle goes with the crank angle, instead of `ratio` and `start`",
+        default=None,
+    )
+
+    def turned(self, crank_angle: Any) -> tuple[Any, Any, Any]:
+        """Its angle at crank angles (...), and its two derivatives by them."""
+        if self.motion is not None:
+            return self.motion.value(crank_angle)
+        return self.ratio * crank_angle + self.start, self.ratio, 0.0
+
+    @property
+    def turns(self) -> int:
+        """Turns of the crank after which it moves as before."""
+        if self.motion is not None:
+            return self.motion.turns
+        exact = as_fraction(self.ratio)
+        return 1 if exact is None else exact.denominator
+
+
+class Driven:
+    """What is driven of a machine."""
+
+    drive: Drive
+    drives: tuple[FurtherDrive, ...]
+
+    @cached_property
+    def turning(self) -> Any:
+        """What tells the angle of the drive's link where a stroke does; None elsewhere."""
+        if not self.drive.pushes:
+            return None
+        return import_module("equipoise.mechanism.cylinders").commanded(self)  # which needs this
+
+    def moved(self, crank_angle: Any) -> dict[str, tuple[Any, Any, Any]]:
+        """Angle of each driven link at crank angles (...), and its two derivatives by them."""
+        found = {drive.link: drive.turned(crank_angle) for drive in self.driven}
+        if self.turning is not None:
+            found[self.drive.link] = self.turning.value(crank_angle)
+        return found
+
+    @property
+    def driven(self) -> tuple[Drive | FurtherDrive, ...]:
+        """All drives; the crank angle is that of the first."""
+        return (self.drive, *self.drives)
+
+    @property
+    def told_drives(self) -> list[str]:
+        """Links that a torque drives, where there is more to tell than of one crank."""
+        return [] if self.has_crank or self.drive.pushes else [one.link for one in self.driven]
+
+    @property
+    def has_crank(self) -> bool:
+        """Whether one link alone is driven and turns with the crank angle."""
+        return not (self.drives or self.drive.motion or self.drive.pushes)
+
+
 # -- checks ----------------------------------------------------------------------------------------
+
+
+def wrong_together(first: Drive, others: Sequence[FurtherDrive]) -> Iterator[ModelError]:
+    """Everything that is wrong with drives beside each other."""
+    links = [first.link, *(one.link for one in others)]
+    for number, link in enumerate(links[1:], 1):
+        if link in links[:number]:
+            told = Note("{link!r} has a drive already; leave one of them out", link=link)
+            yield ModelError(f"drives[{number}].link", told)
+    if others and first.pushes:
+        yield ModelError("drives", Note("a stroke drives alone; leave either of them out"))
+
+
+def wrong_further(where: str, drive: FurtherDrive, bodies: Bodies) -> Iterator[ModelError]:
+    """Everything that is wrong with a further drive."""
+    yield from unknown_link(f"{where}.link", drive.link, bodies)
+    if drive.motion is not None:
+        yield from wrong_law(f"{where}.motion", drive.motion)
+        if drive.ratio != 1 or drive.start:
+            yield ModelError(where, Note("give either motion, or ratio and start"))
+    elif as_fraction(drive.ratio) is None or drive.turns > MOST_TURNS:
+        yield ModelError(
+            f"{where}.ratio",
+            Note(
+                "got {ratio!r}, with which the motion does not repeat within {most} turns of the "
+                "crank; give a fraction of small whole numbers",
+                ratio=drive.ratio,
+                most=MOST_TURNS,
+            ),
+        )
 
 
 def wrong_drive(drive: Drive, bodies: Bodies, sliders: list[str]) -> Iterator[ModelError]:

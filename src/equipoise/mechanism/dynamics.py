@@ -112,8 +112,13 @@ class Forces:
 
     @property
     def drive_torque(self) -> Array:
-        """Torque of the drive on its link, N m; times that link's speed it is the power fed in."""
+        """Torque of the first drive on its link, N m; times that link's speed it is its power."""
         return self.solved.drive_torque
+
+    @property
+    def drives(self) -> Mapping[str, Array]:
+        """Torque of each drive on its link, N m, by the name of the link."""
+        return self.solved.drives
 
     @property
     def drive_force(self) -> Array:
@@ -122,12 +127,22 @@ class Forces:
 
     @property
     def power(self) -> Array:
-        """Power fed in by the drive, W."""
-        motion = self.motion
-        drive = motion.machine.drive
-        if drive.pushes:
-            return self.drive_force * lengths(motion)[1] * motion.speed
-        return self.drive_torque * motion.links[drive.link].angular_velocity
+        """Power fed in by all drives, W."""
+        return np.asarray(sum(self._work_by_angle.values()) * self.motion.speed)
+
+    @property
+    def work(self) -> dict[str, float]:
+        """Work of each drive in a cycle, J; crank angles have to be those of a whole cycle."""
+        angle = 2 * np.pi * self.motion.turns * np.sign(self.motion.speed)
+        return {link: float(np.mean(one) * angle) for link, one in self._work_by_angle.items()}
+
+    @cached_property
+    def _work_by_angle(self) -> dict[str, Array]:
+        """Work of each drive by crank angle (N,), N m, by the name of its link."""
+        motion, links = self.motion, self.motion.links
+        if motion.machine.drive.pushes:
+            return {motion.machine.drive.link: self.drive_force * lengths(motion)[1]}
+        return {link: torque * links[link].angle_1 for link, torque in self.drives.items()}
 
     @cached_property
     def joints(self) -> Mapping[str, JointForce]:
@@ -258,6 +273,7 @@ def split(whole: Forces) -> Split:
         np.broadcast_to(on_frame * solved.frame_force, shape),
         np.broadcast_to(on_frame * solved.frame_moment(whole.about), shape),
         solved.drive_torque,
+        solved.drives,
         solved.joints,
         solved.gears,
         solved.cams,

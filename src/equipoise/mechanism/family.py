@@ -122,17 +122,17 @@ class Family:
         state: State = {"theta": theta}
         for name, places in self._frame.items():
             state.update({f"p({name})": places, f"p1({name})": 0j, f"p2({name})": 0j})
-        drives = [k.machine.drive for k in self.linkages]
-        angle, w, a = drives[0].turned(theta)
-        if any(drive.motion != drives[0].motion for drive in drives):
-            laws = zip(drives, theta, strict=True)
-            angle, w, a = map(np.array, zip(*(d.turned(row) for d, row in laws), strict=True))
-        for link, *values in (
-            (FRAME, 1 + 0j, 0.0, 0.0),
-            (drives[0].link, np.exp(1j * angle), w, a),
-        ):
-            state.update(zip(u(link), values, strict=True))
-        return state | {f"phi({FRAME})": np.zeros_like(theta), f"phi({drives[0].link})": angle}
+        state.update(zip(u(FRAME), (1 + 0j, 0.0, 0.0), strict=True))
+        state[f"phi({FRAME})"] = np.zeros_like(theta)
+        for alike in zip(*(k.machine.driven for k in self.linkages), strict=True):
+            angle, w, a = alike[0].turned(theta)
+            if any(drive != alike[0] for drive in alike):
+                each = (drive.turned(row) for drive, row in zip(alike, theta, strict=True))
+                rows = [np.broadcast_arrays(*values) for values in each]
+                angle, w, a = map(np.array, zip(*rows, strict=True))
+            state.update(zip(u(alike[0].link), (np.exp(1j * angle), w, a), strict=True))
+            state[f"phi({alike[0].link})"] = angle
+        return state
 
     def _one_by_one(self, theta: Array) -> State:
         """Some couplings and loops follow their own cycle, which stacked parameters do not tell."""

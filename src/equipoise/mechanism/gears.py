@@ -25,7 +25,7 @@ from equipoise.keys import (
 )
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body
-from equipoise.mechanism.couplings import Law, Relation, coupled
+from equipoise.mechanism.couplings import Law, Relation, as_fraction, coupled
 from equipoise.mechanism.gear_shapes import GearShape, wrong_shape
 
 MESHES = ("external", "internal")
@@ -155,8 +155,7 @@ class Gear(Frozen):
         if self.teeth is not None:
             ratio = Fraction(*self.teeth)
             return ratio if self.mesh == "internal" else -ratio
-        near = Fraction(self.speed_ratio).limit_denominator(100_000)
-        return near if abs(float(near) - self.speed_ratio) <= 1e-13 * abs(near) else None
+        return as_fraction(self.speed_ratio)
 
 
 def wrong_gear(where: str, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:

@@ -48,7 +48,7 @@ class Structure:
 
     @property
     def mobility(self) -> int:
-        """Count of free motions; the drive commands one of them."""
+        """Count of free motions; each drive commands one of them."""
         return self.freedom(self.bodies[1:], [FRAME])
 
     @property
@@ -65,7 +65,8 @@ def structure(machine: Machine) -> Structure:
     """Read joints off the names that bodies share."""
     result = joined(machine.bodies, machine.sliders, machine.couplings)
     _check_apart(machine, result.pins)
-    _check_mobility(result, machine.drive.link, _alike(machine.bodies, result.pins))
+    drives = [drive.link for drive in machine.driven]
+    _check_mobility(result, drives, _alike(machine.bodies, result.pins))
     return result
 
 
@@ -83,10 +84,10 @@ def joined(
     return Structure((*bodies,), pins, sliders, couplings)
 
 
-def undetermined(joints: Structure, drive: str) -> list[str]:
-    """Links that do not follow from the drive's motion."""
-    known = [FRAME, drive]
-    others = [link for link in joints.bodies[1:] if link != drive]
+def undetermined(joints: Structure, drives: Sequence[str]) -> list[str]:
+    """Links that do not follow from the motion of those that are driven."""
+    known = [FRAME, *drives]
+    others = [link for link in joints.bodies[1:] if link not in drives]
     while others:
         found = (group for group in subsets(joints, others) if joints.freedom(group, known) <= 0)
         if not (group := next(found, ())):
@@ -96,12 +97,12 @@ def undetermined(joints: Structure, drive: str) -> list[str]:
     return others
 
 
-def held_too_often(joints: Structure, drive: str) -> tuple[str, ...]:
-    """The links that too many joints hold; the drive where none but it is."""
-    known = [FRAME, drive]
-    others = [link for link in joints.bodies[1:] if link != drive]
+def held_too_often(joints: Structure, drives: Sequence[str]) -> tuple[str, ...]:
+    """The links that too many joints hold; those that are driven where none but they are."""
+    known = [FRAME, *drives]
+    others = [link for link in joints.bodies[1:] if link not in drives]
     held = (group for group in subsets(joints, others) if joints.freedom(group, known) < 0)
-    return next(held, (drive,))
+    return next(held, tuple(drives))
 
 
 def _check_apart(machine: Machine, pins: Mapping[str, tuple[str, ...]]) -> None:
@@ -125,12 +126,12 @@ def _check_apart(machine: Machine, pins: Mapping[str, tuple[str, ...]]) -> None:
             seen[place] = point
 
 
-def drive_pivot(joints: Structure, drive: str) -> str:
-    """Return the point at which the drive link turns in the frame."""
+def drive_pivot(joints: Structure, drive: str, where: str = "drive.link") -> str:
+    """Return the point at which a driven link turns in the frame."""
     pivots = joints.pins_between(FRAME, drive)
     if len(pivots) != 1:
         raise ModelError(
-            "drive.link",
+            where,
             Note(
                 "{drive!r} shares {pivots} points with the frame; the drive link turns "
                 "about exactly one point of the frame",
@@ -192,16 +193,28 @@ def _alike(bodies: Bodies, pins: Iterable[str]) -> Note | str:
     return ""
 
 
-def _check_mobility(joints: Structure, drive: str, alike: Note | str) -> None:
-    if (mobility := joints.mobility) <= 1:  # whether joints hold too much, lengths decide
-        return
+def _check_mobility(joints: Structure, drives: Sequence[str], alike: Note | str) -> None:
+    mobility = joints.mobility
+    if mobility == len(drives) or (mobility < 1 and len(drives) == 1):
+        return  # whether joints hold too much, lengths decide
+    if len(drives) > 1:
+        raise MobilityError(
+            Note(
+                "the linkage has {mobility} free motions ({count}), and {drives} drives command as "
+                "many as they are; give it as many drives as free motions{alike}",
+                mobility=mobility,
+                count=_count(joints),
+                drives=len(drives),
+                alike=alike,
+            )
+        )
     raise MobilityError(
         Note(
             "the linkage has {mobility} free motions ({count}), and one drive can "
             "command only one; the drive leaves {names} undetermined{alike}",
             mobility=mobility,
             count=_count(joints),
-            names=_names(undetermined(joints, drive)),
+            names=_names(undetermined(joints, drives)),
             alike=alike,
         )
     )
@@ -227,9 +240,9 @@ def no_motion(joints: Structure) -> Note:
     )
 
 
-def held_fast(joints: Structure, drive: str) -> MobilityError:
+def held_fast(joints: Structure, drives: Sequence[str]) -> MobilityError:
     """An error for joints that hold links whatever the lengths."""
-    names = _names(held_too_often(joints, drive))
+    names = _names(held_too_often(joints, drives))
     return MobilityError(
         Note("{held}; too many joints hold {names}", held=no_motion(joints), names=names)
     )

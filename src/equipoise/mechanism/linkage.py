@@ -19,8 +19,6 @@ from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism import groups
 from equipoise.mechanism.builder import Builder, Group, Guide, Outer
-from equipoise.mechanism.cam_groups import follower
-from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.checks import MODE, MODES, meant
 from equipoise.mechanism.cycle import Cycle, close
 from equipoise.mechanism.joints import (
@@ -88,11 +86,11 @@ class Linkage:
 
     @cached_property
     def reactions(self) -> tuple[Reaction, ...]:
-        """Every joint, the drive's pin first."""
+        """Every joint, the pins of the drives first."""
         if self.shared is not None:
             return self.shared.reactions
-        drive = pin_reaction(self.pivot, self.machine.drive.link, FRAME)
-        return (drive, *(reaction for group in self.groups for reaction in group.reactions))
+        drives = (pin_reaction(self.anchors[d.link], d.link, FRAME) for d in self.machine.driven)
+        return (*drives, *(reaction for group in self.groups for reaction in group.reactions))
 
     @cached_property
     def named_reactions(self) -> tuple[tuple[str, Reaction], ...]:
@@ -112,7 +110,7 @@ class Linkage:
         return same
 
     def start(self, theta: np.ndarray) -> State:
-        """State in which only the frame and the drive link are known."""
+        """State in which only the frame and the driven links are known."""
         return initial_state(self.machine, theta)
 
     def solve(self, theta: np.ndarray) -> State:
@@ -162,8 +160,7 @@ def ordered(
     """
     from equipoise.mechanism import sides
 
-    pivot = drive_pivot(joints, machine.drive.link)
-    builder, groups, choices = _grouped(machine, joints, pivot, start or {}, assumed)
+    builder, groups, choices = _grouped(machine, joints, start or {}, assumed)
     pointed_at = {point for group in groups if group.kind == "pointed"
                   for link in group.links for point in machine.links[link].points}  # fmt: skip
     asked = builder.sides | pointed_at  # of links that two pins hold lengths decide the side
@@ -184,7 +181,8 @@ def ordered(
                 hint=hint,
             ),
         )
-    order, whole = tuple(groups), shared(builder, joints, pivot, tuple(groups))
+    pivot, order = builder.anchors[FRAME], tuple(groups)
+    whole = shared(builder, joints, pivot, order)
     return Linkage(machine, joints, pivot, builder.anchors, order, shared=whole)
 
 
@@ -198,31 +196,32 @@ def sides_at_position(machine: Machine) -> dict[str, str]:
     """
     bare = replace(machine, assembly={})
     joints = structure(bare)
-    _, _, choices = _grouped(bare, joints, drive_pivot(joints, bare.drive.link), {}, NOTHING)
+    _, _, choices = _grouped(bare, joints, {}, NOTHING)
     return {one.joint: one.words[one.side] for one in choices}
 
 
 def _grouped(
     machine: Machine,
     joints: Structure,
-    pivot: str,
     start: State,
     assumed: Mapping[str, tuple[int, str]],
 ) -> tuple[Builder, list[Group], list[Any]]:
-    """What the drive determines, group by group, and the sides that the file leaves out."""
+    """What the drives determine, group by group, and the sides that the file leaves out."""
     from equipoise.mechanism import sides
 
-    drive = machine.drive.link
     mode = machine.assembly.get(MODE)
     if mode not in MODES:
         mode = MODES[0] if joints.mobility < 1 else None
-    points, running = set(machine.frame), {FRAME, drive}
+    drives = {machine.drive.link: drive_pivot(joints, machine.drive.link)}
+    for number, one in enumerate(machine.drives, 1):
+        drives[one.link] = drive_pivot(joints, one.link, f"drives[{number}].link")
+    points, running = set(machine.frame), {FRAME, *drives}
     builder = Builder(machine, points=points, running=running, told=start, mode=mode)
     surplus: frozenset[str] = frozenset()
     if joints.mobility < 1:
         surplus, joints = surplus_cranks(machine, joints), joints.needed
-    builder.add({FRAME: pivot, drive: pivot})
-    unknown = [link for link in machine.links if link != drive]
+    builder.add({FRAME: drives[machine.drive.link], **drives})
+    unknown = [link for link in machine.links if link not in drives]
     groups: list[Group] = []
     choices: list[sides.Choice] = []
     while unknown:
@@ -268,7 +267,7 @@ def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group
     for links in subsets(joints, unknown):
         freedom = joints.freedom(links, known)
         if freedom < 0 and joints.mobility < 1:
-            raise held_fast(joints, builder.machine.drive.link)
+            raise held_fast(joints, [drive.link for drive in builder.machine.driven])
         if freedom < 0:
             raise MobilityError(
                 Note(
@@ -301,9 +300,7 @@ def _coupled(builder: Builder, joints: Structure, unknown: list[str]) -> Group |
     for one in joints.couplings:
         ready = one.driven in unknown and {one.driver, one.carrier} <= known.keys()
         if ready and joints.freedom([one.driven], known) == 0:
-            build: Any = follower if isinstance(one, Cam) else groups.coupled
-            group: Group = build(builder, joints, one)
-            return group
+            return groups.coupled(builder, joints, one)
     return None
 
 

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
@@ -45,7 +43,14 @@ from equipoise.mechanism.checks import (
     wrong_text,
 )
 from equipoise.mechanism.couplings import Coupling
-from equipoise.mechanism.drives import Drive, wrong_drive
+from equipoise.mechanism.drives import (
+    Drive,
+    Driven,
+    FurtherDrive,
+    wrong_drive,
+    wrong_further,
+    wrong_together,
+)
 from equipoise.mechanism.field import Planting, wrong_planting
 from equipoise.mechanism.force_elements import Load, LoadTable, wrong_load
 from equipoise.mechanism.gears import Gear, wrong_gear
@@ -57,7 +62,7 @@ from equipoise.mechanism.links import (
     wrong_points,
 )
 from equipoise.mechanism.parts import Bearing, JointStiffness, Slider, wrong_joint, wrong_slider
-from equipoise.mechanism.places import Frame, Position
+from equipoise.mechanism.places import Frame, Position, wrong_position
 from equipoise.mechanism.planes import wrong_planes
 from equipoise.mechanism.shown_units import ShownUnits
 from equipoise.mechanism.springs import Spring, wrong_ends
@@ -70,6 +75,7 @@ __all__ = [
     "FRAME",
     "Cam",
     "Drive",
+    "FurtherDrive",
     "Gear",
     "Link",
     "Load",
@@ -87,7 +93,7 @@ __all__ = [
 MOVING = ("link", "motion", "between", "slider", "stroke", "start")
 """What of the drive sets how the links move."""
 MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "cams": 100, "loads": 500,
-        "springs": 200, "joints": 500}  # fmt: skip
+        "springs": 200, "joints": 500, "drives": 20}  # fmt: skip
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 BESIDE = ("bodies", "plane", "planes")
 """Keys of a link that change nothing about the motion, beside its mass."""
@@ -97,13 +103,13 @@ STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 
 
 @declared
-class Machine(Frozen):
+class Machine(Driven, Frozen):
     """A planar linkage with its drive, loads, springs and gravity."""
 
     beside: ClassVar[Keys] = {"schema": VERSION}
-    file_order = ("schema", "title", "description", "units", "gravity", "drive", "frame", "links",
-                  "bearings", "assembly", "sliders", "gears", "cams", "loads", "springs", "joints",
-                  "position", "planting", "support", "rows", "balance")  # fmt: skip
+    file_order = ("schema", "title", "description", "units", "gravity", "drive", "drives", "frame",
+                  "links", "bearings", "assembly", "sliders", "gears", "cams", "loads", "springs",
+                  "joints", "position", "planting", "support", "rows", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(Table(Drive), "the link that is driven")
@@ -148,6 +154,10 @@ class Machine(Frozen):
     springs: tuple[Spring, ...] = key(
         Tables(Table(Spring)), "linear springs between links, or links and frame", default=()
     )
+    drives: tuple[FurtherDrive, ...] = key(
+        Tables(Table(FurtherDrive)), "links that are driven besides", default=()
+    )
+
     joints: tuple[JointStiffness, ...] = key(
         Tables(Table(JointStiffness)),
         "stiffness of joints, by which they share forces that statics leaves open; those left out "
@@ -181,18 +191,6 @@ class Machine(Frozen):
     def bodies(self) -> Bodies:
         """Points of the frame and of every link, in their own axes."""
         return {FRAME: self.frame} | {name: link.points for name, link in self.links.items()}
-
-    @cached_property
-    def turning(self) -> Any:
-        """What tells the angle of the drive's link where a stroke does; None elsewhere."""
-        if not self.drive.pushes:
-            return None
-        return import_module("equipoise.mechanism.cylinders").commanded(self)  # which needs this
-
-    def turned(self, crank_angle: Any) -> tuple[Any, Any, Any]:
-        """Angle of the drive's link at crank angles (...), and its two derivatives by them."""
-        law = self.turning
-        return self.drive.turned(crank_angle) if law is None else law.value(crank_angle)
 
     @property
     def couplings(self) -> tuple[Coupling, ...]:
@@ -297,6 +295,7 @@ LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
     "sliders": wrong_slider,
     "gears": wrong_gear,
     "cams": wrong_cam,
+    "drives": wrong_further,
     "loads": wrong_load,
     "springs": wrong_ends,
     "joints": wrong_joint,
@@ -315,16 +314,11 @@ def _problems(machine: Machine) -> Iterator[ModelError]:
     for name, link in machine.links.items():
         yield from wrong_link(f"links.{name}", name, link)
     yield from unknown_link("drive.link", machine.drive.link, bodies)
+    yield from wrong_together(machine.drive, machine.drives)
     for name, wrong in LISTS.items():
         for where, item in numbered(name, getattr(machine, name)):
             yield from wrong(where, item, bodies)
-    if machine.position is not None:
-        known = dict.fromkeys(point for link in machine.links.values() for point in link.points)
-        for point in machine.position.points:
-            if point not in known:
-                yield ModelError(f"position.points.{point}", unknown(point, known, "point"))
-        for name in machine.position.angles:
-            yield from unknown_link(f"position.angles.{name}", name, bodies)
+    yield from wrong_position(machine.position, bodies)
     yield from wrong_planting(machine.planting, bodies)
     yield from wrong_drive(machine.drive, bodies, [one.name for one in machine.sliders])
     yield from wrong_planes(machine)

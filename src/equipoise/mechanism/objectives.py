@@ -32,7 +32,7 @@ from equipoise.quantities import NUMBER, Dimension, pattern
 MEASURES: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak", "area")
 """Root of the mean square, the same about the mean, largest size, largest minus smallest value, and
 area under the absolute value over one turn of the crank."""
-MEASURED_IN: tuple[Dimension, ...] = ("force", "torque", "energy", "length", "angle")
+MEASURED_IN: tuple[Dimension, ...] = ("force", "torque", "power", "energy", "length", "angle")
 """What measures of outputs can be."""
 OF_ROWS = tuple(
     name.removeprefix("rows.")

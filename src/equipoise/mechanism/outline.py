@@ -99,8 +99,14 @@ class Outline:
         return joined(self.bodies, self.sliders, self.gears)
 
     @property
+    def driven(self) -> list[str]:
+        """Links with a drive, as far as they are there."""
+        drives = (*([self.drive] if self.drive else ()), *self.rest.get("drives", ()))
+        return [drive.link for drive in drives]
+
+    @property
     def mobility(self) -> int:
-        """Count of free motions; the drive commands one of them."""
+        """Count of free motions; each drive commands one of them."""
         return self.joints.freedom(self.links, [FRAME])
 
     @property

@@ -118,6 +118,7 @@ def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Re
         solved.frame_force,
         solved.frame_moment(pole),
         solved.drive_torque,
+        solved.drives,
         solved.joints,
         solved.gears,
         solved.cams,

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+from equipoise.errors import ModelError
 from equipoise.i18n import to_say
 from equipoise.keys import Frozen, Named, Point, Quantity, declared, key
-from equipoise.mechanism.checks import Vector
+from equipoise.mechanism.checks import FRAME, Bodies, Vector, unknown, unknown_link
 
 
 @declared
@@ -49,3 +50,15 @@ class Frame(Frozen):
     @classmethod
     def to_table(cls, value: Any) -> dict[str, Any]:
         return {"points": value}
+
+
+def wrong_position(position: Position | None, bodies: Bodies) -> Iterator[ModelError]:
+    """Everything that is wrong with a rough pose."""
+    if position is None:
+        return
+    known = {point: None for body, points in bodies.items() if body != FRAME for point in points}
+    for point in position.points:
+        if point not in known:
+            yield ModelError(f"position.points.{point}", unknown(point, known, "point"))
+    for name in position.angles:
+        yield from unknown_link(f"position.angles.{name}", name, bodies)

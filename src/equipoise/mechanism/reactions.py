@@ -20,7 +20,7 @@ from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.parts import JOINTS
 from equipoise.mechanism.pushing import pushes
-from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, run
+from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, demand_names, run
 from equipoise.mechanism.undecided import hidden
 
 PUSH = "D"
@@ -108,9 +108,15 @@ class Pass:
     state: State
 
     @cached_property
+    def drives(self) -> dict[str, Array]:
+        """Torque of each drive on its link, N m, by the name of the link."""
+        links = (drive.link for drive in self.motion.machine.driven)
+        return {link: full(self.motion, self.state[f"M({link})"], float) for link in links}
+
+    @property
     def drive_torque(self) -> Array:
-        """Torque of the drive on its link, N m."""
-        return full(self.motion, self.state[f"M({self.motion.machine.drive.link})"], float)
+        """Torque of the first drive on its link, N m."""
+        return self.drives[self.motion.machine.drive.link]
 
     @cached_property
     def drive_force(self) -> Array:
@@ -120,15 +126,17 @@ class Pass:
     @cached_property
     def frame_force(self) -> Array:
         """Sum of the forces of all joints on the frame, N, complex."""
-        drive = self.motion.machine.drive.link
-        return full(self.motion, -self.state[f"F({FRAME})"] - self.state[f"F({drive})"], complex)
+        total = sum(self.state[f"F({body})"] for body in (FRAME, *self.drives))
+        return full(self.motion, -total, complex)
 
     def frame_moment(self, about: complex) -> Array:
-        """Moment of all joints and of the drive on the frame about a point, N m."""
-        drive, pivot = self.motion.machine.drive.link, self.state[f"p({self.motion.linkage.pivot})"]
-        about_pivot = -self.state[f"M({FRAME})"] - self.state[f"M({drive})"]
-        moment: Array = about_pivot + kernels.cross(pivot - about, self.frame_force)
-        return moment
+        """Moment of all joints and of the drives on the frame about a point, N m."""
+        anchors, total = self.motion.linkage.anchors, np.zeros(())
+        for body in (FRAME, *self.drives):
+            force, moment = (self.state[name] for name in demand_names(body))
+            arm = self.state[f"p({anchors[body]})"] - about
+            total = total - moment - kernels.cross(arm, force)
+        return total
 
     @property
     def joints(self) -> dict[str, JointForce]:
@@ -238,8 +246,8 @@ def _passed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) ->
     run([step for step in motion.linkage.forces if not is_known(step)], state)
     for name, more in zip((f"F({FRAME})", f"M({FRAME})"), on_frame, strict=True):
         state[name] = state[name] + more
-    drive = motion.machine.drive.link
-    state[f"R({motion.linkage.pivot}/{drive})"] = state[f"F({drive})"]
+    for drive in motion.machine.driven:
+        state[f"R({motion.linkage.anchors[drive.link]}/{drive.link})"] = state[f"F({drive.link})"]
     return Pass(motion, state)
 
 

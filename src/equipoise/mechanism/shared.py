@@ -277,13 +277,16 @@ def shared(
     builder: Builder, joints: Structure, pivot: str, groups: tuple[Group, ...]
 ) -> Shared | None:
     """The free bodies of a machine whose groups cannot tell the forces one after the other."""
-    count = "" if joints.mobility == 1 else no_motion(joints)
+    count = no_motion(joints) if joints.mobility < 1 else ""
     if not count and builder.machine.joints:
         raise ModelError(
             "joints", "statics decides all joint forces of this linkage; leave their stiffness out"
         )
     if not count and not any(group.through for group in groups):
         return None
+    if builder.machine.drives:
+        told = Note("parallel linkages go on through their change points with one drive only")
+        raise ModelError("drives", told)
     links = tuple(body for body in builder.rank if body != FRAME)
     maker = Maker(builder, joints, links)
     maker.anchors = {link: builder.anchors[link] for link in links}

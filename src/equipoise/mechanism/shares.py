@@ -22,6 +22,7 @@ springs."""
 class Shares:
     """Outputs told apart: arrays (..., N), whose first axes are what they are shares of.
 
+    drives : link -> torque of its drive, N m, of which `drive_torque` is the first.
     shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
     drive_force : N, of a drive that pushes.
     joints, gears, cams : name -> force whose arrays have those axes.
@@ -33,6 +34,7 @@ class Shares:
     frame_force: Array
     frame_moment: Array
     drive_torque: Array
+    drives: Mapping[str, Array]
     joints: Mapping[str, JointForce]
     gears: Mapping[str, MeshForce]
     cams: Mapping[str, CamForce]
@@ -69,6 +71,7 @@ class Split(Shares):
             found[f"joints.{name}"] = joint.value
             if isinstance(joint, SliderForce):
                 found[f"joints.{name}.moment"] = joint.moment
+        found |= {f"drives.{name}.torque": torque for name, torque in self.drives.items()}
         found |= {f"gears.{name}": mesh.value for name, mesh in self.gears.items()}
         found |= {f"cams.{name}": pressed.value for name, pressed in self.cams.items()}
         if self.across is not None:

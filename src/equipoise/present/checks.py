@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from math import degrees
 from typing import TYPE_CHECKING
 
 from equipoise.errors import ModelError
 from equipoise.handheld.design_plan import OUTPUTS
 from equipoise.handheld.hand_blocks import varied_named
-from equipoise.i18n import Note
 from equipoise.mechanism.assessment import remarks
-from equipoise.mechanism.cam_contacts import let_go
-from equipoise.mechanism.cam_fits import fits_of, sharpest
 from equipoise.mechanism.cycle import turns_given
-from equipoise.mechanism.dynamics import forces, massless
+from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.loads import work_in_cycle
-from equipoise.mechanism.motion import move
 from equipoise.mechanism.support import idle_parts
-from equipoise.quantities import PER_RPM, SI, Dimension, display, format_exact, number, told
+from equipoise.quantities import PER_RPM, SI, Dimension, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
-from equipoise.results.cam_blocks import lost_told
-from equipoise.results.machine_blocks import bodies_tables, driven, place_told
+from equipoise.results.cam_blocks import cams_told, where_lost
+from equipoise.results.drive_blocks import driven
+from equipoise.results.machine_blocks import bodies_tables, place_told
 from equipoise.vibration.body import Body, at_rest
 from equipoise.vibration.linear import Excitation as Shaking
 
@@ -43,17 +39,23 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     """How the linkage is built up, and what to look at again."""
     linkage = assemble(machine)
     cycle, drive = linkage.cycle, machine.drive
-    about = f"{drive.link} at {number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
-    if drive.pushes or drive.motion is not None:
-        about = driven(machine, drive.speed)
-    yield Text(f"{len(machine.links)} moving links, one free motion; driven: {about}")
+    told = f"{drive.link} at {number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
+    if not machine.has_crank:
+        told = driven(machine, drive.speed)
+    free = "one free motion" if not machine.drives else f"{len(machine.driven)} free motions"
+    yield Text(f"{len(machine.links)} moving links, {free}; driven: {told}")
     yield from map(Text, _build_up(linkage))
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
     repeats = "motion repeats" if turns_given(machine) == 1 else "motion and loads repeat"
     fully = "" if drive.pushes or drive.motion is not None else "the crank turns fully; "
     yield Text(f"{fully}the {repeats} after {turns}")
     yield from bodies_tables(machine)
-    parts = (*_springs(machine), *_cams(linkage), *_drive_train(machine), *_support(machine))
+    parts = (
+        *_springs(machine),
+        *cams_told(machine, linkage.joints),
+        *_drive_train(machine),
+        *_support(machine),
+    )
     yield from map(Text, parts)
     if machine.loads:
         ends = (Column(end, "angle", "deg") for end in ("from", "to"))
@@ -61,7 +63,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
         yield Table.of("Loads, and their work in a cycle", heads, _loads(machine))
     if notes := (
         *remarks(linkage),
-        *_lost(machine),
+        *where_lost(machine),
         *idle_parts(machine.support),
         *_uncarried(machine),
     ):
@@ -123,24 +125,6 @@ def _springs(machine: Machine) -> Iterator[str]:
         free = f", free at {_length(spring.free_length)}" if spring.free_length else ""
         stiffness = told(spring.stiffness, "stiffness", "N/m")
         yield f"spring: from {spring.point} of {spring.link} to {spring.to}, {stiffness}{free}"
-
-
-def _cams(linkage: Linkage) -> Iterator[str]:
-    for fit in fits_of(linkage.machine, linkage.joints):
-        cam, (radius, where) = fit.cam, sharpest(fit)
-        law = f"{format_exact(cam.law.curve.extremes[1], cam.law.dimension)} at most"
-        yield (
-            f"cam: {cam.driver} moves {cam.driven} by {law}, {cam.rides}, closed by "
-            f"{cam.closed_by}; least radius of curvature {_length(radius)}, at cam angle "
-            f"{degrees(where):.4g} deg"
-        )
-
-
-def _lost(machine: Machine) -> Iterator[Note]:
-    """Where springs do not keep followers on their cams, at the file's speed."""
-    if machine.cams and not massless(machine):
-        lost = let_go(forces(move(machine)))
-        yield from (lost_told(one) for one in lost if one.ranges)
 
 
 def _drive_train(machine: Machine) -> Iterator[str]:

@@ -38,8 +38,9 @@ from equipoise.results.blocks import (
     Text,
     beside,
 )
+from equipoise.results.drive_blocks import driven
 from equipoise.results.joint_blocks import joint_blocks
-from equipoise.results.machine_blocks import angles_told, driven, model_blocks
+from equipoise.results.machine_blocks import angles_told, model_blocks
 from equipoise.vibration.blocks import model_told, response_blocks
 from equipoise.vibration.sweep_blocks import resonances_table
 

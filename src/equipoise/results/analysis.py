@@ -192,6 +192,8 @@ class Analysis(Result):
                 result[family] = ends
             result.update(_undecided(self.motion.linkage))
             result["about"] = {"x": found.about.real, "y": found.about.imag}
+            if not self.machine.has_crank and self.motion.whole_cycle:
+                result["drives"] = {link: {"work": work} for link, work in found.work.items()}
         for one in self.outputs.arrays:
             *keys, last = one.path
             values = result

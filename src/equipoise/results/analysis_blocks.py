@@ -15,10 +15,10 @@ from equipoise.mechanism.strokes import SHARE
 from equipoise.quantities import Dimension, angle, percent
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import cam_blocks
+from equipoise.results.drive_blocks import driven, drives_table
 from equipoise.results.joint_blocks import joint_blocks
 from equipoise.results.machine_blocks import (
     angles_told,
-    driven,
     four_bar_facts,
     four_bar_table,
     largest,
@@ -140,7 +140,7 @@ def advantages_table(analysis: Analysis) -> Table:
 
 def force_blocks(analysis: Analysis) -> Iterator[Block]:
     """Forces on frame and drive; what they come from; their orders."""
-    ones = [one for one in analysis.outputs.summed if one.group == "forces"]
+    ones = [one for one in analysis.outputs.summed if one.group in ("forces", "drives")]
     rows: list[tuple[Cell, ...]] = []
     for one in ones:
         found, kind = one.figures, one.dimension
@@ -158,6 +158,7 @@ def force_blocks(analysis: Analysis) -> Iterator[Block]:
     )
     labels = (say("mean"), say("RMS"), say("largest"), say("smallest"), say("peak to peak"))
     yield Table.of(title, ("", *labels), rows)
+    yield from drives_table(analysis)
     yield _by_link(analysis)
     yield _causes(analysis)
     if analysis.has_orders:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import pi
+from math import degrees, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,13 +11,17 @@ import numpy as np
 from equipoise.i18n import Note, all_of, say
 from equipoise.mechanism.cam_contacts import LetGo, let_go
 from equipoise.mechanism.cam_fits import fits_of, sharpest
+from equipoise.mechanism.dynamics import forces, massless
+from equipoise.mechanism.motion import move
 from equipoise.mechanism.spoken import body_named
-from equipoise.quantities import PER_RPM, angle, told
+from equipoise.quantities import PER_RPM, angle, format_exact, told
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest
 from equipoise.signals import figures
 
 if TYPE_CHECKING:
+    from equipoise.mechanism.joints import Structure
+    from equipoise.mechanism.model import Machine
     from equipoise.results.analysis import Analysis
 
 
@@ -74,3 +78,22 @@ def lost_told(one: LetGo) -> Note:
         if one.speed == 0
         else Note("its springs hold it up to {speed:.4g} rpm", speed=one.speed / PER_RPM),
     )
+
+
+def cams_told(machine: Machine, joints: Structure) -> Iterator[str]:
+    """What each cam is, a sentence each."""
+    for fit in fits_of(machine, joints):
+        cam, (radius, where) = fit.cam, sharpest(fit)
+        law = f"{format_exact(cam.law.curve.extremes[1], cam.law.dimension)} at most"
+        yield (
+            f"cam: {cam.driver} moves {cam.driven} by {law}, {cam.rides}, closed by "
+            f"{cam.closed_by}; least radius of curvature {told(radius, 'length', 'mm')}, at cam "
+            f"angle {degrees(where):.4g} deg"
+        )
+
+
+def where_lost(machine: Machine) -> tuple[Note, ...]:
+    """Where springs do not keep followers on their cams, at the file's speed."""
+    if not machine.cams or massless(machine):
+        return ()
+    return tuple(lost_told(one) for one in let_go(forces(move(machine))) if one.ranges)

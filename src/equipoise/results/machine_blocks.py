@@ -9,15 +9,14 @@ import numpy as np
 
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.bodies import inertia_of, together
-from equipoise.mechanism.spoken import body_named, joint_named
-from equipoise.quantities import PER_RPM, Dimension, Display, angle, display, number, told
+from equipoise.mechanism.spoken import body_named
+from equipoise.quantities import Dimension, Display, angle, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
 from equipoise.signals import Array, Figures, figures
 
 if TYPE_CHECKING:
     from equipoise.mechanism.assessment import FourBar
     from equipoise.mechanism.bodies import Body
-    from equipoise.mechanism.drives import Drive
     from equipoise.mechanism.model import Machine
     from equipoise.results.analysis import Analysis
 
@@ -237,35 +236,6 @@ def _support(machine: Machine) -> Iterator[str]:
 
 
 # -- motion ----------------------------------------------------------------------------------------
-
-
-def driven(machine: Machine, speed: float) -> str:
-    """How the drive runs."""
-    drive = machine.drive
-    law = drive.stroke or drive.motion
-    if law is not None and not law.windings:
-        low, high = law.extremes
-        unit = display(law.dimension, [low, high])
-        return say(
-            "{what} from {low} to {high} and back, {rate} cycles a minute",
-            what=pushed_named(drive) if drive.pushes else drive.link,
-            low=unit.text(low),
-            high=unit.with_unit(unit.text(high)),
-            rate=number(abs(speed) * 60 / law.period),
-        )
-    return say(
-        "{link} driven at {speed} rpm ({rate} rad/s)",
-        link=machine.drive.link,
-        speed=number(speed / PER_RPM),
-        rate=number(speed),
-    )
-
-
-def pushed_named(drive: Drive) -> str:
-    """What pushes, in words."""
-    if drive.between is None:
-        return joint_named(drive.slider)
-    return say("cylinder {a} to {b}", a=drive.between[0], b=drive.between[1])
 
 
 def angles_told(analysis: Analysis) -> str:

@@ -12,7 +12,7 @@ from equipoise.i18n import say
 from equipoise.quantities import PER_RPM, Dimension, number
 from equipoise.results.analysis_blocks import loud
 from equipoise.results.blocks import Block, Cell, Column, Facts, Notes, Table, Text, Value
-from equipoise.results.machine_blocks import driven
+from equipoise.results.drive_blocks import driven
 from equipoise.signals import Array
 from equipoise.vibration.response import MODELS, Model
 

@@ -30,6 +30,8 @@ FREE = Note(
     'it is "free", so that the speed follows from the motor and cannot be asked for; leave the '
     'speed out, or make it "held"'
 )
+WITH_CRANK = {"torque", "coupled", "exact"}
+"""Models in which the crank's torque acts on the support, or the support on the crank."""
 STEP_OF: dict[str, Step] = {
     "linear": "linear",
     "torque": "torque",
@@ -68,6 +70,14 @@ def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
                 value=model or "exact",
                 names=" and ".join(others),
             ),
+        )
+    if model in WITH_CRANK and not machine.has_crank:
+        raise UsageError(
+            Note(
+                "the model {value} is for one crank that turns, not for several drives or one that "
+                "follows a law; choose moment",
+                value=model,
+            )
         )
     if model is not None:
         return model
@@ -128,7 +138,10 @@ def models_of(machine: Machine) -> tuple[Model, ...]:
     """The models that can answer for a machine's support, from the plainest to the exact one."""
     if machine.support is None:
         return ()
-    return tuple(MODELS) if machine.support.planar else ("linear", "torque", "moment")
+    known: tuple[Model, ...] = tuple(MODELS)
+    if not machine.support.planar:
+        known = ("linear", "torque", "moment")
+    return known if machine.has_crank else tuple(one for one in known if one not in WITH_CRANK)
 
 
 Progress = Callable[[int, int], None]

@@ -27,7 +27,7 @@ def lacking(sketch: Sketch) -> str:
         too_many = say("free motions too many: {count}", count=mobility - 1)
         return f"{too_many}; {_loose(sketch, joints)}"
     if mobility < 1:
-        links = _listed(held_too_often(joints, drive.link if drive else ""), AND)
+        links = _listed(held_too_often(joints, sketch.driven), AND)
         return say("no free motion: too many joints hold {links}; free a point", links=links)
     return _without_drive(_pivoted(sketch)) if drive is None else ""
 
@@ -40,7 +40,7 @@ def _without_drive(cranks: Sequence[str]) -> str:
 
 def _loose(sketch: Sketch, joints: Structure) -> str:
     """What moves besides, and what to do about it."""
-    left = undetermined(joints, sketch.drive.link if sketch.drive else "")
+    left = undetermined(joints, sketch.driven)
     for link in left:
         free = [point for point in sketch.links[link].points if point not in joints.pins]
         held = len(sketch.links[link].points) - len(free)

@@ -14,8 +14,8 @@ from equipoise.web.design import Counterweight, Design
 from equipoise.web.edits import Solved, solved
 
 UNTITLED = "untitled"
-REST = ("title", "description", "gravity", "loads", "springs", "planting", "support", "rows",
-        "balance", "units")  # fmt: skip
+REST = ("title", "description", "gravity", "drives", "loads", "springs", "planting", "support",
+        "rows", "balance", "units")  # fmt: skip
 """Fields of a machine that a sketch hands on as they are."""
 
 

@@ -19,6 +19,7 @@ from equipoise.mechanism import (
     bodies,
     cams,
     counterweights,
+    drives,
     field,
     force_elements,
     gear_shapes,
@@ -51,7 +52,7 @@ PAGE = Path(__file__).parents[3] / "docs" / "model-file.md"
 DOCUMENTED: dict[str, type[Frozen]] = {
     of.__name__: of
     for of in (
-        Machine, shown_units.ShownUnits, parts.Drive, laws.AngleLaw,
+        Machine, shown_units.ShownUnits, parts.Drive, drives.FurtherDrive, laws.AngleLaw,
         laws.AngleSegment, laws.LengthLaw, laws.LengthSegment, force_elements.Motor, Frame,
         links.Link,
         bodies.Body, bodies.Hole, parts.Bearing, parts.Slider, parts.Gear,

@@ -1,0 +1,71 @@
+"""What is told of drives: how they run, and their work."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from equipoise.i18n import say
+from equipoise.mechanism.drives import Drive, FurtherDrive
+from equipoise.mechanism.spoken import joint_named
+from equipoise.quantities import PER_RPM, angle, display, number
+from equipoise.results.blocks import Column, Table, Value
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.model import Machine
+    from equipoise.results.analysis import Analysis
+
+
+def driven(machine: Machine, speed: float) -> str:
+    """How the drive runs."""
+    drive = machine.drive
+    law = drive.stroke or drive.motion
+    if machine.drives or (law is not None and law.windings):
+        return say(
+            "crank angle at {speed} rpm ({rate} rad/s): {drives}",
+            speed=number(speed / PER_RPM),
+            rate=number(speed),
+            drives=say(", ").join(map(drive_told, machine.driven)),
+        )
+    if law is not None:
+        low, high = law.extremes
+        unit = display(law.dimension, [low, high])
+        return say(
+            "{what} from {low} to {high} and back, {rate} cycles a minute",
+            what=pushed_named(drive) if drive.pushes else drive.link,
+            low=unit.text(low),
+            high=unit.with_unit(unit.text(high)),
+            rate=number(abs(speed) * 60 / law.period),
+        )
+    return say(
+        "{link} driven at {speed} rpm ({rate} rad/s)",
+        link=machine.drive.link,
+        speed=number(speed / PER_RPM),
+        rate=number(speed),
+    )
+
+
+def drives_table(analysis: Analysis) -> Iterator[Table]:
+    """What each drive does in a cycle, where there is more to it than one crank."""
+    if not analysis.machine.has_crank and analysis.motion.whole_cycle:
+        columns = (say("drive"), Column(say("work"), "energy"))
+        work = ((link, Value(one)) for link, one in analysis.forces.work.items())
+        yield Table.of(say("Work of the drives in a cycle"), columns, work)
+
+
+def drive_told(drive: Drive | FurtherDrive) -> str:
+    """How a driven link goes with the crank angle."""
+    if drive.motion is None:
+        ratio = number(getattr(drive, "ratio", 1.0))
+        return say("{link} turns {ratio} times as fast", link=drive.link, ratio=ratio)
+    low, high = map(angle, drive.motion.extremes)
+    if turns := drive.motion.windings:
+        return say("{link} makes {turns} turns in a cycle by a law", link=drive.link, turns=turns)
+    return say("{link} moves from {low} to {high} by a law", link=drive.link, low=low, high=high)
+
+
+def pushed_named(drive: Drive) -> str:
+    """What pushes, in words."""
+    if drive.between is None:
+        return joint_named(drive.slider)
+    return say("cylinder {a} to {b}", a=drive.between[0], b=drive.between[1])

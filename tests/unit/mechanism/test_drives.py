@@ -1,0 +1,120 @@
+"""Driven links that follow motion laws, and machines with several drives."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi, radians
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import MobilityError, ModelError, UsageError
+from equipoise.mechanism.force_elements import Motor
+from equipoise.mechanism.laws import AngleLaw, AngleSegment
+from equipoise.mechanism.model import Drive, FurtherDrive, Link, Machine
+from laws.subjects import gravity_power, kinetic_power
+from support.machines import make
+
+SWING = AngleLaw(between=(radians(-30), radians(40)))
+
+
+def five_bar(**changes):
+    """A five-bar with two drives, without loads and springs."""
+    return replace(make("five_bar", 1).machine, loads=(), springs=(), **changes)
+
+
+def test_a_swinging_pendulum_asks_for_the_torque_of_its_equation():
+    """The torque is that on the driven link, at reversal too, where it does no work."""
+    link = Link({"A": (0.0, 0.0)}, 2.0, (0.3, 0.0), 0.05)
+    pendulum = Machine(
+        title="",
+        drive=Drive("arm", 5.0, motion=SWING),
+        frame={"A": (0.0, 0.0)},
+        links={"arm": link},
+    )
+    analysis = eq.analyze(pendulum)
+    theta, half, middle = analysis.crank_angle, radians(35), radians(5)
+    angle, alpha = middle - half * np.cos(theta), half * np.cos(theta) * 25
+    wanted = (0.05 + 2 * 0.09) * alpha + 2 * 9.80665 * 0.3 * np.cos(angle)
+    np.testing.assert_allclose(analysis.forces.drive_torque, wanted, rtol=1e-12)
+    assert analysis.forces.work["arm"] == pytest.approx(0, abs=1e-13)
+    assert analysis.outputs["drives.arm.power"].values == pytest.approx(analysis.forces.power)
+
+
+def test_power_of_both_drives_is_what_the_machine_takes():
+    forces = eq.analyze(five_bar()).forces
+    taken = kinetic_power(forces).sum(axis=0) - gravity_power(forces).sum(axis=0)
+    np.testing.assert_allclose(forces.power, taken, atol=1e-12 * np.max(np.abs(taken)))
+    assert len(forces.drives) == 2
+
+
+def test_work_of_the_drives_is_told_and_cancels_without_losses():
+    analysis = eq.analyze(five_bar(), acceleration=0.0)
+    work = [one["work"] for one in analysis.to_dict()["drives"].values()]
+    period = 2 * pi * analysis.motion.turns / abs(analysis.motion.speed)
+    for link, one in zip(analysis.forces.drives, work, strict=True):
+        mean = np.mean(analysis.outputs[f"drives.{link}.power"].values)
+        assert one == pytest.approx(mean * period, abs=1e-9)
+    assert sum(work) == pytest.approx(0, abs=1e-9 * max(map(abs, work)))
+
+
+def test_parts_of_each_torque_add_up():
+    forces = eq.analyze(five_bar()).forces
+    regressor = eq.mechanism.regressor(forces.motion)
+    for link, torque in forces.drives.items():
+        parts = forces.split.by_cause(f"drives.{link}.torque")
+        np.testing.assert_allclose(sum(parts.values()), torque, atol=1e-9)
+        np.testing.assert_allclose(regressor.values @ regressor.drives[link], torque, atol=1e-9)
+
+
+def test_the_cycle_is_that_of_all_drives_and_laws():
+    machine = five_bar(drives=(FurtherDrive("follower", ratio=2 / 3),))
+    law = AngleLaw(between=(0.0, 2.0), turns=2)
+    machine = machine.with_drive(motion=law)
+    assert eq.move(machine, 4).turns == 6
+
+
+@pytest.mark.parametrize(
+    ("drives", "told"),
+    [
+        ((FurtherDrive("follower", ratio=pi),), r"drives\[1\].ratio: got 3.14159"),
+        ((FurtherDrive("crank"),), r"drives\[1\].link: 'crank' has a drive already"),
+        ((FurtherDrive("nobody"),), r"drives\[1\].link: no link is called 'nobody'"),
+        ((FurtherDrive("follower", 2.0, motion=SWING),), "give either motion, or ratio and start"),
+        ((FurtherDrive("follower", motion=AngleLaw()),), r"drives\[1\].motion: give exactly one"),
+    ],
+)
+def test_a_wrong_drive_is_told(drives, told):
+    with pytest.raises(ModelError, match=told):
+        five_bar(drives=drives)
+
+
+def test_drives_that_are_too_many_or_hang_nowhere_are_told():
+    machine = five_bar(drives=(FurtherDrive("follower"), FurtherDrive("left arm")))
+    with pytest.raises(MobilityError, match=r"has 2 free motions .* 3 drives"):
+        eq.mechanism.assemble(machine)
+    with pytest.raises(ModelError, match=r"drives\[1\].link: 'left arm' shares 0 points"):
+        eq.mechanism.assemble(five_bar(drives=(FurtherDrive("left arm"),)))
+
+
+def test_what_turns_with_a_crank_goes_with_no_motion():
+    for name, given in (("flywheel", 0.2), ("motor", Motor(300.0, 2.0))):
+        with pytest.raises(ModelError, match=f"drive.{name}: turns with the crank"):
+            eq.load("yamashita-1").with_drive(motion=SWING, **{name: given})
+
+
+def test_models_in_which_the_crank_turns_the_support_are_refused():
+    machine = eq.load("yamashita-rig")
+    machine = machine.with_drive(motion=SWING, motor=None, flywheel=0.0)
+    for model in ("torque", "coupled", "exact"):
+        with pytest.raises(UsageError, match=f"model {model} is for one crank that turns"):
+            eq.respond(machine, model=model)
+    assert eq.respond(machine, model="moment").gauges
+
+
+def test_a_file_keeps_drives_and_laws():
+    segments = (AngleSegment(pi, 1.0, "3-4-5"), AngleSegment(pi, 0.0))
+    drives = (FurtherDrive("follower", motion=AngleLaw(segments=segments)),)
+    machine = five_bar(drives=drives).with_drive(motion=SWING)
+    assert eq.loads(eq.dumps(machine)) == machine
