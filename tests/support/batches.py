@@ -14,6 +14,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.codegen import backends
+from equipoise.codegen.emit import can_emit
 from equipoise.codegen.figures import Figure
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Gear, Machine, Slider
@@ -21,6 +22,7 @@ from equipoise.mechanism.newton import LoopGroup
 from equipoise.mechanism.outputs import declared
 from equipoise.signals import Figures, figures
 from support.designs import Array, size_of
+from support.machines import KINDS, make
 from unit.mechanism.build import heavy, machine
 
 VALUES = ("mean", "rms", "peak", "max", "min", "peak_to_peak")
@@ -30,6 +32,9 @@ RATES = {"vx": 1, "vy": 1, "angular_velocity": 1, "x": 0, "y": 0}
 MOMENTS = ("moment", "shaking_moment", "frame_moment", "drive_torque")
 FLOOR = 1e-3
 """Part of its natural size below which a signal counts as vanishing."""
+
+WRITTEN = [kind for kind in KINDS if can_emit(assemble(make(kind, 0).machine))]
+"""Kinds of random machines, with the seed 0, whose steps can be written out."""
 
 
 @contextmanager

@@ -9,12 +9,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import pairwise
-from math import pi
+from math import pi, prod
 from typing import Any
 
 import numpy as np
 
 from equipoise.codegen.backends import processors, run_loop
+from equipoise.codegen.coupled import shifts_laws
 from equipoise.codegen.emit import emit
 from equipoise.codegen.figures import (
     CHANGE_POINT,
@@ -155,6 +156,8 @@ class Batch:
     ) -> None:
         if angles is not None and angles < 1:
             raise UsageError(f"got {angles} crank angles; give at least 1")
+        if shifts_laws(machine, paths):
+            raise UsageError("got the start of a body from whose angle a varying ratio counts")
         self.base = assemble(machine)
         self.paths, self.wanted = tuple(paths), tuple(wanted)
         self.angles, self.tolerance = angles, tolerance
@@ -169,6 +172,7 @@ class Batch:
         self.turns = self.base.cycle.turns if rounds else cycle.turns_given(machine)
         windings = self.base.cycle.windings if rounds else {}
         fastest = max((abs(turns) for turns in windings.values()), default=1) / self.turns
+        fastest *= prod(max(map(abs, g.ratios)) / abs(g.speed_ratio) for g in machine.gears)
         self.slope = SLOPE * max(1.0, fastest)
 
     def __call__(self, values: Array) -> tuple[Array, Array]:

@@ -8,12 +8,13 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from equipoise.codegen.coupled import can_write_couplings, shifts_laws
 from equipoise.codegen.figures import Figure, Gathered
-from equipoise.codegen.lines import Writer, write_demands, write_joints, write_motion
+from equipoise.codegen.lines import write_demands, write_joints, write_motion
 from equipoise.codegen.loops import can_write
 from equipoise.codegen.source import Source, source_of
+from equipoise.codegen.writer import Writer
 from equipoise.errors import MassError, UsageError
-from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.family import can_vary
 from equipoise.mechanism.linkage import Linkage, assemble
@@ -139,9 +140,9 @@ def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
 
 
 def can_emit(linkage: Linkage) -> bool:
-    """Whether the steps of a linkage can be written out: no soil, no gears beside loops or of
-    varying ratio, no drive that pushes, and no joints whose forces only all free bodies
-    together tell.
+    """Whether the steps of a linkage can be written out: no soil, no gears beside loops, no laws of
+    couplings at angles that designs change, no drive that pushes, and no joints whose forces only
+    all free bodies together tell.
     """
     if linkage.shared is not None or linkage.machine.drive.pushes:
         return False
@@ -149,8 +150,9 @@ def can_emit(linkage: Linkage) -> bool:
     if machine.planting is not None and machine.planting.soil is not None:
         return False
     loops = [step for step in linkage.motion if isinstance(step, LoopGroup)]
-    even = all(one.relation[0] is kernels.gear for one in machine.couplings)
-    return even and all(map(can_write, loops)) and not (loops and machine.couplings)
+    if not can_write_couplings(linkage):
+        return False
+    return all(map(can_write, loops)) and not (loops and machine.couplings)
 
 
 def emit(linkage: Linkage, gathered: Gathered) -> Source:
@@ -163,8 +165,8 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     """
     if not can_emit(linkage):
         raise UsageError(
-            "large groups of loops, fingers in soil, parallel cranks, double guides and drives "
-            "that push cannot be computed in a loop"
+            "large groups of loops, fingers in soil, parallel cranks, double guides, drives that "
+            "push and gears of varying ratio on links that dyads move cannot be computed in a loop"
         )
     writer = Writer(linkage)
     write_motion(writer)
@@ -185,6 +187,8 @@ def can_compute(machine: Machine, paths: Sequence[str], figure: Figure) -> bool:
     """Whether a loop can compute a figure of designs in which these numbers vary."""
     linkage = assemble(machine)
     if not can_emit(linkage) or not all(can_vary(machine, path) for path in paths):
+        return False
+    if shifts_laws(machine, paths):
         return False
     try:
         emit(linkage, Gathered.of([figure]))

@@ -18,6 +18,7 @@ from equipoise.mechanism.motion import Motion, move
 from equipoise.results.charts import Array, Arrow, Chart, Curve, Mark, Outline, Panel, quantity
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
+from equipoise.symbols.wheels import called
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
@@ -115,7 +116,7 @@ def changes(found: Balanced) -> Chart:
     what += "; " + say("angle of {link} in the frame: {angle}", link=drive, angle=told)
     panel = _panel(scene, posed.number, new)
     keys = [("added", say(NAMES["spring"]))] if any(one.kind == "spring" for one in new) else []
-    keys += [("wheel", say("pitch circles of gears"))] if scene.wheels else []
+    keys += [("wheel", called(scene.wheels))] if scene.wheels else []
     return Chart("changes", original.title, what, (panel,), keys=tuple(keys))
 
 

@@ -19,6 +19,7 @@ from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, sho
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.pieces import GROUND, pieces, placed
 from equipoise.symbols.scene import Scene
+from equipoise.symbols.wheels import called
 
 if TYPE_CHECKING:
     from equipoise.mechanism.motion import Motion
@@ -231,7 +232,7 @@ def keys_of(scene: Scene) -> Iterator[tuple[str, str]]:
     if scene.mass_centers:
         yield "mass", say("centre of mass")
     if scene.wheels:
-        yield "wheel", say("pitch circles of gears")
+        yield "wheel", called(scene.wheels)
     if scene.springs:
         yield "spring", say("spring")
     if scene.planned:

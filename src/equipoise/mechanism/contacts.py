@@ -96,7 +96,7 @@ class RollingMesh:
         return push, (
             Call(rolled, angles, (self.law, self.centres), (lever, slope)),
             Call(
-                joint_kernels.place, (f"p({self.driven_pin})", f"u({carrier})", lever), (),
+                joint_kernels.pitch_place, (f"p({self.driven_pin})", f"u({carrier})", lever), (),
                 (f"p({pitch})",),
             ),
             Call(joint_kernels.flank, (f"M({link})",), (), (sense,)),

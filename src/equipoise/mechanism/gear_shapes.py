@@ -33,6 +33,7 @@ KINDS: Mapping[str, tuple[str, ...]] = {
 """Kinds of shape with the keys that go with each, beside those that go with all."""
 OWN = ("eccentricity", "angle", "ratio", "radius", "cosines", "sines")
 TABLED = ("angle", "ratio", "radius")
+NUMBERS = "a list such as [0.3, 0.05]"
 LEAST_ROWS, MOST_ROWS, MOST_WAVES = 3, 720, 50
 
 
@@ -83,35 +84,39 @@ class GearShape(Frozen):
         default=0.0,
     )
     angle: tuple[float, ...] = key(
-        Listing(Quantity("angle")),
+        Listing(Quantity("angle"), right='a list such as ["0 deg", "120 deg", "240 deg"]'),
         "rising, of the rows of a table over one lobe: how far the driver has turned (`ratio`), "
         "or the direction from 0 of its curve (`radius`)",
         default=(),
         example=["0 deg", "120 deg", "240 deg"],
     )
     ratio: tuple[float, ...] = key(
-        Listing(Number()),
+        Listing(Number(), right=NUMBERS),
         "size of the ratio at these angles",
         default=(),
         example=[0.7, 1.2, 1.2],
         above=0,
     )
     radius: tuple[float, ...] = key(
-        Listing(Quantity("length")),
+        Listing(Quantity("length"), right='a list such as ["30 mm", "24 mm", "24 mm"]'),
         "pitch radius of the driver at these angles",
         default=(),
         example=["30 mm", "24 mm", "24 mm"],
         above=0,
     )
     cosines: tuple[float, ...] = key(
-        Listing(Number()),
+        Listing(Number(), right=NUMBERS),
         "of 1, 2, ... waves a lobe, over the mean, instead of a table",
         default=(),
         example=[0.3, 0.05],
         word=to_say("cosine"),
     )
     sines: tuple[float, ...] = key(
-        Listing(Number()), "likewise", default=(), example=[0.1], word=to_say("sine")
+        Listing(Number(), right=NUMBERS),
+        "likewise",
+        default=(),
+        example=[0.1],
+        word=to_say("sine"),
     )
 
     @property

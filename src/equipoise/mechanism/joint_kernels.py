@@ -92,7 +92,7 @@ def gear_forces(force, moment, u, sense, lever, radial):
     return force - mesh, mesh, tangential
 
 
-def place(p, u, arm):
+def pitch_place(p, u, arm):
     """Place at an arm, in the axes of a body with the rotation u, from its point p."""
     return (p + u * arm,)
 
@@ -107,4 +107,7 @@ def slant(sense, radial, slope):
 
 def rolling_forces(force, moment, u, sense, lever, slope, radial):
     """As `gear_forces`, of gears whose ratio varies; lever : along the line of centres."""
-    return gear_forces(force, moment, u, 1.0, lever, slant(sense, radial, slope))
+    at_pin, mesh, tangential = gear_forces(
+        force, moment, u, 1.0, lever, slant(sense, radial, slope)
+    )
+    return at_pin, mesh, tangential

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from equipoise.i18n import say
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.couplings import Law
 from equipoise.mechanism.gears import Gear
@@ -33,6 +34,13 @@ class Wheel:
     radius: float
     pair: str
     curve: Array | None = None
+
+
+def called(wheels: Iterable[Wheel]) -> str:
+    """What these are called together."""
+    if any(wheel.curve is not None for wheel in wheels):
+        return say("pitch curves of gears")
+    return say("pitch circles of gears")
 
 
 def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) -> Iterator[Wheel]:

@@ -14,11 +14,12 @@ import pytest
 
 import equipoise as eq
 from equipoise.codegen.batch import Batch
+from equipoise.codegen.emit import can_compute
 from equipoise.codegen.figures import GATHERED, PLACES, Figure, Gathered, figure_of
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Gear, Load, LoadTable, Machine, Slider
-from support.batches import by_numpy, known_of, wanted_of
+from support.batches import WRITTEN, by_numpy, known_of, wanted_of
 from support.designs import (
     Array,
     Number,
@@ -30,7 +31,7 @@ from support.designs import (
     paths_of,
     reason_of,
 )
-from support.machines import KINDS, make
+from support.machines import make
 from unit.mechanism.build import four_bar, heavy, machine
 
 FOUR = four_bar(3.0, 1.0, 3.0, 2.5)
@@ -144,7 +145,19 @@ def test_four_bars_that_open_somewhere(numpy_engine: None) -> None:
     assert set(same_reasons(FOUR, named(FOUR, *LENGTHS), values)) == {2}
 
 
-@pytest.mark.parametrize("kind", KINDS)
+def test_gears_of_varying_ratio_are_written_where_the_crank_tells_their_angles() -> None:
+    """Not where a design changes the angle from which the ratio counts: those go the other way."""
+    assert "rolling_planet" in WRITTEN
+    base = make("rolling_planet", 0).machine
+    figure = Figure("drive_torque", "rms")
+    assert can_compute(base, ["gears[2].start", "links.arm.points.B.x"], figure)
+    assert not can_compute(base, ["gears[1].start"], figure)
+    with pytest.raises(UsageError, match="got the start of a body"):
+        Batch(base, ["gears[1].start"], [figure])
+    assert not can_compute(make("rolling_coupler", 0).machine, [], figure)
+
+
+@pytest.mark.parametrize("kind", WRITTEN)
 def test_designs_of_every_kind(kind: str, numpy_engine: None) -> None:
     """Links whose gears turn on otherwise than those of the base may be told as not computed."""
     base = make(kind, 0).machine

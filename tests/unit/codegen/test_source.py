@@ -20,9 +20,9 @@ from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import FRAME, Machine
 from laws.transforms import renamed
-from support.batches import by_numpy, every_dyad, known_of, same_figures, signals_of
+from support.batches import WRITTEN, by_numpy, every_dyad, known_of, same_figures, signals_of
 from support.designs import design, drawn, numbers_of, paths_of
-from support.machines import KINDS, make
+from support.machines import make
 from unit.mechanism.build import four_bar
 
 SUPPORT = {"angle_of", "rotation", "smallest", "greatest", "complex"}
@@ -42,7 +42,7 @@ def state_of(source: Source) -> ast.FunctionDef:
 # -- what is written -------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", WRITTEN)
 def test_state_calls_kernels_on_what_it_knows(kind: str) -> None:
     """Every name is given before it is used, once, and every call is of a kernel."""
     source = source_of(make(kind, 0).machine)

@@ -1,0 +1,69 @@
+"""What has been written of a linkage, by whatever writes its lines."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from equipoise.codegen.angles import turned
+from equipoise.codegen.source import Sheet
+from equipoise.mechanism.linkage import Linkage
+from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.steps import RunningAngle, p, planar, u
+
+
+class Writer:
+    """What has been written of a linkage so far.
+
+    counted : whether angles of links are counted on from crank angle to crank angle, because a
+        gear follows a link that a dyad moves.
+    orders : link -> turns in a turn of the crank, of links that turn in proportion to it.
+    points : those that are known.
+    apart : number of a dyad with a block -> identifier of how far, over the size of the machine and
+        squared, the block is from its guide's pivot.  Near there the number drops too fast to tell
+        between the crank angles.
+    """
+
+    def __init__(self, linkage: Linkage) -> None:
+        self.linkage, self.machine, self.sheet = linkage, linkage.machine, Sheet()
+        steps = any(isinstance(step, RunningAngle) for step in linkage.motion)
+        self.counted = steps or not self.machine.has_crank
+        self.orders: dict[str, float] = {FRAME: 0.0, self.machine.drive.link: 1.0}
+        self.points = set(self.machine.frame)
+        self.apart: dict[str, str] = {}
+
+    def name(self, value: str) -> str:
+        return self.sheet.name(value)
+
+    def body(self, link: str) -> list[str]:
+        """Identifiers of a link's anchor and rotation, with their derivatives."""
+        return [self.name(name) for name in (*p(self.linkage.anchors[link]), *u(link))]
+
+    def point(self, link: str, point: str) -> list[str]:
+        """Identifiers of a point of a link and its derivatives."""
+        if point not in self.points:
+            self.points.add(point)
+            anchor = self.linkage.anchors[link]
+
+            def arm(found: Linkage) -> Any:
+                points = found.machine.points_of(link)
+                return planar(points[point]) - planar(points[anchor])
+
+            slot = self.sheet.slot(f"arm({link}/{point})", arm, vector=True)
+            self.sheet.call("point", [*self.body(link), slot], p(point))
+        return [self.name(name) for name in p(point)]
+
+    def turned(self, order: float) -> str:
+        """exp(i order theta), which no design changes."""
+        return turned(self.sheet, order)
+
+    def rate(self, key: str) -> str:
+        """Identifier of the crank's ``speed`` or ``acceleration``."""
+        return self.sheet.slot(key, lambda found: getattr(found.machine.drive, key))
+
+    def numbers(self) -> dict[str, int]:
+        """Identifiers of the dyads' own numbers, and of what else is to be watched; each with the
+        dyad that it tells of, by its place in the order in which they are solved.
+        """
+        own = [g.margin for g in self.linkage.groups if g.margin is not None]
+        found = {self.name(number): k for k, number in enumerate(own)}
+        return found | {self.apart[n]: k for k, n in enumerate(own) if n in self.apart}
