@@ -211,7 +211,7 @@ class Effects:
             plane = links[spring.link].plane_of(spring.choice.point)
             springs[spring.link][rows] = -plane * spring.pulls(self.motion)
         exerted = _JointsOfUnit(self)
-        named = {name: exerted[name] for name, _ in self.motion.linkage.named_reactions}
+        named = {name: exerted[name] for name in self.solved.exerted}
         return Across(self.motion, inertia, weights, {}, springs, named)
 
     def moment(self, demands: Demand, about: complex) -> Array:

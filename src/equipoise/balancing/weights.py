@@ -309,6 +309,8 @@ class AddedWeight(DesignVariables):
             "inertia": inertia,
             "pieces": pieces,
         }
+        if self.plane is not None:
+            values["plane"] = self.plane
         return [Change("added mass", self.link, values)]
 
     def _about_center(self, numbers: Array) -> tuple[float, float, float, float]:

@@ -130,7 +130,11 @@ def sentences(change: Change) -> Iterator[str]:
             mass=told(values["mass"], "mass"),
         )
     elif change.kind == "added mass":
-        yield _added(link, values)
+        what = _added(link, values)
+        if "plane" in values and values["pieces"]:
+            plane = told(values["plane"], "length")
+            what = say("{what}, in the plane z = {plane}", what=what, plane=plane)
+        yield what
         for piece in values["pieces"]:
             yield say("{link}, made as: {piece}", link=link, piece=_made(piece, values["center"]))
     elif change.kind == "spring":

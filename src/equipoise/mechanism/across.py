@@ -87,6 +87,8 @@ class Across:
             both = {at: one.plane for at, one in given.items() if one.link == bearing.link}
             other = sum(both.values()) - bearing.plane
             pin, *_ = self.statics.pin_of(bearing.link)
+            if pin.name not in self._couples:
+                continue
             force = self.exerted[pin.name]
             lever = (other - pin.plane) * force.value - self._couples[pin.name]
             found[name] = replace(force, value=lever / (other - bearing.plane))

@@ -12,6 +12,8 @@ from equipoise.mechanism.checks import numbered
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import FRAME, Machine, size_of
+from equipoise.mechanism.planes import beside
+from equipoise.mechanism.statics import statics
 from equipoise.mechanism.steps import Call
 from equipoise.mechanism.undecided import undecided
 
@@ -167,6 +169,8 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
     if missing := massless(machine):
         yield missing
     yield from undecided(linkage).told()
+    if beside(machine):
+        yield from statics(linkage).told()
     through = {group.joint for group in linkage.groups if group.through}
     for joint, (number, angle) in linkage.cycle.weakest.items():
         if joint in through:

@@ -267,6 +267,7 @@ of_bearing = alike(
     lambda _, found, bearing: found.forces.across.bearings[bearing],
     needs="planes",
     members=lambda machine: machine.bearings,
+    items=lambda found: found.forces.across.bearings if found.machine.bearings else (),
 )
 of_bearing(
     "",

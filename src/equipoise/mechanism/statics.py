@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.i18n import Note, all_of
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.parts import JOINTS, Mechanism
 from equipoise.mechanism.planes import masses_of
@@ -118,14 +119,28 @@ class Statics:
         return pin, *self.factors(number)
 
     def couples(self, needed: Mapping[str, Array], exerted: Mapping[str, Array]) -> dict[str, Any]:
-        """Couple of each joint by name, as a sum of planes times forces, N m."""
+        """Couple of each joint by name, as a sum of planes times forces, N m; of those that follow
+        from the forces that are told.
+        """
         found = {}
         for number, one in enumerate(self.bearing):
             by_needed, by_force = self.factors(number)
+            if not {one.name, *by_force} <= exerted.keys():
+                continue
             terms = [factor * needed[link] for link, factor in by_needed.items()]
             terms += [factor * exerted[name] for name, factor in by_force.items()]
             found[one.name] = sum(terms, start=0.0)
         return found
+
+    def told(self) -> Iterator[Note]:
+        """A sentence on what is open."""
+        if self.open:
+            yield Note(
+                "statics leaves the tilting moments in {joints} open, as what acts on a link there "
+                "lies in several planes and no joint holds it in the frame: told are those of "
+                "least squares; rocking moments do not depend on that",
+                joints=all_of([*self.open], commas=True),
+            )
 
 
 def _used(row: Array, names: Sequence[str]) -> dict[str, float]:

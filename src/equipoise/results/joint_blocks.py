@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.i18n import say
+from equipoise.i18n import say, to_say
+from equipoise.mechanism.planes import beside
 from equipoise.mechanism.reactions import JointForce, SliderForce
 from equipoise.mechanism.spoken import body_named, joint_named
 from equipoise.mechanism.undecided import undecided
@@ -23,28 +24,47 @@ def joint_blocks(analysis: Analysis) -> Iterator[Block]:
     """Forces in joints, and of which of them statics does not tell."""
     if analysis.forces.joints or analysis.forces.gears:
         yield joint_table(analysis)
-    if told := tuple(undecided(analysis.motion.linkage).told()):
-        yield Notes(told)
+    told = [*undecided(analysis.motion.linkage).told()]
+    if beside(analysis.machine):
+        told += analysis.forces.across.statics.told()
+    if told:
+        yield Notes(tuple(told))
 
 
 def joint_table(analysis: Analysis) -> Table:
-    """The force in every joint and mesh."""
+    """The force in every joint, mesh and bearing."""
     forces = analysis.forces
     joints: dict[str, JointForce] = {**forces.joints, **forces.gears, **forces.cams}
+    across = forces.across if beside(analysis.machine) else None
+    tilting = {} if across is None else across.tilting_moments
     scale = analysis.summary["frame_moment"].peak
     rows: list[tuple[Cell, ...]] = []
     for name, joint in joints.items():
-        found = figures(analysis.crank_angle, joint.size)
         couple = None
         if isinstance(joint, SliderForce):
             couple = Value(float(np.max(np.abs(joint.moment))), scale)
         named = say("teeth") if name in forces.gears else joint_named(name)
         named = say("cam") if name in forces.cams else named
-        ends = f"{body_named(joint.by)} → {body_named(joint.on)}"
-        rows.append((named, ends, Value(found.mean), Value(found.rms), largest(found), couple))
+        rows.append((named, *_told(analysis, joint), couple, _peak(tilting.get(name))))
+    for name, joint in across.bearings.items() if across is not None else ():
+        rows.append((say("bearing {name}", name=name), *_told(analysis, joint), None, None))
     labels = (say("mean"), say("RMS"), say("largest"))
     columns = ["", say("by → on"), *(Column(label, "force") for label in labels)]
-    columns.append(Column(say("moment"), "torque"))
-    shown = len(columns) if any(row[-1] is not None for row in rows) else -1
+    columns += [Column(say(one), "torque") for one in (MOMENT, TILTING)]
+    shown = [k for k in range(len(columns)) if any(row[k] is not None for row in rows)]
     title = say("Force in each joint; largest with its crank angle")
-    return Table.of(title, columns[:shown], (row[:shown] for row in rows))
+    return Table.of(title, [columns[k] for k in shown], ([row[k] for k in shown] for row in rows))
+
+
+MOMENT, TILTING = to_say("moment"), to_say("tilting moment")
+
+
+def _told(analysis: Analysis, joint: JointForce) -> tuple[Cell, ...]:
+    """Which bodies it is between, and mean, RMS and largest of a force."""
+    found = figures(analysis.crank_angle, joint.size)
+    ends = f"{body_named(joint.by)} → {body_named(joint.on)}"
+    return ends, Value(found.mean), Value(found.rms), largest(found)
+
+
+def _peak(moment: JointForce | None) -> Value | None:
+    return None if moment is None else Value(float(np.max(moment.size)))
