@@ -110,13 +110,22 @@ def put_off(gear: eq.Gear, later: float) -> eq.Gear:
 def swung(
     drive: Driven, change: Callable[[float], float], later: Callable[[float], float]
 ) -> Driven:
-    """Change the angles between which a drive swings by a sine, and when it begins."""
+    """Change the angles between which a drive swings, and when it begins; all runs backwards where
+    `later` does.
+    """
     law = drive.motion
     if law is None:
         return drive
-    assert law.between is not None
-    low, high = map(change, law.between)
-    return replace(drive, motion=replace(law, between=(low, high), phase=later(law.phase)))
+    if law.between is not None:
+        low, high = map(change, law.between)
+        return replace(drive, motion=replace(law, between=(low, high), phase=later(law.phase)))
+    values = [change(one) for one in (law.start, *(part.to for part in law.segments))]
+    parts = list(law.segments)
+    if later(1.0) < later(0.0):
+        values, parts = values[::-1], parts[::-1]  # each law is its own image in its middle
+    ways = tuple(replace(part, to=to) for part, to in zip(parts, values[1:], strict=True))
+    moved = replace(law, start=values[0], segments=ways, phase=later(law.phase))
+    return replace(drive, motion=moved)
 
 
 def turned_position(position: eq.mechanism.Position, angle: float) -> eq.mechanism.Position:
@@ -163,6 +172,10 @@ def mirrored_planting(planting: Planting | None) -> Planting | None:
         planting,
         travel={"forward": "backward", "backward": "forward"}[planting.travel],
         release=None if planting.release is None else pi - planting.release,
+        arms=tuple(
+            replace(arm, release=None if arm.release is None else pi - arm.release)
+            for arm in planting.arms
+        ),
         tray=tray(planting, lambda z: -z.conjugate()),
     )
 
@@ -419,9 +432,12 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
     if position is not None:
         position = replace(position, points=keys(position.points), angles=keys(position.angles))
     if planting is not None:
-        finger = planting.finger_from
-        finger = None if finger is None else names(finger)
-        planting = replace(planting, tip=names(planting.tip), finger_from=finger)
+        first, *arms = (
+            replace(arm, tip=names(arm.tip), finger_from=arm.finger_from and names(arm.finger_from))
+            for arm in planting.every_arm
+        )
+        changes = {"tip": first.tip, "finger_from": first.finger_from, "arms": tuple(arms)}
+        planting = replace(planting, **changes)
     return replace(
         machine,
         drive=replace(machine.drive, link=body(machine.drive.link)),

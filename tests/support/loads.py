@@ -43,12 +43,13 @@ def within(load: Load, crank_angle: Array) -> np.ndarray:
 def tabulated(load: Load, table: LoadTable, crank_angle: Array) -> list[Array]:
     """Walk along the table's rows, turn after turn, and over the gap behind the last one."""
     nodes = np.array(table.crank_angle)
-    since = (crank_angle - nodes[0]) % TURN
     last = nodes[-1] - nodes[0]
+    cycle = TURN * max(1, np.ceil(last / TURN - 1e-6))
+    since = (crank_angle - nodes[0]) % cycle
     found = []
     for column in table.values:
         ahead = {"zero": 0.0, "hold": column[-1], "wrap": np.nan, None: np.nan}[load.outside]
-        across = column[-1] + (column[0] - column[-1]) * (since - last) / max(TURN - last, 1e-300)
+        across = column[-1] + (column[0] - column[-1]) * (since - last) / max(cycle - last, 1e-300)
         ahead = np.where(np.isnan(ahead), across, ahead)
         found.append(np.where(since > last, ahead, np.interp(since, nodes - nodes[0], column)))
     return found

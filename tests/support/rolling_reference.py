@@ -126,12 +126,8 @@ def crossed_bars(e: float, x: float) -> float:
     """Return the angle of the far crank of an antiparallelogram: links 1 between the pivots and
     across, cranks e; the long coupler stays the mirror image of the frame.
     """
-    turns = np.round(x / (2 * np.pi))
     tip = e * np.exp(1j * x)  # of the first crank, on from its pivot at 0, the other is at -1
-    to = tip + 1
-    along = (e * e + abs(to) ** 2 - 1) / (2 * abs(to))
-    across = np.sqrt(max(e * e - along * along, 0.0))
-    ends = [to / abs(to) * (along + side * 1j * across) for side in (1, -1)]
-    parallel = e * np.exp(1j * x)
-    end = max(ends, key=lambda z: abs(z - parallel))
-    return float(np.angle(end / e) - 2 * np.pi * turns)
+    along = (tip + 1) / abs(tip + 1)  # square to the mirror, which swaps the ends of both links
+    end = 1 + ((tip - 1) * along.conjugate()).real * along
+    angle = np.angle(end / e)
+    return float(angle - 2 * np.pi * np.round((angle + x) / (2 * np.pi)))

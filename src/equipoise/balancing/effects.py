@@ -114,10 +114,9 @@ class Effects:
         return Signal(start, self.full(columns), self.motion.turns)
 
     def _declared(self, output: str) -> tuple[Declared, str]:
-        joints, bearings = self.start.joints, self.machine.bearings
+        joints = self.start.joints
         for one, item in matches(output):
-            forces = bearings if one.group == "bearings" else joints
-            known = item in forces if item else "" in one.members(self.machine)
+            known = item in (joints if one.group == "joints" else one.members(self.machine))
             if one.is_of_row and not one.reason and known:
                 return one, item
         if output.startswith("joints."):
@@ -256,6 +255,10 @@ class Present:
         return self.effects.start.drive_torque
 
     @property
+    def drives(self) -> Mapping[str, Array]:
+        return self.effects.start.drives
+
+    @property
     def drive_force(self) -> Array:
         return self.effects.start.drive_force
 
@@ -304,6 +307,14 @@ class Unit:
     @property
     def drive_torque(self) -> Array:
         return self.effects.with_springs(self.effects.solved.drive_torque, "drive_torque")
+
+    @property
+    def drives(self) -> Mapping[str, Array]:
+        found = self.effects.solved.drives.items()
+        return {
+            link: self.effects.with_springs(torque, f"drives.{link}.torque")
+            for link, torque in found
+        }
 
     @property
     def drive_force(self) -> Array:

@@ -88,7 +88,7 @@ def check_turning(machine: Machine, title: str) -> None:
     UsageError : it does not; the sentence tells why.
     """
     refusal = to_say("a file of {title} turns the driven link evenly all the way round: {why}")
-    if machine.drive.pushes or machine.drive.motion is not None:
+    if not machine.has_crank:
         why = Note("this drive has a motion of its own")
         raise UsageError(Note(refusal, title=title, why=why))
     try:

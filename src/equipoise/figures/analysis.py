@@ -71,7 +71,7 @@ def over(analysis: Analysis, values: Array) -> tuple[Array, Array]:
 def angle_axis(analysis: Analysis) -> Axis:
     """The x axis: the whole cycle, or the crank angles there are."""
     motion = analysis.motion
-    axis = crank_axis(short(motion.machine.drive.link, 16), motion.speed, motion.turns)
+    axis = crank_axis(short(motion.machine.drive.crank, 16), motion.speed, motion.turns)
     if motion.whole_cycle:
         return axis
     low, high = (float(f(motion.crank_angle)) for f in (np.min, np.max))

@@ -95,7 +95,7 @@ def stay_panel(
     """
     spans = [span for arm in arms or [figures] for span in soil_spans(arm)]
     return Panel(
-        crank_axis(figures.machine.drive.link, figures["speed"], figures.curve.turns),
+        crank_axis(figures.machine.drive.crank, figures["speed"], figures.curve.turns),
         y,
         tuple(curves),
         tuple(marks),

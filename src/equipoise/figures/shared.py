@@ -53,9 +53,13 @@ def read_axis(label: str, quantity: str, rotation: bool, values: Any, **rest: An
 
 
 def crank_axis(drive: str, speed: float, turns: int, with_motor: bool = False) -> Axis:
-    """Angle of the drive link over the cycle; time where a motor lets the speed vary."""
+    """Angle of the drive link over the cycle, the phase where it is named by nothing; time where a
+    motor lets the speed vary.
+    """
     if with_motor:
         label = say("time, in degrees: 360° last as long as a turn of the crank in the mean")
+    elif not drive:
+        label = say("crank angle: phase of the cycle")
     else:
         label = say("crank angle: angle of {link} in the frame", link=short(drive))
     if speed < 0:

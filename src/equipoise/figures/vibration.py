@@ -98,7 +98,7 @@ def told(signal: Periodic) -> tuple[Array, Array, list[tuple[float, float]]]:
 
 def phase_axis(response: Response) -> Axis:
     """The x axis: the crank's angle, or time where a motor drives."""
-    link, with_motor = response.machine.drive.link, response.drive.speed is not None
+    link, with_motor = response.machine.drive.crank, response.drive.speed is not None
     return crank_axis(link, response.speed, response.turns, with_motor)
 
 

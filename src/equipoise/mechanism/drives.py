@@ -102,6 +102,11 @@ class Drive(Frozen):
     )
 
     @property
+    def crank(self) -> str:
+        """The link whose angle is the crank angle; empty where none is."""
+        return self.link if self.motion is None and self.stroke is None else ""
+
+    @property
     def pushes(self) -> bool:
         """Whether a force drives the machine, and not a torque."""
         return self.stroke is not None

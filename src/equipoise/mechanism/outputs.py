@@ -57,7 +57,7 @@ of_link(
     None,
     to_say("mechanical advantage of {name}"),
     had="angle_1",
-    members=pinned,
+    members=lambda machine: pinned(machine) * machine.has_crank,
     of=advantage,
     **UNBOUNDED,
 )
@@ -102,7 +102,7 @@ of_slider(
     "force per torque",
     to_say("mechanical advantage of {name}"),
     had="travel_1",
-    members=guided,
+    members=lambda machine: guided(machine) * machine.has_crank,
     of=advantage,
     **UNBOUNDED,
 )

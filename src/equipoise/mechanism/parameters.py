@@ -296,7 +296,8 @@ def spring_columns(
     solved = reactions(motion, demands, like)
     effort = pushed(solved)
     effort = solved.drive_torque if effort is None else effort
-    return effort, {name: one.value for name, one in solved.exerted.items()}
+    found = {f"drives.{link}.torque": torque for link, torque in solved.drives.items()}
+    return effort, found | {name: one.value for name, one in solved.exerted.items()}
 
 
 def spring_units(motion: Motion, link: str, point: str, to: str) -> Array:

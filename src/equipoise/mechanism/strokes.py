@@ -261,7 +261,8 @@ def _stroke(
     fall = float(np.min(way * (bottoms - (low.crank_angle + way * rise)) % period))
     held = longest_dwell(_along(samples[0], samples[1], samples[2], period), SHARE * stroke)
     advantage, at = None, None
-    if one.kind == "rocker" or one.name in guided(linkage.machine):
+    told = one.kind == "rocker" or one.name in guided(linkage.machine)
+    if told and linkage.machine.has_crank:
         advantage, at = 1 / float(fastest[0]), float(fastest[1] % period)
     return Stroke(
         one.kind,
