@@ -20,7 +20,7 @@ from support.analyses import (
 )
 from support.conformance import compared
 from support.engines import TOLERANCE, TOTALS, same_totals
-from support.free_bodies import centre_line
+from support.free_bodies import Reaction, centre_line, rack_contact, reaction, strand_contacts
 from support.loads import on_links, springs_on_links
 from support.poses import Array, cross
 from support.sources import MUJOCO
@@ -45,10 +45,21 @@ def acting_on_links(subject: Subject) -> dict[str, Array]:
     for gear in machine.gears:
         at = centre_line(gear, machine, poses)[0]
         actions.append((forces.gears[gear.name], at, np.zeros(len(at))))
+    for rack in machine.racks:
+        at = rack_contact(rack, machine, poses).at
+        actions.append((forces.racks[rack.name], at, np.zeros(len(at))))
+    for belt in machine.belts:
+        found = forces.belts[belt.name]
+        strands = strand_contacts(belt, machine, poses)
+        for strand, tension in zip(strands, (found.left, found.right), strict=True):
+            actions.append(
+                (reaction(strand, tension[:, None]), strand.at, np.zeros(len(strand.at)))
+            )
     for part, at, couple in actions:
+        force = part.force if isinstance(part, Reaction) else vector(part)
         for body, sign in ((part.on, 1.0), (part.by, -1.0)):
             if body != FRAME:
-                total[body] += action(subject, body, at, sign * vector(part), sign * couple)
+                total[body] += action(subject, body, at, sign * force, sign * couple)
     for link, at, force, torque in chain(
         on_links(machine, poses), springs_on_links(machine, poses)
     ):

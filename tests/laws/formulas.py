@@ -95,6 +95,10 @@ def _gear(t: Any, exp: Exp) -> tuple[Any, ...]:
     return (*U.angle(t, exp), *V.angle(t, exp))
 
 
+def _rail(t: Any, exp: Exp) -> tuple[Any, ...]:
+    return (*U.angle(t, exp), *G(t, exp), *V(t, exp))
+
+
 def _two_pins(t: Any, exp: Exp) -> tuple[Any, ...]:
     return (*P(t, exp), *Q(t, exp))
 
@@ -114,7 +118,8 @@ def _point(t: Any, exp: Exp) -> tuple[Any, ...]:
 def _four_bar(t: Any, exp: Exp) -> tuple[Any, ...]:
     pin = G(t, exp)
     ends = ((U, 0.6), (V, 2.3))
-    return (*(one for turn, arm in ends for one in kernels.point(*pin, *turn(t, exp), arm)), *pin)
+    outer = (one for turn, arm in ends for one in kernels.point(*pin, *turn(t, exp), arm))
+    return (*outer, *pin, *U(t, exp)[1:], *V(t, exp)[1:])
 
 
 def _two_ends(t: Any, exp: Exp) -> tuple[Any, ...]:
@@ -132,6 +137,10 @@ RPP = (ALONG, ACROSS, INNER, Unit(1.3), 0.21 + 0.13j)
 FORMULAS = {
     "point": Formula("point", _point, (0.7 - 0.4j,), ("point",), False),
     "gear": Formula("gear", _gear, (-1.5, 0.3), ("angle",), False),
+    "rolled": Formula("rolled", _gear, (0.3, -0.2), ("angle",), False),
+    "wound": Formula("wound", _gear, (2.5, 0.4), ("angle",), False),
+    "travelled": Formula("travelled", _pin_and_guide, (ALONG,), ("angle",), False),
+    "railed": Formula("railed", _rail, (ALONG, ACROSS), ("point", "link"), False),
     "rrr left": Formula("rrr", _two_pins, (*RRR, 1.0), ("link", "link", "point")),
     "rrr right": Formula("rrr", _two_pins, (*RRR, -1.0), ("link", "link", "point")),
     "parallel": Formula("parallelogram", _four_bar, (*FOUR, 1.0), ("link", "link", "point")),

@@ -151,7 +151,7 @@ def any_masses(machine: eq.Machine, rng: np.random.Generator) -> Array:
     return np.array(values)
 
 
-FORCE_NEVER = {"scotch_yoke", "crossed_guides"}
+FORCE_NEVER = {"scotch_yoke", "crossed_guides", "rack_on_frame", "rack_on_coupler"}
 """A link there that only slides in the frame moves as no other link's first moment can."""
 MOMENT_NEVER = {"crank_rocker", "stephenson", "watt", "floating_watt", "shared_pin",
                 "slider_on_rocker", "guide_on_dyad", "quick_return", "swinging_block"}  # fmt: skip

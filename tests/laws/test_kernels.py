@@ -74,7 +74,8 @@ def test_kernel_is_arithmetic_only(body: ast.FunctionDef) -> None:
 
 
 def test_every_motion_kernel_is_tried() -> None:
-    motion = {"point", "gear", "rrr", "parallelogram", "pointed", "rrp", "rpr", "prp", "rpp"}
+    dyads = {"rrr", "parallelogram", "pointed", "rrp", "rpr", "prp", "rpp"}
+    motion = {"point", "gear", "rolled", "wound", "travelled", "railed", *dyads}
     assert {formula.kernel for formula in FORMULAS.values()} == motion
     assert motion <= FUNCTIONS.keys()
 
@@ -473,6 +474,9 @@ SIGNATURES = {
     "rpp_forces": "ccucrcruu",
     "flank": "r",
     "gear_forces": "crurcr",
+    "belt_forces": "crurrcc",
+    "rack_flank": "cuu",
+    "rack_forces": "crccurur",
 }
 """Arguments of the force kernels: c a vector, u a rotation, r a real number."""
 

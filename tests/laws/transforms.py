@@ -20,6 +20,7 @@ from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.field import Planting
 from equipoise.mechanism.model import FRAME, FurtherDrive, Vector
 from equipoise.mechanism.objectives import quantity_of
+from equipoise.mechanism.racks import Rack
 from equipoise.quantities import SI
 
 Value = TypeVar("Value")
@@ -84,6 +85,10 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
             )
             for g in machine.gears
         ),
+        belts=tuple(
+            replace(b, start=float(start.links[b.driven].angle[0]) + angle) for b in machine.belts
+        ),
+        racks=tuple(restarted(start, rack, angle) for rack in machine.racks),
         cams=tuple(
             later(cam, angle * ((cam.carrier == FRAME) - (cam.driver == FRAME)))
             for cam in machine.cams
@@ -180,6 +185,14 @@ def mirrored_planting(planting: Planting | None) -> Planting | None:
     )
 
 
+def restarted(start: Any, rack: Rack, angle: float) -> Rack:
+    """A rack as it stands at the start of a motion, in a frame that is turned."""
+    if rack.drives == "rack":
+        return replace(rack, angle=float(start.links[rack.pinion].angle[0]) + angle)
+    travel = start.sliders[f"{rack.rack} on {rack.carrier}"].travel
+    return replace(rack, travel=float(travel[0]))
+
+
 def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
     """The image in the x axis; crank angles change their sign."""
     flip = {"left": "right", "right": "left"}
@@ -205,6 +218,8 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
             replace(s, direction=-s.direction, angle=-s.angle) for s in machine.sliders
         ),
         gears=tuple(mirrored_gear(gear) for gear in machine.gears),
+        belts=tuple(replace(b, start=-b.start) for b in machine.belts),
+        racks=tuple(replace(r, angle=-r.angle, side=flip[r.side]) for r in machine.racks),
         cams=tuple(mirrored_cam(cam) for cam in machine.cams),
         loads=tuple(mirrored_load(load) for load in machine.loads),
         gravity=vector(np.conj, machine.gravity),
@@ -406,6 +421,11 @@ def with_axes(machine: eq.Machine, link: str, angle: float, shift: complex) -> e
             )
             for g in machine.gears
         ),
+        belts=tuple(replace(b, start=b.start + angle * (b.driven == link)) for b in machine.belts),
+        racks=tuple(
+            replace(r, angle=r.angle + angle * (r.drives == "rack" and r.pinion == link))
+            for r in machine.racks
+        ),
         cams=tuple(
             later(
                 cam
@@ -457,6 +477,14 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
             replace(g, driver=body(g.driver), driven=body(g.driven), carrier=body(g.carrier))
             for g in machine.gears
         ),
+        belts=tuple(
+            replace(b, driver=body(b.driver), driven=body(b.driven), carrier=body(b.carrier))
+            for b in machine.belts
+        ),
+        racks=tuple(
+            replace(r, pinion=body(r.pinion), rack=body(r.rack), carrier=body(r.carrier))
+            for r in machine.racks
+        ),
         cams=tuple(
             replace(cam, driver=body(cam.driver), driven=body(cam.driven),
                     carrier=body(cam.carrier), point=names(cam.point))
@@ -493,6 +521,8 @@ def reordered(machine: eq.Machine) -> eq.Machine:
         assembly={joint: flip.get(side, side) for joint, side in machine.assembly.items()},
         sliders=machine.sliders[::-1],
         gears=machine.gears[::-1],
+        belts=machine.belts[::-1],
+        racks=machine.racks[::-1],
         loads=machine.loads[::-1],
         springs=machine.springs[::-1],
     )
@@ -503,7 +533,7 @@ def swapped_sliders(machine: eq.Machine) -> eq.Machine:
     return replace(
         machine,
         sliders=tuple(
-            s if s.on == FRAME else
+            s if s.on == FRAME or s.link in {rack.rack for rack in machine.racks} else
             eq.Slider(s.on, s.through, s.link, s.point, -s.angle, -s.direction)
             for s in machine.sliders
         ),

@@ -54,11 +54,18 @@ def same_forces(subject: Subject) -> None:
     solved = free_bodies.solve(machine, poses, pairs(subject))
     force, moment = FLOOR * force_size(machine, poses), FLOOR * moment_size(machine, poses)
     assert set(forces.joints) == set(solved.joints)
-    assert set(forces.gears) == set(solved.gears)
+    for family in ("gears", "racks"):
+        assert set(getattr(forces, family)) == set(getattr(solved, family))
     for name, reaction in solved.joints.items():
         same_reaction(name, forces.joints[name], reaction, force, moment)
-    for name, reaction in solved.gears.items():
-        same_reaction(name, forces.gears[name], reaction, force, moment)
+    for name, reaction in {**solved.gears, **solved.racks}.items():
+        same_reaction(name, forces.solved.contacts[name], reaction, force, moment)
+    for name, strands in solved.strands.items():
+        belt = forces.belts[name]
+        for what, got, want in zip(
+            ("left", "right"), (belt.left, belt.right), strands, strict=True
+        ):
+            agree(f"{what} strand of {name}", got, want, TOLERANCE, force)
     same_totals(forces, solved, force, moment)
     masses = sum(link.mass or 0.0 for link in machine.links.values())
     weight = np.broadcast_to(masses * np.array(machine.gravity), solved.frame_force.shape)

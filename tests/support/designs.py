@@ -53,6 +53,11 @@ def plain_of(machine: Machine) -> Plain:
         "gravity": list(machine.gravity),
         "sliders": [{"direction": s.direction, "angle": s.angle} for s in machine.sliders],
         "gears": [{"start": g.start, "pressure_angle": g.pressure_angle} for g in machine.gears],
+        "belts": [{"start": b.start, "tension": b.tension} for b in machine.belts],
+        "racks": [
+            {"angle": r.angle, "travel": r.travel, "pressure_angle": r.pressure_angle}
+            for r in machine.racks
+        ],
         "springs": [
             {"stiffness": s.stiffness, "free_length": s.free_length} for s in machine.springs
         ],
@@ -75,7 +80,7 @@ def machine_of(base: Machine, plain: Plain) -> Machine:
             replace(value, **changes)
             for value, changes in zip(getattr(base, key), plain[key], strict=True)
         )
-        for key in ("sliders", "gears", "springs")
+        for key in ("sliders", "gears", "belts", "racks", "springs")
     }
     return Machine(
         title=base.title,
@@ -248,6 +253,14 @@ def _listed(machine: Machine) -> Iterator[Number]:
         if gear.driven not in counted:  # where its start varies no loop can compute the designs
             yield number("gears", k, "start", _near(gear.start, pi))
         yield number("gears", k, "pressure_angle", lambda rng: float(rng.uniform(0, 0.5)))
+    for k, belt in enumerate(machine.belts):
+        yield number("belts", k, "start", _near(belt.start, pi))
+        if belt.tension is not None:
+            yield number("belts", k, "tension", _times(belt.tension))
+    for k, rack in enumerate(machine.racks):
+        key = "travel" if rack.drives == "pinion" else "angle"
+        yield number("racks", k, key, _near(getattr(rack, key), 0.3))
+        yield number("racks", k, "pressure_angle", lambda rng: float(rng.uniform(0, 0.5)))
     for k, spring in enumerate(machine.springs):
         yield number("springs", k, "stiffness", _times(spring.stiffness))
         yield number("springs", k, "free_length", _times(spring.free_length))

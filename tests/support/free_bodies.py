@@ -2,26 +2,29 @@
 
 The general form of the nine equations that Lee and Kim write for a four-bar.  With n links there
 are 3 n equations (two forces and the moment about the centre of mass of each link).  A pin brings
-two unknowns, a sliding joint a force across its line and a couple, a gear pair the tangential
-force at the pitch point, and the drive its torque.  A linkage with one free motion and no
-redundant constraint has as many unknowns as equations.  Where joints hold too much, the forces of
-least squares are those of the rule that the package states: couples count as forces at the
-largest distance of two points of a body.
+two unknowns, a sliding joint a force across its line and a couple, a gear pair or a rack the
+tangential force at the pitch point, a belt the difference of its strands' tensions, and the drive
+its torque.  A linkage with one free motion and no redundant constraint has as many unknowns as
+equations.  Where joints hold too much, the forces of least squares are those of the rule that the
+package states: couples count as forces at the largest distance of two points of a body.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain, combinations
 
 import numpy as np
 
+from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.model import FRAME, Drive, FurtherDrive, Gear, Machine
+from equipoise.mechanism.racks import Rack
 from support.cams import line_of_force
 from support.loads import on_links, springs_on_links
-from support.poses import Array, Poses, cross, drive_pivot, pin_between, pins, quarter
+from support.newton import rack_guide
+from support.poses import Array, Poses, cross, drive_pivot, pin_between, pins, quarter, turned
 from support.rolling_reference import Rolling
 
 
@@ -65,6 +68,9 @@ class FreeBodies:
     joints: Mapping[str, Reaction]
     gears: Mapping[str, Reaction]
     cams: Mapping[str, Reaction]
+    racks: Mapping[str, Reaction]
+    strands: Mapping[str, tuple[Array, Array]]
+    pulls: Mapping[str, Reaction]
     drives: Mapping[str, Array]
     frame_force: Array
     frame_moment: Array
@@ -112,14 +118,24 @@ def solve(
     joints = [*pin_contacts(machine, poses, pairs or {}), *slider_contacts(machine, poses)]
     joints += [cam_contact(cam, machine, poses) for cam in machine.cams]
     gears = [gear_contact(gear, machine, poses) for gear in machine.gears]
+    racks = [rack_contact(rack, machine, poses) for rack in machine.racks]
+    belts = [strand_contacts(belt, machine, poses) for belt in machine.belts]
     system = equations(machine, poses)
-    unknowns = solved(system, joints, gears)
+    passing = [*joints, *gears, *racks, *belts]
+    unknowns = solved(system, passing)
     for gear, contact in zip(machine.gears, gears, strict=True):
         tangential = unknowns[gear.name][:, 0]
         apart = separating(gear, machine, poses, tangential)
         system.known -= system.pair(contact, apart, 0.0)
-    unknowns = solved(system, joints, gears)
-    return gathered(machine, poses, joints, gears, unknowns)
+    for rack, contact in zip(machine.racks, racks, strict=True):
+        apart = off_the_rack(rack, machine, poses, unknowns[rack.name][:, 0])
+        system.known -= system.pair(contact, apart, 0.0)
+    for belt, (left, right) in zip(machine.belts, belts, strict=True):
+        mean = sum(tensions(belt, unknowns[belt.name][:, 0])) / 2
+        for strand in (left, right):
+            system.known -= mean[:, None] * system.pair(strand, strand.directions[0], 0.0)
+    unknowns = solved(system, passing)
+    return gathered(machine, poses, joints, (gears, racks, belts), unknowns)
 
 
 def equations(machine: Machine, poses: Poses) -> System:
@@ -144,10 +160,18 @@ def equations(machine: Machine, poses: Poses) -> System:
     return system
 
 
-def solved(system: System, joints: list[Contact], gears: list[Contact]) -> dict[str, Array]:
+Strands = tuple[Contact, Contact]
+
+
+def solved(system: System, passing: list[Contact | Strands]) -> dict[str, Array]:
     """Solve for all unknowns, (N, how many) for each contact and for each drive, by its link."""
     columns, owners = [], []
-    for contact in (*joints, *gears):
+    for contact in passing:
+        if isinstance(contact, tuple):
+            pulls = [system.pair(strand, strand.directions[0], 0.0) for strand in contact]
+            columns.append((pulls[0] - pulls[1]) / 2)
+            owners.append(contact[0].name)
+            continue
         columns += [system.pair(contact, direction, 0.0) for direction in contact.directions]
         if contact.couple:
             columns.append(system.pair(contact, np.zeros_like(contact.at), 1.0))
@@ -158,7 +182,10 @@ def solved(system: System, joints: list[Contact], gears: list[Contact]) -> dict[
     if matrix.shape[1] == matrix.shape[2]:
         found = np.linalg.solve(matrix, system.known[..., None])[..., 0]
     else:
-        couples = [k == len(one.directions) for one in (*joints, *gears) for k in range(one.size)]
+        couples = []
+        for one in passing:
+            size, forces = (1, 1) if isinstance(one, tuple) else (one.size, len(one.directions))
+            couples += [k == forces for k in range(size)]
         units = np.where([*couples, False], extent(system.machine), 1.0)
         pairs = zip(matrix * units, system.known, strict=True)
         found = units * np.array([np.linalg.lstsq(*pair)[0] for pair in pairs])
@@ -288,6 +315,58 @@ def separating(gear: Gear, machine: Machine, poses: Poses, tangential: Array) ->
     return towards * size[:, None] * unit
 
 
+def rack_contact(rack: Rack, machine: Machine, poses: Poses) -> Contact:
+    """Return the teeth of a rack in mesh, with the force on the driven link along the rack."""
+    slider = rack_guide(machine, rack)
+    label = pin_between(machine, rack.pinion, rack.carrier)
+    axis = poses.place(rack.carrier, machine.points_of(rack.carrier)[label])
+    line = turned(poses.angle_of(slider.on) + slider.direction, (1.0, 0.0))
+    left = 1.0 if rack.side == "left" else -1.0
+    pitch_point = axis - left * rack.radius * quarter(line)
+    on, by = (rack.rack, rack.pinion) if rack.drives == "pinion" else (rack.pinion, rack.rack)
+    return Contact(rack.name, on, by, pitch_point, (line,))
+
+
+def off_the_rack(rack: Rack, machine: Machine, poses: Poses, tangential: Array) -> Array:
+    """Return the force across the rack on the driven link: pinion and rack are pushed apart."""
+    slider = rack_guide(machine, rack)
+    line = turned(poses.angle_of(slider.on) + slider.direction, (1.0, 0.0))
+    to_pinion = quarter(line) * (1.0 if rack.side == "left" else -1.0)
+    towards = -1.0 if rack.drives == "pinion" else 1.0
+    return towards * (np.abs(tangential) * np.tan(rack.pressure_angle))[:, None] * to_pinion
+
+
+def strand_contacts(belt: Belt, machine: Machine, poses: Poses) -> Strands:
+    """Return the left and the right strand, each with its pull on the driven pulley.
+
+    The radius to where a strand touches leans from the line of the axes by the angle whose cosine
+    is the sum (crossed), or difference, of both radii over the distance.
+    """
+    axes = []
+    for body in (belt.driver, belt.driven):
+        label = pin_between(machine, body, belt.carrier)
+        axes.append(poses.place(belt.carrier, machine.points_of(belt.carrier)[label]))
+    between = axes[1] - axes[0]
+    first, second = belt.pitch_radii
+    second = -second if belt.crossed else second
+    lean = np.arccos((first - second) / np.linalg.norm(between[0]))
+    heading = np.arctan2(between[:, 1], between[:, 0])
+    found = []
+    for side in (1.0, -1.0):
+        out = turned(heading + side * lean, (1.0, 0.0))
+        start, stop = axes[0] + first * out, axes[1] + second * out
+        pull = (start - stop) / np.linalg.norm(start - stop, axis=-1, keepdims=True)
+        found.append(Contact(belt.name, belt.driven, belt.driver, stop, (pull,)))
+    return found[0], found[1]
+
+
+def tensions(belt: Belt, transmitted: Array) -> tuple[Array, Array]:
+    """Return the tensions of left and right strand, whose difference is known."""
+    if belt.tension is None:  # one hangs loose
+        return np.maximum(transmitted, 0.0), np.maximum(-transmitted, 0.0)
+    return belt.tension + transmitted / 2, belt.tension - transmitted / 2
+
+
 def leaning(gear: Gear, poses: Poses, tangential: Array, unit: Array) -> Array:
     """Return the same where the pitch curves lean: the tooth pushes along their tangent, turned by
     the pressure angle towards the driven gear.
@@ -314,31 +393,40 @@ def gathered(
     machine: Machine,
     poses: Poses,
     joints: list[Contact],
-    gears: list[Contact],
+    coupled: tuple[list[Contact], list[Contact], list[Strands]],
     unknowns: Mapping[str, Array],
 ) -> FreeBodies:
     """Turn the unknowns into vectors and add up what the frame bears."""
+    gears, racks, belts = coupled
     held = {contact.name: reaction(contact, unknowns[contact.name]) for contact in joints}
-    meshed = {}
+    meshed, racked, taut, pulled, both = {}, {}, {}, [], {}
     for gear, contact in zip(machine.gears, gears, strict=True):
-        tangential = reaction(contact, unknowns[contact.name])
         apart = separating(gear, machine, poses, unknowns[contact.name][:, 0])
-        force = tangential.force + apart
-        meshed[gear.name] = Reaction(contact.on, contact.by, contact.at, force, tangential.couple)
+        meshed[gear.name] = reaction(contact, unknowns[contact.name], apart)
+    for rack, contact in zip(machine.racks, racks, strict=True):
+        apart = off_the_rack(rack, machine, poses, unknowns[contact.name][:, 0])
+        racked[rack.name] = reaction(contact, unknowns[contact.name], apart)
+    for belt, strands in zip(machine.belts, belts, strict=True):
+        taut[belt.name] = tensions(belt, unknowns[belt.name][:, 0])
+        for strand, tension in zip(strands, taut[belt.name], strict=True):
+            pulled.append(reaction(strand, tension[:, None]))
+        force = pulled[-1].force + pulled[-2].force
+        both[belt.name] = replace(pulled[-1], force=force)
     drives = {drive.link: unknowns[drive][:, 0] for drive in machine.driven}
     pulls = [pull_on_frame(*acting) for acting in springs_on_links(machine, poses)]
     torque = sum(drives.values())
     if machine.drive.stroke is not None:
         torque = 0.0
         pulls.append(reaction(cylinder(machine, poses), unknowns[machine.drive]))
-    force, moment = on_frame(machine, [*held.values(), *meshed.values(), *pulls])
+    every = [*held.values(), *meshed.values(), *racked.values(), *pulled, *pulls]
+    force, moment = on_frame(machine, every)
     pressed = {cam.name: held.pop(cam.name) for cam in machine.cams}
-    return FreeBodies(held, meshed, pressed, drives, force, moment - torque)
+    return FreeBodies(held, meshed, pressed, racked, taut, both, drives, force, moment - torque)
 
 
-def reaction(contact: Contact, unknowns: Array) -> Reaction:
-    """Return force and couple of one contact."""
-    force = np.zeros_like(contact.at)
+def reaction(contact: Contact, unknowns: Array, more: Array | float = 0.0) -> Reaction:
+    """Return force and couple of one contact, whose force has more than what is unknown."""
+    force = np.zeros_like(contact.at) + more
     for number, direction in enumerate(contact.directions):
         force = force + unknowns[:, number, None] * direction
     couple = unknowns[:, -1] if contact.couple else np.zeros(len(force))

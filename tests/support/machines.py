@@ -26,6 +26,7 @@ from equipoise.mechanism.model import (
     Spring,
     Vector,
 )
+from support import machines_belts
 from support.machines_drives import moved, two_driven
 from support.newton import Side, assembled
 from support.poses import Array, Poses, turned
@@ -737,6 +738,7 @@ KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
         guide_on_dyad,
         crossed_guides,
         *MOVED,
+        *machines_belts.MAKERS,
     )
 }
 

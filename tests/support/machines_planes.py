@@ -43,7 +43,8 @@ def set_apart(machine: Machine, rng: np.random.Generator, flat: bool = False) ->
         for name in shafts
         for side, place in (("left", -1.0), ("right", 1.0))
     }
-    return replace(machine, links=links, bearings=bearings)
+    belts = tuple(replace(belt, tension=None) for belt in machine.belts)
+    return replace(machine, links=links, bearings=bearings, belts=belts)
 
 
 def _in_two_planes(link: Link, rng: np.random.Generator, size: float) -> dict[str, object]:
@@ -107,7 +108,8 @@ def solve(machine: Machine, poses: Poses, flat: FreeBodies) -> Spatial:
     held = {one.on for one in flat.joints.values() if one.by == FRAME}
     held |= {one.by for one in flat.joints.values() if one.on == FRAME}
     planes = {}
-    for name, one in chain(flat.joints.items(), flat.gears.items()):
+    coupled = {**flat.gears, **flat.racks, **flat.pulls}
+    for name, one in chain(flat.joints.items(), coupled.items()):
         planes[name] = joint_plane(machine, name, one.on, one.by, held)
         moment = about_axes(planes[name], one.force)
         for body, sign in ((one.on, 1.0), (one.by, -1.0)):
@@ -141,7 +143,7 @@ def point_plane(machine: Machine, body: str, point: str) -> float:
 
 def joint_plane(machine: Machine, name: str, on: str, by: str, held: set[str]) -> float:
     """Return the plane of a joint or mesh."""
-    if name in {gear.name for gear in machine.gears}:
+    if name in {one.name for one in machine.couplings}:
         return machine.links[on].plane
     ends = {body: name.split("/", maxsplit=1)[0] for body in (on, by) if body != FRAME}
     for slider in machine.sliders:

@@ -13,7 +13,9 @@ from functools import cached_property
 
 import numpy as np
 
+from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.model import FRAME, Drive, FurtherDrive, Gear, Machine, Slider, Vector
+from equipoise.mechanism.racks import Rack
 from support.driving import driven
 from support.driving import followed as followed_law
 from support.poses import Array, Poses, cross, pins, quarter, turned
@@ -63,6 +65,8 @@ class Constraints:
         ]
         rows += [row for slider in self.machine.sliders for row in self._slider(q, rate, slider)]
         rows += [self._gear(q, rate, gear) for gear in self.machine.gears]
+        rows += [self._belt(q, belt) for belt in self.machine.belts]
+        rows += [self._rack(q, rate, rack) for rack in self.machine.racks]
         rows += [self._driven(q, rate, one, self.commanded(one, crank_angle)[0])
                  for one in self.machine.driven]  # fmt: skip
         return Row(
@@ -171,6 +175,42 @@ class Constraints:
         jacobian = rest.jacobian - float(pair.ratio(x)) * seen.jacobian
         return Row(rest.residual, jacobian, np.array([float(pair.bend(x)) * speed**2]))
 
+    def _belt(self, q: Array, belt: Belt) -> Row:
+        """As much belt runs onto one pulley as off the other, seen from the carrier."""
+        if belt.name not in self.gear_constants:
+            return self._turn({belt.driven: 1.0}, q, -belt.start)
+        return self._turn(_wound(belt), q, -self.gear_constants[belt.name])
+
+    def _rack(self, q: Array, rate: Array, rack: Rack) -> Row:
+        """The rack goes on by as much as the pinion's pitch circle turns on the carrier."""
+        slider = rack_guide(self.machine, rack)
+        way = self._travel(q, rate, slider)
+        if rack.name not in self.gear_constants:
+            if rack.drives == "rack":
+                return self._turn({rack.pinion: 1.0}, q, -rack.angle)
+            return Row(way.residual - rack.travel, way.jacobian, way.bend)
+        wound = self._turn(_rolled(rack), q, self.gear_constants[rack.name])
+        return Row(
+            way.residual - wound.residual, way.jacobian - wound.jacobian, way.bend - wound.bend
+        )
+
+    def _travel(self, q: Array, rate: Array, slider: Slider) -> Row:
+        """Return how far a link is along its guide."""
+        a = self._place(q, rate, slider.on, self.machine.points_of(slider.on)[slider.through])
+        b = self._place(q, rate, slider.link, self.machine.links[slider.link].points[slider.point])
+        apart, along = b.residual - a.residual, b.jacobian - a.jacobian
+        k = None if slider.on == FRAME else self.columns[slider.on] + 2
+        angle, spin = (0.0, 0.0) if k is None else (q[k], rate[k])
+        line = turned(angle + slider.direction, (1.0, 0.0))
+        across = quarter(line)
+        jacobian = line @ along
+        if k is not None:
+            jacobian[k] += across @ apart
+        bend = line @ (b.bend - a.bend) + 2 * spin * (across @ (along @ rate))
+        return Row(
+            np.array([line @ apart]), jacobian[None], np.array([spin**2 * (line @ apart) - bend])
+        )
+
     def _turn(self, weights: dict[str, float], q: Array, constant: float) -> Row:
         """Return an equation of angles alone."""
         jacobian = np.zeros((1, q.size))
@@ -185,6 +225,29 @@ class Constraints:
             self.gear_constants[gear.name] = 0.0
             row = self._gear(q, np.zeros_like(q), gear)
             self.gear_constants[gear.name] = float(row.residual[0])
+        for belt in self.machine.belts:
+            self.gear_constants[belt.name] = float(self._turn(_wound(belt), q, 0.0).residual[0])
+        for rack in self.machine.racks:
+            way = self._travel(q, np.zeros_like(q), rack_guide(self.machine, rack))
+            wound = self._turn(_rolled(rack), q, 0.0)
+            self.gear_constants[rack.name] = float((way.residual - wound.residual)[0])
+
+
+def _wound(belt: Belt) -> dict[str, float]:
+    first, second = belt.teeth or belt.radii or (0.0, 0.0)
+    first = -first if belt.crossed else first
+    return {belt.driven: second, belt.driver: -first, belt.carrier: first - second}
+
+
+def _rolled(rack: Rack) -> dict[str, float]:
+    way = rack.radius if rack.side == "left" else -rack.radius
+    return {rack.pinion: way, rack.carrier: -way}
+
+
+def rack_guide(machine: Machine, rack: Rack) -> Slider:
+    """Return the sliding joint of a rack with its carrier."""
+    ends = (rack.rack, rack.carrier)
+    return next(slider for slider in machine.sliders if (slider.link, slider.on) == ends)
 
 
 def closed(constraints: Constraints, q: Array, crank_angle: float, steps: int = 40) -> Array:

@@ -23,6 +23,7 @@ from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.objectives import balanced_names
 from equipoise.mechanism.outputs import Declared, Found, matches
 from equipoise.mechanism.reactions import JointForce, Pass, VectorSignal, reactions
+from equipoise.mechanism.undecided import refuse_unbounded
 from equipoise.signals import Array
 
 Demand = tuple[Array, Array]
@@ -120,6 +121,7 @@ class Effects:
             if one.is_of_row and not one.reason and known:
                 return one, item
         if output.startswith("joints."):
+            refuse_unbounded(self.motion.linkage, output)
             raise UsageError(unknown(output.removeprefix("joints."), joints, "joint"))
         raise UsageError(unknown(output, balanced_names(self.machine), "output"))
 
@@ -180,7 +182,7 @@ class Effects:
     @cached_property
     def flanks(self) -> Pass:
         """A run whose gears are in contact on the flanks that count."""
-        if self.like is None or not self.machine.gears:
+        if self.like is None or not self.machine.couplings:
             return self.start.solved
         return forces(move(self.like, ANGLES, acceleration=0.0).at(self.motion.speed)).solved
 

@@ -84,7 +84,9 @@ class Problem:
     @property
     def flips(self) -> bool:
         """Whether joints count in which it matters on which flank gears are in contact."""
-        return bool(self.start.gears) and any(o.output.startswith("joints.") for o in self.asked)
+        return bool(self.start.couplings) and any(
+            o.output.startswith("joints.") for o in self.asked
+        )
 
     @cached_property
     def supports_more(self) -> bool:

@@ -50,7 +50,8 @@ def can_write_couplings(linkage: Linkage) -> bool:
     """Whether no law of a coupling has to be evaluated at angles that designs change."""
     told = told_by_crank(linkage).keys()
     return all(
-        one.relation[0] is kernels.gear or {one.driver, one.carrier} <= told
+        one.relation[0] in (kernels.gear, kernels.rolled, kernels.wound)
+        or {one.driver, one.carrier} <= told
         for one in linkage.machine.couplings
     )
 

@@ -55,7 +55,7 @@ def _can_have(machine: Machine, figure: Figure) -> bool:
     one, _ = declared(figure.signal) or (None, "")
     if one is None or one.needs != "masses" or not one.loop or one.group == "gears":
         return False
-    if one.group == "joints" and machine.gears:
+    if one.group == "joints" and machine.couplings:
         return False
     linear = not one.reason or one.group == "joints"
     return linear and (figure.name == "rms" or (figure.name == "mean" and not one.is_vector))

@@ -7,13 +7,13 @@ What each design has of its own is a slot, with a function that finds it in the 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
 from equipoise.codegen.across import write_across
 from equipoise.codegen.angles import write_running_angle
+from equipoise.codegen.applied import Held, names, write_load, write_spring, write_tension
 from equipoise.codegen.coupled import write_coupling, write_rolled
 from equipoise.codegen.loops import write_loops
 from equipoise.codegen.source import Read
@@ -23,8 +23,7 @@ from equipoise.mechanism import kernels
 from equipoise.mechanism.contacts import rolled
 from equipoise.mechanism.couplings import coupled
 from equipoise.mechanism.dynamics import inertia_about, massless
-from equipoise.mechanism.loads import load_at
-from equipoise.mechanism.model import FRAME, Drive, FurtherDrive, Load, Spring
+from equipoise.mechanism.model import FRAME, Drive, FurtherDrive
 from equipoise.mechanism.newton import LoopGroup
 from equipoise.mechanism.planes import beside
 from equipoise.mechanism.steps import (
@@ -37,10 +36,6 @@ from equipoise.mechanism.steps import (
     size_of_bodies,
     u,
 )
-
-Held = tuple[str, str, str]
-"""Link, and identifiers of force and moment that hold something against it."""
-
 
 # -- motion ----------------------------------------------------------------------------------------
 
@@ -141,12 +136,13 @@ def write_demands(writer: Writer) -> None:
         raise MassError(missing)
     _write_inertia(writer)
     links, machine = list(writer.machine.links), writer.machine
-    moving = [(link, *_names(writer, "I", link)) for link in links]
-    weights = [(link, *_names(writer, "W", link)) for link in links]
-    loads = [_write_load(writer, k, load) for k, load in enumerate(machine.loads, 1)]
+    moving = [(link, *names(writer, "I", link)) for link in links]
+    weights = [(link, *names(writer, "W", link)) for link in links]
+    loads = [write_load(writer, k, load) for k, load in enumerate(machine.loads, 1)]
     springs = [
-        held for k, one in enumerate(machine.springs) for held in _write_spring(writer, k, one)
+        held for k, one in enumerate(machine.springs) for held in write_spring(writer, k, one)
     ]
+    springs += [held for k in range(len(machine.belts)) for held in write_tension(writer, k)]
     if beside(machine):
         held = [[force for _, force, _ in each] for each in (loads, springs)]
         write_across(writer.sheet, writer.linkage, writer.body, *held)
@@ -159,10 +155,6 @@ def write_demands(writer: Writer) -> None:
         writer.sheet.put(moment, " + ".join(moment for _, _, moment in parts))
     if writer.machine.has_crank:  # else work does not tell the torque of each drive
         writer.sheet.put("drive torque", " + ".join(_drive_torques(writer)))
-
-
-def _names(writer: Writer, cause: str, link: str) -> tuple[str, str]:
-    return writer.name(f"F{cause}({link})"), writer.name(f"M{cause}({link})")
 
 
 def _write_inertia(writer: Writer) -> None:
@@ -185,41 +177,6 @@ def _write_inertia(writer: Writer) -> None:
 def _inertia(writer: Writer, link: str, place: int) -> Read:
     anchor = writer.linkage.anchors[link]
     return lambda found: inertia_about(found.machine.links[link], anchor)[place]
-
-
-def _write_load(writer: Writer, number: int, load: Load) -> Held:
-    values: dict[str, Callable[[Any], Any]] = {
-        "x": lambda theta: load_at(load, theta)[0].real,
-        "y": lambda theta: load_at(load, theta)[0].imag,
-        "torque": lambda theta: load_at(load, theta)[1],
-    }
-    x, y, torque = (writer.sheet.row(f"load {number} {key}", of) for key, of in values.items())
-    force = f"({x} + 1j * {y})"
-    return _write_held(writer, load.link, load.point, force, torque, f"L{number}")
-
-
-def _write_spring(writer: Writer, number: int, spring: Spring) -> Iterator[Held]:
-    """Write a spring's pull, and what holds it at each of its ends on a link."""
-    sheet, cause = writer.sheet, number + 1
-    place, *_ = writer.point(spring.link, spring.point)
-    on_frame = spring.on == FRAME
-    to = writer.name(f"p({spring.to})") if on_frame else writer.point(spring.on, spring.to)[0]
-    stiffness = sheet.slot(f"stiffness({cause})", lambda one: one.machine.springs[number].stiffness)
-    free = sheet.slot(f"free({cause})", lambda one: one.machine.springs[number].free_length)
-    pull = sheet.put(f"pull({cause})", f"spring({place}, {to}, {stiffness}, {free})")
-    for (link, point), force in zip(spring.ends, (pull, f"(-{pull})"), strict=False):
-        yield _write_held(writer, link, point, force, "0.0", f"S{cause}")
-
-
-def _write_held(
-    writer: Writer, link: str, point: str | None, force: str, torque: str, cause: str
-) -> Held:
-    """Write what holds a force at a point of a link, and a torque on it."""
-    anchor = writer.body(link)[0]
-    at = anchor if point is None else writer.point(link, point)[0]
-    outputs = (f"F{cause}({link})", f"M{cause}({link})")
-    writer.sheet.call("load_demand", [anchor, at, force, torque], outputs)
-    return link, *_names(writer, cause, link)
 
 
 def _write_frame(writer: Writer, what: str, demands: list[Held]) -> None:

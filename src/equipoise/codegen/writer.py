@@ -6,9 +6,10 @@ from typing import Any
 
 from equipoise.codegen.angles import turned
 from equipoise.codegen.source import Sheet
+from equipoise.mechanism import kernels
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.steps import RunningAngle, p, planar, u
+from equipoise.mechanism.steps import Call, RunningAngle, Step, p, planar, u
 
 
 class Writer:
@@ -25,7 +26,7 @@ class Writer:
 
     def __init__(self, linkage: Linkage) -> None:
         self.linkage, self.machine, self.sheet = linkage, linkage.machine, Sheet()
-        steps = any(isinstance(step, RunningAngle) for step in linkage.motion)
+        steps = any(map(_counts, linkage.motion))
         self.counted = steps or not self.machine.has_crank
         self.orders: dict[str, float] = {FRAME: 0.0, self.machine.drive.link: 1.0}
         self.points = set(self.machine.frame)
@@ -67,3 +68,9 @@ class Writer:
         own = [g.margin for g in self.linkage.groups if g.margin is not None]
         found = {self.name(number): k for k, number in enumerate(own)}
         return found | {self.apart[n]: k for k, n in enumerate(own) if n in self.apart}
+
+
+def _counts(step: Step) -> bool:
+    """Whether a step asks for the angle of a link that a dyad moves, or tells one of a rack's."""
+    racked = isinstance(step, Call) and step.kernel in (kernels.rolled, kernels.wound)
+    return racked or isinstance(step, RunningAngle)

@@ -50,6 +50,7 @@ def _model(job: Job) -> Data:
     machine, drawn = weighed(job.machine), trees(job)
     if not machine.drive.speed:
         raise UsageError("the drive stands still, and a script runs for a turn; give it a speed")
+    job.need_every_joint(structure(machine).needed)
     job.leave_out_motor()
     job.leave_out_planes()
     support, base = machine.support, "" if machine.support is None else BASE

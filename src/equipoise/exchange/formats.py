@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from equipoise.errors import UsageError
 from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.joints import Structure
 from equipoise.mechanism.planes import beside
 
 if TYPE_CHECKING:
@@ -136,6 +138,19 @@ class Job:
         """Tell that there are no forces where links lack masses."""
         if missing := massless(self.machine):
             self.leave_out(f"all forces: {missing}")
+
+    def need_every_joint(self, joints: Structure) -> None:
+        """Refuse a machine whose joints state the same more than once.
+
+        Raises
+        ------
+        UsageError : they do.
+        """
+        if joints.mobility < 1:
+            raise UsageError(
+                "joints hold more than the motion needs, so that the equations of this format have "
+                "no single solution; give another format, or leave cranks or guides out"
+            )
 
     def leave_out_soil(self) -> None:
         """Tell that the soil pushes nothing."""

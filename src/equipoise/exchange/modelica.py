@@ -81,6 +81,7 @@ def made(job: Job) -> str:
     for what, given in (("the support", machine.support), ("all rows but one", machine.rows[1:])):
         if given:
             job.leave_out(what)
+    job.need_every_joint(structure(machine))
     job.leave_out_motor()
     job.leave_out_planes()
     model = Flat(machine, _identifiers(machine))

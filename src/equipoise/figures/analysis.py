@@ -155,7 +155,7 @@ class Joint:
 def joints_of(analysis: Analysis) -> dict[str, Joint]:
     """Every joint and pair of gears; of a sliding joint its couple too; rounding as zeros."""
     found, forces = {}, analysis.forces
-    every = {**forces.joints, **forces.gears}
+    every = forces.solved.contacts
     largest = max((float(np.max(joint.size)) for joint in every.values()), default=0.0)
     force, moment = LEAST_FORCE * largest, LEAST_FORCE * largest * size_of(analysis)
     for name, joint in every.items():

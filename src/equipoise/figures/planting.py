@@ -212,7 +212,7 @@ def joints(figures: PlantingFigures) -> Chart:
     """Size of the force in every joint, in the air and in the soil."""
     found = figures.forces
     assert found is not None
-    air, soil = ({**one.joints, **one.gears} for one in (found.in_air, found.in_soil))
+    air, soil = (one.solved.contacts for one in (found.in_air, found.in_soil))
     panels = []
     pairs = {name: {"air": air[name].size, "soil signal": soil[name].size} for name in soil}
     every = [[*pair.values()] for pair in pairs.values()]

@@ -1,5 +1,6 @@
 from .assessment import FourBar as FourBar
 from .assessment import four_bar as four_bar
+from .belts import Belt as Belt
 from .bodies import Body as Body
 from .bodies import Hole as Hole
 from .dynamics import Forces as Forces
@@ -27,6 +28,7 @@ from .parameters import BaseParameters as BaseParameters
 from .parameters import Regressor as Regressor
 from .parameters import base_parameters as base_parameters
 from .parameters import regressor as regressor
+from .racks import Rack as Rack
 from .springs import Spring as Spring
 from .support import Gauge as Gauge
 from .support import Mount as Mount

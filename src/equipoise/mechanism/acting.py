@@ -1,4 +1,4 @@
-"""What acts on links from outside of their joints: loads, soil and springs."""
+"""What acts on links from outside of their joints: loads, soil, springs, the tension of belts."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ import numpy as np
 from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.field import Soil
+from equipoise.mechanism.joints import coupling_pins
 from equipoise.mechanism.loads import load_at
+from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import Acting, Demand, demands_of
 from equipoise.mechanism.springs import Spring
@@ -28,7 +30,7 @@ def load_demands(motion: Motion) -> dict[str, Demand]:
 
 
 def spring_demands(motion: Motion) -> dict[str, Demand]:
-    """What holds the springs, for every link that has one.
+    """What holds the springs and the tension of belts, for every link that has one.
 
     Raises
     ------
@@ -38,7 +40,8 @@ def spring_demands(motion: Motion) -> dict[str, Demand]:
 
 
 def acting_springs(motion: Motion) -> Iterator[Acting]:
-    """Link, point and force of each end of a spring on a link; it has no torque.
+    """Link, point and force of each end of a spring on a link, and of the tension of belts; they
+    have no torque.
 
     Raises
     ------
@@ -48,6 +51,18 @@ def acting_springs(motion: Motion) -> Iterator[Acting]:
         force = spring_force(motion, spring)
         for (link, point), pull in zip(spring.ends, (force, -force), strict=False):
             yield link, point, pull, 0.0
+    yield from _tensions(motion)
+
+
+def _tensions(motion: Motion) -> Iterator[Acting]:
+    """What the tension of belts does to their links, whether or not they pass a torque on."""
+    for belt in motion.machine.belts:
+        if belt.tension is not None:
+            driver, driven = coupling_pins(motion.linkage.joints, belt)
+            apart = motion.points[driven].place - motion.points[driver].place
+            pull = belt.tension * belt.strands(apart).toward
+            ends = (belt.driver, driver, pull), (belt.driven, driven, -pull)
+            yield from ((*end, 0.0) for end in ends if end[0] != FRAME)
 
 
 def acting_loads(motion: Motion) -> Iterator[Acting]:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism import joint_kernels, kernels
+from equipoise.mechanism.belt_contacts import pull_of
 from equipoise.mechanism.builder import Builder
 from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.couplings import Coupling, Law
@@ -43,6 +44,8 @@ class Mesh:
     driven_pin: str
     lever: Any
     radial: Any
+
+    couples: ClassVar[bool] = False
 
     def steps(self, coupling: Coupling, ground: Reaction) -> tuple[Reaction, tuple[Step, ...]]:
         link, name = coupling.driven, coupling.name
@@ -163,5 +166,6 @@ def no_contact(_: Builder, joints: Structure, cam: Cam) -> Contact:
 CONTACTS: Mapping[str, Callable[[Builder, Structure, Any], Contact]] = {
     "gears": mesh_of,
     "cams": no_contact,
+    "belts": pull_of,
 }
 """What makes the contact of a coupling, by its `table`."""

@@ -8,15 +8,28 @@ and never for a kind of coupling.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Any, ClassVar, Protocol
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note
+from equipoise.keys import Key, Listing, Text
+from equipoise.mechanism.checks import Bodies, unknown_body
 
 Relation = tuple[Callable[..., tuple[Any, ...]], tuple[Any, ...]]
 """Kernel and its numbers: called with angle, first and second derivative of the driver, then of the
 carrier, then these numbers and an offset, it gives those of the driven body."""
 Law = Callable[[Any], tuple[Any, Any, Any]]
 """A function of an angle, with its first and second derivative."""
+BETWEEN = Key(
+    "between",
+    Listing(Text(of="body"), (2,)),
+    'driver and driven link; the driver is the one that is moved already, and may be `"frame"` '
+    "where the carrier turns",
+    example=["crank", "wheel"],
+)
+"""The key of both ends."""
 
 
 class Coupling(Protocol):
@@ -78,3 +91,17 @@ def coupled(
         w_c + first * slip,
         a_c + first * (a_r - a_c) + second * slip * slip,
     )
+
+
+def wrong_ends(where: str, coupling: Coupling, bodies: Bodies) -> Iterator[ModelError]:
+    """Everything that is wrong with driver, driven link and carrier."""
+    for between, name in (
+        ("between[1]", coupling.driver),
+        ("between[2]", coupling.driven),
+        ("carrier", coupling.carrier),
+    ):
+        yield from unknown_body(f"{where}.{between}", name, bodies)
+    if len({coupling.driver, coupling.driven, coupling.carrier}) < 3:
+        yield ModelError(
+            where, Note("driver, driven link and carrier must be three different bodies")
+        )

@@ -190,8 +190,8 @@ class _Grid:
             raise MotionError(
                 Note(
                     "the motion never repeats, or only after far too many turns: the ratio "
-                    "{speed_ratio!r} of the gears {name} is no fraction of small whole "
-                    "numbers; give numbers of teeth",
+                    "{speed_ratio!r} of {name} is no fraction of small whole numbers; give "
+                    "numbers of teeth",
                     speed_ratio=coupling.speed_ratio,
                     name=name,
                 )
@@ -203,7 +203,7 @@ class _Grid:
         if longer > MOST_TURNS:
             raise MotionError(
                 Note(
-                    "the motion repeats only after {longer} turns of the crank (gears {name}, "
+                    "the motion repeats only after {longer} turns of the crank ({name}, "
                     "ratio {ratio}), more than the {most_turns} that are analysed; give "
                     "numbers of teeth that close sooner",
                     longer=longer,

@@ -43,6 +43,8 @@ GROUPS = {
     "joints": to_say("joints"),
     "bearings": to_say("bearings"),
     "gears": to_say("gears"),
+    "racks": to_say("racks"),
+    "belts": to_say("belts"),
     "cams": to_say("cams"),
     "rows": to_say("all rows together"),
     "gauges": to_say("gauges"),
@@ -131,9 +133,10 @@ class Declared:
     def is_split(self) -> bool:
         """Whether it can be told by cause and by link: it is linear, and a force of one row.
 
-        Gears are too, on the flank that the whole load decides.
+        Couplings are too, on the flank or the strand that the whole load decides.
         """
-        return self.is_of_row and (not self.reason or self.name == "gears.{}")
+        decided = self.group == "belts" or self.name in ("gears.{}", "racks.{}")
+        return self.is_of_row and (not self.reason or decided)
 
     @property
     def is_of_row(self) -> bool:

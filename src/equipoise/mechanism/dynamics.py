@@ -21,11 +21,13 @@ from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.across import Across, masses_across, pushes_across
 from equipoise.mechanism.acting import acting_loads, acting_springs, load_demands, spring_demands
+from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.planes import beside
 from equipoise.mechanism.pushing import lengths
 from equipoise.mechanism.reactions import (
+    BeltForce,
     CamForce,
     Demand,
     JointForce,
@@ -97,10 +99,7 @@ class Forces:
 
     @property
     def frame_force(self) -> VectorSignal:
-        """Sum of the forces of all joints and springs on the frame, N.
-
-        It is the sum of shaking force, weight and loads: a spring has two ends.
-        """
+        """Of all joints and springs, N: the sum of shaking force, weight and loads."""
         of_springs = sum(force for force, _ in self.springs.values())
         return VectorSignal(self.solved.frame_force + of_springs)
 
@@ -153,6 +152,16 @@ class Forces:
     def gears(self) -> Mapping[str, MeshForce]:
         """Force between the teeth of each pair of gears, on the driven gear by the driver."""
         return self.solved.gears
+
+    @cached_property
+    def racks(self) -> Mapping[str, MeshForce]:
+        """Force between the teeth of each rack and its pinion, on the driven of them."""
+        return self.solved.racks
+
+    @cached_property
+    def belts(self) -> Mapping[str, BeltForce]:
+        """Pull and tensions of each belt on its driven link."""
+        return self.solved.belts(lambda belt: belt.tension or 0.0)
 
     @cached_property
     def cams(self) -> Mapping[str, CamForce]:
@@ -264,6 +273,13 @@ def split(whole: Forces) -> Split:
             force[c, k], moment[c, k] = f, m
         demands[link] = (force, moment)
     solved = reactions(motion, demands, whole.solved)
+
+    def tension_told(belt: Belt) -> Array:
+        """With the springs, and with the driven link."""
+        own = np.zeros(shape)
+        own[CAUSES.index("spring"), links.index(belt.driven)] = belt.tension or 0.0
+        return own
+
     inertial = np.array([1, 1, 0, 0, 0])[:, None, None]
     # A spring's pull on the frame and what it makes the joints bear there cancel.
     on_frame = np.array([1, 1, 1, 1, 0])[:, None, None]
@@ -276,6 +292,8 @@ def split(whole: Forces) -> Split:
         solved.drives,
         solved.joints,
         solved.gears,
+        solved.racks,
+        solved.belts(tension_told),
         solved.cams,
         _across_apart(whole, solved, shape) if beside(motion.machine) else None,
         links,

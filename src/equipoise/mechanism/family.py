@@ -26,6 +26,7 @@ from equipoise.keys import Frozen, changed, quantities_of
 from equipoise.mechanism import kernels
 from equipoise.mechanism.bodies import Body
 from equipoise.mechanism.body_checks import outlined_by_columns
+from equipoise.mechanism.joints import coupling_pins
 from equipoise.mechanism.linkage import Linkage, ordered
 from equipoise.mechanism.model import FRAME, Machine, Vector
 from equipoise.mechanism.steps import (
@@ -191,6 +192,8 @@ HOLDERS = {
     r"(links)\.(.+)": {"mass", "inertia", "length"},
     r"(sliders)\[([1-9]\d*)\]": {"direction", "angle"},
     r"(gears)\[([1-9]\d*)\]": {"start", "pressure_angle"},
+    r"(belts)\[([1-9]\d*)\]": {"start", "tension"},
+    r"(racks)\[([1-9]\d*)\]": {"angle", "travel", "pressure_angle"},
     r"(springs)\[([1-9]\d*)\]": {"stiffness", "free_length"},
 }
 """What has numbers that may be columns, by its path in the model file, and their keys; None where
@@ -326,7 +329,12 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
             yield (link.mass >= 0) & (link.inertia >= 0)
             yield (link.mass > 0) | (np.asarray(link.inertia) == 0)
         yield from link.demands()
-    for gear in machine.gears:
+    for belt in machine.belts:
+        points = machine.points_of(belt.carrier)
+        driver, driven = (planar(points[pin]) for pin in coupling_pins(base.joints, belt))
+        yield abs(driver - driven) > sum(belt.pitch_radii)
+        yield belt.tension is None or belt.tension > 0
+    for gear in (*machine.gears, *machine.racks):
         yield (gear.pressure_angle >= 0) & (np.asarray(gear.pressure_angle) < pi / 2)
     for spring in machine.springs:
         yield (spring.stiffness > 0) & (np.asarray(spring.free_length) >= 0)

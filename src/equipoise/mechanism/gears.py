@@ -24,8 +24,15 @@ from equipoise.keys import (
     key,
 )
 from equipoise.mechanism import kernels
-from equipoise.mechanism.checks import FRAME, Bodies, unknown_body
-from equipoise.mechanism.couplings import Law, Relation, as_fraction, coupled
+from equipoise.mechanism.checks import FRAME, Bodies
+from equipoise.mechanism.couplings import (
+    BETWEEN,
+    Law,
+    Relation,
+    as_fraction,
+    coupled,
+    wrong_ends,
+)
 from equipoise.mechanism.gear_shapes import GearShape, wrong_shape
 
 MESHES = ("external", "internal")
@@ -37,13 +44,7 @@ class Gear(Frozen):
 
     called = to_say("{what} of gear {number}")
     beside: ClassVar[Keys] = {
-        "between": Key(
-            "between",
-            Listing(Text(of="body"), (2,)),
-            "driver and driven link; the driver is the one that is moved already, and may be "
-            '`"frame"` where the carrier turns',
-            example=["crank", "wheel"],
-        ),
+        "between": BETWEEN,
         "mesh": Key("mesh", Text(MESHES), "goes with `teeth`", default=None, shown="external"),
     }
     file_order = ("between", "ratio", "teeth", "mesh")
@@ -160,18 +161,7 @@ class Gear(Frozen):
 
 def wrong_gear(where: str, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:
     """Everything that is wrong with a pair of gears."""
-    for between, name in (
-        ("between[1]", gear.driver),
-        ("between[2]", gear.driven),
-        ("carrier", gear.carrier),
-    ):
-        yield from unknown_body(f"{where}.{between}", name, bodies)
-    if len({gear.driver, gear.driven, gear.carrier}) < 3 and not (
-        gear.driver != gear.driven and gear.carrier not in (gear.driver, gear.driven)
-    ):
-        yield ModelError(
-            where, Note("driver, driven link and carrier must be three different bodies")
-        )
+    yield from wrong_ends(where, gear, bodies)
     if (gear.ratio is None) == (gear.teeth is None):
         yield ModelError(where, Note("give either ratio or teeth"))
         return
@@ -179,12 +169,14 @@ def wrong_gear(where: str, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:
         yield ModelError(
             f"{where}.teeth", Note("got {teeth}; give two positive numbers", teeth=list(gear.teeth))
         )
-    elif gear.speed_ratio in (0.0, 1.0):
+    elif gear.speed_ratio == 0.0:
+        yield ModelError(where, Note("the ratio is 0; no pair of gears has that"))
+    elif gear.speed_ratio == 1.0:
         yield ModelError(
             where,
             Note(
-                "the ratio is {speed_ratio:g}; no pair of gears has that, it would be rigid",
-                speed_ratio=gear.speed_ratio,
+                "the ratio is 1; no pair of gears has that, a ring would be as large as what turns "
+                "in it; take a belt, which turns both alike: [[belts]]"
             ),
         )
     elif gear.shape is not None:

@@ -113,7 +113,7 @@ def _through(
     meaning = f"opposite links at {pin} stay parallel, or the four-bar is crossed"
     side = builder.side(pin, MODES, meaning)
     arms = (builder.arm(link, first.point, pin), builder.arm(other, second.point, pin))
-    reach = builder.reach(closed.carrier, pivot)
+    reach = builder.reach(closed.here, pivot)
     places = (f"p({first.point})", f"p({second.point})", f"p({pin})")
     found = _dyad(
         builder,
@@ -123,7 +123,7 @@ def _through(
         (joint_kernels.rrr_forces, places, ()),
         joint=pin,
         point=pin,
-        more=p(pivot),
+        more=(*p(pivot), *u(closed.here)[1:], *u(closed.there)[1:]),
     )
     return replace(found, motion=(*reach, *found.motion), through=True)
 

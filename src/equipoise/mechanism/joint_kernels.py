@@ -92,6 +92,40 @@ def gear_forces(force, moment, u, sense, lever, radial):
     return force - mesh, mesh, tangential
 
 
+def belt_forces(force, moment, u, sense, radius, across, along):
+    """Demand of a driven pulley about its own pin.
+
+    u, sense : as of `gear_forces`.  radius : of the pulley.  across, along : force of both strands
+    in the carrier's axes, for a unit of effective pull; what comes to it, on the side of `sense`,
+    where the tight strand alone pulls.
+    Returns force on the pulley at its pin, force and couple of the strands on it about the pin,
+    and their effective pull, positive where it turns the pulley counterclockwise.
+    """
+    pull = moment / radius
+    both = u * ((across + sense * along) * pull)
+    return force - both, both, moment, pull
+
+
+def rack_flank(force, u, along):
+    """Sign of the force along the rack that it needs: it tells which flank of the teeth pushes."""
+    return flank(dot(u * along, force))
+
+
+def rack_forces(force, moment, c, pitch, u, sense, along, slant):
+    """Demand of a rack about its point c on the guide.
+
+    pitch : the pitch point.  u : rotation of the carrier.  sense : see `rack_flank`.
+    along : unit vector of the guide in the carrier's axes.  slant : part of the tooth force to the
+    left of that, per unit of the part along it.
+    Returns the guide's force on the rack at c with its couple, the tooth force on the rack, and the
+    part of this along the guide.
+    """
+    n = u * along
+    push = dot(n, force)
+    tooth = n * ((1 + 1j * slant * sense) * push)
+    return force - tooth, moment - cross(pitch - c, tooth), tooth, push
+
+
 def pitch_place(p, u, arm):
     """Place at an arm, in the axes of a body with the rotation u, from its point p."""
     return (p + u * arm,)

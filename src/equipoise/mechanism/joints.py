@@ -162,8 +162,8 @@ def coupling_pins(joints: Structure, coupling: Coupling) -> tuple[str, str]:
             raise ModelError(
                 place_in_file(joints, coupling),
                 Note(
-                    "{body!r} shares {shared} points with the carrier {carrier!r}; each gear "
-                    "turns about exactly one point of the carrier",
+                    "{body!r} shares {shared} points with the carrier {carrier!r}; driver and "
+                    "driven link turn about exactly one point of the carrier each",
                     body=body,
                     shared=len(shared),
                     carrier=coupling.carrier,

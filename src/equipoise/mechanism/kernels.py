@@ -100,6 +100,29 @@ def slid(g, g1, g2, n, w, a, t, t1, t2):
     return g + n * t, g1 + (1j * w * t + t1) * n, g2 + ((1j * a - w * w) * t + slip) * n
 
 
+def rolled(angle_r, w_r, a_r, angle_c, w_c, a_c, way, offset):
+    """Travel of a rack on the carrier c, of which the pinion r rolls `way` for a radian."""
+    return way * (angle_r - angle_c) + offset, way * (w_r - w_c), way * (a_r - a_c)
+
+
+def wound(t, t1, t2, angle_c, w_c, a_c, rate, offset):
+    """Angle of a pinion that a rack, at the travel t on the carrier c, turns by `rate` for a m."""
+    return angle_c + rate * t + offset, w_c + rate * t1, a_c + rate * t2
+
+
+def travelled(p, p1, p2, g, g1, g2, u, w, a, along):
+    """Way from the point g to p along a line, of the direction `along` in axes that u turns."""
+    t, t1, t2 = along_line(p - g, p1 - g1, p2 - g2, u * along, w, a)
+    return t.real, t1.real, t2.real
+
+
+def railed(t, t1, t2, g, g1, g2, u, w, a, along, turn):
+    """Point and rotation of a link at the way t along a guide through g; others as in `rrp`."""
+    n = u * along
+    s, s1, s2 = slid(g, g1, g2, n, w, a, t, t1, t2)
+    return s, s1, s2, n * turn, w, a
+
+
 def rrr(p, p1, p2, q, q1, q2, arm_p, arm_q, side):
     """Two links pinned at p and q meet in the pin c.
 
@@ -128,10 +151,11 @@ def rrr(p, p1, p2, q, q1, q2, arm_p, arm_q, side):
     return u_p, w_p, a_p, u_q, w_q, a_q, p + to_p, c1, c2, number
 
 
-def parallelogram(p, p1, p2, q, q1, q2, a, a1, a2, arm_p, arm_q, side):
+def parallelogram(p, p1, p2, q, q1, q2, a, a1, a2, w_a, a_a, w_b, a_b, arm_p, arm_q, side):
     """Two links pinned at p and q whose inner pin c closes a four-bar of equal opposite sides.
 
-    a : the pin of the bodies that carry p and q; other arguments as in `rrr`.
+    a : the pin of the bodies that carry p and q, which turn by w_a, a_a and w_b, a_b; other
+    arguments as in `rrr`.
     side : +1 where opposite links stay parallel, -1 where the four-bar is crossed.  Both go on
     through the change points, where all four pins lie in line.
     Returns the same as `rrr`.
@@ -139,7 +163,8 @@ def parallelogram(p, p1, p2, q, q1, q2, a, a1, a2, arm_p, arm_q, side):
     z, z1, z2 = (q - p).conjugate(), (q1 - p1).conjugate(), (q2 - p2).conjugate()
     over = inverse_or_zero(z)
     span = dot(arm_p, arm_p) - dot(arm_q, arm_q)
-    share, rest = 0.5 + 0.5 * side, (0.5 - 0.5 * side) * span
+    share, crossed = 0.5 + 0.5 * side, 0.5 - 0.5 * side
+    rest = crossed * span
     bent = 2 * z1 * z1 * over - z2
     c = a + share * (p + q - 2 * a) + rest * over
     c1 = a1 + share * (p1 + q1 - 2 * a1) - rest * z1 * over * over
@@ -147,6 +172,8 @@ def parallelogram(p, p1, p2, q, q1, q2, a, a1, a2, arm_p, arm_q, side):
     to_p, to_q = c - p, c - q
     w_p, a_p = turning(to_p, c1 - p1, c2 - p2)
     w_q, a_q = turning(to_q, c1 - q1, c2 - q2)
+    w_p, a_p = share * w_b + crossed * w_p, share * a_b + crossed * a_p
+    w_q, a_q = share * w_a + crossed * w_q, share * a_a + crossed * a_q
     sine = cross(to_p, to_q) / (length(arm_p) * length(arm_q))
     u_p, u_q = to_p * inverse(arm_p), to_q * inverse(arm_q)
     return u_p, w_p, a_p, u_q, w_q, a_q, c, c1, c2, sine * sine

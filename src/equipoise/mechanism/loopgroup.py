@@ -25,11 +25,14 @@ from equipoise.mechanism.loops import (
     PinLoop,
     Place,
     Poses,
+    RackLoop,
     Rail,
     SlideLoop,
 )
 from equipoise.mechanism.model import FRAME, Position, Slider
 from equipoise.mechanism.newton import LoopGroup, poses_in
+from equipoise.mechanism.rack_groups import Teeth
+from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.steps import Reaction, Step, initial_state, pin_reaction, run
 
 STEPS_PER_TURN = 360
@@ -177,17 +180,30 @@ class Maker:
             raise ModelError(
                 place_in_file(self.joints, coupling),
                 Note(
-                    "{driven!r} is moved already by other joints; name the gear that is moved "
+                    "{driven!r} is moved already by other joints; name what is moved "
                     "already first in between",
                     driven=coupling.driven,
                 ),
             )
+        if isinstance(coupling, Rack):
+            return self.rack(coupling)
+        contact = contact_of(self.builder, self.joints, coupling)
         on = self.end(coupling.driven, contact.driven_pin)
         by = self.end(coupling.driver, contact.driver_pin)
         kernel, numbers = coupling.relation
         return CouplingLoop(
             coupling.name, coupling.kind, on, by, coupling.carrier, kernel, numbers, 0.0, contact
         )
+
+    def rack(self, rack: Rack) -> RackLoop:
+        anchor = self.anchors.get(rack.carrier) or self.builder.anchors[rack.carrier]
+        teeth = Teeth.of(self.builder, self.joints, rack, anchor)
+        on, by = (self.end(body, teeth.points[body]) for body in (rack.driven, rack.driver))
+        own = on if rack.drives == "pinion" else by
+        base, along = self.end(rack.carrier, teeth.guide.base), teeth.guide.along
+        kernel, numbers = rack.relation
+        return RackLoop(rack.name, rack.kind, on, by, rack.carrier, kernel, numbers, 0.0, teeth,
+                        own, base, along)  # fmt: skip
 
     def reaction(self, loop: Loop) -> Reaction:
         on, by = loop.on.body, loop.by.body
@@ -197,7 +213,8 @@ class Maker:
         if isinstance(loop, SlideLoop):
             couple = f"C({loop.name}/{on})"
             return Reaction(loop.name, "slider", on, by, loop.on.point, force, couple)
-        return Reaction(loop.name, loop.kind, on, by, f"pitch({loop.name})", force)
+        push = f"C({loop.name}/{on})" if loop.contact.couples else None
+        return Reaction(loop.name, loop.kind, on, by, f"pitch({loop.name})", force, push)
 
 
 def _solve_start(

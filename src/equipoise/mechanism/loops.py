@@ -61,7 +61,10 @@ class Contact(Protocol):
     """How the driver's push reaches the driven body.
 
     driver_pin, driven_pin : points of the carrier about which the two turn.
+    couples : whether it pushes with a couple, too.
     """
+
+    couples: ClassVar[bool]
 
     @property
     def driver_pin(self) -> str: ...
@@ -161,18 +164,42 @@ class CouplingLoop:
     unknowns: ClassVar[int] = 1
 
     def gaps(self, poses: Poses, level: int) -> list[Any]:
-        driven, driver, carrier = (
-            (pose.angle, *pose.turn[1:])
-            for pose in (poses[self.on.body], poses[self.by.body], poses[self.carrier])
-        )
+        bodies = (self.on.body, self.by.body, self.carrier)
+        driven, driver, carrier = (self.coordinate(poses, body) for body in bodies)
         wanted = self.kernel(*driver, *carrier, *self.numbers, self.offset)
         return [driven[level] - wanted[level]]
+
+    def coordinate(self, poses: Poses, body: str) -> tuple[Any, Any, Any]:
+        """By which the relation knows a body: its angle, with both derivatives."""
+        pose = poses[body]
+        return pose.angle, pose.turn[1], pose.turn[2]
 
     def place(self, poses: Poses) -> Any:
         return self.contact.place(poses, self.on, self.carrier)
 
     def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
         return self.contact.wrenches(poses, self.on, self.carrier, sense)
+
+
+@dataclass(frozen=True)
+class RackLoop(CouplingLoop):
+    """Angle of a pinion and travel of its rack in a fixed relation.
+
+    rack : its point.  base : that of its guide.  along : unit vector of this in its body's axes.
+    """
+
+    rack: End
+    base: End
+    along: Any
+
+    def coordinate(self, poses: Poses, body: str) -> tuple[Any, Any, Any]:
+        """Of the rack how far it is along its guide, with both derivatives."""
+        if body != self.rack.body:
+            return super().coordinate(poses, body)
+        guide = poses[self.base.body]
+        ends = (*poses[body].point(self.rack.arm), *guide.point(self.base.arm))
+        t, t1, t2 = kernels.travelled(*ends, *guide.turn, self.along)
+        return t, t1, t2
 
 
 Loop = PinLoop | SlideLoop | CouplingLoop

@@ -6,7 +6,7 @@ with; what it cannot do (turn fully, close) is found by `mechanism.linkage`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -27,46 +27,41 @@ from equipoise.keys import (
     changed,
     declared,
     key,
-    wrong_values,
 )
-from equipoise.mechanism.cams import Cam, wrong_cam
+from equipoise.mechanism.belts import Belt
+from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.checks import (
     FRAME,
     SIDES,
     Bodies,
     Vector,
     check_kept,
-    numbered,
-    too_many,
     unknown,
-    unknown_link,
-    wrong_text,
 )
 from equipoise.mechanism.couplings import Coupling
 from equipoise.mechanism.drives import (
     Drive,
     Driven,
     FurtherDrive,
-    wrong_drive,
-    wrong_further,
-    wrong_together,
 )
-from equipoise.mechanism.field import Planting, wrong_planting
-from equipoise.mechanism.force_elements import Load, LoadTable, wrong_load
-from equipoise.mechanism.gears import Gear, wrong_gear
+from equipoise.mechanism.field import Planting
+from equipoise.mechanism.force_elements import (
+    Load,
+    LoadTable,
+)
+from equipoise.mechanism.gears import Gear
 from equipoise.mechanism.links import (
     MASS_FIELDS,
     Link,
     size_of,
-    wrong_link,
-    wrong_points,
 )
-from equipoise.mechanism.parts import Bearing, JointStiffness, Slider, wrong_joint, wrong_slider
-from equipoise.mechanism.places import Frame, Position, wrong_position
-from equipoise.mechanism.planes import wrong_planes
+from equipoise.mechanism.parts import Bearing, JointStiffness, Slider
+from equipoise.mechanism.places import Frame, Position
+from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.shown_units import ShownUnits
-from equipoise.mechanism.springs import Spring, wrong_ends
-from equipoise.mechanism.support import Row, Support, wrong_support
+from equipoise.mechanism.springs import Spring
+from equipoise.mechanism.support import Row, Support
+from equipoise.mechanism.whole import problems_of
 
 if TYPE_CHECKING:
     from equipoise.mechanism.balance import Balance
@@ -92,9 +87,6 @@ __all__ = [
 
 MOVING = ("link", "motion", "between", "slider", "stroke", "start")
 """What of the drive sets how the links move."""
-MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "cams": 100, "loads": 500,
-        "springs": 200, "joints": 500, "drives": 20}  # fmt: skip
-"""Far beyond any machine; they keep a file of nonsense from running for hours."""
 BESIDE = ("bodies", "plane", "planes")
 """Keys of a link that change nothing about the motion, beside its mass."""
 STILL = {"planting", "support", "rows", "springs", "bearings"}
@@ -108,8 +100,9 @@ class Machine(Driven, Frozen):
 
     beside: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "description", "units", "gravity", "drive", "drives", "frame",
-                  "links", "bearings", "assembly", "sliders", "gears", "cams", "loads", "springs",
-                  "joints", "position", "planting", "support", "rows", "balance")  # fmt: skip
+                  "links", "bearings", "assembly", "sliders", "gears", "belts", "racks", "cams",
+                  "loads", "springs", "joints", "position", "planting", "support", "rows",
+                  "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(Table(Drive), "the link that is driven")
@@ -172,6 +165,8 @@ class Machine(Driven, Frozen):
     units: ShownUnits | None = key(
         Table(ShownUnits), "in which values are shown, as by `--units`", default=None
     )
+    belts: tuple[Belt, ...] = key(Tables(Table(Belt)), "toothed belts and chains", default=())
+    racks: tuple[Rack, ...] = key(Tables(Table(Rack)), "racks with their pinions", default=())
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Machine:
@@ -184,7 +179,7 @@ class Machine(Driven, Frozen):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for problem in _problems(self):
+        for problem in problems_of(self):
             raise problem
 
     @property
@@ -195,7 +190,7 @@ class Machine(Driven, Frozen):
     @property
     def couplings(self) -> tuple[Coupling, ...]:
         """Joints by which one body's angle tells another's, in the order of the file."""
-        return (*self.gears, *self.cams)
+        return (*self.gears, *self.belts, *self.racks, *self.cams)
 
     @property
     def mass(self) -> float:
@@ -286,55 +281,3 @@ class Machine(Driven, Frozen):
     def points_of(self, body: str) -> Mapping[str, Vector]:
         """Points of a link, or of the frame."""
         return self.frame if body == FRAME else self.links[body].points
-
-
-# -- checks ----------------------------------------------------------------------------------------
-
-
-LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
-    "sliders": wrong_slider,
-    "gears": wrong_gear,
-    "cams": wrong_cam,
-    "drives": wrong_further,
-    "loads": wrong_load,
-    "springs": wrong_ends,
-    "joints": wrong_joint,
-}
-"""What is wrong with each of the lists."""
-
-
-def _problems(machine: Machine) -> Iterator[ModelError]:
-    """Everything that is wrong with the values of a machine, the first things first."""
-    bodies = machine.bodies
-    yield from _too_much(machine)
-    yield from wrong_values("", machine)
-    yield from wrong_points("frame", machine.frame)
-    if not machine.links:
-        yield ModelError("links", "there is no link; give at least the drive's")
-    for name, link in machine.links.items():
-        yield from wrong_link(f"links.{name}", name, link)
-    yield from unknown_link("drive.link", machine.drive.link, bodies)
-    yield from wrong_together(machine.drive, machine.drives)
-    for name, wrong in LISTS.items():
-        for where, item in numbered(name, getattr(machine, name)):
-            yield from wrong(where, item, bodies)
-    yield from wrong_position(machine.position, bodies)
-    yield from wrong_planting(machine.planting, bodies)
-    yield from wrong_drive(machine.drive, bodies, [one.name for one in machine.sliders])
-    yield from wrong_planes(machine)
-    yield from wrong_support(machine.support, machine.rows)
-    if machine.balance is not None:
-        yield from machine.balance.problems(machine)
-
-
-def _too_much(machine: Machine) -> Iterator[ModelError]:
-    points = [(body, point) for body, points in machine.bodies.items() for point in points]
-    yield from too_many("links", machine.links, MOST["links"])
-    yield from too_many("points", points, MOST["points"])
-    for what in LISTS:
-        yield from too_many(what, getattr(machine, what), MOST[what])
-    yield from wrong_text("title", machine.title)
-    for body, names in machine.bodies.items():
-        yield from wrong_text("links", body)
-        for point in names:
-            yield from wrong_text(f"points of {body}", point)

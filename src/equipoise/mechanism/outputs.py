@@ -6,6 +6,7 @@ all rows.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from equipoise.i18n import to_say
@@ -280,24 +281,25 @@ of_bearing(
     compared=FORCE,
 )
 
-of_gear = alike(
-    "gears.{}",
-    lambda name, found, gear: _members(found.forces.gears, name, gear),
-    members=lambda machine: [gear.name for gear in machine.gears],
-    spoken=lambda name: name.replace(" to ", " → "),
-    linear="{what} goes with the flank in contact, which other masses may change",
-)
-of_gear(
-    "",
-    "force",
-    to_say("tooth force {name}"),
-    FORCES,
-    loop="{joint force:name}",
-    summed=(True, False),
-    compared=FORCE,
-)
-of_gear(".tangential", "force", to_say("tangential tooth force {name}"), summed=False)
-of_gear(".radial", "force", to_say("radial tooth force {name}"), summed=False)
+
+def _coupled(table: str, linear: str) -> Callable[..., None]:
+    """Outputs of a list of couplings."""
+    shared: dict[str, Any] = {"spoken": lambda name: name.replace(" to ", " → "), "linear": linear}
+    shared["members"] = lambda machine: [one.name for one in getattr(machine, table)]
+    read = lambda name, found, item: _members(getattr(found.forces, table), name, item)  # noqa: E731
+    return alike(table + ".{}", read, **shared)
+
+
+TOOTH: dict[str, Any] = {"loop": "{joint force:name}", "summed": (True, False), "compared": FORCE}
+FLANK = "{what} goes with the flank in contact, which other masses may change"
+for of_teeth in (_coupled("gears", linear=FLANK), _coupled("racks", linear=FLANK)):
+    of_teeth("", "force", to_say("tooth force {name}"), FORCES, **TOOTH)
+    of_teeth(".tangential", "force", to_say("tangential tooth force {name}"), summed=False)
+    of_teeth(".radial", "force", to_say("radial tooth force {name}"), summed=False)
+of_belt = _coupled("belts", linear="{what} is only read; take the force in a joint instead")
+of_belt(".pull", "force", to_say("effective pull {name}"), compared=FORCE)
+of_belt(".left", "force", to_say("tension of the left strand {name}"), compared=FORCE)
+of_belt(".right", "force", to_say("tension of the right strand {name}"), compared=FORCE)
 
 CAMMED: dict[str, Any] = {
     "members": lambda machine: [cam.name for cam in machine.cams],

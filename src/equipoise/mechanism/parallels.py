@@ -31,12 +31,14 @@ NEARLY = 0.05
 
 @dataclass(frozen=True)
 class Closed:
-    """A four-bar that a dyad closes: of two known bodies that share the pin `pivot`.
+    """A four-bar that a dyad closes: of two known bodies that share the pin `pivot`, `here` with
+    the first and `there` with the second of its outer pins.
 
     sides : ends of each side and its length, m, those opposite to each other side by side.
     """
 
-    carrier: str
+    here: str
+    there: str
     pivot: str
     sides: tuple[tuple[str, Any], ...]
 
@@ -72,7 +74,7 @@ def closed_by(builder: Builder, first: Outer, second: Outer, pin: str) -> Closed
                 ends = ((here, pivot, first.point), (second.link, second.point, pin),
                         (there, pivot, second.point), (first.link, first.point, pin))  # fmt: skip
                 sides = ((f"{a}-{b}", abs(builder.arm(body, a, b))) for body, a, b in ends)
-                return Closed(here, pivot, tuple(sides))
+                return Closed(here, there, pivot, tuple(sides))
     return None
 
 

@@ -121,6 +121,8 @@ def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Re
         solved.drives,
         solved.joints,
         solved.gears,
+        solved.racks,
+        solved.belts(lambda belt: 0.0),
         solved.cams,
         _across(motion, solved) if beside(machine) else None,
         parameter_names(machine),
@@ -292,7 +294,7 @@ def spring_columns(
     zero = np.zeros(units.shape)
     demands: dict[str, Demand] = dict.fromkeys(motion.machine.links, (zero + 0j, zero))
     demands |= demands_of(motion, [(link, point, units, 0.0)])
-    like = forces(motion).solved if motion.machine.gears else None
+    like = forces(motion).solved if motion.machine.couplings else None
     solved = reactions(motion, demands, like)
     effort = pushed(solved)
     effort = solved.drive_torque if effort is None else effort

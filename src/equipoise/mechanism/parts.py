@@ -8,6 +8,7 @@ from typing import Protocol
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Frozen, Text, declared, key
+from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.checks import (
     Bodies,
     Vector,
@@ -89,6 +90,8 @@ class Mechanism(Protocol):
     def sliders(self) -> Sequence[Slider]: ...
     @property
     def gears(self) -> Sequence[Gear]: ...
+    @property
+    def belts(self) -> Sequence[Belt]: ...
     @property
     def rows(self) -> Sequence[Row]: ...
     @property

@@ -7,7 +7,7 @@ and springs make demands of their own.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -15,11 +15,13 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism import kernels
+from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.parts import JOINTS
 from equipoise.mechanism.pushing import pushes
+from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, demand_names, run
 from equipoise.mechanism.undecided import hidden
 
@@ -79,12 +81,28 @@ class MeshForce(JointForce):
     """Force between teeth, N, along the line of action at the pitch point.
 
     tangential : part that transmits torque, positive where it turns the gear `on`
-        counterclockwise.  radial : part along the line of centres, positive towards the pin of
-        the gear `on`.
+        counterclockwise, or moves a rack ahead.  radial : part along the line of centres, positive
+        towards the pin of the gear `on`; of racks, positive where it pushes them apart.
     """
 
     tangential: Array
     radial: Array
+
+
+@dataclass(frozen=True, eq=False)
+class BeltForce:
+    """What a belt does to its driven link `on`; arrays (..., N), N.
+
+    pull : what turns the link, at the pitch radius; positive counterclockwise.
+    left, right : tension of the strands that leave the driver left and right of the way to the
+        driven link; below 0 where a belt would have to push.
+    """
+
+    on: str
+    by: str
+    pull: Array
+    left: Array
+    right: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,6 +170,22 @@ class Pass:
         return Named("pair of gears", ((r.name, self._mesh(r)) for r in gears))
 
     @property
+    def racks(self) -> dict[str, MeshForce]:
+        """Racks, by name; the force is on the driven of rack and pinion."""
+        racks = self.motion.machine.racks
+        return Named("rack", ((rack.name, self._teeth(rack)) for rack in racks))
+
+    def belts(self, tension: Callable[[Belt], Any]) -> dict[str, BeltForce]:
+        """Belts, by name, with a tension in both strands beside what their pull makes."""
+        belts = self.motion.machine.belts
+        return Named("belt", ((belt.name, self._belt(belt, tension(belt))) for belt in belts))
+
+    @property
+    def contacts(self) -> dict[str, JointForce]:
+        """Force in every joint and between all teeth and of all cams, by name."""
+        return {**self.joints, **self.gears, **self.racks, **self.cams}
+
+    @property
     def cams(self) -> dict[str, CamForce]:
         """Cams, by name; the force is on the follower."""
         cams = (r for r in self.motion.linkage.reactions if r.kind == "cam")
@@ -169,7 +203,9 @@ class Pass:
 
     @property
     def flanks(self) -> State:
-        """Which flank of each pair of gears is in contact, by name in the state."""
+        """Which flank of each pair of gears is in contact, and which strand of each belt pulls, by
+        name in the state.
+        """
         return {name: value for name, value in self.state.items() if name.startswith("flank(")}
 
     def _joint(self, reaction: Reaction) -> JointForce:
@@ -186,6 +222,19 @@ class Pass:
         moment = sign * self.state[reaction.couple] + kernels.cross(at, force)
         normal = kernels.cross(direction, force)
         return SliderForce(force, on, by, normal, full(self.motion, moment, float))
+
+    def _belt(self, belt: Belt, tension: Any) -> BeltForce:
+        pull = full(self.motion, self.state[f"T({belt.name})"], float)
+        half = 0.5 * pull
+        mean = tension + (0.0 if belt.tension else self.state[f"flank({belt.name})"]) * half
+        left = -half if belt.crossed else half
+        return BeltForce(belt.driven, belt.driver, pull, mean + left, mean - left)
+
+    def _teeth(self, rack: Rack) -> MeshForce:
+        force = full(self.motion, self.state[f"R({rack.name}/{rack.driven})"], complex)
+        push = full(self.motion, self.state[f"T({rack.name})"], float)
+        apart = np.tan(rack.pressure_angle) * self.state[f"flank({rack.name})"] * push
+        return MeshForce(force, rack.driven, rack.driver, push, apart)
 
     def _mesh(self, reaction: Reaction) -> MeshForce:
         force = full(self.motion, self.state[reaction.force], complex)

@@ -10,12 +10,12 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.mechanism.across import OF_FRAME, Across
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.reactions import CamForce, JointForce, MeshForce, SliderForce
+from equipoise.mechanism.reactions import BeltForce, CamForce, JointForce, MeshForce, SliderForce
 from equipoise.mechanism.steps import Array
 
 CAUSES = ("translation", "rotation", "weight", "load", "spring")
 """Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside, and
-springs."""
+springs and the tension of belts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +25,7 @@ class Shares:
     drives : link -> torque of its drive, N m, of which `drive_torque` is the first.
     shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
     drive_force : N, of a drive that pushes.
-    joints, gears, cams : name -> force whose arrays have those axes.
+    joints, gears, racks, belts, cams : name -> force whose arrays have those axes.
     across : what links beside each other do; None where they all lie in one plane.
     """
 
@@ -37,13 +37,15 @@ class Shares:
     drives: Mapping[str, Array]
     joints: Mapping[str, JointForce]
     gears: Mapping[str, MeshForce]
+    racks: Mapping[str, MeshForce]
+    belts: Mapping[str, BeltForce]
     cams: Mapping[str, CamForce]
     across: Across | None
     drive_force: Array | None = field(default=None, kw_only=True)
 
     @property
     def of_machine(self) -> dict[str, Array]:
-        """All but the forces in joints, gears and cams, by name."""
+        """All but the forces in joints and couplings, by name."""
         known = {one.name: getattr(self, one.name) for one in fields(Shares)}
         return {name: value for name, value in known.items() if isinstance(value, np.ndarray)}
 
@@ -52,7 +54,8 @@ class Shares:
 class Split(Shares):
     """Outputs by cause and link: arrays (5, L, N), causes as in `CAUSES`, links in file order.
 
-    Gears are taken with the flank in contact that the whole load gives.
+    Gears are taken with the flank in contact that the whole load gives, and chains with the strand
+    that pulls.
     """
 
     links: tuple[str, ...]
@@ -73,6 +76,9 @@ class Split(Shares):
                 found[f"joints.{name}.moment"] = joint.moment
         found |= {f"drives.{name}.torque": torque for name, torque in self.drives.items()}
         found |= {f"gears.{name}": mesh.value for name, mesh in self.gears.items()}
+        found |= {f"racks.{name}": mesh.value for name, mesh in self.racks.items()}
+        for name, belt in self.belts.items():
+            found |= {f"belts.{name}.{k}": getattr(belt, k) for k in ("pull", "left", "right")}
         found |= {f"cams.{name}": pressed.value for name, pressed in self.cams.items()}
         if self.across is not None:
             found |= {name: getattr(self.across, name).value for name in OF_FRAME}

@@ -8,7 +8,7 @@ from math import degrees
 
 import numpy as np
 
-from equipoise.errors import RangeError
+from equipoise.errors import RangeError, UsageError
 from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.motion import Motion
@@ -76,6 +76,14 @@ def undecided(linkage: Linkage) -> Undecided:
     if found is None:
         found = linkage.__dict__["_undecided"] = _found(linkage)
     return found
+
+
+def refuse_unbounded(linkage: Linkage, output: str) -> None:
+    """Raise a `UsageError` for an output of a joint whose force has no bound."""
+    found = undecided(linkage)
+    if any(output.partition(".")[2].startswith(name) for name in found.unbounded):
+        *_, told = found.told()
+        raise UsageError(told)
 
 
 def hidden(motion: Motion) -> tuple[str, ...]:

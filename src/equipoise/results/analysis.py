@@ -186,10 +186,11 @@ class Analysis(Result):
         if found is None:
             result["missing"] = massless(self.machine)
         else:
-            families = {"joints": found.joints, "gears": found.gears}
-            for family, joints in (families | ({"cams": found.cams} if found.cams else {})).items():
+            for family in ("joints", "gears", "racks", "belts", "cams"):
+                joints = getattr(found, family)
                 ends = {name: {"on": one.on, "by": one.by} for name, one in joints.items()}
-                result[family] = ends
+                if ends or family in ("joints", "gears"):
+                    result[family] = ends
             result.update(_undecided(self.motion.linkage))
             result["about"] = {"x": found.about.real, "y": found.about.imag}
             if not self.machine.has_crank and self.motion.whole_cycle:

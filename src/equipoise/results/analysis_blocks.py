@@ -13,6 +13,7 @@ from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.spoken import joint_named
 from equipoise.mechanism.strokes import SHARE
 from equipoise.quantities import Dimension, angle, percent
+from equipoise.results.belt_blocks import belt_blocks
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import cam_blocks
 from equipoise.results.drive_blocks import driven, drives_table
@@ -52,6 +53,8 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
         return
     yield from force_blocks(analysis)
     yield from joint_blocks(analysis)
+    if machine.belts:
+        yield from belt_blocks(analysis.forces)
 
 
 # -- motion ----------------------------------------------------------------------------------------

@@ -34,7 +34,7 @@ def joint_blocks(analysis: Analysis) -> Iterator[Block]:
 def joint_table(analysis: Analysis) -> Table:
     """The force in every joint, mesh and bearing."""
     forces = analysis.forces
-    joints: dict[str, JointForce] = {**forces.joints, **forces.gears, **forces.cams}
+    joints: dict[str, JointForce] = forces.solved.contacts
     across = forces.across if beside(analysis.machine) else None
     tilting = {} if across is None else across.tilting_moments
     scale = analysis.summary["frame_moment"].peak
@@ -43,7 +43,7 @@ def joint_table(analysis: Analysis) -> Table:
         couple = None
         if isinstance(joint, SliderForce):
             couple = Value(float(np.max(np.abs(joint.moment))), scale)
-        named = say("teeth") if name in forces.gears else joint_named(name)
+        named = joint_named(name) if name in forces.joints else say("teeth")
         named = say("cam") if name in forces.cams else named
         rows.append((named, *_told(analysis, joint), couple, _peak(tilting.get(name))))
     for name, joint in across.bearings.items() if across is not None else ():

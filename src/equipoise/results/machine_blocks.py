@@ -204,6 +204,22 @@ def _parts(machine: Machine) -> Iterator[str]:
                 high=number(high),
                 **named,
             )
+    for belt in machine.belts:
+        yield say(
+            "Belt: {driver} drives {driven} on {carrier} with the speed ratio {ratio}",
+            driver=belt.driver,
+            driven=belt.driven,
+            carrier=body_named(belt.carrier),
+            ratio=number(belt.speed_ratio),
+        )
+    for rack in machine.racks:
+        yield say(
+            "Rack: {driver} drives {driven} on {carrier}, pitch radius {radius}",
+            driver=rack.driver,
+            driven=rack.driven,
+            carrier=body_named(rack.carrier),
+            radius=told(rack.radius, "length"),
+        )
     for cam in machine.cams:
         yield say(
             "Cam: {cam} moves {follower} on {carrier}",

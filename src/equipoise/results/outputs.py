@@ -16,6 +16,7 @@ from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.outputs import DECLARED, GROUPS, Declared, declared
 from equipoise.mechanism.strokes import DeadPosition, Stroke, declared_figures
+from equipoise.mechanism.undecided import refuse_unbounded
 from equipoise.quantities import SI, Dimension, Display, display
 from equipoise.signals import Array, Figures, Periodic, figures
 
@@ -104,6 +105,7 @@ class Outputs:
     def __init__(self, analysis: Any) -> None:
         had = [one for one in DECLARED.values() if one.read and _can_be_had(one, analysis)]
         members: dict[Any, dict[str, None]] = {}  # those of several declarations are the same
+        self._linkage = analysis.motion.linkage
         self._found: dict[str, Output] = {}
         for _, group in groupby(had, key=lambda one: one.group):
             own = []
@@ -128,6 +130,7 @@ class Outputs:
 
     def __getitem__(self, name: str) -> Output:
         if name not in self._found:
+            refuse_unbounded(self._linkage, name)
             raise UsageError(unknown(name, self._found, "output"))
         return self._found[name]
 

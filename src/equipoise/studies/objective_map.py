@@ -159,7 +159,7 @@ def _differ_in_masses(base: Machine, others: Sequence[Machine], of: Objective) -
 
     A support swings otherwise with them, and gears change their flanks.
     """
-    if of.output.startswith("gauges.") or (base.gears and of.output.startswith("joints.")):
+    if of.output.startswith("gauges.") or (base.couplings and of.output.startswith("joints.")):
         return False
     places = {name: link.points for name, link in base.links.items()}
     return all(

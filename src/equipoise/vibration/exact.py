@@ -271,10 +271,10 @@ class ExactSolution:
         """Of the first row, beside the same joints on solid ground at a constant speed."""
         here = self.passes[0]
         ground = forces(move(self.machine, SAMPLES, self.speed, 0.0))
-        still = {**ground.joints, **ground.gears}
+        still = ground.solved.contacts
         return {
             name: Joint(float(np.max(joint.size)), float(np.max(still[name].size)))
-            for name, joint in {**here.joints, **here.gears}.items()
+            for name, joint in here.contacts.items()
         }
 
     def energy(self) -> Energy:

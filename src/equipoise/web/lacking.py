@@ -15,7 +15,7 @@ OR = to_say("{names} or {last}")
 
 def lacking(sketch: Sketch) -> str:
     """What is missing before a sketch can be computed; empty where nothing is, as far as joints
-    and the drive are concerned.
+    and the drive are concerned.  Whether joints hold too much, lengths decide once it is driven.
     """
     if not sketch.links:
         return say("nothing moves yet: draw a link from a point of the frame")
@@ -26,7 +26,7 @@ def lacking(sketch: Sketch) -> str:
     if mobility > 1:
         too_many = say("free motions too many: {count}", count=mobility - 1)
         return f"{too_many}; {_loose(sketch, joints)}"
-    if mobility < 1:
+    if mobility < 1 and drive is None:
         links = _listed(held_too_often(joints, sketch.driven), AND)
         return say("no free motion: too many joints hold {links}; free a point", links=links)
     return _without_drive(_pivoted(sketch)) if drive is None else ""

@@ -225,5 +225,5 @@ def test_soil_and_joints_of_loops_are_refused(name: str, signal: str) -> None:
 
 
 def test_all_else_can_be_written() -> None:
-    for name in set(eq.examples("linkage")) - {"transplanter"}:
+    for name in set(eq.examples("linkage")) - {"transplanter", "straw-walker"}:
         assert can_emit(assemble(eq.load(name))), name

@@ -73,7 +73,7 @@ def test_a_ratio_that_never_closes() -> None:
 
 
 def test_a_ratio_that_closes_too_late() -> None:
-    message = r"repeats only after 1009 turns of the crank \(gears crank to wheel, ratio -997/1009"
+    message = r"repeats only after 1009 turns of the crank \(crank to wheel, ratio -997/1009"
     with pytest.raises(MotionError, match=message):
         eq.move(two_gears(teeth(997, 1009)), 36)
 

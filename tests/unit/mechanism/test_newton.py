@@ -328,7 +328,7 @@ def test_a_loop_that_never_closes() -> None:
 def test_the_driver_comes_first() -> None:
     """A gear pair whose `driven` gear is the one that moves already."""
     given = two_gears(eq.Gear("wheel", "crank", ratio=-1.0))
-    words = "name the gear that is moved already first in between..."
+    words = "name what is moved already first in between..."
     refused("gears[1]", words, lambda: eq.mechanism.assemble(given))
 
 

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.errors import EquipoiseError, MobilityError, ModelError
+from equipoise.errors import EquipoiseError, MobilityError, ModelError, UsageError
+from equipoise.exchange import mjcf, modelica
+from equipoise.exchange.formats import Job
 from equipoise.mechanism.model import FRAME, Link, Slider, Vector
 from equipoise.mechanism.parts import JointStiffness
 from equipoise.mechanism.undecided import undecided
@@ -162,6 +164,20 @@ def test_forces_without_bound_are_not_told() -> None:
     kinetic = found.forces.frame_force.value - found.forces.weight.value
     np.testing.assert_allclose(kinetic, found.forces.shaking_force.value, atol=1e-10)
     assert np.all(np.isfinite(found.forces.drive_torque))
+
+
+def test_a_force_without_bound_is_not_asked_for() -> None:
+    found = eq.analyze(parallel())
+    with pytest.raises(UsageError, match="grow without bound towards crank angle"):
+        found.outputs["joints.B0.x"]
+
+
+def test_formats_whose_equations_state_the_same_twice() -> None:
+    with pytest.raises(UsageError, match="joints hold more than the motion needs"):
+        modelica.made(Job(cranks()))
+    job = Job(guided())
+    assert "upper" not in mjcf.made(job)
+    assert "the guide upper, beside which another one leads 'block'" in job.left_out
 
 
 def test_forces_between_change_points_are_those_of_a_plain_four_bar() -> None:

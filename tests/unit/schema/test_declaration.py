@@ -32,7 +32,9 @@ from equipoise.mechanism import (
     support,
     weights,
 )
+from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.model import Frame, Machine, Position
+from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.springs import Spring
 from equipoise.schema import finding, models, schemas
 from equipoise.schema.documents import dumps, loads
@@ -57,7 +59,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         links.Link,
         bodies.Body, bodies.Hole, parts.Bearing, parts.Slider, parts.Gear,
         parts.JointStiffness,
-        gear_shapes.GearShape, cams.Cam,
+        gear_shapes.GearShape, Belt, Rack, cams.Cam,
         force_elements.Load, Spring, Position, field.Planting, field.PlantingArm,
         field.Soil, support.Support,
         mounts.Mount, support.Row, balance.Balance, weights.CenterMove,

@@ -47,6 +47,16 @@ def test_a_drag_is_one_step_from_where_it_began() -> None:
     assert state(ask(session, "undo")[0]).block.tobytes() == first.block.tobytes()
 
 
+def test_parallel_cranks_are_opened_and_edited() -> None:
+    """A throw of another length does not fit, and says so; a mass may be any."""
+    session, _ = opened("straw-walker")
+    after = edit(session, {"set": "links.walker-2.mass", "text": "20 kg"}, label="mass")
+    assert after.content["status"]["finished"]
+    wrong = {"set": "links.rear.points.R3.x", "text": "-51 mm"}
+    replies = ask(session, "edit", seq=9, commit=True, label="throw", edits=[wrong])
+    assert "R3 of 'walker-3' comes 1 mm beside its pin" in refusal(replies)
+
+
 def test_a_drag_that_ends_where_nothing_can_be_keeps_its_last_good_place() -> None:
     session, _ = opened("yamashita-1")
     good = edit(session, {"set": "links.coupler.points.C.x", "text": "90 mm"}, commit=False)

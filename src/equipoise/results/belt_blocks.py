@@ -1,0 +1,50 @@
+"""What an analysis shows of belts: tension of both strands, and where one would have to push."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from equipoise.i18n import Note, say
+from equipoise.mechanism.dynamics import Forces
+from equipoise.mechanism.spoken import body_named
+from equipoise.quantities import angle, told
+from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
+from equipoise.results.machine_blocks import largest, smallest
+from equipoise.signals import figures, highest_at
+
+
+def belt_blocks(forces: Forces) -> Iterator[Block]:
+    """Strands of all belts."""
+    theta = forces.motion.crank_angle
+    rows: list[tuple[Cell, ...]] = []
+    for belt in forces.belts.values():
+        ends = f"{body_named(belt.by)} → {body_named(belt.on)}"
+        for strand, tension in ((say("left"), belt.left), (say("right"), belt.right)):
+            found = figures(theta, tension)
+            cells = (Value(found.mean), Value(found.rms), largest(found), smallest(found))
+            rows.append((strand, ends, *cells))
+    labels = (say("mean"), say("RMS"), say("largest"), say("smallest"))
+    columns = ("", say("by → on"), *(Column(label, "force") for label in labels))
+    yield Table.of(say("Tension of the strands of belts, with its crank angle"), columns, rows)
+    if loose := tuple(slack(forces)):
+        yield Notes(loose)
+
+
+def slack(forces: Forces) -> Iterator[Note]:
+    """Where a belt would have to push, which it cannot."""
+    theta = forces.motion.crank_angle
+    for belt in forces.motion.machine.belts:
+        found = forces.belts[belt.name]
+        least = np.minimum(found.left, found.right)
+        if belt.tension is not None and np.min(least) < 0:
+            at = highest_at(-least)
+            yield Note(
+                "the belt {name} hangs loose: at crank angle {angle} its slack strand would have "
+                "to push with {push}; give it a tension of more than {tension}",
+                name=belt.name,
+                angle=angle(float(theta[at])),
+                push=told(float(-least[at]), "force"),
+                tension=told(float(np.max(np.abs(found.pull))) / 2, "force"),
+            )

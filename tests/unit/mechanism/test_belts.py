@@ -1,0 +1,247 @@
+"""Belts, chains and racks: what is refused, closed forms, strands, and solved as loops."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import ModelError, MotionError
+from equipoise.mechanism import Belt, Position, Rack
+from equipoise.mechanism.model import FRAME
+from equipoise.results.analysis_blocks import analysis_blocks
+from equipoise.results.belt_blocks import slack
+from equipoise.results.blocks import Notes
+from support.machines import make
+from unit.mechanism.build import ORIGIN, crank_rocker, heavy, machine, refused
+from unit.mechanism.test_newton import only_loops
+
+
+def belted(*belts: Belt, **more: Any) -> eq.Machine:
+    links = {"crank": heavy(A=ORIGIN), "wheel": heavy(E=ORIGIN)}
+    return machine({"A": ORIGIN, "E": (0.5, 0.0)}, links, belts=belts, **more)
+
+
+def belt(**more: Any) -> Belt:
+    return Belt("crank", "wheel", **({"radii": (0.1, 0.2)} | more))
+
+
+def racked(rack: Rack, **more: Any) -> eq.Machine:
+    """A crank-rocker, of which the rocker moves a rack."""
+    four = crank_rocker()
+    return replace(
+        four,
+        frame={**four.frame, "H": (0.3, 0.4)},
+        links={**four.links, "ram": heavy(S=ORIGIN)},
+        sliders=(eq.Slider("ram", "S", FRAME, "H", direction=0.3, angle=0.1),),
+        racks=(rack,),
+        **more,
+    )
+
+
+# -- motion ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("one", "turns", "winding"),
+    [
+        (belt(radii=None, teeth=(20, 30), pitch=0.01), 3, 2),
+        (belt(radii=None, teeth=(30, 30), pitch=0.01), 1, 1),
+        (belt(radii=None, teeth=(30, 30), pitch=0.01, crossed=True), 1, -1),
+        (belt(), 2, 1),
+    ],
+)
+def test_ratio_and_cycle(one: Belt, turns: int, winding: int) -> None:
+    """An open belt turns both alike, also at a ratio of 1, a crossed one against each other."""
+    motion = eq.move(belted(replace(one, start=0.4)), 24)
+    assert (motion.turns, motion.linkage.cycle.windings["wheel"]) == (turns, winding)
+    angle = motion.links["wheel"].angle
+    np.testing.assert_allclose(angle, 0.4 + motion.crank_angle * winding / turns, atol=1e-13)
+
+
+def test_a_planet_on_a_belt_keeps_its_direction() -> None:
+    """Equal pulleys, the first standing still: the arm carries the other round without turning it.
+
+    With 2 to 1 it turns back once a turn: 1 - 2 of the arm.
+    """
+    for teeth, speed in (((20, 20), 0.0), ((40, 20), -1.0)):
+        one = Belt(FRAME, "planet", teeth=teeth, pitch=0.01, carrier="arm")
+        links = {"arm": heavy(A=ORIGIN, C=(0.5, 0.0)), "planet": heavy(C=ORIGIN)}
+        given = machine({"A": ORIGIN}, links, drive=eq.Drive("arm", 2.0), belts=(one,))
+        np.testing.assert_allclose(eq.move(given, 12).links["planet"].angle_1, speed, atol=1e-15)
+
+
+@pytest.mark.parametrize(("side", "sense"), [("left", 1), ("right", -1)])
+def test_a_rack_travels_as_its_pinion_rolls(side: Any, sense: int) -> None:
+    given = racked(Rack("rocker", "ram", 0.07, side, travel=0.2))
+    motion = eq.move(given, 36)
+    turned = motion.links["rocker"].angle - motion.links["rocker"].angle[0]
+    np.testing.assert_allclose(
+        motion.sliders["ram on frame"].travel, 0.2 + sense * 0.07 * turned, atol=1e-15
+    )
+
+
+# -- strands ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("torque", [6.0, -6.0])
+@pytest.mark.parametrize("crossed", [False, True])
+def test_strands_of_a_chain_and_of_a_belt(crossed: bool, torque: float) -> None:
+    """The strand that runs onto the driving side is tight; the pin bears both strands."""
+    loads = (eq.Load("wheel", torque=torque),)
+    given = belted(belt(crossed=crossed), gravity=(0.0, 0.0), loads=loads)
+    chain = eq.analyze(given, 12, speed=0.0).forces
+    pull = -torque / 0.2
+    name = "crank to wheel"
+    np.testing.assert_allclose(chain.belts[name].pull, pull)
+    left = -pull if crossed else pull
+    np.testing.assert_allclose(chain.belts[name].left, max(left, 0.0))
+    np.testing.assert_allclose(chain.belts[name].right, max(-left, 0.0))
+    np.testing.assert_allclose(chain.joints["E"].size, abs(pull))
+    tight = replace(given, belts=(belt(crossed=crossed, tension=40.0),))
+    found = eq.analyze(tight, 12, speed=0.0).forces
+    np.testing.assert_allclose(found.belts[name].left, 40 + left / 2)
+    np.testing.assert_allclose(found.belts[name].right, 40 - left / 2)
+    np.testing.assert_allclose(found.drive_torque, chain.drive_torque)
+    lean = np.arcsin((0.1 + (0.2 if crossed else -0.2)) / 0.5)
+    along = 80 * np.cos(lean), pull * np.sin(lean) * (-1 if crossed else 1)
+    np.testing.assert_allclose(abs(found.joints["E"].x), along[0])
+    np.testing.assert_allclose(abs(found.joints["E"].y), abs(along[1]))
+    assert not [*slack(found)]
+
+
+def test_a_slack_strand_is_told() -> None:
+    """With the crank angle and the tension that it takes."""
+    load = eq.Load("wheel", torque=-6.0, start=1.0, stop=2.0)
+    given = belted(belt(tension=10.0), gravity=(0.0, 0.0), loads=(load,))
+    found = eq.analyze(given, np.radians([0.0, 90.0, 200.0]), speed=0.0)
+    (told,) = slack(found.forces)
+    assert str(told) == (
+        "the belt crank to wheel hangs loose: at crank angle 90.0° its slack strand would have "
+        "to push with 5.000 N; give it a tension of more than 15.00 N"
+    )
+    assert any(isinstance(block, Notes) for block in analysis_blocks(found))
+    chain = eq.analyze(replace(given, belts=(belt(),)), 12)
+    assert not any(isinstance(block, Notes) for block in analysis_blocks(chain))
+
+
+def test_shares_of_strands_add_up() -> None:
+    for tension in (None, 25.0):
+        given = belted(belt(tension=tension), loads=(eq.Load("wheel", torque=2.0),))
+        found = eq.analyze(given, 12).forces
+        for strand in ("left", "right"):
+            output = f"belts.crank to wheel.{strand}"
+            whole = getattr(found.belts["crank to wheel"], strand)
+            for parts in (found.split.by_cause(output), found.split.by_link(output)):
+                np.testing.assert_allclose(sum(parts.values()), whole, atol=1e-12)
+        assert found.split.by_cause(output)["spring"] == pytest.approx(tension or 0.0)
+
+
+# -- as loops --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["belted_coupler", "rack_on_coupler", "pinion_on_frame"])
+def test_the_same_by_newtons_method(name: str) -> None:
+    """A linkage put together as one group of loops moves and bears alike."""
+    given = make(name, 1).machine
+    angles = np.linspace(0.0, 6.0, 12)
+    want, first = eq.analyze(given, angles), eq.analyze(given, np.zeros(1)).motion
+    places = {
+        point: (float(one.x[0]), float(one.y[0]))
+        for point, one in first.points.items()
+        if point not in given.frame
+    }
+    turned = {link: float(one.angle[0]) for link, one in first.links.items()}
+    rough = replace(given, assembly={}, position=Position(0.0, places, turned))
+    with only_loops():
+        found = eq.analyze(rough, angles)
+    size = max(np.max(joint.size) for joint in want.forces.joints.values())
+    for one in want.outputs.arrays:
+        if one.name.startswith(("belts.", "racks.", "drive_torque")):
+            got = next(other for other in found.outputs.arrays if other.name == one.name)
+            np.testing.assert_allclose(got.values, one.values, rtol=1e-11, atol=1e-11 * size)
+    for link in given.links:
+        got, was = (a.motion.links[link].angle_2 for a in (found, want))
+        np.testing.assert_allclose(got, was, atol=1e-11 * max(1.0, np.max(abs(was))))
+
+
+# -- refusals --------------------------------------------------------------------------------------
+
+
+def assembled(given: eq.Machine) -> object:
+    return eq.mechanism.assemble(given)
+
+
+def test_pulleys_that_overlap() -> None:
+    for crossed in (False, True):
+        words = "its pulleys overlap: their pitch radii add up to 600 mm, and their pins..."
+        given = belted(belt(radii=(0.3, 0.3), crossed=crossed))
+        refused("belts[1]", words, lambda given=given: assembled(given))
+
+
+def test_a_belt_across_a_link_of_its_carrier() -> None:
+    """A crossed belt between equal pulleys, and a link that turns where its strands cross."""
+    one = Belt(FRAME, "planet", radii=(0.1, 0.1), crossed=True, carrier="arm")
+    links = {
+        "arm": heavy(A=ORIGIN, B=(0.25, 0.0), C=(0.5, 0.0)),
+        "idler": heavy(B=ORIGIN),
+        "planet": heavy(C=ORIGIN),
+    }
+    gears = (eq.Gear(FRAME, "idler", ratio=-1.0, carrier="arm"),)
+    given = machine({"A": ORIGIN}, links, drive=eq.Drive("arm", 2.0), gears=gears, belts=(one,))
+    refused("belts[1]", "a strand crosses 'idler', which turns about B on 'arm'; move...",
+            lambda: assembled(given))  # fmt: skip
+
+
+def test_a_belt_needs_both_pulleys_on_its_carrier() -> None:
+    four = crank_rocker()
+    given = replace(four, links={**four.links, "wheel": heavy(C=ORIGIN)}, belts=(belt(),))
+    refused("belts[1]", "'wheel' shares 0 points with the carrier 'frame'; driver and driven...",
+            lambda: assembled(given))  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("where", "words", "more"),
+    [
+        ("belts[1]", "give either teeth and pitch, or radii", {"radii": None}),
+        ("belts[1]", "give either teeth and pitch, or radii", {"teeth": (9, 9), "pitch": 0.01}),
+        ("belts[1].pitch", "missing; teeth and pitch go together",
+         {"radii": None, "teeth": (20, 20)}),
+        ("belts[1].teeth", "missing; teeth and pitch go together", {"pitch": 0.01}),
+        ("belts[1].tension", "got 0 N; give more than 0", {"tension": 0.0}),
+        ("belts[1].radii[2]", "got -0.2 m; give more than 0", {"radii": (0.1, -0.2)}),
+    ],
+)  # fmt: skip
+def test_keys_of_a_belt(where: str, words: str, more: dict[str, Any]) -> None:
+    refused(where, words, lambda: belted(belt(**more)))
+
+
+def test_a_belt_that_never_closes() -> None:
+    with pytest.raises(MotionError, match=r"ratio 0\.318.* of crank to wheel is no fraction"):
+        eq.move(belted(belt(radii=(0.1, 0.1 * pi))), 12)
+
+
+def test_gears_of_ratio_1_are_to_be_a_belt() -> None:
+    with pytest.raises(ModelError, match=r"the ratio is 1; .* take a belt, .*\[\[belts\]\]"):
+        belted(gears=(eq.Gear("crank", "wheel", teeth=(20, 20), mesh="internal"),))
+
+
+def test_a_rack_that_never_comes_back() -> None:
+    words = "the rack 'ram' never comes back: its pinion 'crank' turns on and on"
+    with pytest.raises(MotionError, match=words):
+        eq.move(racked(Rack("crank", "ram", 0.05, "left")), 12)
+
+
+def test_a_rack_needs_a_guide_and_its_pinion_a_pin() -> None:
+    words = "'coupler' has 0 pins and 'ram' 1 guides on the carrier 'frame'; a pinion..."
+    given = racked(Rack("coupler", "ram", 0.05, "left"))
+    refused("racks[1]", words, lambda: assembled(given))
+
+
+def test_what_drives_tells_its_own_place() -> None:
+    words = "goes with drives = 'rack'; what drives tells its own place"
+    refused("racks[1].angle", words, lambda: racked(Rack("rocker", "ram", 0.05, "left", angle=1.0)))
