@@ -44,8 +44,11 @@ except ModuleNotFoundError as missing:
     pinocchio_four_bar = None
 
 WANTED = [Figure(signal, "rms") for signal in SIGNALS]
-LIKE_FOUR_BAR = ("watt-six-bar", "stephenson-six-bar", "balance-geared-a", "geared-counterweight")
-"""The last has its gear on a link that the crank moves unevenly."""
+LIKE_FOUR_BAR = (
+    "watt-six-bar", "stephenson-six-bar", "balance-geared-a", "geared-counterweight",
+    "elliptic-quick-return",
+)  # fmt: skip
+"""The last but one has its gear on a link that the crank moves unevenly."""
 EXACT, CLOSE = 1e-12, 1e-9
 """Share to which the same arithmetic agrees, and other formulas."""
 Array = np.ndarray

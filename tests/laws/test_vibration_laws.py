@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.mechanism.bodies import Body
 from equipoise.mechanism.force_elements import Motor
 from equipoise.mechanism.support import Gauge, Mount, Row, Support, unit_vector
 from equipoise.signals import Periodic
@@ -313,6 +314,25 @@ def test_rows_apart_exchange_heave_for_roll() -> None:
     found = respond(level.with_rows([Row(lateral=-0.25), Row(lateral=0.25)]), 18.0).gauges
     assert found["roll"].displacement.peak_to_peak < 1e-12
     assert found["heave"].displacement.peak_to_peak > 1e-4
+
+
+@pytest.mark.parametrize("aside", [0.0, 0.1])
+def test_masses_in_two_planes_are_two_rows_there(aside: float) -> None:
+    """Half of the mass of each link on either side, or two linkages of half the mass there."""
+    z, level = 0.23, cart()
+    one, half = {}, {}
+    for name, link in level.links.items():
+        part = {"mass": link.mass / 2, "inertia": link.inertia / 2}
+        places = (z - aside, z + aside)
+        parts = [Body("point", at=link.center_of_mass, plane=at, **part) for at in places]
+        one[name] = link.altered(bodies=tuple(parts), plane=z)
+        half[name] = link.altered(**part)
+    rows = [Row(lateral=z - aside), Row(lateral=z + aside)]
+    found = respond(replace(level, links=one), 18.0, "moment").gauges
+    wanted = respond(replace(level, links=half).with_rows(rows), 18.0, "moment").gauges
+    for name, want in wanted.items():
+        difference = found[name].displacement.amplitudes - want.displacement.amplitudes
+        assert np.max(np.abs(difference)) < 1e-10 * want.displacement.peak_to_peak
 
 
 # -- the same described otherwise ------------------------------------------------------------------

@@ -191,9 +191,15 @@ def _wrench(effects: Effects, linear: Linear, rows: Sequence[Row]) -> Periodic:
     excitation, machine = linear.excitation, effects.machine
     force = effects.signal("frame_force").start - machine.mass * complex(*machine.gravity)
     forces = np.vstack([force, effects.signal("shaking_force").columns])
-    signals = np.stack([forces.real, forces.imag, _moments(effects, linear)])
+    rocking = np.zeros(forces.shape, complex)
+    if excitation.step == "moment" and beside(machine):
+        weight = 1j * excitation.across * complex(*machine.gravity)
+        still = effects.signal("frame_rocking_moment").start - weight
+        rocking = np.vstack([still, effects.signal("rocking_moment").columns])
+    moments = _moments(effects, linear)
+    signals = np.stack([forces.real, forces.imag, moments, rocking.real, rocking.imag])
     one = Periodic.of(signals, effects.motion.turns)
-    flat, total = one.amplitudes.reshape(3, -1), Periodic(np.zeros((6, 1, 1)), one.turns)
+    flat, total = one.amplitudes.reshape(5, -1), Periodic(np.zeros((6, 1, 1)), one.turns)
     for place in rows:
         here = excitation.about_reference(flat, place).reshape(6, *one.amplitudes.shape[1:])
         total = total + Periodic(here, one.turns).shifted(place.phase)

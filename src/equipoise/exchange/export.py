@@ -73,11 +73,17 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
     machine, changes = (what.machine, what.changes) if isinstance(what, Balanced) else (what, ())
     if one.turns:
         check_turning(machine, one.title)
+    if machine.racks and one.name in WITHOUT_RACKS:
+        raise UsageError(f"racks[1]: a file of {one.title} has no rack; give another format")
     job = Job(machine, crank_angle, changes)
     if machine.drive.pushes:
         job.leave_out("what pushes the machine, and its stroke")
     data: str | bytes = import_module(f"equipoise.exchange.{one.name}").made(job)
     return job, data
+
+
+WITHOUT_RACKS = ("mjcf", "urdf", "exudyn", "modelica")
+"""Formats in which nothing turns as something else slides."""
 
 
 def check_turning(machine: Machine, title: str) -> None:

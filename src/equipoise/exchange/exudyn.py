@@ -132,7 +132,7 @@ def _geared(tree: Tree) -> list[Data]:
     UsageError : gears sit on three bodies of which none follows another or stands still.
     """
     shares: dict[str, dict[str, float]] = {}
-    for gear in tree.machine.gears:
+    for gear in (*tree.machine.gears, *tree.machine.belts):
         ratio, total = even_ratio(gear), dict[str, float]()
         for body, share in ((gear.driver, ratio), (gear.carrier, 1 - ratio)):
             for root, factor in shares.get(body, {body: 1.0}).items():

@@ -172,7 +172,7 @@ def _sliders(model: Flat, motion: Motion) -> None:
 
 def _gears(model: Flat, motion: Motion) -> None:
     """What teeth do, as couples on driver, driven and carrier that do no work together."""
-    for number, gear in enumerate(model.machine.gears, 1):
+    for number, gear in enumerate((*model.machine.gears, *model.machine.belts), 1):
         ratio, couple = even_ratio(gear), f"G_{number}"
         shares = ((gear.driven, 1.0), (gear.driver, -ratio), (gear.carrier, ratio - 1.0))
         model.real(couple)

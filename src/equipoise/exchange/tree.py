@@ -15,6 +15,7 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.exchange.formats import Job
+from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.bodies import inertia_of
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import assemble
@@ -114,7 +115,7 @@ class Tree:
     @property
     def gears(self) -> Iterator[tuple[str, dict[str, float]]]:
         """Of each pair of gears its name, and link -> factor of its hinge in a sum that is 0."""
-        for gear in self.machine.gears:
+        for gear in (*self.machine.gears, *self.machine.belts):
             ratio, factors = even_ratio(gear), dict[str, float]()
             shares = ((gear.driven, 1.0), (gear.driver, -ratio), (gear.carrier, ratio - 1))
             for body, share in shares:
@@ -123,14 +124,14 @@ class Tree:
             yield gear.name, {link: one for link, one in factors.items() if one}
 
 
-def even_ratio(gear: Gear) -> float:
-    """Speed ratio of a pair of gears.
+def even_ratio(gear: Gear | Belt) -> float:
+    """Speed ratio of a pair of gears, or of a belt.
 
     Raises
     ------
     UsageError : it varies.
     """
-    if gear.shape is not None:
+    if isinstance(gear, Gear) and gear.shape is not None:
         raise UsageError(
             f"the ratio of the gears {gear.name} varies, which this format has no joint for; give "
             "another format, or gears without a shape"

@@ -56,6 +56,7 @@ class Outline:
     """A machine that may be unfinished.
 
     poses : of every link.  drive : None where none has been chosen.
+    phase : crank angle at which it is drawn (rad), where the angle of no link tells it.
     rest : what a machine has besides, by its field.
     """
 
@@ -66,11 +67,14 @@ class Outline:
     sliders: tuple[Slider, ...] = ()
     gears: tuple[Gear, ...] = ()
     rest: Mapping[str, Any] = field(default_factory=lambda: {"title": TITLE})
+    phase: float = 0.0
 
     @property
     def crank_angle(self) -> float:
         """At which it is drawn, rad; 0 without a drive."""
-        return self.poses[self.drive.link].angle if self.drive else 0.0
+        if self.drive is None:
+            return 0.0
+        return self.poses[self.drive.crank].angle if self.drive.crank else self.phase
 
     @property
     def bodies(self) -> dict[str, Mapping[str, Vector]]:
@@ -96,7 +100,8 @@ class Outline:
 
     @property
     def joints(self) -> Structure:
-        return joined(self.bodies, self.sliders, self.gears)
+        coupled = (*self.gears, *self.rest.get("belts", ()), *self.rest.get("racks", ()))
+        return joined(self.bodies, self.sliders, coupled)
 
     @property
     def driven(self) -> list[str]:
@@ -137,7 +142,7 @@ class Outline:
             links=self.links,
             sliders=self.sliders,
             gears=tuple(self._meshed(drive.link)),
-            position=self._position(drive.link),
+            position=self._position(),
             **self.rest,
         )
 
@@ -153,11 +158,11 @@ class Outline:
         loops = any(group.kind == "loops" for group in assemble(machine).groups)
         return machine if loops else replace(machine, position=None)
 
-    def _position(self, drive: str) -> Position:
+    def _position(self) -> Position:
         points = {name: clean_place(place, self.size) for name, place in self.places.items()
                   if any(name in link.points for link in self.links.values())}  # fmt: skip
         angles = {name: clean(pose.angle) for name, pose in self.poses.items()}
-        return Position(angles.get(drive, 0.0), points, angles)
+        return Position(clean(self.crank_angle), points, angles)
 
     def _meshed(self, drive: str) -> Iterator[Gear]:
         """Gears that start so that they come to where they are drawn, as far as that is known."""

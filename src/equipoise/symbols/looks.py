@@ -78,6 +78,7 @@ LOOKS = {
     "wheel": Look("wheel", "lines", 1.0),
     "pitch": Look(None, "faint", 1.2, (5.0, 3.0)),
     "spoke": Look(None, "faint", 3.0),
+    "strand": Look(None, "lines", 1.6),
     "trace": Look(None, "main", 1.6),
     "force-path": Look(None, "stress", 1.1, (4.0, 3.0)),
     "solid": Look("wheel", "faint", 1.0),

@@ -164,7 +164,7 @@ def _wheels(scene: Scene) -> Iterator[Piece]:
         if gear.curve is None and key in seen:
             continue
         seen.add(key)
-        part = "gears", gear.pair
+        part = ("gears", gear.pair) if gear.pair else None
         if gear.link == FRAME:
             still = complex(scene.places[gear.center][0])
             yield Piece("wheels", (rim(still, gear.radius, gear.curve),), part=part)
@@ -172,6 +172,15 @@ def _wheels(scene: Scene) -> Iterator[Piece]:
         body = bodies[gear.link]
         center = scene.local(body, scene.places[gear.center])
         yield Piece("wheels", tuple(wheel(center, gear.radius, gear.curve)), _with(body), part=part)
+    for taut in scene.taut:
+        if taut.body == FRAME:
+            still = complex(scene.places[taut.point][0])
+            yield Piece("wheels", (line("strand", *(still + end for end in taut.ends)),))
+        else:
+            body = bodies[taut.body]
+            start = scene.local(body, scene.places[taut.point])
+            shape = line("strand", *(start + end for end in taut.ends))
+            yield Piece("wheels", (shape,), _with(body))
 
 
 def _stands(scene: Scene) -> Iterator[Piece]:

@@ -19,6 +19,7 @@ from equipoise.symbols.carrier import MOUNT, Carrier, Swing
 from equipoise.symbols.drives import Drive
 from equipoise.symbols.rows import ONE, Rows, rows_of
 from equipoise.symbols.shapes import Array, hull
+from equipoise.symbols.taut import Taut, racks_of, strands_of
 from equipoise.symbols.wheels import Wheel, wheels_of
 
 
@@ -97,6 +98,7 @@ class Scene:
     planned : springs that balancing may set, likewise.
     room : places besides that are to be in sight, complex, m.
     rows : those of its machine, where all of them are to be seen.
+    taut : strands of belts, and pitch lines of racks.
     swing : how the support moves, where it is to be seen; places are in the frame's axes all along.
     """
 
@@ -117,6 +119,7 @@ class Scene:
     swing: Swing | None = None
     room: tuple[complex, ...] = ()
     rows: Rows = ONE
+    taut: tuple[Taut, ...] = ()
 
     @classmethod
     def of(cls, motion: Motion) -> Scene:
@@ -140,6 +143,7 @@ class Scene:
             tuple((one.point, one.to) for one in planned if (one.point, one.to) not in springs),
             _field(motion),
             Carrier.of(machine),
+            taut=(*strands_of(joints, machine.bodies), *racks_of(motion)),
         )
 
     def with_rows(self, motion: Motion) -> Scene:

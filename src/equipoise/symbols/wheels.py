@@ -8,11 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from equipoise.i18n import say
+from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.couplings import Law
 from equipoise.mechanism.gears import Gear
 from equipoise.mechanism.joints import Structure, coupling_pins
 from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.racks import Rack
 from equipoise.symbols.shapes import Array
 
 CORNERS = 180
@@ -25,7 +27,7 @@ class Wheel:
     """The pitch curve of a gear.
 
     link : what turns with it, maybe the frame.  center : the point on its axis.
-    radius : of a circle, or the largest, m.  pair : name of the gears that it is one of.
+    radius : of a circle, or the largest, m.  pair : name of the gears that it is one of, if any.
     curve : (n,) of what is no circle: from the center, in the link's axes, complex, m.
     """
 
@@ -44,11 +46,18 @@ def called(wheels: Iterable[Wheel]) -> str:
 
 
 def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) -> Iterator[Wheel]:
-    """The gears, of which each has its pin on the carrier.
+    """Gears, pulleys and pinions, of which each has its pin on the carrier.
 
     angles : of the links in one pose, rad, which tell how curves lie that are no circles.
     """
     for gear in joints.couplings:
+        if isinstance(gear, Belt):
+            links = zip((gear.driver, gear.driven), coupling_pins(joints, gear), strict=True)
+            for (link, pin), radius in zip(links, gear.pitch_radii, strict=True):
+                yield Wheel(link, pin, radius, "")
+        elif isinstance(gear, Rack):
+            for pin in joints.pins_between(gear.pinion, gear.carrier):
+                yield Wheel(gear.pinion, pin, gear.radius, "")
         if not isinstance(gear, Gear):
             continue
         pins = coupling_pins(joints, gear)

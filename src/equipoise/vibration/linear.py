@@ -22,8 +22,9 @@ from equipoise.mechanism.dynamics import Forces, forces
 from equipoise.mechanism.kernels import cross
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.planes import beside, moments_across
 from equipoise.mechanism.support import AXES, FREEDOMS, Gauge, Row
-from equipoise.signals import Array, Periodic, highest_at
+from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import (
     Body,
     Rest,
@@ -33,6 +34,7 @@ from equipoise.vibration.body import (
     rigid_mass,
     unbounded_at,
 )
+from equipoise.vibration.eigen import find_modes
 from equipoise.vibration.linkages import rows_of, spread
 from equipoise.vibration.response import Mode
 
@@ -43,8 +45,6 @@ ANGLES = 720
 """Crank angles in a turn from which orders are taken; more where loads may set in at once."""
 SINGULAR = 1e10
 """Condition of an order's equations above which it meets an undamped mode."""
-STILL = 1e-7
-"""Share of the largest frequency below which a motion counts as free, without a spring."""
 
 
 # -- what the linkages do --------------------------------------------------------------------------
@@ -111,9 +111,16 @@ class Excitation:
             place = self.pivot_of(row)
             if self.step == "moment":
                 center = self._mean_center + complex(*row.offset)
-                place = np.array([center.real, center.imag, row.lateral])
+                z = row.lateral + (self.across / self.machine.mass if self.machine.mass else 0.0)
+                place = np.array([center.real, center.imag, z])
             found.append((self.machine.mass * gravity, place))
         return found
+
+    @property
+    def across(self) -> float:
+        """Sum of mass times plane, kg m."""
+        links = self.machine.links.values()
+        return float(sum(moments_across(link)[0] for link in links))
 
     @cached_property
     def _mean_center(self) -> complex:
@@ -148,15 +155,18 @@ class Excitation:
         return Periodic(wrench, self.motion.turns)
 
     def about_reference(self, on_pivot: Array, row: Row) -> Array:
-        """Force along x and y and moment about the pivot of a row, (3, N), as a wrench (6, N)."""
+        """Force along x and y, moment about the pivot of a row, and moments about x and y that act
+        in its plane, (5, N), as a wrench (6, N).
+        """
         force = np.zeros((on_pivot.shape[1], 3), on_pivot.dtype)
         force[:, :2] = on_pivot[:2].T
         wrench = self.body.wrench(force, self.pivot_of(row))
         wrench[:, 5] += on_pivot[2]
+        wrench[:, 3:5] += on_pivot[3:].T
         return wrench.T
 
     def _on_pivot(self, speed: float) -> Periodic:
-        """Force along x and y, and moment about the pivot, of one linkage; (3, K + 1)."""
+        """What one linkage does, as `about_reference` takes it; (5, K + 1)."""
         if self._in_soil:
             return Periodic.of(self._signals(self.motion.at(speed)), self.motion.turns)
         still, moving = self._parts
@@ -170,11 +180,16 @@ class Excitation:
         return both.amplitudes[0], both.amplitudes[1]
 
     def _signals(self, motion: Motion) -> Array:
-        """Force along x and y, and moment about the pivot, (3, N)."""
+        """The same at the crank angles of a motion, (5, N)."""
         # Springs pull frame and links alike; left in, (57) would count their torque on the drive.
         found = replace(forces(motion, self.pivot), springs={})
         force = found.frame_force.value - found.weight.value
-        return np.stack([force.real, force.imag, self._moment(found)])
+        rocking = np.zeros(len(force), complex)
+        if self.step == "moment" and beside(self.machine):
+            gravity = complex(*self.machine.gravity)
+            rocking = found.across.frame_rocking_moment.value - 1j * self.across * gravity
+        moment = self._moment(found)
+        return np.stack([force.real, force.imag, moment, rocking.real, rocking.imag])
 
     def _moment(self, found: Forces) -> Array:
         if self.step == "linear":
@@ -185,40 +200,6 @@ class Excitation:
         # what the mounts carry at rest
         mean = self.machine.mass * float(cross(self._mean_center - self.pivot, gravity))
         return np.asarray(found.frame_moment - mean)
-
-
-# -- free vibration --------------------------------------------------------------------------------
-
-
-def find_modes(mass: Array, damping: Array, stiffness: Array) -> tuple[Mode, ...]:
-    """Modes of M x'' + C x' + K x = 0, by frequency; overdamped and growing ones are told twice.
-
-    mass, damping, stiffness : (D, D).
-    """
-    count = len(mass)
-    system = np.zeros((2 * count, 2 * count))
-    system[:count, count:] = np.eye(count)
-    system[count:, :count] = -np.linalg.solve(mass, stiffness)
-    system[count:, count:] = -np.linalg.solve(mass, damping)
-    values, vectors = np.linalg.eig(system)
-    least = STILL * float(np.max(np.abs(values), initial=0.0))
-    # Eigenvectors of a zero that stands twice, for standing and drifting, are one; the stiffness
-    # tells free motions apart.
-    _, sizes, shapes = np.linalg.svd(stiffness)
-    free = sizes <= STILL**2 * np.max(sizes, initial=0.0)
-    found = [Mode(0j, _scaled(shape)) for shape in shapes[free].astype(complex)]
-    for value, vector in zip(values, vectors.T, strict=True):
-        if abs(value) > least and value.imag >= -STILL * abs(value):
-            swinging = value.imag > STILL * abs(value)
-            eigenvalue = complex(value if swinging else value.real)
-            found.append(Mode(eigenvalue, _scaled(vector[:count])))
-    return tuple(sorted(found, key=lambda mode: (mode.natural_frequency, mode.eigenvalue.real)))
-
-
-def _scaled(shape: Array) -> Array:
-    """The shape with its largest part 1."""
-    largest = shape[highest_at(np.abs(shape), smooth=False)]
-    return np.asarray(shape / largest) if largest else shape
 
 
 # -- forced vibration ------------------------------------------------------------------------------

@@ -29,6 +29,7 @@ from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.kernels import cross, dot
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.planes import beside, masses_of, moments_across
 from equipoise.mechanism.reactions import Demand, Pass, reactions
 from equipoise.mechanism.steps import p, u
 from equipoise.mechanism.support import Row
@@ -157,7 +158,7 @@ def _power(motion: Motion, demands: Mapping[str, Demand]) -> Array:
 
 
 def spread(machine: Machine, theta: Array) -> Array:
-    """Mean mass matrix (6, 6) of the links of one row about the frame's origin, in its own plane.
+    """Mean mass matrix (6, 6) of the links of one row about the frame's origin, in its plane 0.
 
     Coordinates as in `vibration.body`.  Links are flat: their own inertia about the lateral axis
     is twice that about an axis in the plane, in the mean over directions.
@@ -173,7 +174,24 @@ def spread(machine: Machine, theta: Array) -> Array:
         total[3:, 3:] += np.array(
             [[yy + own / 2, -xy, 0], [-xy, xx + own / 2, 0], [0, 0, xx + yy + own]]
         )
+    if beside(machine):
+        total += _spread_across(motion)
     total[3:, :3] = total[:3, 3:].T
+    return total
+
+
+def _spread_across(motion: Motion) -> Array:
+    """What masses beside the plane 0 add to it, but for what stands below the diagonal."""
+    total = np.zeros((6, 6))
+    for name, link in motion.machine.links.items():
+        anchor = motion.linkage.anchors[name]
+        mz, moment = moments_across(link, anchor)
+        zz = sum(mass * z**2 for mass, _, z in masses_of(link))
+        center = motion.state[p(anchor)[0]] * mz + motion.state[u(name)[0]] * moment
+        mean = complex(np.mean(center))
+        total[:3, 3:] += np.array([[0, mz, 0], [-mz, 0, 0], [0, 0, 0]])
+        zx, yz = -mean.real, -mean.imag
+        total[3:, 3:] += np.array([[zz, 0, zx], [0, zz, yz], [zx, yz, 0]])
     return total
 
 

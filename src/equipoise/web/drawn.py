@@ -15,6 +15,7 @@ from equipoise.mechanism.model import FRAME, Machine
 from equipoise.quantities import DIGITS, display
 from equipoise.symbols.drives import Drive
 from equipoise.symbols.scene import Guide, Scene, bodies_of
+from equipoise.symbols.taut import Taut, strands_of
 from equipoise.symbols.wheels import Wheel, wheels_of
 from equipoise.web.block import Block, Values
 from equipoise.web.design import Design
@@ -243,6 +244,7 @@ def scene_of(sketch: Sketch) -> Scene:
         springs,
         {name: pose.angle * one for name, pose in sketch.poses.items()},
         drive,
+        taut=tuple(_strands(sketch)),
         room=() if sketch.links else EMPTY,
     )
 
@@ -252,6 +254,14 @@ def _wheels(sketch: Sketch) -> list[Wheel]:
     try:
         angles = {name: pose.angle for name, pose in sketch.poses.items()}
         return [*wheels_of(sketch.joints, sketch.bodies, angles)]
+    except EquipoiseError:
+        return []
+
+
+def _strands(sketch: Sketch) -> list[Taut]:
+    """Strands of belts, as far as these have their pins by now."""
+    try:
+        return [*strands_of(sketch.joints, sketch.bodies)]
     except EquipoiseError:
         return []
 

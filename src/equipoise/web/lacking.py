@@ -23,8 +23,9 @@ def lacking(sketch: Sketch) -> str:
     if not any(FRAME in bodies for bodies in joints.pins.values()):
         return say("nothing holds the machine: pin a point of it to the frame")
     mobility, drive = sketch.mobility, sketch.drive
-    if mobility > 1:
-        too_many = say("free motions too many: {count}", count=mobility - 1)
+    wanted = max(len(sketch.driven), 1)
+    if mobility > wanted:
+        too_many = say("free motions too many: {count}", count=mobility - wanted)
         return f"{too_many}; {_loose(sketch, joints)}"
     if mobility < 1 and drive is None:
         links = _listed(held_too_often(joints, sketch.driven), AND)

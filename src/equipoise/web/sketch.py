@@ -14,9 +14,11 @@ from equipoise.web.design import Counterweight, Design
 from equipoise.web.edits import Solved, solved
 
 UNTITLED = "untitled"
-REST = ("title", "description", "gravity", "drives", "loads", "springs", "planting", "support",
-        "rows", "balance", "units")  # fmt: skip
+REST = ("title", "description", "gravity", "drives", "belts", "racks", "loads", "springs",
+        "planting", "support", "rows", "balance", "units")  # fmt: skip
 """Fields of a machine that a sketch hands on as they are."""
+LISTS = ("belts", "racks", "loads", "springs")
+"""Those of them that have names of links and points in them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +43,7 @@ class Sketch(Outline):
         rest = {key: getattr(own, key) for key in REST}
         weights = {name: one for name, one in found.design.counterweights.items() if one.mass}
         return cls(own.frame, own.links, poses, own.drive, own.sliders, own.gears, rest,
-                   found.design.name, weights)  # fmt: skip
+                   float(motion.crank_angle[at]), found.design.name, weights)  # fmt: skip
 
     @property
     def units(self) -> ShownUnits | None:
@@ -72,14 +74,14 @@ class Sketch(Outline):
         """What has names of links and points in it, with the field that it stands in."""
         for key in ("sliders", "gears"):
             yield from ((key, one) for one in getattr(self, key))
-        for key in ("loads", "springs"):
+        for key in LISTS:
             yield from ((key, one) for one in self.rest.get(key, ()))
 
     def with_entries(self, entries: list[tuple[str, Any]]) -> Sketch:
         """The same with other ones."""
         of = {key: tuple(one for name, one in entries if name == key) for key in
-              ("sliders", "gears", "loads", "springs")}  # fmt: skip
-        rest = {**self.rest, "loads": of["loads"], "springs": of["springs"]}
+              ("sliders", "gears", *LISTS)}  # fmt: skip
+        rest = {**self.rest, **{key: of[key] for key in LISTS}}
         return replace(self, sliders=of["sliders"], gears=of["gears"], rest=rest)
 
     def taking(self, machine: Machine) -> Sketch:

@@ -14,6 +14,7 @@ from equipoise.mechanism.outputs import GROUPS
 from equipoise.mechanism.poles import guided, pinned
 from equipoise.quantities import display
 from equipoise.results.analysis import Analysis
+from equipoise.results.drive_blocks import driven
 from equipoise.signals import Periodic
 from equipoise.web.arrows import arrows_of, points_of
 from equipoise.web.block import Array, Block, Values
@@ -109,21 +110,23 @@ def status_of(found: Solved) -> Values:
     """What is told of the making of a machine.
 
     mobility : number of free motions.  text : a sentence: what moves, or what is missing.
-    finished : whether it can be computed.  drive : the crank, if there is one.
+    finished : whether it can be computed.  drive : the crank, if there is one that turns.
     stand : crank angle at which it was drawn, deg; None where it has not just been made.
     """
     machine, stand = found.design.machine, found.stand
     return {
-        "mobility": 1,
+        "mobility": len(machine.driven),
         "text": turning(machine),
         "finished": True,
-        "drive": machine.drive.link,
+        "drive": machine.drive.crank or None,
         "stand": None if stand is None else float(np.degrees(stand)),
     }
 
 
 def turning(machine: Machine) -> str:
     """That a machine is finished."""
+    if not machine.has_crank:
+        return driven(machine, machine.drive.speed)
     return say("1 free motion; {link} turns fully", link=machine.drive.link)
 
 

@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import cos, radians, sin
 
 import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.balancing.multi_row import Rows
+from equipoise.balancing.objectives import signals_of
+from equipoise.balancing.problem import Problem
+from equipoise.errors import ModelError
+from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.balance import AddedMass, Balance, Objective, Weight
 from equipoise.mechanism.bodies import Body
+from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Drive, Link, Machine
 from equipoise.mechanism.parts import Bearing
+from equipoise.mechanism.statics import statics
+from equipoise.mechanism.support import Row
+from equipoise.vibration.forced import respond
+from unit.vibration.build import cart
 
 UNBALANCES = ((8.0, 0.3, 0.0, 0.0), (6.0, 0.2, 90.0, 0.4), (5.0, 0.4, 200.0, 0.9))
 """Mass (kg), radius (m), direction (deg) and plane (m) of what is eccentric on a shaft."""
@@ -91,3 +102,58 @@ def test_a_weight_beside_a_link_of_numbers_makes_bodies_of_it() -> None:
     assert (own.mass, own.at, own.inertia, own.plane) == (2.0, (0.01, 0.0), 0.3, None)
     assert added.plane == 0.5
     assert added.mass * complex(*added.at) == pytest.approx(-0.02, rel=1e-7)
+
+
+def test_gauges_feel_the_rocking_moment() -> None:
+    """As balancing reads them, as they are and with a mass added, and as machines answer."""
+    machine = cart().with_link("coupler", plane=0.2)
+    weight = AddedMass("crank", "A", Weight("point", 0.05, mass=0.4, plane=-0.15))
+    plan = Balance(masses=[weight], objectives=[Objective("gauges.roll", "peak_to_peak")])
+    problem = Problem.of(machine, plan)
+    m = problem.parts[0].mass_unit
+    numbers = [np.array([0.4 / m, 0.0, 0.0, 0.0, 0.0])]
+    close = problem.near(numbers)
+    for there, made in ((problem, machine), (close, close.machine_with(numbers))):
+        signal = signals_of(there.effects, plan.objectives[0], there.close)[0]
+        x = numbers[0] if made is not machine else 0 * numbers[0]
+        want = respond(made).gauges["roll"].displacement
+        assert np.ptp(signal.at(x)) == pytest.approx(float(want.peak_to_peak), rel=1e-5)
+
+
+def test_rows_add_their_own_rocking() -> None:
+    """Whether the analysis adds rows up, or balancing does by orders or by signals."""
+    machine = eq.load("twin-engine").with_rows([Row(lateral=0.3), Row(0.7, lateral=-0.2)])
+    analysis = eq.analyze(machine, 720)
+    for name in ("roll_moment", "yaw_moment"):
+        wanted = analysis.summary[f"rows.{name}"].rms
+        assert Problem.value_of(machine, Objective(name)) == pytest.approx(wanted, rel=1e-9)
+        by_orders = Rows(machine).signals(Objective(name)).total(np.array([0.0, 0.7]))[0, 0]
+        square = abs(by_orders[0]) ** 2 + np.sum(np.abs(by_orders[1:]) ** 2) / 2
+        assert np.sqrt(square) == pytest.approx(wanted, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"left": Bearing("shaft", 0.0)}, "has 1 bearings in different planes; give it two"),
+        ({"left": Bearing("axle", 0.0)}, "no link is called 'axle'"),
+    ],
+)
+def test_bearings_that_are_refused(change: dict[str, Bearing], told: str) -> None:
+    with pytest.raises(ModelError, match=told):
+        replace(rotor(), bearings=change)
+
+
+def test_a_pin_lies_in_one_plane() -> None:
+    machine = eq.load("twin-engine").with_link("crank", planes={"B1": 0.01})
+    with pytest.raises(ModelError, match="a pin lies in one plane"):
+        machine.with_link("rod-1", planes={"B1": 0.02})
+
+
+def test_what_statics_leaves_open_is_told() -> None:
+    """A coupler between joints in planes of their own hands couples on; one in its own does not."""
+    machine = eq.load("yamashita-1").with_link("coupler", plane=0.02)
+    assert not [*statics(assemble(machine)).told()]
+    bent = machine.with_link("rocker", planes={"C": 0.05})
+    assert statics(assemble(bent)).open == ("B", "C")
+    assert any("tilting moments" in str(one) for one in remarks(assemble(bent)))

@@ -13,6 +13,10 @@ from equipoise.errors import MobilityError, ModelError, UsageError
 from equipoise.mechanism.force_elements import Motor
 from equipoise.mechanism.laws import AngleLaw, AngleSegment
 from equipoise.mechanism.model import Drive, FurtherDrive, Link, Machine
+from equipoise.web.design import Design
+from equipoise.web.edits import solved
+from equipoise.web.sketch import Sketch
+from equipoise.web.state import status_of
 from laws.subjects import gravity_power, kinetic_power
 from support.machines import make
 
@@ -118,3 +122,14 @@ def test_a_file_keeps_drives_and_laws():
     drives = (FurtherDrive("follower", motion=AngleLaw(segments=segments)),)
     machine = five_bar(drives=drives).with_drive(motion=SWING)
     assert eq.loads(eq.dumps(machine)) == machine
+
+
+def test_a_page_can_take_such_a_machine_apart_and_put_it_together_again():
+    """Its crank angle is the phase, which the pose of no link tells."""
+    machine = eq.load("pick-and-place")
+    found = solved(Design("pick-and-place", machine, {}))
+    again = Sketch.of(found, 100).finished()
+    assert again.design.own.drives == machine.drives
+    assert again.design.own.assembly == machine.assembly
+    status = status_of(found)
+    assert (status["mobility"], status["drive"]) == (2, None)

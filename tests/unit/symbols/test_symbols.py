@@ -82,6 +82,26 @@ def test_pitch_circles_touch_and_roll(name):
             np.testing.assert_allclose(speeds[0], speeds[1], atol=1e-12)
 
 
+def test_pitch_curves_roll_without_gap_or_overlap():
+    """Each corner of one curve is outside of the other, and one is next to it."""
+    _, motion, scene = moved("elliptic-quick-return")
+    driver, driven = scene.wheels
+    for k in range(0, len(scene.crank_angle), 7):
+        one, other = (
+            scene.places[wheel.center][k]
+            + wheel.curve * np.exp(1j * motion.links[wheel.link].angle[k])
+            for wheel in (driver, driven)
+        )
+        around = other - scene.places[driven.center][k]
+        arms = one - scene.places[driven.center][k]
+        order = np.argsort(np.angle(around))
+        edge = np.interp(
+            np.angle(arms), np.angle(around)[order], np.abs(around)[order], period=2 * np.pi
+        )
+        apart = (np.abs(arms) - edge) / driven.radius
+        assert -1e-3 < apart.min() < 1e-3
+
+
 def spin(motion, link):
     return 0.0 if link == "frame" else motion.links[link].angular_velocity
 

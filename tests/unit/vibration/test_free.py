@@ -12,8 +12,9 @@ import equipoise as eq
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.force_elements import Motor
 from equipoise.mechanism.support import Row
+from equipoise.vibration.eigen import find_modes
 from equipoise.vibration.forced import respond
-from equipoise.vibration.linear import Linear, find_modes
+from equipoise.vibration.linear import Linear
 from equipoise.vibration.resonance import AMPLIFIED, Resonance, resonances
 from equipoise.vibration.response import Mode, Model
 from equipoise.vibration.sweep import sweep_speed

@@ -383,6 +383,17 @@ def test_whatever_names_a_point_or_a_link_gets_its_new_name(name: str) -> None:
     assert replace(back, assembly=like.assembly, position=like.position) == like
 
 
+@pytest.mark.parametrize("at", [0, 77, 250])
+def test_gears_of_varying_ratio_start_as_they_are_drawn(at: int) -> None:
+    """Whatever is done at another crank angle leaves them as they were."""
+    session, _ = opened("elliptic-quick-return")
+    page, like = Maker(session), session.shown.design.own
+    page.do("rename", what="point", name="B", to="B2", at=at)
+    (gear,), (before,) = session.shown.design.own.gears, like.gears
+    assert gear == replace(before, start=gear.start)
+    assert gear.start == pytest.approx(before.start, abs=1e-9)
+
+
 def test_what_goes_with_a_point_is_told() -> None:
     session, _ = opened("spring-balanced-crank")
     page = Maker(session)
