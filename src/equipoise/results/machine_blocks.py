@@ -187,6 +187,23 @@ def _parts(machine: Machine) -> Iterator[str]:
             through=slider.through,
             angle=angle(slider.direction),
         )
+    yield from _couplings(machine)
+    for spring in machine.springs:
+        yield say(
+            "Spring: {stiffness} from {point} of {link} to {to}",
+            stiffness=told(spring.stiffness, "stiffness", "N/m"),
+            point=spring.point,
+            link=spring.link,
+            to=spring.to,
+        )
+    for load in machine.loads:
+        if load.point is None:
+            yield say("Load: a torque on {link}", link=load.link)
+        else:
+            yield say("Load: a force at {point} of {link}", point=load.point, link=load.link)
+
+
+def _couplings(machine: Machine) -> Iterator[str]:
     for gear in machine.gears:
         named = {"driver": gear.driver, "driven": gear.driven, "carrier": body_named(gear.carrier)}
         if gear.shape is None:
@@ -227,19 +244,6 @@ def _parts(machine: Machine) -> Iterator[str]:
             follower=cam.driven,
             carrier=body_named(cam.carrier),
         )
-    for spring in machine.springs:
-        yield say(
-            "Spring: {stiffness} from {point} of {link} to {to}",
-            stiffness=told(spring.stiffness, "stiffness", "N/m"),
-            point=spring.point,
-            link=spring.link,
-            to=spring.to,
-        )
-    for load in machine.loads:
-        if load.point is None:
-            yield say("Load: a torque on {link}", link=load.link)
-        else:
-            yield say("Load: a force at {point} of {link}", point=load.point, link=load.link)
 
 
 def _support(machine: Machine) -> Iterator[str]:
