@@ -50,8 +50,9 @@ def machine_figures(curve: TipCurve, wanted: Collection[str] | None = None) -> F
 
 
 def _group(name: str) -> str:
-    """The first part of a figure's name, such as ``curve``."""
-    return name.partition(".")[0]
+    """The group of a figure: the first part of its name, such as ``curve``."""
+    bend = "curve.smallest_radius"
+    return bend if name.startswith(bend) else name.partition(".")[0]
 
 
 def hills(curve: TipCurve) -> Figures:

@@ -10,6 +10,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.mechanism.model import FRAME, Machine, Vector, unknown
+from equipoise.planting.twins import kept_alike, twins_of
 from equipoise.planting.variables import Draft, Variable, joined, usual, variables
 from equipoise.signals import Array
 
@@ -23,6 +24,7 @@ class Designs:
     """Machines that differ from one in some numbers.
 
     vary : names of numbers with their limits, m, rad or plain; None for what is `usual`.
+    Arms that are alike stay so, unless what varies names gears of the further ones alone.
     sense : in which the crank turns.  Where it is "either", a last number tells: below 0
         clockwise.
     """
@@ -44,6 +46,11 @@ class Designs:
             if one is None:
                 raise UsageError(f"vary.{name}: {unknown(name, known, 'number to vary')}")
             self.variables.append(one if vary is None else _within(one, *vary[name]))
+        self.twins = [
+            twin
+            for twin in twins_of(machine)
+            if all(twin.mate in one.gears for one in self.variables if twin.gear in one.gears)
+        ]
 
     @property
     def bounds(self) -> tuple[Array, Array]:
@@ -83,7 +90,8 @@ class Designs:
         }[self.sense]
         drive = replace(machine.drive, speed=speed)
         gears = tuple(draft.gears)
-        return replace(machine, frame=points[FRAME], links=links, gears=gears, drive=drive)
+        made = replace(machine, frame=points[FRAME], links=links, gears=gears, drive=drive)
+        return kept_alike(made, self.twins)
 
 
 def _places(points: Mapping[str, Vector]) -> dict[str, complex]:

@@ -58,7 +58,7 @@ def tip_figures(
         sense of the drive.
     breaks : (P, B) crank angles from entry to leave between which the path is smooth; None for
         equal panels.
-    wanted : first parts of the names that are needed, such as ``curve``; None for all.
+    wanted : groups that are needed, such as ``curve``; None for all.
 
     What is of the whole machine comes with the first of its arms.
     """
@@ -73,7 +73,8 @@ def tip_figures(
         instants["pick_up"] = lambda: pick_up(curve, entry)
     groups: dict[str, Callable[[str], Figures]] = {
         "surface": lambda name: {name: curve.surface},
-        "curve": lambda name: size_of_curve(curve) | sharpest_bend(curve, name, 0.0),
+        "curve": lambda name: size_of_curve(curve),
+        "curve.smallest_radius": lambda name: sharpest_bend(curve, "curve", 0.0),
         "ground": lambda name: sharpest_bend(
             curve, name, ground_drive(curve), while_driving(curve)
         ),

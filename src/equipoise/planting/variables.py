@@ -45,6 +45,7 @@ class Variable:
 
     name : as in the target file.  start, low, high : m, rad or plain.
     dimension : None of a plain number.  put : writes a value into a draft.
+    gears : places in the list of those that it changes.
     """
 
     name: str
@@ -53,6 +54,7 @@ class Variable:
     high: float
     dimension: Dimension | None
     put: Callable[[Draft, float], None]
+    gears: tuple[int, ...] = ()
 
 
 def usual(name: str) -> bool:
@@ -241,4 +243,4 @@ def _of_gears(machine: Machine, name: str, numbers: Sequence[int], path: str) ->
             new = before + value - values[0] if dimension == "angle" else value
             draft.gears[k] = changed(draft.gears[k], _steps(path), partial(_instead, new))
 
-    return Variable(name, values[0], low, high, dimension, put)
+    return Variable(name, values[0], low, high, dimension, put, tuple(numbers))

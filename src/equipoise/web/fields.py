@@ -225,6 +225,9 @@ def _links(machine: Machine) -> Iterator[Field]:
         yield from _bodies(where, name, link)
         for side, length in link.sides.items():
             yield _field((*where, "sides", side), name, side, "length", length)
+        for point, plane in link.planes.items():
+            label = say("plane of {name}", name=point)
+            yield _field((*where, "planes", point), name, label, "length", plane)
         if link.has_mass and not link.bodies:
             center = link.center_of_mass or CENTER
             yield from _point((*where, "center_of_mass"), name, say("centre of mass"), center)

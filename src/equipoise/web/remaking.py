@@ -183,6 +183,10 @@ def renamed(sketch: Sketch, what: str, old: str, new: str) -> Sketch:
 def renamed_point(sketch: Sketch, old: str, new: str) -> Sketch:
     """A point with another name, wherever it is named."""
     for body in sketch.holders(old):
+        if body != FRAME and old in (planes := sketch.links[body].planes):
+            told = {new if one == old else one: z for one, z in planes.items()}
+            there = replace(sketch.links[body], planes=told)
+            sketch = replace(sketch, links={**sketch.links, body: there})
         points = {new if one == old else one: at for one, at in sketch.bodies[body].items()}
         if body != FRAME and sketch.links[body].bodies:
             made = renamed_in(sketch.links[body].bodies, "point", old, new)

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import pi
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.errors import ModelError, MotionError
+from equipoise.errors import ModelError, MotionError, UsageError
 from equipoise.mechanism import Belt, Position, Rack
 from equipoise.mechanism.model import FRAME
 from equipoise.results.analysis_blocks import analysis_blocks
 from equipoise.results.belt_blocks import slack
 from equipoise.results.blocks import Notes
+from equipoise.symbols.scene import Scene
 from support.machines import make
 from unit.mechanism.build import ORIGIN, crank_rocker, heavy, machine, refused
 from unit.mechanism.test_newton import only_loops
@@ -245,3 +247,40 @@ def test_a_rack_needs_a_guide_and_its_pinion_a_pin() -> None:
 def test_what_drives_tells_its_own_place() -> None:
     words = "goes with drives = 'rack'; what drives tells its own place"
     refused("racks[1].angle", words, lambda: racked(Rack("rocker", "ram", 0.05, "left", angle=1.0)))
+
+
+# -- pictures and files ----------------------------------------------------------------------------
+
+
+def test_strands_and_pitch_line_are_drawn() -> None:
+    """Strands end on both pulleys; the pinion rolls on the rack's pitch line, which slides."""
+    rack = Rack("rocker", "ram", 0.07, "left")
+    four = racked(rack)
+    wheel = replace(four, frame={**four.frame, "E": (2.0, 0.5)},
+                    links={**four.links, "wheel": heavy(E=ORIGIN)},
+                    belts=(Belt("rocker", "wheel", radii=(0.1, 0.05), crossed=True),))  # fmt: skip
+    motion = eq.move(wheel, 36)
+    scene = Scene.of(motion)
+    *strands, line = scene.taut
+    assert sorted(one.radius for one in scene.wheels) == [0.05, 0.07, 0.1]
+    pin, other = (complex(*wheel.frame[name]) for name in ("D", "E"))
+    for taut in strands:
+        assert (taut.body, taut.point) == (FRAME, "D")
+        assert abs(taut.ends[0]) == pytest.approx(0.1)
+        assert abs(pin + taut.ends[1] - other) == pytest.approx(0.05)
+    place = motion.points["S"].place
+    turn = np.exp(1j * motion.links["ram"].angle)
+    low, high = (place + turn * end for end in line.ends)
+    way = (high - low) / abs(high - low)
+    foot = (pin - low) / way
+    np.testing.assert_allclose(foot.imag, 0.07, atol=1e-12)
+    assert foot.real.min() == pytest.approx(0.07)
+    assert (abs(high - low) - foot.real).min() == pytest.approx(0.07)
+
+
+def test_a_file_without_racks_refuses_them(tmp_path: Path) -> None:
+    given = racked(Rack("rocker", "ram", 0.07, "left"))
+    with pytest.raises(UsageError, match=r"racks\[1\]: a file of MuJoCo .* has no rack"):
+        eq.export(given, tmp_path / "a.xml", format="mjcf")
+    eq.export(belted(belt()), tmp_path / "b.xml", format="mjcf")
+    assert "crank to wheel" in (tmp_path / "b.xml").read_text(encoding="utf-8")

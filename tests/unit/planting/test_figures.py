@@ -109,13 +109,17 @@ def test_designs_that_do_not_enter_or_leave_have_no_crossings() -> None:
     assert found["soil.crank_travel"][2] == pytest.approx(plant(good)["soil.crank_travel"])
 
 
-@pytest.mark.parametrize("wanted", [("curve",), ("entry", "limits"), ("ratio", "soil"), ()])
+BOTH = ("curve", "curve.smallest_radius")
+
+
+@pytest.mark.parametrize("wanted", [BOTH, ("entry", "limits"), ("ratio", "soil"), ()])
 def test_only_what_is_wanted(wanted: tuple[str, ...]) -> None:
     everything, some = stack("kim-chung-a"), stack("kim-chung-a", wanted)
-    assert {name.split(".")[0] for name in some} == {*wanted}
+    assert {name.split(".")[0] for name in some} == {one.split(".")[0] for one in wanted}
     assert some.keys() == {name for name in everything if name.split(".")[0] in wanted}
     for name, values in some.items():
         np.testing.assert_array_equal(values, everything[name])
+    assert not any("radius" in name for name in stack("kim-chung-a", BOTH[:1]))
 
 
 # -- kinds of quantities ---------------------------------------------------------------------------

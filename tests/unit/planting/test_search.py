@@ -274,3 +274,49 @@ def test_two_goals_of_one_figure() -> None:
     goals = [Goal("curve.height", at_least=0.26), Goal("curve.height", at_most=0.2)]
     fit = fit_planting(eq.load("kim-chung-a"), goals, generations=2, population=8)
     assert fit.met == {"curve.height": False}
+
+
+# -- the shape of gears ----------------------------------------------------------------------------
+
+ECCENTRICITY = "gears.shape.eccentricity"
+
+
+def paths(machine: eq.Machine) -> list[np.ndarray]:
+    motion = eq.move(machine, 72)
+    return [motion.points[tip].place for tip in "PQ"]
+
+
+def test_arms_stay_alike_whatever_the_shape_of_their_gears() -> None:
+    """At crank angle 0 they are in different places, where the shape turns them differently."""
+    designs = Designs(eq.load("rotary-transplanter"), {ECCENTRICITY: (0.0, 0.4)})
+    first, second = paths(designs.build([0.12]))
+    np.testing.assert_allclose(second, np.roll(first, 36), atol=1e-7)
+    assert np.max(np.abs(first - paths(designs.machine)[0])) > 0.01
+
+
+def test_an_arm_that_is_varied_alone_goes_its_own_way() -> None:
+    vary = {ECCENTRICITY: (0.0, 0.4), "gears[4].start": (-1.0, 0.0)}
+    designs = Designs(eq.load("rotary-transplanter"), vary)
+    assert designs.build([0.2, -0.5]).gears[3].start == -0.5
+    names = [one.name for one in Designs(designs.machine).variables]
+    assert names == ["tip.x", "tip.y", ECCENTRICITY]
+
+
+def test_the_eccentricity_of_gears_is_found_again() -> None:
+    wanted = eq.load("rotary-transplanter")
+    start = Designs(wanted, {ECCENTRICITY: (0.0, 0.4)}).build([0.1])
+    goals = [Goal("curve.height", target=eq.plant(wanted)["curve.height"])]
+    vary = {ECCENTRICITY: (0.05, 0.3)}
+    fit = fit_planting(start, goals, vary, generations=5, population=5)
+    assert fit.values[ECCENTRICITY] == pytest.approx(0.2, abs=1e-6)
+    shapes = [gear.shape.eccentricity for gear in fit.machine.gears if gear.shape is not None]
+    assert shapes == [fit.values[ECCENTRICITY]] * 4
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["gears[9].start", "gears.shape.sines[1]", "carrier.B,Z.x", "nothing.B.x", "gears[0].start"],
+)
+def test_numbers_that_there_are_not(name: str) -> None:
+    with pytest.raises(UsageError, match="number to vary"):
+        Designs(eq.load("rotary-transplanter"), {name: (0.0, 1.0)})

@@ -59,3 +59,15 @@ def test_names_with_dots_are_names() -> None:
     dotted = replace(machine, links=links, drive=replace(machine.drive, link="crank.x"))
     field = fields_of(Design("dotted", dotted))["links.crank.x.points.B.x"]
     assert field.put(Design("", dotted), 0.04).own.links["crank.x"].points["B"] == (0.04, 0.0)
+
+
+def test_planes_of_links_and_points_are_fields() -> None:
+    machine = eq.load("twin-engine").with_link("crank", planes={"B1": -0.04})
+    fields = fields_of(Design("twin", machine))
+    assert fields["links.rod-1.plane"].value == -0.04
+    made = fields["links.crank.planes.B1"].put(Design("", machine), -0.03).own
+    assert made.links["crank"].planes["B1"] == -0.03
+    assert (
+        fields["links.crank.bodies.2.plane"].put(Design("", machine), -0.05).own.mass
+        == machine.mass
+    )
