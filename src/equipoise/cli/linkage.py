@@ -44,6 +44,7 @@ from equipoise.cli.outputs import (
     write_text,
 )
 from equipoise.cli.progress import counted, generations
+from equipoise.cli.swinging import swinging
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note
 
@@ -102,7 +103,7 @@ def analyze(
 
     check_belonging("--json", outputs.json, split=split or None)
     check_belonging("--orders", orders is not None, crank_zero=crank_zero)
-    machine = linkage_of(file)
+    machine = swinging(file, angles)
     zero = crank_zero or 0.0
     if csv is not None:
         check_result_file("--csv", csv, sources_of(machine, file))

@@ -12,7 +12,14 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TextIO
 
 from cyclopts import Parameter
 
-from equipoise.cli.options import NewFile, NewFolder, Out, ShownIn, check_belonging, count
+from equipoise.cli.options import (
+    NewFile,
+    NewFolder,
+    Out,
+    ShownIn,
+    check_belonging,
+    count,
+)
 from equipoise.errors import UsageError
 from equipoise.fence import may_be_replaced
 from equipoise.i18n import Note, in_each, said, say

@@ -93,6 +93,8 @@ def plot(
             name = f"{picture.name}.{kind}"
             write_all(folder, {name: render(picture.draw(), kind)})
             tell(f"{os.path.join(folder, name)}  {picture.caption}")
+    if not isinstance(found, ToolFindings) and found.swings is not None:
+        tell(f"note: {found.swings}", sys.stderr)
     for part, why in found.failed.items():
         tell(f"{part}: left out, {why}", sys.stderr)
     tell_pictures(len(chosen), folder)

@@ -19,6 +19,7 @@ from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, sho
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.pieces import GROUND, pieces, placed
 from equipoise.symbols.scene import Scene
+from equipoise.symbols.shapes import Shape, line
 from equipoise.symbols.wheels import called
 
 if TYPE_CHECKING:
@@ -66,8 +67,19 @@ def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
     what = say("Linkage, to scale; above each: angle of {link} in the frame", **told)
     if columns == 1:
         what = say("Linkage, to scale; angle of {link} in the frame: {angle}", **told)
-    keys, words = tuple(keys_of(scene)), (*rows_told(scene), *beyond(scene))
+    keys = tuple(keys_of(scene))
+    words = (*rows_told(scene), *beyond(scene), *_ends_told(scene))
     return Chart("linkage", analysis.machine.title, what, panels, columns, keys=keys, words=words)
+
+
+def _ends_told(scene: Scene) -> Iterator[str]:
+    """Where a drive turns back that goes to and fro."""
+    drive = scene.drive
+    if drive.swings is not None or drive.between is not None:
+        angle = scene.angles[drive.link]
+        low, high = (told_angle(float(end)) for end in (angle.min(), angle.max()))
+        link = short(drive.link)
+        yield say("pale: {link} at both ends, {low} and {high}", link=link, low=low, high=high)
 
 
 def told_angle(angle: float) -> str:
@@ -95,8 +107,21 @@ def drawn(scene: Scene, k: int) -> dict[str, Any]:
     return {"ground": tuple(placed(scene, ground, k)), "signs": tuple(placed(scene, signs, k))}
 
 
+def _at_ends(scene: Scene) -> Iterator[Shape]:
+    """Links, pale, where a drive turns back that goes to and fro."""
+    drive = scene.drive
+    if drive.swings is None and drive.between is None:
+        return
+    angle = scene.angles[drive.link]
+    for k in (int(np.argmin(angle)), int(np.argmax(angle))):
+        for body in scene.bodies:
+            corners = [complex(place) for place in _outline(scene, body.outline, k)]
+            if len(corners) > 1:
+                yield line("row", *corners, closed=len(corners) > 2)
+
+
 def _panel(scene: Scene, k: int, paths: tuple[Curve, ...], columns: int) -> Panel:
-    alone = columns == 1
+    alone, parts = columns == 1, drawn(scene, k)
     return Panel(
         *plane_axes(scene),
         paths,
@@ -106,7 +131,7 @@ def _panel(scene: Scene, k: int, paths: tuple[Curve, ...], columns: int) -> Pane
         zero=False,
         held=scene.box,
         sign_size=SMALLER if columns == MANY else 1.0,
-        **drawn(scene, k),
+        **{**parts, "ground": (*parts["ground"], *_at_ends(scene))},
     )
 
 

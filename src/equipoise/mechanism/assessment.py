@@ -69,6 +69,8 @@ class FourBar:
 
 def four_bar(machine: Machine) -> FourBar | None:
     """Describe the four-bar at the crank of a machine, or return None if there is none."""
+    if machine.drive.pushes:
+        return None
     linkage = assemble(machine)
     drive, pivot = machine.drive.link, linkage.pivot
     for group in linkage.groups:

@@ -37,6 +37,8 @@ ITERATIONS, SETTLED = 60, 1e-15
 """Of Newton's method; the last change in the angle, rad."""
 HALVINGS = 36
 """Of the step in which a dead point lies."""
+AGREES = 1e-9
+"""Of the length: what rounding may miss."""
 DEAD = 1e-9
 """Of the length's range: how near to its end the stroke may come."""
 
@@ -158,10 +160,20 @@ def _meshing(machine: Machine, near: float) -> float:
     old, new = near, near + STEP
     gap, there = over(old), over(new)
     for _ in range(ITERATIONS):
-        if gap == there or abs(new - old) <= SETTLED:
+        if abs(gap - there) <= SETTLED * abs(wanted) or abs(new - old) <= SETTLED:
             break
         old, gap, new = new, there, new - there * (new - old) / (there - gap)
         there = over(new)
+    if not abs(there) <= AGREES * abs(wanted + there):
+        raise ModelError(
+            "drive.stroke",
+            Note(
+                "it is {wanted} at crank angle 0, where couplings as they start make it {there}; "
+                "give these another start",
+                wanted=_shown(wanted),
+                there=_shown(wanted + there),
+            ),
+        )
     return new
 
 
@@ -267,15 +279,19 @@ def _chosen(drive: Drive, law: LengthLaw, branches: Sequence[Branch], shift: flo
     if drive.start is not None:
         widest = next((one for one in branches if _has(one, 0.0)), widest)
     assert widest is not None
-    values = {"low": low, "high": high, "least": widest.low, "most": widest.high}
+    ends = {"low": low, "high": high, "least": widest.low, "most": widest.high}
     raise ModelError(
         "drive.stroke",
         Note(
             "it runs from {low} to {high}, and the linkage lets it be between {least} and {most} "
             "only; stay within these, short of the dead points at both ends",
-            **{name: format_exact(float(f"{v:.5g}"), "length") for name, v in values.items()},
+            **{name: _shown(end) for name, end in ends.items()},
         ),
     )
+
+
+def _shown(length: float) -> str:
+    return format_exact(float(f"{length:.5g}"), "length")
 
 
 def _has(one: Branch, at: float) -> bool:

@@ -109,6 +109,8 @@ class FullTurn:
                     names=names,
                 )
             )
+        if self.machine.drive.pushes or self.machine.drive.motion is not None:
+            return self.beyond(dip, names)
         period = 2 * pi * self.turns
         theta, where = np.unique([*self.theta[:-1], dip % period], return_index=True)
         good = np.append(margin[:-1] > 0, False)[where]
@@ -130,11 +132,26 @@ class FullTurn:
         )
         return RangeError(
             Note(
-                "the crank cannot turn fully: {names} reach each other only {told} of crank angle",
+                "the crank cannot turn fully: {names} reach each other only {told} of crank angle; "
+                "let it swing there by a motion in [drive]",
                 names=names,
                 told=told,
             ),
             tuple(ranges),
+        )
+
+    def beyond(self, dip: float, names: Note | str) -> RangeError:
+        """Tell that the drive's own motion leads where a dyad cannot be closed."""
+        link = self.machine.drive.link
+        return RangeError(
+            Note(
+                "{names} do not reach each other with {link!r} at {angle}, to which it is moved at "
+                "crank angle {at}; let it move less",
+                names=names,
+                link=link,
+                angle=_in_degrees(float(np.ravel(self.machine.moved(np.array([dip]))[link][0])[0])),
+                at=_in_degrees(dip),
+            )
         )
 
     def crossing(self, group: Group, low: float, high: float) -> float:

@@ -80,6 +80,7 @@ class Findings(_Found):
     machine : at the speed that is asked for.
     text : of its file.  file : its name.
     angles : crank angles in a turn.
+    swings : that its crank cannot turn, and how far it is let swing; None where it can.
     """
 
     told = ("planting", "sweep", "modes", "balanced")
@@ -88,6 +89,12 @@ class Findings(_Found):
     text: str
     file: str
     angles: int = ANGLES
+    swings: Note | None = None
+
+    @property
+    def notes(self) -> tuple[Note | str, ...]:
+        """That the crank cannot turn comes before what could not be computed."""
+        return (*([] if self.swings is None else [self.swings]), *super().notes)
 
     @cached_property
     def analysis(self) -> Analysis:
@@ -223,6 +230,7 @@ def find(
     ModelError : the file is wrong, or a study.
     UsageError : the tool has no speed that could be another.
     """
+    from equipoise.mechanism.swings import swing
     from equipoise.schema.models import loads_linkage, loads_tool
     from equipoise.schema.opening import kind_of_text, opened
 
@@ -234,7 +242,10 @@ def find(
     machine = loads_linkage(file.text, file.source, file.folder)
     if speed is not None:
         machine = machine.with_drive(speed=speed)
-    return Findings(machine, file.text, name, angles)
+    found = swing(machine)
+    if found is None:
+        return Findings(machine, file.text, name, angles)
+    return Findings(found.machine, file.text, name, angles, found.note)
 
 
 def _at_speed(tool: Tool, speed: float | None) -> Tool:

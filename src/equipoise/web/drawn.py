@@ -63,7 +63,7 @@ def drawn(sketch: Sketch) -> Solved | Drawn:
 def tried(sketch: Sketch) -> Drawn:
     """What is dragged: it stands where it is drawn until it is let go."""
     found = drawn(sketch)
-    return found if isinstance(found, Drawn) else Drawn(sketch, turning(found.design.machine))
+    return found if isinstance(found, Drawn) else Drawn(sketch, turning(found.analysis.machine))
 
 
 def computed(design: Design | Sketch) -> Solved | Drawn:
@@ -116,7 +116,7 @@ def with_entry(base: Solved | Drawn, entry: Entry) -> Solved | Drawn:
     if isinstance(base, Solved):
         design = entered(base.design, entry)
         try:
-            return settled(solved(design))
+            return settled(solved(design, None, base.swings is not None))
         except MobilityError:
             return drawn(sketch_of(base, 0).taking(design.machine))
     own = entered(Design(base.design.name, plain_of(base)), entry).own

@@ -18,6 +18,7 @@ from equipoise.mechanism.checks import ALTERNATIVES, unknown
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, Position, Vector
 from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.swings import swing
 from equipoise.quantities import clean, clean_place
 from equipoise.results.analysis import LEAST_ANGLES, Analysis, analyze
 from equipoise.symbols.scene import Scene
@@ -41,11 +42,13 @@ class Solved:
     """A design with what it does.
 
     stand : crank angle at which it was drawn, rad; None where it has not just been made.
+    swings : that its crank cannot turn, and how far it is let swing; None where it can.
     """
 
     design: Design
     analysis: Analysis
     stand: float | None = None
+    swings: Note | None = None
 
     @property
     def motion(self) -> Motion:
@@ -57,15 +60,23 @@ class Solved:
         return Scene.of(self.motion)
 
 
-def solved(design: Design, near: Solved | None = None) -> Solved:
+def solved(design: Design, near: Solved | None = None, stuck: bool = True) -> Solved:
     """Compute a design; the errors are those of `analyze`.
 
     near : one of the same build that differs by little, if one is known.
+    stuck : whether a crank that cannot turn may swing instead.
     """
     known = near.motion.linkage.cycle if near else None
-    turns = assemble(design.machine, known).cycle.turns
+    machine, swings = design.machine, None
+    try:
+        turns = assemble(machine, known).cycle.turns
+    except MotionError:
+        found = swing(machine) if stuck else None
+        if found is None:
+            raise
+        machine, swings, turns = found.machine, found.note, 1
     count = min(ANGLES, max(LEAST_ANGLES, MOST_SAMPLES // turns))
-    return Solved(design, analyze(design.machine, count))
+    return Solved(design, analyze(machine, count), swings=swings)
 
 
 def movable(machine: Machine) -> list[str]:
@@ -95,7 +106,7 @@ def edited(base: Solved, changes: Iterable[Change], near: Solved | None = None) 
         else:
             design, place = _moved(base, design, change)
             goals[change.name] = (change.at, place)
-    return _assembled(design, goals, near or base)
+    return _assembled(design, goals, near or base, base.swings is not None)
 
 
 def _set(design: Design, change: Setting) -> Design:
@@ -121,7 +132,9 @@ def _moved(base: Solved, design: Design, change: Drag) -> tuple[Design, complex]
         if change.name in link.points and len(link.points) > 1:
             place = _local(motion, name, change.at, to)
             links[name] = link.altered(points={**link.points, change.name: place})
-    position = _position(motion, replace(change, to=to)) if machine.position is not None else None
+    position = None
+    if machine.position is not None:
+        position = _position(machine, motion, replace(change, to=to))
     return design.with_machine(replace(machine, frame=frame, links=links, position=position)), to
 
 
@@ -162,7 +175,7 @@ def _local(motion: Motion, link: str, at: int, place: complex) -> Vector:
     return clean_place(complex(x, y) + complex(turned), size, DRAGGED)
 
 
-def _position(motion: Motion, change: Drag | None = None) -> Position:
+def _position(machine: Machine, motion: Motion, change: Drag | None = None) -> Position:
     """Where the machine is, for the start of Newton's method: with a point that is dragged.
 
     Gears hold the place that their teeth have at crank angle 0, which is then the only one to ask.
@@ -174,7 +187,10 @@ def _position(motion: Motion, change: Drag | None = None) -> Position:
     size = extent_of(motion.machine)
     points = {name: clean_place(complex(place), size) for name, place in places.items()}
     angles = {name: clean(float(link.angle[at]), "angle") for name, link in motion.links.items()}
-    return Position(clean(float(motion.crank_angle[at]), "angle"), points, angles)
+    angle = motion.crank_angle[at]
+    if machine.drive.motion is None and motion.machine.drive.motion is not None:  # it swings
+        angle = motion.links[machine.drive.link].angle[at]
+    return Position(clean(float(angle), "angle"), points, angles)
 
 
 def settled(found: Solved) -> Solved:
@@ -182,32 +198,33 @@ def settled(found: Solved) -> Solved:
     machine = found.design.own
     if machine.position is None:
         return found
-    placed = replace(machine, position=_position(found.motion))
-    return Solved(found.design.with_machine(placed), found.analysis)
+    placed = replace(machine, position=_position(machine, found.motion))
+    return replace(found, design=found.design.with_machine(placed), stand=None)
 
 
-def _assembled(design: Design, goals: Goals, near: Solved) -> Solved:
+def _assembled(design: Design, goals: Goals, near: Solved, stuck: bool) -> Solved:
     """Compute a design in which dragged points come to where they were put.
 
     One that is dragged across a line of its dyad needs that dyad on its other side.  One that comes
     there on neither side, such as a block's beside its line, comes as near as it can.
     """
     try:
-        found = solved(design, near)
+        found = solved(design, near, stuck)
     except MotionError:
-        other = _turned_over(design, goals)
+        other = _turned_over(design, goals, stuck)
         if other is None:
             raise
         return other
-    return found if _reaches(found, goals) else _turned_over(design, goals) or found
+    return found if _reaches(found, goals) else _turned_over(design, goals, stuck) or found
 
 
-def _turned_over(design: Design, goals: Goals) -> Solved | None:
+def _turned_over(design: Design, goals: Goals, stuck: bool) -> Solved | None:
     """The design with one dyad on its other side, if the points then come where they were put."""
     for joint, side in design.own.assembly.items() if goals else ():
         assembly = {**design.own.assembly, joint: OTHER_SIDE[side]}
         try:
-            found = solved(design.with_machine(replace(design.own, assembly=assembly)))
+            other = design.with_machine(replace(design.own, assembly=assembly))
+            found = solved(other, None, stuck)
         except EquipoiseError:
             continue
         if _reaches(found, goals):

@@ -77,7 +77,10 @@ def state_of(
         "charts": charts_of(analysis, signals),
         "least": least_of(signals),
         "orders": _orders(analysis),
-        "notes": [massless(machine)] if analysis.solved is None else [],
+        "notes": [
+            *([said(found.swings)] if found.swings else []),
+            *([massless(machine)] if analysis.solved is None else []),
+        ],
         "before": before is not None,
         "status": status_of(found),
         "compared": against is not None,
@@ -113,7 +116,7 @@ def status_of(found: Solved) -> Values:
     finished : whether it can be computed.  drive : the crank, if there is one that turns.
     stand : crank angle at which it was drawn, deg; None where it has not just been made.
     """
-    machine, stand = found.design.machine, found.stand
+    machine, stand = found.analysis.machine, found.stand
     return {
         "mobility": len(machine.driven),
         "text": turning(machine),

@@ -81,7 +81,8 @@ def test_the_message_tells_links_and_angles() -> None:
     limit = degrees(opposite(1.0, 0.9, 0.5 + 0.55))
     message = (
         "the crank cannot turn fully: 'coupler' and 'rocker' reach each other only from "
-        f"{-limit:.2f} deg to {limit:.2f} deg of crank angle"
+        f"{-limit:.2f} deg to {limit:.2f} deg of crank angle; let it swing there by a motion in "
+        "[drive]"
     )
     with pytest.raises(RangeError) as caught:
         eq.move(four_bar(1.0, 0.9, 0.5, 0.55))

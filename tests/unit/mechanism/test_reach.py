@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import acos, pi
 
 import pytest
 
 import equipoise as eq
 from equipoise.errors import RangeError
+from equipoise.figures.linkage import linkage
+from equipoise.mechanism.laws import AngleLaw
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.reach import Reach, reach
-from unit.mechanism.build import crank_rocker, four_bar
+from equipoise.mechanism.swings import swing
+from unit.mechanism.build import crank_rocker, four_bar, heavy
 
 
 def found(machine: eq.Machine) -> Reach:
@@ -52,3 +56,46 @@ def test_a_later_dyad_may_end_it_sooner() -> None:
 @pytest.mark.parametrize("machine", [crank_rocker(), eq.load("class-three")])
 def test_a_crank_that_turns_has_no_range(machine: eq.Machine) -> None:
     assert reach(assemble(machine)) is None
+
+
+def test_it_swings_by_a_sine_a_little_short_of_its_ends() -> None:
+    machine = four_bar(1.0, 0.9, 0.5, 0.55)
+    one, limit = swing(machine), found(machine).high
+    assert one is not None
+    analysis = eq.analyze(one.machine, 90)
+    angle = analysis.motion.links["crank"].angle
+    assert (angle.min(), angle.max()) == pytest.approx((-0.96 * limit, 0.96 * limit))
+    assert analysis.solved is not None and analysis.motion.whole_cycle
+    assert str(one.note).startswith("the crank swings between -66.86 deg")
+    assert 'motion = { between = ["-64.18 deg", "64.18 deg"] } in [drive]' in str(one.note)
+    assert swing(crank_rocker()) is None and swing(one.machine) is None
+
+
+def test_gears_stay_in_mesh_while_it_swings() -> None:
+    """The geared link is as where the crank passes the same angle in the file's machine."""
+    machine = four_bar(1.0, 0.9, 0.5, 0.55)
+    frame = {**machine.frame, "W": (0.0, 0.4)}
+    links = {**machine.links, "wheel": heavy(W=(0.0, 0.0), X=(0.1, 0.0))}
+    gears = (eq.Gear("crank", "wheel", -2.0, start=0.3),)
+    geared = replace(machine, frame=frame, links=links, gears=gears)
+    one = swing(geared)
+    assert one is not None
+    moved = eq.move(one.machine, 12)
+    own = eq.move(geared, moved.links["crank"].angle)
+    assert moved.links["wheel"].angle == pytest.approx(own.links["wheel"].angle)
+
+
+def test_a_motion_beyond_the_range_is_told() -> None:
+    machine = four_bar(1.0, 0.9, 0.5, 0.55)
+    far = replace(machine.drive, motion=AngleLaw(between=(0.0, 1.3)))
+    with pytest.raises(RangeError, match="do not reach each other with 'crank' at"):
+        eq.move(replace(machine, drive=far))
+
+
+def test_pictures_show_both_ends() -> None:
+    one = swing(four_bar(1.0, 0.9, 0.5, 0.55))
+    assert one is not None
+    chart = linkage(eq.analyze(one.machine, 60))
+    assert "pale: crank at both ends, −64.18° and 64.18°" in chart.words
+    (panel,) = chart.panels
+    assert [shape.role for shape in panel.ground].count("row") == 6
