@@ -145,7 +145,9 @@ def _tidied(sketch: Sketch) -> Sketch:
         if not (named_in(value, "point") <= sketch.places.keys()
                 and named_in(value, "link") <= sketch.links.keys())
     }  # fmt: skip
-    sketch = replace(sketch, rest={**sketch.rest, **gone})
+    bearings = sketch.rest.get("bearings") or {}
+    kept_on = {name: one for name, one in bearings.items() if one.link in sketch.links}
+    sketch = replace(sketch, rest={**sketch.rest, **gone, "bearings": kept_on})
     return sketch.with_entries(kept)
 
 
@@ -157,7 +159,7 @@ def _held(key: str, entry: Any, bodies: Bodies) -> bool:
     if key == "sliders":
         points.append((entry.on, entry.through))
     if key == "springs":
-        points.append((FRAME, entry.to))
+        points.append((entry.on, entry.to))
     return entry.link in bodies and all(name in bodies.get(body, ()) for body, name in points)
 
 
@@ -183,10 +185,7 @@ def renamed(sketch: Sketch, what: str, old: str, new: str) -> Sketch:
 def renamed_point(sketch: Sketch, old: str, new: str) -> Sketch:
     """A point with another name, wherever it is named."""
     for body in sketch.holders(old):
-        if body != FRAME and old in (planes := sketch.links[body].planes):
-            told = {new if one == old else one: z for one, z in planes.items()}
-            there = replace(sketch.links[body], planes=told)
-            sketch = replace(sketch, links={**sketch.links, body: there})
+        planes = {} if body == FRAME else dict(sketch.links[body].planes)
         points = {new if one == old else one: at for one, at in sketch.bodies[body].items()}
         if body != FRAME and sketch.links[body].bodies:
             made = renamed_in(sketch.links[body].bodies, "point", old, new)
@@ -198,6 +197,10 @@ def renamed_point(sketch: Sketch, old: str, new: str) -> Sketch:
             sketch = replace(sketch, links={**sketch.links, body: link})
         else:
             sketch = sketch.with_points(body, points)
+        if old in planes:
+            planes = {new if one == old else one: z for one, z in planes.items()}
+            there = replace(sketch.links[body], planes=planes)
+            sketch = replace(sketch, links={**sketch.links, body: there})
     return _retold(sketch, "point", old, new)
 
 

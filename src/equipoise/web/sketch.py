@@ -15,7 +15,7 @@ from equipoise.web.edits import Solved, solved
 
 UNTITLED = "untitled"
 REST = ("title", "description", "gravity", "drives", "belts", "racks", "loads", "springs",
-        "planting", "support", "rows", "balance", "units")  # fmt: skip
+        "planting", "support", "rows", "balance", "bearings", "units")  # fmt: skip
 """Fields of a machine that a sketch hands on as they are."""
 LISTS = ("belts", "racks", "loads", "springs")
 """Those of them that have names of links and points in them."""
@@ -57,7 +57,9 @@ class Sketch(Outline):
         """Other points of a body, in its own axes."""
         if body == FRAME:
             return replace(self, frame=dict(points))
-        link = self.links[body].altered(points=dict(points))
+        before = self.links[body]
+        planes = {name: z for name, z in before.planes.items() if name in points}
+        link = before.altered(points=dict(points), planes=planes)
         return replace(self, links={**self.links, body: link})
 
     def with_place(self, body: str, point: str, place: complex, digits: int = 12) -> Sketch:

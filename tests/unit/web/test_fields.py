@@ -8,8 +8,11 @@ import pytest
 
 import equipoise as eq
 from equipoise.web.design import Design
+from equipoise.web.drawn import drawn, sketch_of
+from equipoise.web.edits import solved
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.openings import opened_example
+from equipoise.web.remaking import renamed, without_link
 from unit.web.pages import edit, opened
 
 
@@ -71,3 +74,14 @@ def test_planes_of_links_and_points_are_fields() -> None:
         fields["links.crank.bodies.2.plane"].put(Design("", machine), -0.05).own.mass
         == machine.mass
     )
+
+
+def test_a_sketch_keeps_planes_and_bearings() -> None:
+    """Also under other names; what is gone takes its own with it."""
+    machine = eq.load("twin-engine").with_link("crank", planes={"B1": -0.04})
+    sketch = sketch_of(solved(Design("twin", machine)), 0)
+    found = drawn(renamed(renamed(sketch, "point", "B1", "P"), "link", "crank", "shaft"))
+    made = found.design.machine
+    assert made.links["shaft"].planes == {"P": -0.04}
+    assert {one.link for one in made.bearings.values()} == {"shaft"}
+    assert not without_link(sketch, "crank").rest["bearings"]
