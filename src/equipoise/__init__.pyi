@@ -13,7 +13,7 @@ from .errors import EquipoiseError as EquipoiseError
 from .exchange.export import export as export
 from .exchange.reading.formats import import_machine as import_machine
 from .mechanism.dynamics import forces as forces
-from .mechanism.force_elements import Spring as Spring
+from .mechanism.model import Cam as Cam
 from .mechanism.model import Drive as Drive
 from .mechanism.model import Gear as Gear
 from .mechanism.model import Link as Link
@@ -21,6 +21,7 @@ from .mechanism.model import Load as Load
 from .mechanism.model import Machine as Machine
 from .mechanism.model import Slider as Slider
 from .mechanism.motion import move as move
+from .mechanism.springs import Spring as Spring
 from .mechanism.support import Gauge as Gauge
 from .mechanism.support import Mount as Mount
 from .mechanism.support import Row as Row

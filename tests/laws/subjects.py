@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 import equipoise as eq
 from equipoise.mechanism.field import Soil, SoilTable
+from support import machines_cams
 from support.loads import force_and_torque, has_soil, soil_force, tips_of
 from support.machines import KINDS, make
 from support.machines_redundant import REDUNDANT
@@ -31,8 +32,10 @@ ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 @cache
 def names() -> tuple[str, ...]:
     """Names of all subjects: examples, one in soil, and kinds of random machines with a seed."""
-    random = (f"{kind}:{seed}" for kind in (*KINDS, *REDUNDANT) for seed in SEEDS)
-    return (*sorted(eq.examples("linkage")), IN_SOIL, *random)
+    kinds = (*KINDS, *REDUNDANT, *machines_cams.KINDS)
+    random = (f"{kind}:{seed}" for kind in kinds for seed in SEEDS)
+    turned = (name for name in sorted(eq.examples("linkage")) if not eq.load(name).drive.pushes)
+    return (*turned, IN_SOIL, *random)
 
 
 @cache
@@ -42,7 +45,8 @@ def machine_of(name: str) -> eq.Machine:
         return in_soil()
     kind, _, seed = name.partition(":")
     # What may be changed of it does nothing to what is analysed, and its names need not follow.
-    found = make(kind, int(seed)).machine if seed else eq.load(name).with_balance(None)
+    made = machines_cams.make if kind in machines_cams.KINDS else make
+    found = made(kind, int(seed)).machine if seed else eq.load(name).with_balance(None)
     return spelled_out(found)
 
 
@@ -115,10 +119,10 @@ def spring_power(found: eq.mechanism.Forces) -> Array:
     motion, machine = found.motion, found.motion.machine
     rows = [np.zeros(len(motion.crank_angle))]
     for spring in machine.springs:
-        point = motion.points[spring.point]
-        arm = point.place - complex(*machine.frame[spring.to])
+        point, to = motion.points[spring.point], motion.points[spring.to]
+        arm = point.place - to.place
         length = np.abs(arm)
-        growth = along(arm, point.velocity) / np.where(length > 0, length, 1.0)
+        growth = along(arm, point.velocity - to.velocity) / np.where(length > 0, length, 1.0)
         rows.append(-spring.stiffness * (length - spring.free_length) * growth)
     return np.array(rows)
 
@@ -148,7 +152,7 @@ def outputs(found: eq.mechanism.Forces) -> Iterator[tuple[str, Array]]:
         yield name, getattr(found, name).value
     for name in ("shaking_moment", "frame_moment", "drive_torque"):
         yield name, getattr(found, name)
-    for family in ("joints", "gears"):
+    for family in ("joints", "gears", "cams"):
         yield from family_of(family, getattr(found, family))
 
 

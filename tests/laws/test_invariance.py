@@ -41,7 +41,8 @@ def scaled(
         if np.iscomplexobj(value):
             yield name, (np.conj(value) if flip else value) * force
         else:
-            sign = -1 if flip and not name.endswith("/radial") else 1
+            towards = name.endswith("/radial") or name.startswith("cams/")
+            sign = -1 if flip and not towards else 1
             yield name, sign * value * (abs(force) if is_force(name) else moment)
 
 

@@ -128,6 +128,7 @@ def split_outputs(split: Any) -> Any:
         yield key, getattr(split, key)
     yield from family_of("joints", split.joints)
     yield from family_of("gears", split.gears)
+    yield from family_of("cams", split.cams)
 
 
 def split_scales(parts: dict[str, Any]) -> dict[bool, float]:

@@ -16,6 +16,7 @@ import equipoise as eq
 from equipoise.keys import Frozen, Kind, Point, Table, innermost
 from equipoise.keys.declaring import declarations
 from equipoise.mechanism.balance import Limit
+from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.field import Planting
 from equipoise.mechanism.model import FRAME, FurtherDrive, Vector
 from equipoise.mechanism.objectives import quantity_of
@@ -88,6 +89,10 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
             replace(b, start=float(start.links[b.driven].angle[0]) + angle) for b in machine.belts
         ),
         racks=tuple(restarted(start, rack, angle) for rack in machine.racks),
+        cams=tuple(
+            later(cam, angle * ((cam.carrier == FRAME) - (cam.driver == FRAME)))
+            for cam in machine.cams
+        ),
         loads=tuple(turned_load(load, angle) for load in machine.loads),
         position=None if machine.position is None else turned_position(machine.position, angle),
         planting=None,
@@ -215,6 +220,7 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
         gears=tuple(mirrored_gear(gear) for gear in machine.gears),
         belts=tuple(replace(b, start=-b.start) for b in machine.belts),
         racks=tuple(replace(r, angle=-r.angle, side=flip[r.side]) for r in machine.racks),
+        cams=tuple(mirrored_cam(cam) for cam in machine.cams),
         loads=tuple(mirrored_load(load) for load in machine.loads),
         gravity=vector(np.conj, machine.gravity),
         position=position,
@@ -237,6 +243,32 @@ def mirrored_link(link: eq.Link) -> eq.Link:
         points=mapped(link.points, np.conj),
         center_of_mass=None if center is None else vector(np.conj, center),
     )
+
+
+def later(cam: Cam, angle: float) -> Cam:
+    """Let a cam's law begin at an angle that is larger by so much."""
+    return with_law(cam, replace(cam.law, phase=cam.law.phase + angle))
+
+
+def with_law(cam: Cam, law: Any) -> Cam:
+    return replace(cam, **{"lift" if cam.swing is None else "swing": law})
+
+
+def mirrored_cam(cam: Cam) -> Cam:
+    """The image of a cam, which turns the other way; the laws of segments are symmetric."""
+    law = cam.law
+    ends = [law.start, *(one.to for one in law.segments)]
+    back = [replace(s, to=a) for s, a in zip(law.segments, ends[:-1], strict=True)][::-1]
+    changed = replace(
+        law,
+        phase=-law.phase,
+        segments=tuple(back),
+        crank_angles=tuple(-angle for angle in law.crank_angles[::-1]),
+        values=law.values[::-1],
+    )
+    normal = None if cam.normal is None else -cam.normal
+    side = {"left": "right", "right": "left"}[cam.side]
+    return with_law(replace(cam, normal=normal, side=side), changed)
 
 
 def mirrored_load(load: eq.Load) -> eq.Load:
@@ -394,6 +426,15 @@ def with_axes(machine: eq.Machine, link: str, angle: float, shift: complex) -> e
             replace(r, angle=r.angle + angle * (r.drives == "rack" and r.pinion == link))
             for r in machine.racks
         ),
+        cams=tuple(
+            later(
+                cam
+                if cam.normal is None or cam.driven != link
+                else replace(cam, normal=cam.normal - angle),
+                angle * ((cam.driver == link) - (cam.carrier == link)),
+            )
+            for cam in machine.cams
+        ),
         position=position,
     )
 
@@ -444,13 +485,19 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
             replace(r, pinion=body(r.pinion), rack=body(r.rack), carrier=body(r.carrier))
             for r in machine.racks
         ),
+        cams=tuple(
+            replace(cam, driver=body(cam.driver), driven=body(cam.driven),
+                    carrier=body(cam.carrier), point=names(cam.point))
+            for cam in machine.cams
+        ),
         loads=tuple(
             replace(load, link=body(load.link),
                     point=None if load.point is None else names(load.point))
             for load in machine.loads
         ),
         springs=tuple(
-            replace(spring, link=body(spring.link), point=names(spring.point), to=names(spring.to))
+            replace(spring, link=body(spring.link), point=names(spring.point),
+                    to=names(spring.to), on=body(spring.on))
             for spring in machine.springs
         ),
         position=position,

@@ -18,8 +18,10 @@ from itertools import chain, combinations
 import numpy as np
 
 from equipoise.mechanism.belts import Belt
+from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.model import FRAME, Drive, FurtherDrive, Gear, Machine
 from equipoise.mechanism.racks import Rack
+from support.cams import line_of_force
 from support.loads import on_links, springs_on_links
 from support.newton import rack_guide
 from support.poses import Array, Poses, cross, drive_pivot, pin_between, pins, quarter, turned
@@ -65,6 +67,7 @@ class FreeBodies:
 
     joints: Mapping[str, Reaction]
     gears: Mapping[str, Reaction]
+    cams: Mapping[str, Reaction]
     racks: Mapping[str, Reaction]
     strands: Mapping[str, tuple[Array, Array]]
     pulls: Mapping[str, Reaction]
@@ -113,6 +116,7 @@ def solve(
         pair fewer than bodies.  Without it the first body of all holds the others.
     """
     joints = [*pin_contacts(machine, poses, pairs or {}), *slider_contacts(machine, poses)]
+    joints += [cam_contact(cam, machine, poses) for cam in machine.cams]
     gears = [gear_contact(gear, machine, poses) for gear in machine.gears]
     racks = [rack_contact(rack, machine, poses) for rack in machine.racks]
     belts = [strand_contacts(belt, machine, poses) for belt in machine.belts]
@@ -376,6 +380,12 @@ def leaning(gear: Gear, poses: Poses, tangential: Array, unit: Array) -> Array:
     return (along / across * tangential)[:, None] * unit
 
 
+def cam_contact(cam: Cam, machine: Machine, poses: Poses) -> Contact:
+    """Return the place where a cam pushes its follower, along their common normal."""
+    at, normal = line_of_force(machine, cam, poses)
+    return Contact(cam.name, cam.driven, cam.driver, at, (normal,))
+
+
 # -- results ---------------------------------------------------------------------------------------
 
 
@@ -410,7 +420,8 @@ def gathered(
         pulls.append(reaction(cylinder(machine, poses), unknowns[machine.drive]))
     every = [*held.values(), *meshed.values(), *racked.values(), *pulled, *pulls]
     force, moment = on_frame(machine, every)
-    return FreeBodies(held, meshed, racked, taut, both, drives, force, moment - torque)
+    pressed = {cam.name: held.pop(cam.name) for cam in machine.cams}
+    return FreeBodies(held, meshed, pressed, racked, taut, both, drives, force, moment - torque)
 
 
 def reaction(contact: Contact, unknowns: Array, more: Array | float = 0.0) -> Reaction:

@@ -10,7 +10,7 @@ from scipy.optimize import minimize_scalar
 
 import equipoise as eq
 from equipoise.mechanism.field import Planting
-from equipoise.mechanism.model import Load, LoadTable, Machine, Spring, Vector
+from equipoise.mechanism.model import FRAME, Load, LoadTable, Machine, Spring, Vector
 from support.poses import Array, Poses, cross
 
 TURN = 2 * np.pi
@@ -141,11 +141,14 @@ def spring_force(spring: Spring, at: Array, to: Vector) -> Array:
 
 
 def springs_on_links(machine: Machine, poses: Poses) -> Iterator[tuple[str, Array, Array, Array]]:
-    """Yield link, point of attack, force and torque of every spring."""
+    """Yield link, point of attack, force and torque at every end of a spring on a link."""
     for spring in machine.springs:
         at = poses.place(spring.link, machine.links[spring.link].points[spring.point])
-        force = spring_force(spring, at, machine.frame[spring.to])
+        to = poses.place(spring.on, machine.points_of(spring.on)[spring.to])
+        force = spring_force(spring, at, to)
         yield spring.link, at, force, np.zeros(len(at))
+        if spring.on != FRAME:
+            yield spring.on, to, -force, np.zeros(len(at))
 
 
 def work_per_crank_angle(machine: Machine, poses: Poses) -> Array:

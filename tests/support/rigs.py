@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import equipoise as eq
 from equipoise.mechanism import support as package
-from equipoise.mechanism.force_elements import Motor, Spring
+from equipoise.mechanism.force_elements import Motor
+from equipoise.mechanism.springs import Spring
 from support.rig_reference import Mount, Rig, Row, Support, Tie, Torsion, paper_rig, rig_of
 
 MACHINE = eq.load("yamashita-1")

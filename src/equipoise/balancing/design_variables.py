@@ -20,7 +20,6 @@ from equipoise.balancing.program import Affine, Program, stacked
 from equipoise.balancing.workshop import Change
 from equipoise.i18n import Note
 from equipoise.mechanism.balance import CenterMove, SpringChoice
-from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import Link, Machine
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.parameters import (
@@ -29,6 +28,7 @@ from equipoise.mechanism.parameters import (
     spring_columns,
     spring_units,
 )
+from equipoise.mechanism.springs import Spring
 from equipoise.mechanism.steps import size_of_bodies
 from equipoise.signals import Array
 

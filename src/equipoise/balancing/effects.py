@@ -269,6 +269,10 @@ class Present:
         return self.solved.joints
 
     @property
+    def cams(self) -> Mapping[str, JointForce]:
+        return self.solved.cams
+
+    @property
     def solved(self) -> Pass:
         """The run over the joints, with teeth on the flanks that count."""
         return self.effects.start.solved_like(self.effects.flanks)
@@ -323,12 +327,16 @@ class Unit:
         return _JointsOfUnit(self.effects)
 
     @property
+    def cams(self) -> Mapping[str, JointForce]:
+        return _JointsOfUnit(self.effects)
+
+    @property
     def across(self) -> Across:
         return self.effects.across
 
 
 class _JointsOfUnit(dict[str, JointForce]):
-    """Joint forces (K, N) of a unit of each number, each made when it is asked for."""
+    """Forces of joints and cams (K, N) of a unit of each number, each made when it is asked for."""
 
     def __init__(self, effects: Effects) -> None:
         super().__init__()

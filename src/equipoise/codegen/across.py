@@ -20,7 +20,7 @@ def write_across(
     moment`` and ``frame rocking moment`` of all of them.
 
     body : identifiers of a link's anchor and rotation, with their derivatives.
-    loads, springs : identifiers of the force that holds each.
+    loads, springs : identifiers of the force that holds each, of springs at each end on a link.
     """
     machine = linkage.machine
     links = machine.links
@@ -44,8 +44,9 @@ def write_across(
     for force, load in zip(loads, machine.loads, strict=True):
         needed[load.link].append(f"{links[load.link].plane_of(load.point)!r} * {force}")
     sheet.put("frame rocking moment", _about(term for terms in needed.values() for term in terms))
-    for force, spring in zip(springs, machine.springs, strict=True):
-        needed[spring.link].append(f"{links[spring.link].plane_of(spring.point)!r} * {force}")
+    ends = (end for spring in machine.springs for end in spring.ends)
+    for force, (link, point) in zip(springs, ends, strict=True):
+        needed[link].append(f"{links[link].plane_of(point)!r} * {force}")
     for link, terms in needed.items():
         sheet.put(f"Q({link})", " + ".join(terms))
 

@@ -30,18 +30,17 @@ def write_load(writer: Any, number: int, load: Load) -> Held:
     return _write_held(writer, load.link, load.point, force, torque, f"L{number}")
 
 
-def write_spring(writer: Any, number: int, spring: Spring) -> Held:
+def write_spring(writer: Any, number: int, spring: Spring) -> Iterator[Held]:
+    """Write a spring's pull, and what holds it at each of its ends on a link."""
     sheet, cause = writer.sheet, number + 1
     place, *_ = writer.point(spring.link, spring.point)
-    stiffness = sheet.slot(
-        f"stiffness({cause})", lambda found: found.machine.springs[number].stiffness
-    )
-    free = sheet.slot(
-        f"free_length({cause})", lambda found: found.machine.springs[number].free_length
-    )
-    to = writer.name(f"p({spring.to})")
+    on_frame = spring.on == FRAME
+    to = writer.name(f"p({spring.to})") if on_frame else writer.point(spring.on, spring.to)[0]
+    stiffness = sheet.slot(f"stiffness({cause})", lambda one: one.machine.springs[number].stiffness)
+    free = sheet.slot(f"free({cause})", lambda one: one.machine.springs[number].free_length)
     pull = sheet.put(f"pull({cause})", f"spring({place}, {to}, {stiffness}, {free})")
-    return _write_held(writer, spring.link, spring.point, pull, "0.0", f"S{cause}")
+    for (link, point), force in zip(spring.ends, (pull, f"(-{pull})"), strict=False):
+        yield _write_held(writer, link, point, force, "0.0", f"S{cause}")
 
 
 def write_tension(writer: Any, number: int) -> Iterator[Held]:

@@ -56,7 +56,8 @@ class _Missing(LookupError):
 
 def _known(writer: Writer) -> Sequence[str]:
     named = writer.linkage.named_reactions
-    joints = [f"{'gears' if r.kind == 'gear' else 'joints'}.{name}" for name, r in named]
+    families = {"gear": "gears", "cam": "cams"}
+    joints = [f"{families.get(r.kind, 'joints')}.{name}" for name, r in named]
     ones = (one for one in DECLARED.values() if one.loop and not one.is_family)
     bearings = [f"bearings.{name}" for name in writer.machine.bearings]
     return [*(one.name for one in ones if _has(writer, one)), *joints, *bearings]

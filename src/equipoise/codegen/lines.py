@@ -139,7 +139,9 @@ def write_demands(writer: Writer) -> None:
     moving = [(link, *names(writer, "I", link)) for link in links]
     weights = [(link, *names(writer, "W", link)) for link in links]
     loads = [write_load(writer, k, load) for k, load in enumerate(machine.loads, 1)]
-    springs = [write_spring(writer, k, spring) for k, spring in enumerate(machine.springs)]
+    springs = [
+        held for k, one in enumerate(machine.springs) for held in write_spring(writer, k, one)
+    ]
     springs += [held for k in range(len(machine.belts)) for held in write_tension(writer, k)]
     if beside(machine):
         held = [[force for _, force, _ in each] for each in (loads, springs)]

@@ -104,7 +104,7 @@ def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
         model["sliders"].append(dict(zip(("ends", "axis", "normal"), (ends, *axes), strict=True)))
     model["geared"] += _geared(tree)
     for spring in machine.springs:
-        ends = [_end(tree, FRAME, spring.to), _end(tree, spring.link, spring.point)]
+        ends = [_end(tree, spring.on, spring.to), _end(tree, spring.link, spring.point)]
         rates = {"stiffness": spring.stiffness, "length": spring.free_length}
         model["springs"].append({"ends": ends, **rates})
     for _, load in constant_loads(job):

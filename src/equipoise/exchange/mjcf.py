@@ -248,7 +248,7 @@ def _springs(root: ET.Element, tree: Tree) -> None:
         rates = {"stiffness": repr(spring.stiffness), "springlength": repr(spring.free_length)}
         tendon = ET.SubElement(_part(root, "tendon"), "spatial", rates)
         plane = _plane(tree, spring.link, spring.point)
-        for body, point in ((spring.link, spring.point), (FRAME, spring.to)):
+        for body, point in ((spring.link, spring.point), (spring.on, spring.to)):
             ET.SubElement(tendon, "site", site=_in_plane(root, tree, body, point, plane))
 
 

@@ -187,7 +187,7 @@ def _gears(model: Flat, motion: Motion) -> None:
 def _forces(model: Flat, job: Job) -> None:
     """Springs, and loads that are always the same."""
     for number, spring in enumerate(model.machine.springs, 1):
-        (x, y), (x0, y0) = model.place(spring.link, spring.point), model.place(FRAME, spring.to)
+        (x, y), (x0, y0) = model.place(spring.link, spring.point), model.place(spring.on, spring.to)
         length, pull = f"L_{number}", f"S_{number}"
         model.real(length, pull)
         model.equations.append(f"{length} = sqrt(({x} - {x0})^2 + ({y} - {y0})^2);")
@@ -195,6 +195,8 @@ def _forces(model: Flat, job: Job) -> None:
         model.equations.append(f"{pull} * {length} = {stretched};")
         force = f"({pull} * ({x0} - {x}))", f"({pull} * ({y0} - {y}))"
         model.push(spring.link, spring.point, force, "+")
+        if spring.on != FRAME:
+            model.push(spring.on, spring.to, force, "-")
     for _, load in constant_loads(job):
         if load.force is not None and load.point is not None:
             fx, fy = map(_in_brackets, load.force)

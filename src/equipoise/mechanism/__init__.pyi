@@ -11,9 +11,9 @@ from .field import Soil as Soil
 from .field import SoilTable as SoilTable
 from .force_elements import Motor as Motor
 from .force_elements import MotorTable as MotorTable
-from .force_elements import Spring as Spring
 from .linkage import Linkage as Linkage
 from .linkage import assemble as assemble
+from .model import Cam as Cam
 from .model import Drive as Drive
 from .model import Gear as Gear
 from .model import Link as Link
@@ -29,6 +29,7 @@ from .parameters import Regressor as Regressor
 from .parameters import base_parameters as base_parameters
 from .parameters import regressor as regressor
 from .racks import Rack as Rack
+from .springs import Spring as Spring
 from .support import Gauge as Gauge
 from .support import Mount as Mount
 from .support import Row as Row

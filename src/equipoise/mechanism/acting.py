@@ -11,12 +11,12 @@ import numpy as np
 from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.field import Soil
-from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.joints import coupling_pins
 from equipoise.mechanism.loads import load_at
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import Acting, Demand, demands_of
+from equipoise.mechanism.springs import Spring
 from equipoise.mechanism.steps import Array
 from equipoise.mechanism.tip import surface_of, tip_link
 
@@ -40,14 +40,17 @@ def spring_demands(motion: Motion) -> dict[str, Demand]:
 
 
 def acting_springs(motion: Motion) -> Iterator[Acting]:
-    """Link, point and force of each spring, and of the tension of belts; they have no torque.
+    """Link, point and force of each end of a spring on a link, and of the tension of belts; they
+    have no torque.
 
     Raises
     ------
     ModelError : the ends of a spring with a free length meet.
     """
     for spring in motion.machine.springs:
-        yield spring.link, spring.point, spring_force(motion, spring), 0.0
+        force = spring_force(motion, spring)
+        for (link, point), pull in zip(spring.ends, (force, -force), strict=False):
+            yield link, point, pull, 0.0
     yield from _tensions(motion)
 
 
@@ -104,7 +107,7 @@ def resistance(soil: Soil, depth: Array, speed: Array) -> Array:
 
 
 def spring_force(motion: Motion, spring: Spring) -> Any:
-    """Force of a spring on its link's point (N,), N, complex; minus this on the frame's.
+    """Force of a spring on its link's point (N,), N, complex; minus this on its other end.
 
     Raises
     ------
@@ -112,18 +115,17 @@ def spring_force(motion: Motion, spring: Spring) -> Any:
     """
     if spring.free_length:
         spring_direction(motion, spring.link, spring.point, spring.to)
-    to = complex(*motion.machine.frame[spring.to])
-    place = motion.points[spring.point].place
+    place, to = motion.points[spring.point].place, motion.points[spring.to].place
     return kernels.spring(place, to, spring.stiffness, spring.free_length)
 
 
 def spring_vector(motion: Motion, point: str, to: str) -> Any:
-    """From a moving point to a point of the frame (N,), m, complex."""
-    return complex(*motion.machine.frame[to]) - motion.points[point].place
+    """From a point to another, both ends of a spring (N,), m, complex."""
+    return motion.points[to].place - motion.points[point].place
 
 
 def spring_direction(motion: Motion, link: str, point: str, to: str) -> Any:
-    """Unit vector from a moving point to a point of the frame (N,), complex.
+    """Unit vector from a spring's end on a link to its other end (N,), complex.
 
     Raises
     ------
@@ -131,7 +133,7 @@ def spring_direction(motion: Motion, link: str, point: str, to: str) -> Any:
     """
     along = spring_vector(motion, point, to)
     length = abs(along)
-    coordinates = abs(motion.points[point].place) + abs(complex(*motion.machine.frame[to]))
+    coordinates = abs(motion.points[point].place) + abs(motion.points[to].place)
     meeting = length <= MEETING * coordinates
     if meeting.any():
         angle = degrees(motion.crank_angle[meeting.argmax()])

@@ -22,9 +22,9 @@ from equipoise.mechanism.counterweights import (
     wrong_shafts,
 )
 from equipoise.mechanism.declaring import Measure
-from equipoise.mechanism.force_elements import wrong_ends
 from equipoise.mechanism.objectives import MEASURES, Limit, Objective, wrong_limit, wrong_objective
 from equipoise.mechanism.parts import Mechanism
+from equipoise.mechanism.springs import wrong_ends
 from equipoise.mechanism.weights import (
     CUT,
     HOLLOW,

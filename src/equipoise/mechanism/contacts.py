@@ -9,9 +9,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.errors import ModelError
+from equipoise.i18n import Note
 from equipoise.mechanism import joint_kernels, kernels
 from equipoise.mechanism.belt_contacts import pull_of
 from equipoise.mechanism.builder import Builder
+from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.couplings import Coupling, Law
 from equipoise.mechanism.gears import Gear
 from equipoise.mechanism.joints import Structure, coupling_pins, place_in_file
@@ -147,8 +149,23 @@ def mesh_of(builder: Builder, joints: Structure, gear: Gear) -> Contact:
     return Mesh(driver_pin, driven_pin, centres / (1 - ratio), radial)
 
 
+def no_contact(_: Builder, joints: Structure, cam: Cam) -> Contact:
+    """A cam's follower is solved when cam and carrier are known, and never by Newton's method."""
+    raise ModelError(
+        place_in_file(joints, cam),
+        Note(
+            "{cam!r} and {carrier!r} have to be moved before {follower!r} is; other joints hold "
+            "that, or the cam itself moves by it",
+            cam=cam.driver,
+            carrier=cam.carrier,
+            follower=cam.driven,
+        ),
+    )
+
+
 CONTACTS: Mapping[str, Callable[[Builder, Structure, Any], Contact]] = {
     "gears": mesh_of,
+    "cams": no_contact,
     "belts": pull_of,
 }
 """What makes the contact of a coupling, by its `table`."""

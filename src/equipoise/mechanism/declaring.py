@@ -45,6 +45,7 @@ GROUPS = {
     "gears": to_say("gears"),
     "racks": to_say("racks"),
     "belts": to_say("belts"),
+    "cams": to_say("cams"),
     "rows": to_say("all rows together"),
     "gauges": to_say("gauges"),
 }
@@ -307,3 +308,34 @@ def _said(one: Declared, item: str, of_one: bool, language: str) -> str:
         if not Note(one.label).is_translated:
             said = f"{said} (en)"
         return say("one row: {what}", what=said) if of_one else said
+
+
+def alike(where: str, read: Callable[..., Any], **shared: Any) -> Callable[..., None]:
+    """A way to declare outputs whose names begin alike, and that are read alike.
+
+    read : from the rest of the name (or `had`), an analysis and the member.  shared : as of
+        `output`.
+    parts : of a vector; those that begin with a dot go on after its name, others stand in its
+        place.  loop : True where compiled loops know it by its name.
+    of : makes values of what is read.
+    """
+
+    def declare(
+        name: str,
+        dimension: Dimension | None,
+        label: str,
+        parts: tuple[str, ...] = (),
+        had: str = "",
+        of: Callable[[Any], Any] = lambda values: values,
+        **more: Any,
+    ) -> None:
+        more = {**shared, **more}
+        if parts:
+            stem = {part: where + name if part[0] == "." else where for part in parts}
+            more["parts"] = tuple(stem[part] + part for part in parts)
+        if more.get("loop") is True:
+            known = name.replace("_", " ") + (":name" if "{}" in where else "")
+            more["loop"] = f"{{{known}}}"
+        output(where + name, dimension, label, **more)(lambda *found: of(read(had or name, *found)))
+
+    return declare

@@ -28,6 +28,7 @@ from equipoise.mechanism.planes import beside
 from equipoise.mechanism.pushing import lengths
 from equipoise.mechanism.reactions import (
     BeltForce,
+    CamForce,
     Demand,
     JointForce,
     MeshForce,
@@ -98,10 +99,7 @@ class Forces:
 
     @property
     def frame_force(self) -> VectorSignal:
-        """Sum of the forces of all joints and springs on the frame, N.
-
-        It is the sum of shaking force, weight and loads: springs are between links and frame.
-        """
+        """Of all joints and springs, N: the sum of shaking force, weight and loads."""
         of_springs = sum(force for force, _ in self.springs.values())
         return VectorSignal(self.solved.frame_force + of_springs)
 
@@ -164,6 +162,11 @@ class Forces:
     def belts(self) -> Mapping[str, BeltForce]:
         """Pull and tensions of each belt on its driven link."""
         return self.solved.belts(lambda belt: belt.tension or 0.0)
+
+    @cached_property
+    def cams(self) -> Mapping[str, CamForce]:
+        """Force of each cam on its follower."""
+        return self.solved.cams
 
     @cached_property
     def across(self) -> Across:
@@ -291,6 +294,7 @@ def split(whole: Forces) -> Split:
         solved.gears,
         solved.racks,
         solved.belts(tension_told),
+        solved.cams,
         _across_apart(whole, solved, shape) if beside(motion.machine) else None,
         links,
         drive_force=pushed(solved),

@@ -1,11 +1,11 @@
-"""What acts on links: loads from outside, springs, and the motor, as values with their checks."""
+"""What acts on links: loads from outside and the motor, as values with their checks."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
 from math import ceil, degrees, pi
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
@@ -23,7 +23,12 @@ from equipoise.keys import (
     inside,
     key,
 )
-from equipoise.mechanism.checks import FRAME, Bodies, Vector, unknown, unknown_link, unknown_point
+from equipoise.mechanism.checks import (
+    Bodies,
+    Vector,
+    unknown_link,
+    unknown_point,
+)
 
 MEAN_SPEEDS = ("held", "free")
 OUTSIDE = ("zero", "hold", "wrap")
@@ -117,30 +122,6 @@ class Load(Frozen):
         """Whether it sets in or ends suddenly."""
         gap = self.table is not None and not self.table.covers and self.outside != "wrap"
         return gap or self.start is not None
-
-
-@declared
-class Spring(Frozen):
-    """A linear spring without mass: it pulls `point` of `link` towards the frame's point `to`."""
-
-    called = to_say("{what} of spring {number}")
-
-    link: str = key(Text(of="link"), "the link that it pulls", example="rocker")
-    point: str = key(
-        Text(of="point", on="link"),
-        "its point on the link, not one that is pinned to the frame",
-        example="C",
-    )
-    to: str = key(Text(of="point", on="frame"), "its point on the frame", example="S")
-    stiffness: float = key("stiffness", "more than 0", example="2 kN/m", above=0)
-    free_length: float = key(
-        "length",
-        "at which it exerts nothing; shorter it pushes",
-        default=0.0,
-        shown="0 m",
-        at_least=0,
-        why=Note("a length cannot be negative, give 0 or more"),
-    )
 
 
 @declared
@@ -308,29 +289,6 @@ def _contradiction(where: str, table: LoadTable, named: str) -> Iterator[ModelEr
 def _from_to(table: LoadTable) -> Note:
     first, last = (f"{degrees(table.crank_angle[end]):.6g} deg" for end in (0, -1))
     return Note("from {low} to {high}", low=first, high=last)
-
-
-def wrong_ends(where: str, spring: Any, bodies: Bodies) -> Iterator[ModelError]:
-    """What is wrong with the two points of a spring, or of one that may be set."""
-    link, point, to = spring.link, spring.point, spring.to
-    if problem := [*unknown_link(f"{where}.link", link, bodies)]:
-        yield from problem
-        return
-    points, frame = bodies[link], bodies[FRAME]
-    if point not in points:
-        sentence = unknown(point, points, Note("point of {body}", body=link))
-        yield ModelError(f"{where}.point", sentence)
-    elif to not in frame:
-        yield ModelError(f"{where}.to", unknown(to, frame, "point of the frame"))
-    elif point in frame:
-        yield ModelError(
-            f"{where}.point",
-            Note(
-                "{point!r} is pinned to the frame, where a spring does nothing; give a "
-                "point that moves",
-                point=point,
-            ),
-        )
 
 
 def wrong_motor(where: str, motor: Motor) -> Iterator[ModelError]:

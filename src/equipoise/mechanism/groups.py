@@ -16,6 +16,8 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism import joint_kernels, kernels, parallels
 from equipoise.mechanism.builder import Builder, Group, Guide, Outer, guide_reaction
+from equipoise.mechanism.cam_groups import follower
+from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.checks import MODES
 from equipoise.mechanism.contacts import contact_of
 from equipoise.mechanism.couplings import Coupling
@@ -222,6 +224,8 @@ def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Grou
 
 def coupled(builder: Builder, joints: Structure, coupling: Coupling) -> Group:
     """A link that is pinned to a known carrier and coupled to a known driver."""
+    if isinstance(coupling, Cam):
+        return follower(builder, joints, coupling)
     contact = contact_of(builder, joints, coupling)
     link, carrier, pin = coupling.driven, coupling.carrier, contact.driven_pin
     bearer = builder.carrier_of(joints.pins[pin])

@@ -175,6 +175,7 @@ class Maker:
         return SlideLoop(slider.name, guide, link, turn.conjugate(), along.conjugate())
 
     def coupling(self, coupling: Coupling) -> CouplingLoop:
+        contact = contact_of(self.builder, self.joints, coupling)
         if coupling.driven not in self.links:
             raise ModelError(
                 place_in_file(self.joints, coupling),

@@ -29,6 +29,7 @@ from equipoise.keys import (
     key,
 )
 from equipoise.mechanism.belts import Belt
+from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.checks import (
     FRAME,
     SIDES,
@@ -47,7 +48,6 @@ from equipoise.mechanism.field import Planting
 from equipoise.mechanism.force_elements import (
     Load,
     LoadTable,
-    Spring,
 )
 from equipoise.mechanism.gears import Gear
 from equipoise.mechanism.links import (
@@ -59,6 +59,7 @@ from equipoise.mechanism.parts import Bearing, JointStiffness, Slider
 from equipoise.mechanism.places import Frame, Position
 from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.shown_units import ShownUnits
+from equipoise.mechanism.springs import Spring
 from equipoise.mechanism.support import Row, Support
 from equipoise.mechanism.whole import problems_of
 
@@ -67,6 +68,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FRAME",
+    "Cam",
     "Drive",
     "FurtherDrive",
     "Gear",
@@ -98,8 +100,8 @@ class Machine(Driven, Frozen):
 
     beside: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "description", "units", "gravity", "drive", "drives", "frame",
-                  "links", "bearings", "assembly", "sliders", "gears", "belts", "racks", "loads",
-                  "springs", "joints", "position", "planting", "support", "rows",
+                  "links", "bearings", "assembly", "sliders", "gears", "belts", "racks", "cams",
+                  "loads", "springs", "joints", "position", "planting", "support", "rows",
                   "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
@@ -114,6 +116,7 @@ class Machine(Driven, Frozen):
     )
     sliders: tuple[Slider, ...] = key(Tables(Table(Slider)), "sliding joints", default=())
     gears: tuple[Gear, ...] = key(Tables(Table(Gear)), "pairs of gears", default=())
+    cams: tuple[Cam, ...] = key(Tables(Table(Cam)), "cams with their followers", default=())
     loads: tuple[Load, ...] = key(
         Tables(Table(Load)), "forces and torques from outside", default=()
     )
@@ -142,7 +145,7 @@ class Machine(Driven, Frozen):
         default=None,
     )
     springs: tuple[Spring, ...] = key(
-        Tables(Table(Spring)), "linear springs between links and frame", default=()
+        Tables(Table(Spring)), "linear springs between links, or links and frame", default=()
     )
     drives: tuple[FurtherDrive, ...] = key(
         Tables(Table(FurtherDrive)), "links that are driven besides", default=()
@@ -187,7 +190,7 @@ class Machine(Driven, Frozen):
     @property
     def couplings(self) -> tuple[Coupling, ...]:
         """Joints by which one body's angle tells another's, in the order of the file."""
-        return (*self.gears, *self.belts, *self.racks)
+        return (*self.gears, *self.belts, *self.racks, *self.cams)
 
     @property
     def mass(self) -> float:

@@ -16,6 +16,7 @@ import numpy as np
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.builder import Group
+from equipoise.mechanism.cam_fits import fits_of, pressure_angle
 from equipoise.mechanism.checks import Named, Vector, bodies_at
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import Drive, Machine, Slider
@@ -94,6 +95,13 @@ class Motion:
         """
         dyads = (group for group in self.linkage.groups if group.margin is not None)
         return Named("dyad", ((group.joint, self._transmission(group)) for group in dyads))
+
+    @cached_property
+    def pressure_angles(self) -> Mapping[str, Array]:
+        """Angle (N,) of each cam, rad, from the way in which its follower rises to the normal."""
+        fits = fits_of(self.machine, self.linkage.joints)
+        found = ((fit.cam.name, self._full(pressure_angle(fit, self.state))) for fit in fits)
+        return Named("cam", found)
 
     def _slider(self, slider: Slider) -> SliderMotion:
         point, base = self.points[slider.point], self.points[slider.through]

@@ -17,6 +17,7 @@ from equipoise.mechanism.declaring import (
     Declared,
     Found,
     Measure,
+    alike,
     declared,
     declaring,
     matches,
@@ -25,7 +26,6 @@ from equipoise.mechanism.declaring import (
 from equipoise.mechanism.planes import beside
 from equipoise.mechanism.poles import advantage, guided, instant_center, pairs, pinned
 from equipoise.mechanism.spoken import joint_named, joint_names, pair_named, slider_names
-from equipoise.quantities import Dimension
 
 __all__ = ["DECLARED", "GROUPS", "Declared", "Found", "declared", "declaring", "matches", "output"]
 """What `declaring` has is had from here, where something is declared."""
@@ -38,40 +38,9 @@ XY, FORCES = (".x", ".y"), (".force_x", ".force_y")
 """Components of vectors, behind their names."""
 
 
-def _alike(where: str, read: Callable[..., Any], **shared: Any) -> Callable[..., None]:
-    """A way to declare outputs whose names begin alike, and that are read alike.
-
-    read : from the rest of the name (or `had`), an analysis and the member.  shared : as of
-        `output`.
-    parts : of a vector; those that begin with a dot go on after its name, others stand in its
-        place.  loop : True where compiled loops know it by its name.
-    of : makes values of what is read.
-    """
-
-    def declare(
-        name: str,
-        dimension: Dimension | None,
-        label: str,
-        parts: tuple[str, ...] = (),
-        had: str = "",
-        of: Callable[[Any], Any] = lambda values: values,
-        **more: Any,
-    ) -> None:
-        more = {**shared, **more}
-        if parts:
-            stem = {part: where + name if part[0] == "." else where for part in parts}
-            more["parts"] = tuple(stem[part] + part for part in parts)
-        if more.get("loop") is True:
-            known = name.replace("_", " ") + (":name" if "{}" in where else "")
-            more["loop"] = f"{{{known}}}"
-        output(where + name, dimension, label, **more)(lambda *found: of(read(had or name, *found)))
-
-    return declare
-
-
 # -- motion ----------------------------------------------------------------------------------------
 
-of_link = _alike(
+of_link = alike(
     "links.{}.",
     lambda name, found, link: getattr(found.motion.links[link], name),
     needs="motion",
@@ -94,7 +63,7 @@ of_link(
     **UNBOUNDED,
 )
 
-of_point = _alike(
+of_point = alike(
     "points.{}.",
     lambda name, found, point: getattr(found.motion.points[point], name),
     needs="motion",
@@ -114,7 +83,7 @@ of_point(
     had="acceleration_vector",
 )
 
-of_slider = _alike(
+of_slider = alike(
     "sliders.{}.",
     lambda name, found, slider: getattr(found.motion.sliders[slider], name),
     needs="motion",
@@ -138,7 +107,7 @@ of_slider(
     of=advantage,
     **UNBOUNDED,
 )
-of_dyad = _alike(
+of_dyad = alike(
     "transmission.{}",
     lambda _, found, joint: found.motion.transmission[joint],
     needs="motion",
@@ -147,7 +116,7 @@ of_dyad = _alike(
     spoken=joint_named,
 )
 of_dyad("", "angle", to_say("transmission angle at {name}"))
-of_pair = _alike(
+of_pair = alike(
     "centers.{}",
     lambda _, found, pair: instant_center(found.motion, pair),
     needs="motion",
@@ -165,7 +134,7 @@ def _force(name: str, found: Any) -> Any:
     return getattr(found.forces, name)
 
 
-linear = _alike("", _force, linear=True, loop=True)
+linear = alike("", _force, linear=True, loop=True)
 linear("shaking_force", "force", to_say("shaking force"), XY, ordered=True, compared=FORCE)
 linear(
     "shaking_moment", "torque", to_say("shaking moment"), about=True, ordered=True, compared=MOMENT
@@ -188,7 +157,7 @@ linear(
 )
 linear("frame_force", "force", to_say("force on the frame"), XY, summed=(True, False))
 linear("frame_moment", "torque", to_say("moment on the frame"), about=True)
-of_space = _alike(
+of_space = alike(
     "",
     lambda name, found: getattr(found.forces.across, name),
     needs="planes",
@@ -204,7 +173,7 @@ of_space(
     XY,
     summed=(True, False),
 )
-of_weight = _alike(
+of_weight = alike(
     "",
     _force,
     linear="{what} shakes nothing; take the force or moment on the frame instead",
@@ -212,7 +181,7 @@ of_weight = _alike(
 )
 of_weight("weight", "force", to_say("weight"), XY, sized=False)
 of_weight("weight_moment", "torque", to_say("moment of the weight"), about=True)
-of_center = _alike(
+of_center = alike(
     "mass_center.",
     lambda _, found: -found.forces.shaking_force.value / found.machine.mass,
     linear="{what} is the shaking force over the mass; take the shaking force instead",
@@ -234,7 +203,7 @@ def _of_drive(name: str, found: Any, link: str) -> Any:
     return torque * found.motion.links[link].angular_velocity if name == "power" else torque
 
 
-of_drive = _alike("drives.{}.", _of_drive, members=lambda m: m.told_drives, linear=True)
+of_drive = alike("drives.{}.", _of_drive, members=lambda m: m.told_drives, linear=True)
 of_drive("torque", "torque", to_say("drive torque of {name}"), loop="{drive torque:name}")
 of_drive(
     "power",
@@ -257,7 +226,7 @@ def _of_joint(name: str, found: Any, joint: str) -> Any:
     return _members(found.forces.joints, name, joint)
 
 
-of_joint = _alike(
+of_joint = alike(
     "joints.{}",
     _of_joint,
     spoken=joint_named,
@@ -294,7 +263,7 @@ of_joint(
     linear=True,
     summed=(True, False),
 )
-of_bearing = _alike(
+of_bearing = alike(
     "bearings.{}",
     lambda _, found, bearing: found.forces.across.bearings[bearing],
     needs="planes",
@@ -318,7 +287,7 @@ def _coupled(table: str, linear: str) -> Callable[..., None]:
     shared: dict[str, Any] = {"spoken": lambda name: name.replace(" to ", " → "), "linear": linear}
     shared["members"] = lambda machine: [one.name for one in getattr(machine, table)]
     read = lambda name, found, item: _members(getattr(found.forces, table), name, item)  # noqa: E731
-    return _alike(table + ".{}", read, **shared)
+    return alike(table + ".{}", read, **shared)
 
 
 TOOTH: dict[str, Any] = {"loop": "{joint force:name}", "summed": (True, False), "compared": FORCE}
@@ -332,9 +301,21 @@ of_belt(".pull", "force", to_say("effective pull {name}"), compared=FORCE)
 of_belt(".left", "force", to_say("tension of the left strand {name}"), compared=FORCE)
 of_belt(".right", "force", to_say("tension of the right strand {name}"), compared=FORCE)
 
+CAMMED: dict[str, Any] = {
+    "members": lambda machine: [cam.name for cam in machine.cams],
+    "spoken": lambda name: name.replace(" to ", " → "),
+}
+of_cam = alike("cams.{}", lambda name, found, cam: _members(found.forces.cams, name, cam), **CAMMED)
+of_cam("", "force", to_say("contact force {name}"), FORCES, linear=True,
+       loop="{joint force:name}", summed=(True, False), compared=FORCE)  # fmt: skip
+READ = "{what} is only read; take the whole contact force instead"
+of_cam(".normal", "force", to_say("contact force along the normal {name}"), linear=READ)
+slant = alike("cams.{}.", lambda _, found, cam: found.motion.pressure_angles[cam], **CAMMED)
+slant("pressure_angle", "angle", to_say("pressure angle {name}"), needs="motion")
+
 # -- rows and support ------------------------------------------------------------------------------
 
-of_rows = _alike("rows.", lambda name, found: found.together[name], needs="rows", linear=True)
+of_rows = alike("rows.", lambda name, found: found.together[name], needs="rows", linear=True)
 of_rows("shaking_force", "force", to_say("shaking force"), XY, summed=(True, False), compared=FORCE)
 of_rows("shaking_moment", "torque", to_say("shaking moment"), compared=FORCE)
 of_rows("roll_moment", "torque", to_say("roll moment"), compared=FORCE)

@@ -123,6 +123,7 @@ def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Re
         solved.gears,
         solved.racks,
         solved.belts(lambda belt: 0.0),
+        solved.cams,
         _across(motion, solved) if beside(machine) else None,
         parameter_names(machine),
         values,

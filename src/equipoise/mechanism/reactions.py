@@ -106,6 +106,16 @@ class BeltForce:
 
 
 @dataclass(frozen=True, eq=False)
+class CamForce(JointForce):
+    """Force of a cam on its follower, N, along their common normal.
+
+    normal : it along the normal away from the cam; below 0 where the follower is held back.
+    """
+
+    normal: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Pass:
     """Joint forces of one run over the groups, for one demand or a stack of them.
 
@@ -172,8 +182,14 @@ class Pass:
 
     @property
     def contacts(self) -> dict[str, JointForce]:
-        """Force in every joint and between all teeth, by name."""
-        return {**self.joints, **self.gears, **self.racks}
+        """Force in every joint and between all teeth and of all cams, by name."""
+        return {**self.joints, **self.gears, **self.racks, **self.cams}
+
+    @property
+    def cams(self) -> dict[str, CamForce]:
+        """Cams, by name; the force is on the follower."""
+        cams = (r for r in self.motion.linkage.reactions if r.kind == "cam")
+        return Named("cam", ((r.name, self._pressed(r)) for r in cams))
 
     @cached_property
     def exerted(self) -> dict[str, JointForce]:
@@ -228,6 +244,11 @@ class Pass:
         lever = self.state[f"p({reaction.at})"] - self.state[f"p({pin})"]
         radial = -kernels.dot(lever, force) / abs(lever)
         return MeshForce(force, reaction.on, reaction.by, tangential, radial)
+
+    def _pressed(self, reaction: Reaction) -> CamForce:
+        force = full(self.motion, self.state[reaction.force], complex)
+        normal = full(self.motion, self.state[f"T({reaction.name})"], float)
+        return CamForce(force, reaction.on, reaction.by, normal)
 
 
 def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None = None) -> Pass:

@@ -10,12 +10,12 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.mechanism.across import OF_FRAME, Across
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.reactions import BeltForce, JointForce, MeshForce, SliderForce
+from equipoise.mechanism.reactions import BeltForce, CamForce, JointForce, MeshForce, SliderForce
 from equipoise.mechanism.steps import Array
 
 CAUSES = ("translation", "rotation", "weight", "load", "spring")
 """Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside, and
-springs to the frame and the tension of belts."""
+springs and the tension of belts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +25,7 @@ class Shares:
     drives : link -> torque of its drive, N m, of which `drive_torque` is the first.
     shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
     drive_force : N, of a drive that pushes.
-    joints, gears, racks, belts : name -> force whose arrays have those axes.
+    joints, gears, racks, belts, cams : name -> force whose arrays have those axes.
     across : what links beside each other do; None where they all lie in one plane.
     """
 
@@ -39,6 +39,7 @@ class Shares:
     gears: Mapping[str, MeshForce]
     racks: Mapping[str, MeshForce]
     belts: Mapping[str, BeltForce]
+    cams: Mapping[str, CamForce]
     across: Across | None
     drive_force: Array | None = field(default=None, kw_only=True)
 
@@ -78,6 +79,7 @@ class Split(Shares):
         found |= {f"racks.{name}": mesh.value for name, mesh in self.racks.items()}
         for name, belt in self.belts.items():
             found |= {f"belts.{name}.{k}": getattr(belt, k) for k in ("pull", "left", "right")}
+        found |= {f"cams.{name}": pressed.value for name, pressed in self.cams.items()}
         if self.across is not None:
             found |= {name: getattr(self.across, name).value for name in OF_FRAME}
             found |= {f"bearings.{name}": one.value for name, one in self.across.bearings.items()}

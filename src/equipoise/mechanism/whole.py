@@ -8,26 +8,29 @@ from typing import Any
 from equipoise.errors import ModelError
 from equipoise.keys import wrong_values
 from equipoise.mechanism.belts import wrong_belt
+from equipoise.mechanism.cams import wrong_cam
 from equipoise.mechanism.checks import Bodies, numbered, too_many, unknown_link, wrong_text
 from equipoise.mechanism.drives import wrong_drive, wrong_further, wrong_together
 from equipoise.mechanism.field import wrong_planting
-from equipoise.mechanism.force_elements import wrong_ends, wrong_load
+from equipoise.mechanism.force_elements import wrong_load
 from equipoise.mechanism.gears import wrong_gear
 from equipoise.mechanism.links import wrong_link, wrong_points
 from equipoise.mechanism.parts import wrong_joint, wrong_slider
 from equipoise.mechanism.places import wrong_position
 from equipoise.mechanism.planes import wrong_planes
 from equipoise.mechanism.racks import wrong_rack
+from equipoise.mechanism.springs import wrong_ends
 from equipoise.mechanism.support import wrong_support
 
 MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "belts": 200, "racks": 200,
-        "loads": 500, "springs": 200, "joints": 500, "drives": 20}  # fmt: skip
+        "cams": 100, "loads": 500, "springs": 200, "joints": 500, "drives": 20}  # fmt: skip
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
     "sliders": wrong_slider,
     "gears": wrong_gear,
     "belts": wrong_belt,
     "racks": wrong_rack,
+    "cams": wrong_cam,
     "drives": wrong_further,
     "loads": wrong_load,
     "springs": wrong_ends,

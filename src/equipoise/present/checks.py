@@ -16,6 +16,7 @@ from equipoise.mechanism.loads import work_in_cycle
 from equipoise.mechanism.support import idle_parts
 from equipoise.quantities import PER_RPM, SI, Dimension, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
+from equipoise.results.cam_blocks import cams_told, where_lost
 from equipoise.results.drive_blocks import driven
 from equipoise.results.machine_blocks import bodies_tables, place_told
 from equipoise.vibration.body import Body, at_rest
@@ -49,12 +50,23 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     fully = "" if drive.pushes or drive.motion is not None else "the crank turns fully; "
     yield Text(f"{fully}the {repeats} after {turns}")
     yield from bodies_tables(machine)
-    yield from map(Text, (*_springs(machine), *_drive_train(machine), *_support(machine)))
+    parts = (
+        *_springs(machine),
+        *cams_told(machine, linkage.joints),
+        *_drive_train(machine),
+        *_support(machine),
+    )
+    yield from map(Text, parts)
     if machine.loads:
         ends = (Column(end, "angle", "deg") for end in ("from", "to"))
         heads = ("on", "what", *ends, "beyond", "largest", Column("work", "energy"))
         yield Table.of("Loads, and their work in a cycle", heads, _loads(machine))
-    if notes := (*remarks(linkage), *idle_parts(machine.support), *_uncarried(machine)):
+    if notes := (
+        *remarks(linkage),
+        *where_lost(machine),
+        *idle_parts(machine.support),
+        *_uncarried(machine),
+    ):
         yield Notes(notes)
     yield Text("ready to be analysed")
 

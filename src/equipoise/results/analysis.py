@@ -186,7 +186,7 @@ class Analysis(Result):
         if found is None:
             result["missing"] = massless(self.machine)
         else:
-            for family in ("joints", "gears", "racks", "belts"):
+            for family in ("joints", "gears", "racks", "belts", "cams"):
                 joints = getattr(found, family)
                 ends = {name: {"on": one.on, "by": one.by} for name, one in joints.items()}
                 if ends or family in ("joints", "gears"):

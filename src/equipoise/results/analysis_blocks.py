@@ -15,6 +15,7 @@ from equipoise.mechanism.strokes import SHARE
 from equipoise.quantities import Dimension, angle, percent
 from equipoise.results.belt_blocks import belt_blocks
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
+from equipoise.results.cam_blocks import cam_blocks
 from equipoise.results.drive_blocks import driven, drives_table
 from equipoise.results.joint_blocks import joint_blocks
 from equipoise.results.machine_blocks import (
@@ -46,6 +47,7 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
     machine, motion = analysis.machine, analysis.motion
     yield Text(f"{driven(machine, motion.speed)}; {angles_told(analysis)}")
     yield from motion_blocks(analysis)
+    yield from cam_blocks(analysis)
     if analysis.solved is None:
         yield Notes((massless(machine),))
         return

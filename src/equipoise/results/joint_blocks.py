@@ -44,6 +44,7 @@ def joint_table(analysis: Analysis) -> Table:
         if isinstance(joint, SliderForce):
             couple = Value(float(np.max(np.abs(joint.moment))), scale)
         named = joint_named(name) if name in forces.joints else say("teeth")
+        named = say("cam") if name in forces.cams else named
         rows.append((named, *_told(analysis, joint), couple, _peak(tilting.get(name))))
     for name, joint in across.bearings.items() if across is not None else ():
         rows.append((say("bearing {name}", name=name), *_told(analysis, joint), None, None))

@@ -187,6 +187,23 @@ def _parts(machine: Machine) -> Iterator[str]:
             through=slider.through,
             angle=angle(slider.direction),
         )
+    yield from _couplings(machine)
+    for spring in machine.springs:
+        yield say(
+            "Spring: {stiffness} from {point} of {link} to {to}",
+            stiffness=told(spring.stiffness, "stiffness", "N/m"),
+            point=spring.point,
+            link=spring.link,
+            to=spring.to,
+        )
+    for load in machine.loads:
+        if load.point is None:
+            yield say("Load: a torque on {link}", link=load.link)
+        else:
+            yield say("Load: a force at {point} of {link}", point=load.point, link=load.link)
+
+
+def _couplings(machine: Machine) -> Iterator[str]:
     for gear in machine.gears:
         named = {"driver": gear.driver, "driven": gear.driven, "carrier": body_named(gear.carrier)}
         if gear.shape is None:
@@ -220,19 +237,13 @@ def _parts(machine: Machine) -> Iterator[str]:
             carrier=body_named(rack.carrier),
             radius=told(rack.radius, "length"),
         )
-    for spring in machine.springs:
+    for cam in machine.cams:
         yield say(
-            "Spring: {stiffness} from {point} of {link} to {to}",
-            stiffness=told(spring.stiffness, "stiffness", "N/m"),
-            point=spring.point,
-            link=spring.link,
-            to=spring.to,
+            "Cam: {cam} moves {follower} on {carrier}",
+            cam=body_named(cam.driver),
+            follower=cam.driven,
+            carrier=body_named(cam.carrier),
         )
-    for load in machine.loads:
-        if load.point is None:
-            yield say("Load: a torque on {link}", link=load.link)
-        else:
-            yield say("Load: a force at {point} of {link}", point=load.point, link=load.link)
 
 
 def _support(machine: Machine) -> Iterator[str]:

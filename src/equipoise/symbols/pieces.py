@@ -271,7 +271,8 @@ def _pivots(scene: Scene) -> Iterator[Shape]:
 def _marks(scene: Scene, body: Body, traced: Collection[str]) -> Iterator[Shape]:
     """Pins, traced points and centre of mass of a link."""
     others = scene.bodies[: scene.bodies.index(body)]
-    hung = {point for point, _ in (*scene.springs, *scene.planned)} | {*(scene.drive.between or ())}
+    hung = {point for ends in (*scene.springs, *scene.planned) for point in ends}
+    hung |= {*(scene.drive.between or ())}
     drawn = {*scene.frame, *(point for other in others for point in other.points)}
     for point in body.points:
         if point in drawn:

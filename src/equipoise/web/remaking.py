@@ -159,7 +159,7 @@ def _held(key: str, entry: Any, bodies: Bodies) -> bool:
     if key == "sliders":
         points.append((entry.on, entry.through))
     if key == "springs":
-        points.append((FRAME, entry.to))
+        points.append((entry.on, entry.to))
     return entry.link in bodies and all(name in bodies.get(body, ()) for body, name in points)
 
 

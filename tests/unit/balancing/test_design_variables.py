@@ -16,8 +16,8 @@ from equipoise.balancing.design_variables import FreeSpring, with_parameters
 from equipoise.balancing.objectives import measured
 from equipoise.balancing.program import Affine, NoSolutionError, Program
 from equipoise.mechanism.balance import Balance, Objective, SpringChoice
-from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.parameters import parameter_values
+from equipoise.mechanism.springs import Spring
 from support.machines import make
 from unit.mechanism.build import crank_rocker
 

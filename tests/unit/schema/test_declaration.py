@@ -17,6 +17,7 @@ from equipoise.keys import Frozen, Number, Table, Tables, Text, declared, key, w
 from equipoise.mechanism import (
     balance,
     bodies,
+    cams,
     counterweights,
     drives,
     field,
@@ -32,9 +33,9 @@ from equipoise.mechanism import (
     weights,
 )
 from equipoise.mechanism.belts import Belt
-from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import Frame, Machine, Position
 from equipoise.mechanism.racks import Rack
+from equipoise.mechanism.springs import Spring
 from equipoise.schema import finding, models, schemas
 from equipoise.schema.documents import dumps, loads
 from equipoise.schema.places import Context
@@ -58,7 +59,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         links.Link,
         bodies.Body, bodies.Hole, parts.Bearing, parts.Slider, parts.Gear,
         parts.JointStiffness,
-        gear_shapes.GearShape, Belt, Rack,
+        gear_shapes.GearShape, Belt, Rack, cams.Cam,
         force_elements.Load, Spring, Position, field.Planting, field.PlantingArm,
         field.Soil, support.Support,
         mounts.Mount, support.Row, balance.Balance, weights.CenterMove,

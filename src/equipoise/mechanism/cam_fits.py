@@ -1,0 +1,264 @@
+"""A cam in its place: how its follower moves in the carrier, and whether it can be made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import degrees, pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note
+from equipoise.mechanism.builder import Guide
+from equipoise.mechanism.cam_shapes import Array, Path, Shape, Sliding, Swinging, lowest
+from equipoise.mechanism.cams import Cam
+from equipoise.mechanism.joints import Structure, place_in_file
+from equipoise.mechanism.kernels import cross, dot
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.steps import State, planar
+
+STEEPEST = 1e-6
+"""Cosine of the pressure angle at which the follower jams."""
+BOTH = {(1, 0), (0, 1)}
+"""Numbers of sliding joints and pins between follower and carrier: one of them."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A cam between its carrier and its follower.
+
+    cam_pin : point of the carrier about which the cam turns.
+    pin : point about which a pinned follower turns; guide : of a sliding one.
+    rest : where the displacement is 0, the way along the guide (m) or the angle (rad) of the
+        follower in the carrier.
+    sense : by what the displacement is multiplied to add to that.
+    face : normal of a flat face in the follower's axes, else None.
+    """
+
+    cam: Cam
+    cam_pin: str
+    pin: str
+    guide: Guide | None
+    rest: Any
+    sense: float
+    face: Any
+    path: Path
+
+    @property
+    def joint(self) -> str:
+        """The point of the follower about which its joint's moments are taken."""
+        return self.pin if self.guide is None else self.guide.point
+
+    def shape(self, angle: Array) -> Shape:
+        """The cam under its follower at angles (N,), rad, by which it has turned."""
+        return Shape(angle, self.path, self.cam.law.value, self.cam.roller_radius)
+
+
+def fitted(machine: Machine, joints: Structure, cam: Cam) -> Fit:
+    """Place a cam.
+
+    Raises
+    ------
+    ModelError : it is not joined to its carrier as it has to be, or cannot touch its follower.
+    """
+    where = place_in_file(joints, cam)
+    pivots = joints.pins_between(cam.driver, cam.carrier)
+    if len(pivots) != 1:
+        raise ModelError(
+            where,
+            Note(
+                "{body!r} shares {shared} points with the carrier {carrier!r}; the cam turns about "
+                "exactly one point of it",
+                body=cam.driver,
+                shared=len(pivots),
+                carrier=cam.carrier,
+            ),
+        )
+    ends = {cam.driven, cam.carrier}
+    guides = [one for one in joints.sliders if {one.link, one.on} == ends]
+    pins = joints.pins_between(cam.driven, cam.carrier)
+    wanted = {(1, 0)} if cam.lift is not None else {(0, 1)} if cam.swing is not None else BOTH
+    if (len(guides), len(pins)) not in wanted:
+        raise ModelError(
+            where,
+            Note(
+                "lift goes with one sliding joint between {follower!r} and its carrier "
+                "{carrier!r}, and swing with one pin; these have {guides} and {pins}",
+                follower=cam.driven,
+                carrier=cam.carrier,
+                guides=len(guides),
+                pins=len(pins),
+            ),
+        )
+    if guides:
+        guide = Guide.seen_from(guides[0], cam.carrier)
+        return _on_guide(machine, cam, pivots[0], guide, where)
+    return _on_pin(machine, cam, pivots[0], pins[0], where)
+
+
+def _place(machine: Machine, body: str, point: str) -> complex:
+    return planar(machine.points_of(body)[point])
+
+
+def _on_guide(machine: Machine, cam: Cam, cam_pin: str, guide: Guide, where: str) -> Fit:
+    """A sliding follower; all in axes along the guide first, from the cam's axis."""
+    n = guide.along
+    arm = _place(machine, cam.driven, cam.point) - _place(machine, cam.driven, guide.point)
+    base = _place(machine, cam.carrier, guide.base) - _place(machine, cam.carrier, cam_pin)
+    shift = base / n + arm * guide.turn
+    face = normal = None
+    if cam.rides == "flat":
+        face = 1 / guide.turn if cam.normal is None else np.exp(1j * cam.normal)
+        way = face * guide.turn
+        if np.any(way.real < STEEPEST):
+            told = Note("the face does not look along the guide; turn it by 180 deg, or less")
+            raise ModelError(f"{where}.normal", told)
+        rest = (cam.base_radius - dot(way, shift)) / way.real
+        normal = way * n
+    else:
+        height2 = cam.radius**2 - shift.imag**2
+        if np.any(height2 <= 0):
+            raise ModelError(
+                f"{where}.base_radius",
+                Note(
+                    "the way of {point!r} passes the cam's axis at {offset:.4g} mm, and a radius "
+                    "of {radius:.4g} mm does not reach that; give more than that",
+                    point=cam.point,
+                    offset=abs(np.max(np.abs(shift.imag))) * 1e3,
+                    radius=np.min(cam.radius) * 1e3,
+                ),
+            )
+        rest = height2**0.5 - shift.real
+    path = Sliding(n, n * (shift + rest), normal)
+    return Fit(cam, cam_pin, "", guide, rest, 1.0, face, path)
+
+
+def _on_pin(machine: Machine, cam: Cam, cam_pin: str, pin: str, where: str) -> Fit:
+    """A pinned follower; `apart` is the angle from the line of centres to roller or normal."""
+    pivot = _place(machine, cam.carrier, pin) - _place(machine, cam.carrier, cam_pin)
+    arm = _place(machine, cam.driven, cam.point) - _place(machine, cam.driven, pin)
+    distance = abs(pivot)
+    face = None if cam.normal is None else np.exp(1j * cam.normal)
+    if face is None:
+        cosine = (distance**2 + cam.radius**2 - abs(arm) ** 2) / (2 * distance * cam.radius)
+    else:
+        cosine = (cam.base_radius - dot(face, arm)) / distance
+    if not np.all(abs(cosine) < 1):
+        raise ModelError(
+            f"{where}.base_radius",
+            Note(
+                "{point!r}, {arm:.4g} mm from its pivot, does not reach the base circle, which "
+                "has its centre {distance:.4g} mm from that; change one of these",
+                point=cam.point,
+                arm=np.max(abs(arm)) * 1e3,
+                distance=np.max(distance) * 1e3,
+            ),
+        )
+    sense = -1.0 if cam.side == "left" else 1.0
+    towards = pivot / distance * np.exp(-1j * sense * np.arccos(cosine))
+    turn = (cam.radius * towards - pivot) / arm if face is None else towards / face
+    turn = turn / abs(turn)
+    normal = None if face is None else towards
+    path = Swinging(pivot, arm * turn, sense, normal)
+    return Fit(cam, cam_pin, pin, None, np.angle(turn), sense, face, path)
+
+
+def fits_of(machine: Machine, joints: Structure) -> tuple[Fit, ...]:
+    """All cams of a machine."""
+    return tuple(fitted(machine, joints, cam) for cam in machine.cams)
+
+
+def pressure_angle(fit: Fit, state: State) -> Array:
+    """From the way in which a follower rises to the common normal, rad, as of a motion's state."""
+    cam = fit.cam
+    carrier, normal = state[f"u({cam.carrier})"], state[f"normal({cam.name})"]
+    at = state[f"p(contact({cam.name}))" if cam.rides == "flat" else f"p({cam.point})"]
+    forth = fit.path.forth((at - state[f"p({fit.cam_pin})"]) / carrier) * carrier
+    slant: Array = np.arctan2(cross(forth, normal), dot(forth, normal))
+    return slant
+
+
+def sharpest(fit: Fit) -> tuple[float, float]:
+    """Least radius of curvature of a cam's surface, m, and the cam angle, rad, of it."""
+    knots = _knots(fit)
+    return lowest(fit.shape(knots), lambda one: abs(one.radius_of_curvature), knots)
+
+
+def _knots(fit: Fit) -> Array:
+    """Cam angles (K,), rad, at which the law changes."""
+    law = fit.cam.law
+    return law.curve.knots[:-1] + law.origin
+
+
+# -- what cannot be made ---------------------------------------------------------------------------
+
+
+def check_shape(fit: Fit, where: str) -> None:
+    """Raise an error where the follower jams or the cam is undercut."""
+    knots = _knots(fit)
+    shape = fit.shape(knots)
+
+    def least(value: Callable[[Shape], Array]) -> tuple[float, float]:
+        return lowest(shape, value, knots)
+
+    if fit.cam.rides == "flat":
+        _check_speed(least, where)
+    cosine, angle = least(lambda one: np.cos(one.pressure_angle))
+    if cosine < STEEPEST:
+        raise ModelError(
+            where,
+            Note(
+                "the follower jams at cam angle {angle:.4g} deg, where the pressure angle is 90 "
+                "deg; give a larger base_radius, or another place of the follower",
+                angle=degrees(angle),
+            ),
+        )
+    check = _check_flat if fit.cam.rides == "flat" else _check_round
+    check(fit.cam, least, where)
+
+
+def _check_speed(least: Any, where: str) -> None:
+    slack, angle = least(lambda one: 1 - one.ride.turn_1)
+    if slack < STEEPEST:
+        told = Note(
+            "at cam angle {angle:.4g} deg the follower turns as fast as the cam, which no flat "
+            "face can do; give it less swing there, or more time",
+            angle=degrees(angle),
+        )
+        raise ModelError(where, told)
+
+
+def _check_flat(cam: Cam, least: Any, where: str) -> None:
+    radius, angle = least(lambda one: one.radius_of_curvature)
+    if radius <= 0:
+        raise ModelError(
+            where,
+            Note(
+                "the cam is undercut at cam angle {angle:.4g} deg, where its radius of curvature "
+                "would be {radius:.4g} mm; a flat face needs more than 0: give a larger "
+                "base_radius, or more time there",
+                angle=degrees(angle),
+                radius=radius * 1e3,
+            ),
+        )
+
+
+def _check_round(cam: Cam, least: Any, where: str) -> None:
+    """The curve of a roller's centre bends less than the roller, outward and in a groove inward."""
+    for sign in (1.0, -1.0) if cam.closed_by == "groove" else (1.0,):
+        bend, angle = least(lambda one, sign=sign: -sign * one.curvature)
+        if -bend * cam.roller_radius >= 1:
+            raise ModelError(
+                where,
+                Note(
+                    "the cam is undercut at cam angle {angle:.4g} deg, where the curve of the "
+                    "roller's centre has a radius of {radius:.4g} mm, and the roller one of "
+                    "{roller:.4g} mm; give a larger base_radius, a smaller roller, or more time "
+                    "there",
+                    angle=degrees(angle % (2 * pi)),
+                    radius=-1e3 / bend,
+                    roller=cam.roller_radius * 1e3,
+                ),
+            )

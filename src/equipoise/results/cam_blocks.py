@@ -1,0 +1,99 @@
+"""What an analysis tells of its cams: how sharp and steep they are, and where contact is lost."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import degrees, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from equipoise.i18n import Note, all_of, say
+from equipoise.mechanism.cam_contacts import LetGo, let_go
+from equipoise.mechanism.cam_fits import fits_of, sharpest
+from equipoise.mechanism.dynamics import forces, massless
+from equipoise.mechanism.motion import move
+from equipoise.mechanism.spoken import body_named
+from equipoise.quantities import PER_RPM, angle, format_exact, told
+from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
+from equipoise.results.machine_blocks import largest, smallest
+from equipoise.signals import figures
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.joints import Structure
+    from equipoise.mechanism.model import Machine
+    from equipoise.results.analysis import Analysis
+
+
+def cam_blocks(analysis: Analysis) -> Iterator[Block]:
+    """Shape, pressure angle and contact force of each cam; where followers lift off."""
+    if not analysis.machine.cams:
+        return
+    found = () if analysis.solved is None else let_go(analysis.solved)
+    limits = {one.cam.name: Value(one.speed, at=one.at) for one in found if np.isfinite(one.speed)}
+    rows: list[tuple[Cell, ...]] = []
+    for fit in fits_of(analysis.machine, analysis.motion.linkage.joints):
+        name = fit.cam.name
+        steep = figures(analysis.crank_angle, abs(analysis.motion.pressure_angles[name]))
+        row: tuple[Cell, ...] = (
+            name.replace(" to ", " → "),
+            Value(sharpest(fit)[0]),
+            largest(steep),
+        )
+        if analysis.solved is not None:
+            force = figures(analysis.crank_angle, analysis.solved.cams[name].normal)
+            row = (*row, smallest(force), largest(force), limits.get(name))
+        rows.append(row)
+    force_heads = (say("smallest contact force"), say("largest"))
+    columns = (
+        "",
+        Column(say("least radius of curvature"), "length"),
+        Column(say("largest pressure angle"), "angle"),
+        *(Column(head, "force") for head in force_heads),
+        Column(say("lifts off from"), "angular speed", "rpm"),
+    )
+    shown = len(rows[0]) - (len(rows[0]) == len(columns) and not limits)
+    title = say("Cams; largest and smallest with the crank angle")
+    yield Table.of(title, columns[:shown], (row[:shown] for row in rows))
+    if lost := tuple(lost_told(one) for one in found if one.ranges):
+        yield Notes(lost)
+
+
+def lost_told(one: LetGo) -> Note:
+    """Where the springs of a cam's follower do not keep it there, at the speed analysed."""
+    ranges = [
+        Note("at every crank angle")
+        if b - a >= 2 * pi
+        else Note("at crank angles from {low} to {high}", low=angle(a), high=angle(b))
+        for a, b in one.ranges
+    ]
+    return Note(
+        "{follower} lifts off {cam} {ranges}, where it would have to be held by up to {force}; "
+        "{limit}",
+        follower=one.cam.driven,
+        cam=body_named(one.cam.driver),
+        ranges=all_of(ranges),
+        force=told(-one.least[0], "force"),
+        limit=Note("its springs are too weak even at rest")
+        if one.speed == 0
+        else Note("its springs hold it up to {speed:.4g} rpm", speed=one.speed / PER_RPM),
+    )
+
+
+def cams_told(machine: Machine, joints: Structure) -> Iterator[str]:
+    """What each cam is, a sentence each."""
+    for fit in fits_of(machine, joints):
+        cam, (radius, where) = fit.cam, sharpest(fit)
+        law = f"{format_exact(cam.law.curve.extremes[1], cam.law.dimension)} at most"
+        yield (
+            f"cam: {cam.driver} moves {cam.driven} by {law}, {cam.rides}, closed by "
+            f"{cam.closed_by}; least radius of curvature {told(radius, 'length', 'mm')}, at cam "
+            f"angle {degrees(where):.4g} deg"
+        )
+
+
+def where_lost(machine: Machine) -> tuple[Note, ...]:
+    """Where springs do not keep followers on their cams, at the file's speed."""
+    if not machine.cams or massless(machine):
+        return ()
+    return tuple(lost_told(one) for one in let_go(forces(move(machine))) if one.ranges)

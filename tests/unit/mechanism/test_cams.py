@@ -1,0 +1,270 @@
+"""Cams in machines: closed forms, what is refused, and where springs let go of followers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi, radians, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import ModelError
+from equipoise.mechanism import assemble
+from equipoise.mechanism.cam_contacts import let_go
+from equipoise.mechanism.cams import Cam
+from equipoise.mechanism.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment
+from equipoise.mechanism.model import FRAME
+from unit.mechanism.build import ORIGIN, heavy, machine, refused
+
+MASS, HIGH, GRAVITY = 0.5, 0.02, 9.80665
+RISE = LengthLaw(
+    segments=(
+        LengthSegment(radians(60), HIGH, "cycloidal"),
+        LengthSegment(radians(120), HIGH),
+        LengthSegment(radians(60), 0.0, "cycloidal"),
+        LengthSegment(radians(120), 0.0),
+    )
+)
+
+
+def cam(rides: str = "flat", **more: Any) -> Cam:
+    given: dict[str, Any] = {"closed_by": "ribs", "base_radius": 0.03, **more}
+    if rides == "roller":
+        given.setdefault("roller_radius", 0.008)
+    if "swing" not in given:
+        given.setdefault("lift", LengthLaw(between=(0.0, HIGH)))
+    return Cam("crank", "tappet", rides=rides, point="R", **given)
+
+
+def tappet(*cams: Cam, **more: Any) -> eq.Machine:
+    """Make a balanced cam on the crank and a tappet above it."""
+    return machine(
+        {"A": ORIGIN, "S": (0.0, 0.2)},
+        {
+            "crank": eq.Link({"A": ORIGIN, "B": (0.05, 0.0)}, 1.0, ORIGIN, 1e-3),
+            "tappet": eq.Link({"R": ORIGIN, "T": (0.1, 0.0)}, MASS, (0.02, 0.0), 1e-4),
+        },
+        sliders=(eq.Slider("tappet", "R", FRAME, "A", pi / 2),),
+        cams=cams or (cam(),),
+        **more,
+    )
+
+
+def lever(**more: Any) -> eq.Machine:
+    """Make a cam on the crank and a lever beside it."""
+    given: dict[str, Any] = {"swing": AngleLaw(between=(0.0, 0.3)), **more}
+    return machine(
+        {"A": ORIGIN, "D": (0.1, 0.0)},
+        {"crank": heavy(A=ORIGIN), "tappet": heavy(D=ORIGIN, R=(0.09, 0.0))},
+        cams=(cam(**{"rides": "roller", **given}),),
+    )
+
+
+# -- closed forms ----------------------------------------------------------------------------------
+
+
+def test_a_simple_harmonic_cam() -> None:
+    """A flat tappet on an eccentric circle: y = h (1 - cos) / 2, force m (g + y''), torque F y'."""
+    found = eq.analyze(tappet()).forces
+    theta, speed = found.motion.crank_angle, found.motion.speed
+    half = HIGH / 2
+    np.testing.assert_allclose(
+        found.motion.points["R"].y, 0.03 + half * (1 - np.cos(theta)), atol=1e-16
+    )
+    push = MASS * (GRAVITY + half * np.cos(theta) * speed**2)
+    (pressed,) = found.cams.values()
+    np.testing.assert_allclose(pressed.normal, push, rtol=1e-13)
+    np.testing.assert_allclose(pressed.value, 1j * push, rtol=1e-13)
+    np.testing.assert_allclose(found.drive_torque, push * half * np.sin(theta), atol=1e-14)
+
+
+def test_it_is_a_scotch_yoke() -> None:
+    """The same motion by a block in a yoke asks for the same torque."""
+    yoke = machine(
+        {"A": ORIGIN},
+        {
+            "crank": eq.Link({"A": ORIGIN, "B": (HIGH / 2, 0.0)}, 0.0, ORIGIN, 0.0),
+            "block": eq.Link({"B": ORIGIN}, 0.0, ORIGIN, 0.0),
+            "tappet": eq.Link({"Y": ORIGIN}, MASS, ORIGIN, 1e-4),
+        },
+        sliders=(
+            eq.Slider("tappet", "Y", FRAME, "A", pi / 2),
+            eq.Slider("block", "B", "tappet", "Y", pi / 2),
+        ),
+    )
+    # the tappet rises with the sine here, with minus the cosine there
+    late = cam(lift=LengthLaw(between=(0.0, HIGH), phase=-pi / 2))
+    torques = [eq.analyze(one).forces.drive_torque for one in (yoke, tappet(late))]
+    np.testing.assert_allclose(torques[1], torques[0], atol=1e-14)
+
+
+def test_from_which_speed_the_tappet_lifts_off() -> None:
+    """At the top, where m h speed^2 / 2 is its weight."""
+    light = tappet(cam(closed_by="spring"))
+    limit = sqrt(GRAVITY / (HIGH / 2))
+    (found,) = let_go(eq.analyze(light, speed=0.9 * limit).forces)
+    assert found.ranges == ()
+    assert (found.speed, found.at) == (pytest.approx(limit), pytest.approx(pi))
+    (found,) = let_go(eq.analyze(light, 3600, speed=-2 * limit).forces)
+    ((begin, end),) = found.ranges
+    beyond = np.arccos(-1 / 4)  # where the acceleration is that of gravity
+    assert (begin, end) == (pytest.approx(beyond, abs=1e-6), pytest.approx(2 * pi - beyond))
+    assert found.least == (pytest.approx(MASS * GRAVITY * -3), pytest.approx(pi))
+    assert let_go(eq.analyze(tappet()).forces) == ()
+
+
+def test_a_spring_presses_the_tappet_on() -> None:
+    """Its force at the top adds to the weight; without gravity and it nothing holds."""
+    spring = eq.Spring("tappet", "R", "S", 1000.0, 0.3)
+    sprung = tappet(cam(closed_by="spring"), springs=(spring,))
+    (found,) = let_go(eq.analyze(sprung).forces)
+    top = MASS * GRAVITY + 1000.0 * (0.3 - (0.2 - 0.03 - HIGH))
+    assert found.speed == pytest.approx(sqrt(top / (MASS * HIGH / 2)))
+    (loose,) = let_go(eq.analyze(tappet(cam(closed_by="spring"), gravity=(0.0, 5.0))).forces)
+    assert loose.speed == 0
+    assert loose.ranges == ((pytest.approx(0), pytest.approx(2 * pi)),)
+
+
+def test_pressure_angle_of_a_machine() -> None:
+    found = eq.analyze(tappet(cam("roller", lift=RISE)))
+    theta = found.crank_angle
+    slope = found.motion.sliders["tappet on frame"].travel_1
+    want = np.arctan(slope / (found.motion.points["R"].y))
+    (told,) = [o for o in found.outputs.arrays if o.name.endswith("pressure_angle")]
+    np.testing.assert_allclose(told.values, want, atol=1e-14)
+    assert len(told.values) == len(theta)
+
+
+def test_a_camshaft_at_half_the_speed_takes_two_turns() -> None:
+    shaft = eq.Link({"C": ORIGIN}, 0.2, ORIGIN, 1e-4)
+    given = tappet()
+    given = replace(
+        given,
+        cams=(replace(cam("roller", lift=RISE), driver="shaft"),),
+        frame={**given.frame, "C": (0.0, -0.1)},
+        links={**given.links, "shaft": shaft},
+        gears=(eq.Gear("crank", "shaft", teeth=(20, 40)),),
+        sliders=(eq.Slider("tappet", "R", FRAME, "C", pi / 2),),
+    )
+    motion = eq.move(given, 36)
+    assert motion.turns == 2
+    rises = motion.points["R"].y + 0.1 - 0.038
+    angle = -motion.crank_angle / 2
+    np.testing.assert_allclose(rises, RISE.value(angle)[0], atol=1e-15)
+
+
+def test_a_cam_without_a_law_is_round() -> None:
+    """What it lifts stands still, and it bears the weight, on a guide and on a pin."""
+    found = eq.analyze(tappet(cam(lift=None))).forces
+    np.testing.assert_allclose(found.motion.points["R"].y, 0.03, atol=1e-16)
+    np.testing.assert_allclose(found.cams["crank to tappet"].normal, MASS * GRAVITY, rtol=1e-13)
+    assert np.ptp(eq.move(lever(swing=None)).links["tappet"].angle) == 0
+
+
+def test_a_spring_between_two_links() -> None:
+    """It bears on both, nothing of it on the frame, and its energy comes back by the drive."""
+    spring = eq.Spring("tappet", "T", "B", 800.0, 0.01, "crank")
+    with_it, without = (
+        eq.analyze(tappet(gravity=(0.0, 0.0), springs=springs), acceleration=0.0).forces
+        for springs in ((spring,), ())
+    )
+    np.testing.assert_allclose(with_it.frame_force.value, without.frame_force.value, atol=1e-12)
+    np.testing.assert_allclose(with_it.frame_moment, without.frame_moment, atol=1e-12)
+    theta, points = with_it.motion.crank_angle, with_it.motion.points
+    energy = 400.0 * (abs(points["T"].place - points["B"].place) - 0.01) ** 2
+    orders = np.fft.rfftfreq(len(theta), 1 / len(theta))
+    slope = np.fft.irfft(1j * orders * np.fft.rfft(energy), len(theta))
+    np.testing.assert_allclose(with_it.drive_torque - without.drive_torque, slope, atol=1e-9)
+
+
+# -- refusals --------------------------------------------------------------------------------------
+
+BOTH = {"swing": AngleLaw(between=(0.0, 0.3)), "lift": LengthLaw(between=(0.0, 0.01))}
+
+
+@pytest.mark.parametrize(
+    ("changes", "where", "words"),
+    [
+        (BOTH, "cams[1]", "give either lift or swing, not both"),
+        ({"driver": "tappet"}, "cams[1]", "cam, follower and carrier must be ..."),
+        ({"driver": "drum"}, "cams[1].cam", "no link is called 'drum'; ..."),
+        ({"driven": "drum"}, "cams[1].follower", "no link is called 'drum'; ..."),
+        ({"point": "Q"}, "cams[1].point", "no point of tappet is called 'Q'; ..."),
+        ({"rides": "roller"}, "cams[1].roller_radius", "missing; ..."),
+        ({"roller_radius": 0.01}, "cams[1].roller_radius", "goes with a roller; leave it out"),
+        ({"rides": "knife", "normal": 0.1}, "cams[1].normal", "goes with a flat face; ..."),
+        ({"closed_by": "groove"}, "cams[1].closed_by", "a groove takes a roller; ..."),
+        ({"lift": LengthLaw(between=(0.0, HIGH), turns=2)}, "cams[1].lift", "let the follower ..."),
+    ],
+)
+def test_values_of_a_cam(changes: dict[str, Any], where: str, words: str) -> None:
+    refused(where, words, lambda: tappet(replace(cam(), **changes)))
+
+
+def test_a_face_of_a_lever_needs_its_normal() -> None:
+    refused("cams[1].normal", "missing; ...", lambda: lever(rides="flat"))
+
+
+@pytest.mark.parametrize(
+    ("given", "where", "words"),
+    [
+        (tappet(cam(lift=RISE)), "cams[1]",
+         "the cam is undercut at cam angle 44.73 deg, where its radius of curvature would be "
+         "-66.45 mm; a flat face needs more than 0: give a larger base_radius, or more time there"),
+        (tappet(cam("roller", lift=RISE, base_radius=0.005, roller_radius=0.03)), "cams[1]",
+         "the cam is undercut at cam angle ... deg, where the curve of the roller's centre has"),
+        (lever(swing=AngleLaw(between=(0.0, 3.0))), "cams[1]",
+         "the follower jams at cam angle ..."),
+        (lever(rides="flat", normal=pi / 2, swing=AngleLaw(segments=(
+            AngleSegment(0.3, 0.6), AngleSegment(0.3, 0.0), AngleSegment(2 * pi - 0.6, 0.0)))),
+         "cams[1]", "at cam angle ... deg the follower turns as fast as the cam"),
+        (lever(base_radius=0.2), "cams[1].base_radius", "'R', 90 mm from its pivot, does not ..."),
+        (replace(lever(), cams=(cam(),)), "cams[1]", "lift goes with one sliding joint ..."),
+        (replace(tappet(), frame={**tappet().frame, "A": (0.0, 0.0), "G": (0.05, 0.0)},
+                 sliders=(eq.Slider("tappet", "R", FRAME, "G", pi / 2),), cams=(cam("knife"),)),
+         "cams[1].base_radius", "the way of 'R' passes the cam's axis at 50 mm, ..."),
+        (tappet(cam(normal=pi)), "cams[1].normal", "the face does not look along the guide; ..."),
+        (tappet(replace(cam(), carrier="tappet", driven="crank", driver=FRAME, point="B")),
+         "drive.link", "..."),
+    ],
+)  # fmt: skip
+def test_cams_that_cannot_be_made(given: eq.Machine, where: str, words: str) -> None:
+    if where == "drive.link":
+        with pytest.raises(eq.EquipoiseError):
+            assemble(given)
+        return
+    with pytest.raises(ModelError) as caught:
+        assemble(given)
+    assert caught.value.where == where
+    for part in words.split("..."):
+        assert part.strip() in caught.value.what
+
+
+def test_least_radius_of_an_undercut_cam() -> None:
+    """That of the closed form r + y + y'', whose least is told with its angle."""
+    x = np.linspace(0, 1, 100001)
+    turn = radians(60)
+    y = HIGH * (x - np.sin(2 * pi * x) / (2 * pi))
+    radius = 0.03 + y + HIGH * 2 * pi * np.sin(2 * pi * x) / turn**2
+    assert float(np.min(radius)) * 1e3 == pytest.approx(-66.45, abs=5e-3)
+
+
+def test_a_cam_moved_by_its_own_follower() -> None:
+    """The drive moves the lever, and nothing the cam."""
+    given = replace(lever(), drive=eq.Drive("tappet", 3.0))
+    with pytest.raises(eq.EquipoiseError, match="have to be moved before 'tappet' is"):
+        assemble(given)
+
+
+def test_a_groove_has_a_second_flank() -> None:
+    """In a narrow dip the far flank of a groove is undercut, where ribs need none."""
+    law = LengthLaw(
+        crank_angles=tuple(k * pi / 6 for k in range(12)),
+        values=tuple(0.0 if k == 5 else 0.012 for k in range(12)),
+    )
+    ribs = cam("roller", lift=law, roller_radius=0.02)
+    assemble(tappet(ribs))
+    with pytest.raises(ModelError, match=r"undercut at cam angle 150 deg.*radius of 17.57 mm"):
+        assemble(tappet(replace(ribs, closed_by="groove")))
