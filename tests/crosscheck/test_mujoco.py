@@ -20,7 +20,14 @@ from support.analyses import (
 )
 from support.conformance import compared
 from support.engines import TOLERANCE, TOTALS, same_totals
-from support.free_bodies import Reaction, centre_line, rack_contact, reaction, strand_contacts
+from support.free_bodies import (
+    Reaction,
+    centre_line,
+    cylinder,
+    rack_contact,
+    reaction,
+    strand_contacts,
+)
 from support.loads import on_links, springs_on_links
 from support.poses import Array, cross
 from support.sources import MUJOCO
@@ -30,6 +37,17 @@ def action(subject: Subject, link: str, at: Array, force: Array, couple: Array |
     """Return a force and a couple as force and moment about a link's origin, (N, 3)."""
     arm = at - subject.poses.origin[link]
     return np.column_stack([force, cross(arm, force) + couple])
+
+
+def pushing(subject: Subject) -> list[tuple[str, Array]]:
+    """What a drive that pushes does to the links between which it is."""
+    machine = subject.machine
+    if not machine.drive.pushes:
+        return []
+    push = cylinder(machine, subject.poses)
+    force = subject.forces.drive_force[:, None] * push.directions[0]
+    both = ((push.on, force), (push.by, -force))
+    return [(b, action(subject, b, push.at, f, 0.0)) for b, f in both if b != FRAME]
 
 
 def acting_on_links(subject: Subject) -> dict[str, Array]:
@@ -64,6 +82,8 @@ def acting_on_links(subject: Subject) -> dict[str, Array]:
         on_links(machine, poses), springs_on_links(machine, poses)
     ):
         total[link] += action(subject, link, at, force, torque)
+    for body, action_of_push in pushing(subject):
+        total[body] += action_of_push
     for link, torque in forces.drives.items():
         total[link][:, 2] += torque
     return total
