@@ -14,8 +14,8 @@ from equipoise.web.design import Counterweight, Design
 from equipoise.web.edits import Solved, solved
 
 UNTITLED = "untitled"
-REST = ("title", "description", "gravity", "drives", "belts", "racks", "loads", "springs",
-        "planting", "support", "rows", "balance", "bearings", "units")  # fmt: skip
+REST = ("title", "description", "gravity", "drives", "belts", "racks", "cams", "loads",
+        "springs", "planting", "support", "rows", "balance", "bearings", "units")  # fmt: skip
 """Fields of a machine that a sketch hands on as they are."""
 LISTS = ("belts", "racks", "loads", "springs")
 """Those of them that have names of links and points in them."""
