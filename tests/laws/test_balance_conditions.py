@@ -224,7 +224,7 @@ def outputs_of(machine: eq.Machine, angles: Any) -> dict[str, Array]:
     """Every output that sensitivities are known of."""
     forces = eq.analyze(machine, angles, acceleration=0.0).forces
     found = {}
-    for output in known_outputs():
+    for output in known_outputs(machine):
         name, _, part = output.partition(".")
         whole = getattr(forces, name)
         found[output] = np.asarray(getattr(whole, part) if part else whole)
@@ -261,7 +261,7 @@ def test_sensitivities_are_differences(kind: str) -> None:
     machine = heavy(replace(make(kind, 4).machine, loads=()))
     size = {output: np.max(np.abs(v)) for output, v in outputs_of(machine, 24).items()}
     scale = parameter_scales(machine)[1]
-    known = {output: sensitivities(machine, output, 24) for output in known_outputs()}
+    known = {output: sensitivities(machine, output, 24) for output in known_outputs(machine)}
     for effects in each_parameter(known):
         one = effects["drive_torque"]
         body = machine.links[one.link]
@@ -274,7 +274,7 @@ def test_sensitivities_are_differences(kind: str) -> None:
 @every_kind
 def test_nothing_changes_where_there_is_no_effect(kind: str) -> None:
     machine = heavy(replace(make(kind, 5).machine, loads=()))
-    known = {output: sensitivities(machine, output) for output in known_outputs()}
+    known = {output: sensitivities(machine, output) for output in known_outputs(machine)}
     for effects in each_parameter(known):
         one = effects["drive_torque"]
         places = {output: effect.no_effect_at for output, effect in effects.items()}

@@ -161,7 +161,7 @@ class Balanced(Result):
 
         asked = dict.fromkeys(one.output for one in self.plan.objectives)
         asked |= {f"{name}.{axis}": None for name in asked for axis in "xy"}
-        known = known_outputs()
+        known = known_outputs(self.original)
         found = {name: sensitivities(self.original, name) for name in asked if name in known}
         return {name: one.to_dict(signals=False) for name, one in found.items()}
 

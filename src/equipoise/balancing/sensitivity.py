@@ -114,12 +114,14 @@ class Sensitivities(Result):
         return {"output": self.output, **angles, "sensitivities": rows}
 
 
-def known_outputs() -> list[str]:
-    """Names of outputs that are one number, and linear in the masses, on the whole machine."""
+def known_outputs(machine: Machine) -> list[str]:
+    """Names of a machine's outputs that are one number, and linear in the masses, on the whole."""
     return [
         one.name
         for one in DECLARED.values()
-        if one.needs == "masses" and not (one.reason or one.is_family or one.is_vector)
+        if one.needs == "masses"
+        and not (one.reason or one.is_family or one.is_vector)
+        and one.members(machine)
     ]
 
 
@@ -140,8 +142,8 @@ def sensitivities(
     MotionError : the linkage cannot turn fully.
     UsageError : there is no such output, or too few crank angles.
     """
-    if output not in known_outputs():
-        raise UsageError(unknown(output, known_outputs(), "output of this kind"))
+    if output not in (known := known_outputs(machine)):
+        raise UsageError(unknown(output, known, "output of this kind"))
     given: Any = angles
     if not isinstance(given, int | np.integer) or given < LEAST_ANGLES:
         raise UsageError(f"got {given!r} crank angles; give a number of at least {LEAST_ANGLES}")

@@ -73,7 +73,7 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
     machine, changes = (what.machine, what.changes) if isinstance(what, Balanced) else (what, ())
     if one.turns:
         check_turning(machine, one.title)
-    if machine.cams and one.name in WITHOUT_RACKS:
+    if machine.cams and one.name in (*WITHOUT_RACKS, "fmu"):
         raise UsageError(f"cams[1]: a file of {one.title} has no cam; give another format")
     if machine.racks and one.name in WITHOUT_RACKS:
         raise UsageError(f"racks[1]: a file of {one.title} has no rack; give another format")

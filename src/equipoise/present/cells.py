@@ -186,7 +186,7 @@ def _text(
         scale = max(abs(cell.low), abs(cell.high), cell.scale)
         ends = [Value(end, scale, None, cell.digits, cell.after) for end in (cell.low, cell.high)]
         low, high = (_number(end, unit, column.dimension, size) for end in ends)
-        equal = cell.high - cell.low <= ROUNDING * scale
+        equal = cell.high - cell.low <= ROUNDING * scale or low == high
         return Text(high if equal else say("{low} to {high}", low=low, high=high), number=True)
     kind = _kind(cell, column)
     text = _number(cell, shown[kind], kind[0], sizes[kind] * column.alike)

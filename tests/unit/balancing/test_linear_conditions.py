@@ -304,7 +304,7 @@ def test_sensitivities() -> None:
     assert "crank angle from -100.0 deg" in text
 
 
-@pytest.mark.parametrize("output", known_outputs())
+@pytest.mark.parametrize("output", known_outputs(eq.load("yamashita-1")))
 def test_every_output_has_a_title(output: str) -> None:
     found = sensitivities(eq.load("yamashita-1"), output, 36)
     assert "effect of each parameter" in words(found.blocks())

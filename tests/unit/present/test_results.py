@@ -219,6 +219,7 @@ def test_units_and_digits() -> None:
     told = grid(table_of(Value(0.0123), Span(-0.001, 1.0), Value(1e-15, 1.0), None, "none"))
     assert [row[1].text for row in told.rows] == ["12.30", "-1.000 to 1000", "0", "", "none"]
     assert told.heads[1].heading == "value, mm"
+    assert grid(table_of(Value(1.0), Span(-1e-20, 2e-20))).rows[1][1].text == "0"
     with showing({"length": "cm"}):
         chosen = grid(table_of(Value(0.0123)))
     assert (chosen.rows[0][1].text, chosen.heads[1].unit) == ("1.230", "cm")
