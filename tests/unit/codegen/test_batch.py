@@ -159,7 +159,7 @@ def test_gears_of_varying_ratio_are_written_where_the_crank_tells_their_angles()
 
 @pytest.mark.parametrize("kind", WRITTEN)
 def test_designs_of_every_kind(kind: str, numpy_engine: None) -> None:
-    """Links whose couplings turn on otherwise than those of the base may be told as not computed."""
+    """Links whose couplings turn on otherwise than the base's may be told as not computed."""
     base = make(kind, 0).machine
     numbers = geometry_of(base, 0.15)
     values = drawn(numbers, 20, 0)
