@@ -477,6 +477,10 @@ SIGNATURES = {
     "belt_forces": "crurrcc",
     "rack_flank": "cuu",
     "rack_forces": "crccurur",
+    "pitch_slope": "rr",
+    "pitch_place": "cuc",
+    "slant": "rrr",
+    "rolling_forces": "crurcrr",
 }
 """Arguments of the force kernels: c a vector, u a rotation, r a real number."""
 

@@ -88,9 +88,11 @@ def _sorted(values: Array, angles: Array) -> tuple[Array, Array]:
 
 
 def drives(machine: Machine, by_slider: bool) -> list[dict[str, Any]]:
-    """Every pair of points of two bodies, or every sliding joint, that could be driven."""
+    """Every pair of points of two bodies, or every sliding joint, that could be driven: no rack's
+    that its pinion moves, as that tells where it is at crank angle 0."""
     if by_slider:
-        return [{"slider": slider.name} for slider in machine.sliders]
+        moved = {coupling.driven for coupling in machine.couplings}
+        return [{"slider": one.name} for one in machine.sliders if one.link not in moved]
     bodies = machine.bodies
     ends = [(body, point) for body in (FRAME, *machine.links) for point in bodies[body]]
     found = []
@@ -119,5 +121,6 @@ def stroked(kind: str, seed: int, by_slider: bool = False) -> Case:
     raise AssertionError(f"{kind}:{seed} cannot be pushed")
 
 
-TURNING = [kind for kind in KINDS if make(kind, 0).machine.drive.motion is None]
-SLIDING = [kind for kind in TURNING if make(kind, 0).machine.sliders]
+FIRST = {kind: make(kind, 0).machine for kind in KINDS}
+TURNING = [kind for kind, one in FIRST.items() if one.drive.motion is None and not one.drives]
+SLIDING = [kind for kind in TURNING if drives(FIRST[kind], by_slider=True)]

@@ -88,7 +88,8 @@ class Constraints:
             return self._turn({drive.link: 1.0}, q, -wanted)
         if drive.slider:
             one = next(one for one in self.machine.sliders if one.name == drive.slider)
-            return self._travel(q, rate, one, wanted)
+            way = self._travel(q, rate, one)
+            return Row(way.residual - wanted, way.jacobian, way.bend)
         assert drive.between is not None
         ends = zip(drive.ends(self.machine.bodies), drive.between, strict=True)
         a, b = (self._place(q, rate, body, self.machine.points_of(body)[at]) for body, at in ends)
@@ -98,24 +99,6 @@ class Constraints:
         turning = (drift @ drift - (along @ drift) ** 2) / length
         bend = along @ (b.bend - a.bend) + turning
         return Row(np.array([length - wanted]), (along @ jacobian)[None], np.array([-bend]))
-
-    def _travel(self, q: Array, rate: Array, slider: Slider, wanted: float) -> Row:
-        """Return the equation of the way along a guide, which may turn."""
-        point = self.machine.links[slider.link].points[slider.point]
-        a = self._place(q, rate, slider.on, self.machine.points_of(slider.on)[slider.through])
-        b = self._place(q, rate, slider.link, point)
-        k = None if slider.on == FRAME else self.columns[slider.on] + 2
-        angle, spin = (0.0, 0.0) if k is None else (q[k], rate[k])
-        line = turned(angle, (np.cos(slider.direction), np.sin(slider.direction)))
-        across, way = quarter(line), b.residual - a.residual
-        jacobian = line @ (b.jacobian - a.jacobian)
-        drift = (b.jacobian - a.jacobian) @ rate
-        bend = line @ (b.bend - a.bend)
-        if k is not None:
-            jacobian[k] += across @ way
-            bend += 2 * spin * (across @ drift) - spin**2 * (line @ way)
-        residual = line @ way - wanted
-        return Row(np.array([residual]), jacobian[None], np.array([-bend]))
 
     def _place(self, q: Array, rate: Array, body: str, local: Vector) -> Row:
         """Return position, its Jacobian and centripetal acceleration of a point."""
@@ -329,12 +312,21 @@ def followed(constraints: Constraints, q: Array, here: float, there: float) -> A
         end = guess + np.inf
     size = reach(constraints.machine)
     scale = np.tile([size, size, 1.0], q.size // 3)
-    if np.max(np.abs(end - guess) / scale) < 0.1:
+    apart = np.max(np.abs(end - guess) / scale)
+    if apart < 0.01 or (
+        apart < 0.1 and side(constraints, q, here) == side(constraints, end, there)
+    ):
         return end
     if abs(there - here) < 1e-6:
         raise NotAssembledError(f"no way past crank angle {here:g}")
     middle = (here + there) / 2
     return followed(constraints, followed(constraints, q, here, middle), middle, there)
+
+
+def side(constraints: Constraints, q: Array, crank_angle: float) -> float:
+    """Tell on which side of a dead point the machine is: there the determinant changes its sign."""
+    jacobian = constraints.at(q, np.zeros_like(q), crank_angle).jacobian
+    return float(np.linalg.det(jacobian) > 0) if len(jacobian) == jacobian.shape[1] else 0.0
 
 
 def slope(constraints: Constraints, q: Array, crank_angle: float) -> Array:

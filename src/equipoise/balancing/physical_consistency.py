@@ -249,7 +249,7 @@ class Answer:
     by_points : whether it is possible if links have no moments of inertia about their centres of
         mass, as mass points.  (With some of their moments of inertia, all is as with the whole.)
     reason : a sentence.
-    proof : where it is not possible.
+    proof : where it is not possible; None where it can be approached as nearly as one likes.
     """
 
     what: str
@@ -337,7 +337,7 @@ def _possible(what: str, added: Mapping[str, float]) -> str:
 
 def _impossible(what: str, proof: Proof | None, told: str, points: bool) -> str:
     if proof is None:
-        return f"The {what} can at best be approached, by ever larger masses."
+        return f"The {what} can at best be approached, by ever larger masses or moments of inertia."
     dimension, _ = SHOWN[proof.unit]
     unit = display(dimension, [proof.least], SI[dimension])
     because = (

@@ -52,6 +52,7 @@ def write_tension(writer: Any, number: int) -> Iterator[Held]:
 
     def pull(found: Linkage) -> Any:
         own, points = found.machine.belts[number], found.machine.points_of(belt.carrier)
+        assert own.tension is not None  # machines of the same build have it or lack it
         strands = own.strands(planar(points[driven]) - planar(points[driver]))
         return own.tension * 2 * strands.cosine / strands.distance
 

@@ -83,6 +83,9 @@ def _linkage(space: Any, scene: Scene) -> None:
                 1j * (scene.angles[wheel.link][0] if wheel.link in scene.angles else 0.0)
             )
             space.add_lwpolyline(_points(at[wheel.center] + turned), close=True, dxfattribs=layer)
+    for mark in (one for one in scene.marks if one.shape.role == "cam"):
+        corners = _points(corner[0] for corner in scene.spots(mark))
+        space.add_lwpolyline(corners, close=True, dxfattribs=_layer("cams", mark.body))
     for name, spot in zip(at, _points(at.values()), strict=True):
         held = FRAME if name in scene.frame else "points"
         space.add_point(spot, dxfattribs=_layer(held))

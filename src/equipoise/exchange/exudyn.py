@@ -13,7 +13,7 @@ from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import (
     Tree,
     constant_loads,
-    even_ratio,
+    even_ratios,
     mass_of,
     moment_of,
     preloads,
@@ -132,8 +132,8 @@ def _geared(tree: Tree) -> list[Data]:
     UsageError : gears sit on three bodies of which none follows another or stands still.
     """
     shares: dict[str, dict[str, float]] = {}
-    for gear in (*tree.machine.gears, *tree.machine.belts):
-        ratio, total = even_ratio(gear), dict[str, float]()
+    for gear, ratio in even_ratios(tree.machine):
+        total = dict[str, float]()
         for body, share in ((gear.driver, ratio), (gear.carrier, 1 - ratio)):
             for root, factor in shares.get(body, {body: 1.0}).items():
                 total[root] = total.get(root, 0.0) + share * factor

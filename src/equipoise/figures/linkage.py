@@ -258,6 +258,8 @@ def keys_of(scene: Scene) -> Iterator[tuple[str, str]]:
         yield "mass", say("centre of mass")
     if scene.wheels:
         yield "wheel", called(scene.wheels)
+    if any(mark.shape.role == "cam" for mark in scene.marks):
+        yield "cam", say("cams")
     if scene.springs:
         yield "spring", say("spring")
     if scene.planned:

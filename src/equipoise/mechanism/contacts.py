@@ -90,6 +90,8 @@ class RollingMesh:
     centres: Any
     radial: Any
 
+    couples: ClassVar[bool] = False
+
     def steps(self, coupling: Coupling, ground: Reaction) -> tuple[Reaction, tuple[Step, ...]]:
         link, name, carrier = coupling.driven, coupling.name, coupling.carrier
         pitch, tooth, sense = f"pitch({name})", f"R({name}/{link})", f"flank({name})"

@@ -106,7 +106,7 @@ class Commanded:
         return 0
 
     def _lengths(self, at: Array) -> Levels:
-        return lengths(_motion(self.bare, at), self.drive)
+        return _lengths(self.bare, at, self.drive)
 
     def _inverse(self, length: Array) -> Array:
         """Angles (N,) at which the length is as commanded: Newton's method between bounds."""
@@ -155,7 +155,7 @@ def _meshing(machine: Machine, near: float) -> float:
     def over(shift: float) -> float:
         linkage = assemble(_turned(machine, shift))
         at = Followed.over(linkage, -STEP, STEP, STEP)
-        return float(lengths(_motion(at, np.zeros(1)), drive)[0][0]) - wanted
+        return float(_lengths(at, np.zeros(1), drive)[0][0]) - wanted
 
     old, new = near, near + STEP
     gap, there = over(old), over(new)
@@ -203,7 +203,7 @@ def _commanded(machine: Machine, shift: float) -> Commanded:
     low, high = (-pi, pi) if found is None else (found.low + INSIDE, found.high - INSIDE)
     far = high if found is not None else high + 2 * pi  # a turn may begin anywhere
     followed = Followed.over(linkage, low, far, STEP)
-    branches = _branches(lambda at: lengths(_motion(followed, at), drive), low, high, found is None)
+    branches = _branches(lambda at: _lengths(followed, at, drive), low, high, found is None)
     return Commanded(followed, drive, law, shift, _chosen(drive, law, branches, shift))
 
 
@@ -217,8 +217,9 @@ def _turned(machine: Machine, shift: float) -> Machine:
     return bare
 
 
-def _motion(bare: Followed, theta: Array) -> Motion:
-    return Motion(bare.linkage, theta, 1.0, 0.0, False, bare.solve(theta))
+def _lengths(bare: Followed, theta: Array, drive: Drive) -> Levels:
+    with np.errstate(all="ignore"):  # other links may be infinitely fast, at ends of the way
+        return lengths(Motion(bare.linkage, theta, 1.0, 0.0, False, bare.solve(theta)), drive)
 
 
 def _branches(

@@ -26,9 +26,11 @@ from equipoise.keys import Frozen, changed, quantities_of
 from equipoise.mechanism import kernels
 from equipoise.mechanism.bodies import Body
 from equipoise.mechanism.body_checks import outlined_by_columns
+from equipoise.mechanism.gears import Gear
 from equipoise.mechanism.joints import coupling_pins
 from equipoise.mechanism.linkage import Linkage, ordered
 from equipoise.mechanism.model import FRAME, Machine, Vector
+from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.steps import (
     Array,
     Call,
@@ -334,7 +336,8 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
         driver, driven = (planar(points[pin]) for pin in coupling_pins(base.joints, belt))
         yield abs(driver - driven) > sum(belt.pitch_radii)
         yield belt.tension is None or belt.tension > 0
-    for gear in (*machine.gears, *machine.racks):
+    toothed: tuple[Gear | Rack, ...] = (*machine.gears, *machine.racks)
+    for gear in toothed:
         yield (gear.pressure_angle >= 0) & (np.asarray(gear.pressure_angle) < pi / 2)
     for spring in machine.springs:
         yield (spring.stiffness > 0) & (np.asarray(spring.free_length) >= 0)

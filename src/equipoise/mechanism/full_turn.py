@@ -109,8 +109,6 @@ class FullTurn:
                     names=names,
                 )
             )
-        if self.machine.drive.pushes or self.machine.drive.motion is not None:
-            return self.beyond(dip, names)
         period = 2 * pi * self.turns
         theta, where = np.unique([*self.theta[:-1], dip % period], return_index=True)
         good = np.append(margin[:-1] > 0, False)[where]
@@ -124,6 +122,8 @@ class FullTurn:
         for begin in starts:
             later = [stop for stop in stops if stop > begin]
             ranges.append((begin, min(later)) if later else (begin - period, min(stops)))
+        if self.machine.drive.pushes or self.machine.drive.motion is not None:
+            return RangeError(self.beyond(dip, names), tuple(ranges))
         told = all_of(
             [
                 Note("from {low} to {high}", low=_in_degrees(a), high=_in_degrees(b))
@@ -140,18 +140,17 @@ class FullTurn:
             tuple(ranges),
         )
 
-    def beyond(self, dip: float, names: Note | str) -> RangeError:
+    def beyond(self, dip: float, names: Note | str) -> Note:
         """Tell that the drive's own motion leads where a dyad cannot be closed."""
         link = self.machine.drive.link
-        return RangeError(
-            Note(
-                "{names} do not reach each other with {link!r} at {angle}, to which it is moved at "
-                "crank angle {at}; let it move less",
-                names=names,
-                link=link,
-                angle=_in_degrees(float(np.ravel(self.machine.moved(np.array([dip]))[link][0])[0])),
-                at=_in_degrees(dip),
-            )
+        moved, *_ = self.machine.moved(np.array([dip]))[link]
+        return Note(
+            "{names} do not reach each other with {link!r} at {angle}, to which it is moved at "
+            "crank angle {at}; let it move less",
+            names=names,
+            link=link,
+            angle=_in_degrees(float(np.ravel(moved)[0])),
+            at=_in_degrees(dip),
         )
 
     def crossing(self, group: Group, low: float, high: float) -> float:

@@ -23,6 +23,8 @@ from equipoise.mechanism.contacts import contact_of
 from equipoise.mechanism.couplings import Coupling
 from equipoise.mechanism.joints import Structure
 from equipoise.mechanism.model import Slider
+from equipoise.mechanism.rack_groups import racked
+from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.steps import (
     Call,
     Kernel,
@@ -226,6 +228,8 @@ def coupled(builder: Builder, joints: Structure, coupling: Coupling) -> Group:
     """A link that is pinned to a known carrier and coupled to a known driver."""
     if isinstance(coupling, Cam):
         return follower(builder, joints, coupling)
+    if isinstance(coupling, Rack):
+        return racked(builder, joints, coupling)
     contact = contact_of(builder, joints, coupling)
     link, carrier, pin = coupling.driven, coupling.carrier, contact.driven_pin
     bearer = builder.carrier_of(joints.pins[pin])

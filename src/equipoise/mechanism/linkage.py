@@ -31,8 +31,6 @@ from equipoise.mechanism.joints import (
 )
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.parallels import pointed, surplus_cranks
-from equipoise.mechanism.rack_groups import racked
-from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.shared import Shared, shared
 from equipoise.mechanism.steps import (
     Reaction,
@@ -302,7 +300,7 @@ def _coupled(builder: Builder, joints: Structure, unknown: list[str]) -> Group |
     for one in joints.couplings:
         ready = one.driven in unknown and {one.driver, one.carrier} <= known.keys()
         if ready and joints.freedom([one.driven], known) == 0:
-            return (racked if isinstance(one, Rack) else groups.coupled)(builder, joints, one)
+            return groups.coupled(builder, joints, one)
     return None
 
 

@@ -175,7 +175,7 @@ class Maker:
         return SlideLoop(slider.name, guide, link, turn.conjugate(), along.conjugate())
 
     def coupling(self, coupling: Coupling) -> CouplingLoop:
-        contact = contact_of(self.builder, self.joints, coupling)
+        loop = self.rack(coupling) if isinstance(coupling, Rack) else self.mesh(coupling)
         if coupling.driven not in self.links:
             raise ModelError(
                 place_in_file(self.joints, coupling),
@@ -185,8 +185,9 @@ class Maker:
                     driven=coupling.driven,
                 ),
             )
-        if isinstance(coupling, Rack):
-            return self.rack(coupling)
+        return loop
+
+    def mesh(self, coupling: Coupling) -> CouplingLoop:
         contact = contact_of(self.builder, self.joints, coupling)
         on = self.end(coupling.driven, contact.driven_pin)
         by = self.end(coupling.driver, contact.driver_pin)

@@ -271,7 +271,8 @@ def independent_columns(matrix: Array, tolerance: float = 1e-9) -> tuple[list[in
 def spring_columns(
     motion: Motion, link: str, point: str, to: str
 ) -> tuple[Array, dict[str, Array]]:
-    """Drive torque or force (2, N) and the force in each joint and mesh by name (2, N), complex.
+    """Drive torque or force (2, N); by name each drive's torque (2, N), and the force in each joint
+    and mesh (2, N), complex.
 
     First row: of a spring of 1 N/m without a free length; second row: of a pull of 1 N towards the
     frame's point; each alone.  Shaking force and moment, and force and moment on the frame, have

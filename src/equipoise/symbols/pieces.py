@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -172,15 +172,13 @@ def _wheels(scene: Scene) -> Iterator[Piece]:
         body = bodies[gear.link]
         center = scene.local(body, scene.places[gear.center])
         yield Piece("wheels", tuple(wheel(center, gear.radius, gear.curve)), _with(body), part=part)
-    for taut in scene.taut:
-        if taut.body == FRAME:
-            still = complex(scene.places[taut.point][0])
-            yield Piece("wheels", (line("strand", *(still + end for end in taut.ends)),))
-        else:
-            body = bodies[taut.body]
-            start = scene.local(body, scene.places[taut.point])
-            shape = line("strand", *(start + end for end in taut.ends))
-            yield Piece("wheels", (shape,), _with(body))
+    for mark in scene.marks:
+        start, hold = complex(scene.places[mark.point][0]), None
+        if mark.body != FRAME:
+            start = scene.local(bodies[mark.body], scene.places[mark.point])
+            hold = _with(bodies[mark.body])
+        moved = replace(mark.shape, places=mark.shape.places + start)
+        yield Piece("wheels", (moved,), hold)
 
 
 def _stands(scene: Scene) -> Iterator[Piece]:

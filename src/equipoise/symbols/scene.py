@@ -15,11 +15,12 @@ from equipoise.mechanism.body_checks import Outline, outlines
 from equipoise.mechanism.model import FRAME, Link
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.tip import surface_of
+from equipoise.symbols.cams import cams_of
 from equipoise.symbols.carrier import MOUNT, Carrier, Swing
 from equipoise.symbols.drives import Drive
 from equipoise.symbols.rows import ONE, Rows, rows_of
-from equipoise.symbols.shapes import Array, hull
-from equipoise.symbols.taut import Taut, racks_of, strands_of
+from equipoise.symbols.shapes import Array, Mark, hull
+from equipoise.symbols.taut import racks_of, strands_of
 from equipoise.symbols.wheels import Wheel, wheels_of
 
 
@@ -98,7 +99,7 @@ class Scene:
     planned : springs that balancing may set, likewise.
     room : places besides that are to be in sight, complex, m.
     rows : those of its machine, where all of them are to be seen.
-    taut : strands of belts, and pitch lines of racks.
+    marks : cams with what rides on them, strands of belts, and pitch lines of racks.
     swing : how the support moves, where it is to be seen; places are in the frame's axes all along.
     """
 
@@ -119,7 +120,7 @@ class Scene:
     swing: Swing | None = None
     room: tuple[complex, ...] = ()
     rows: Rows = ONE
-    taut: tuple[Taut, ...] = ()
+    marks: tuple[Mark, ...] = ()
 
     @classmethod
     def of(cls, motion: Motion) -> Scene:
@@ -143,7 +144,7 @@ class Scene:
             tuple((one.point, one.to) for one in planned if (one.point, one.to) not in springs),
             _field(motion),
             Carrier.of(machine),
-            taut=(*strands_of(joints, machine.bodies), *racks_of(motion)),
+            marks=(*cams_of(motion), *strands_of(joints, machine.bodies), *racks_of(motion)),
         )
 
     def with_rows(self, motion: Motion) -> Scene:
@@ -190,6 +191,7 @@ class Scene:
         for wheel in self.wheels:
             reach = wheel.radius * (1 + 1j)
             every += [self.places[wheel.center] + way for way in (reach, -reach)]
+        every += [corner for mark in self.marks for corner in self.spots(mark)]
         for body in self.bodies:
             turned = np.exp(1j * self.angles[body.name])
             every += [self.places[body.points[0]] + arm * turned for arm in body.extent]
@@ -249,7 +251,15 @@ class Scene:
             for body in self.bodies
             for arm in body.extent
         ]
-        return np.array([*(place[k] for place in self.places.values()), *wheels, *solids])
+        marks = [corner[k] for mark in self.marks for corner in self.spots(mark)]
+        return np.array([*(place[k] for place in self.places.values()), *wheels, *solids, *marks])
+
+    def spots(self, mark: Mark) -> Array:
+        """Where corners of a mark are, or of the box around a circle, (n, N) complex, m."""
+        reach = mark.shape.radius * np.array([1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j])
+        corners = mark.shape.places + (reach if mark.shape.radius else 0.0)
+        turned = np.exp(1j * self.angles.get(mark.body, 0 * self.crank_angle))
+        return np.asarray(self.places[mark.point] + corners[:, None] * turned)
 
     def local(self, body: Body, place: Array) -> complex:
         """Where a place (N,) of a link is from its first point, in the link's own axes, m."""

@@ -56,6 +56,15 @@ class Shape:
         return self.radius * scale + self.grown * unit
 
 
+@dataclass(frozen=True, eq=False)
+class Mark:
+    """A shape that moves with a body, maybe the frame: from a point of that, in the body's axes."""
+
+    body: str
+    point: str
+    shape: Shape
+
+
 def runs(shapes: Iterable[Shape]) -> Iterator[list[Shape]]:
     """Neighbours that are drawn alike."""
     for _, run in groupby(shapes, lambda one: (one.role, one.radius + one.grown > 0)):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,35 +11,25 @@ from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.joints import Structure, coupling_pins
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.strands import LEFT, RIGHT
+from equipoise.symbols.shapes import Mark, line
 
 
-@dataclass(frozen=True)
-class Taut:
-    """A line that moves with a body, maybe the frame: both ends from one of its points, in its
-    axes, complex, m.
-    """
-
-    body: str
-    point: str
-    ends: tuple[complex, complex]
-
-
-def strands_of(joints: Structure, bodies: Bodies) -> Iterator[Taut]:
+def strands_of(joints: Structure, bodies: Bodies) -> Iterator[Mark]:
     """Both strands of every belt."""
     for belt in (one for one in joints.couplings if one.table == "belts"):
         driver, driven = coupling_pins(joints, belt)
         points = bodies[belt.carrier]
         strands = belt.strands(complex(*points[driven]) - complex(*points[driver]))  # type: ignore[attr-defined]
         for side in (LEFT, RIGHT):
-            yield Taut(belt.carrier, driver, strands.ends(side))
+            yield Mark(belt.carrier, driver, line("strand", *strands.ends(side)))
 
 
-def racks_of(motion: Motion) -> Iterator[Taut]:
+def racks_of(motion: Motion) -> Iterator[Mark]:
     """The pitch line of every rack, as long as its pinion rolls on it, and a radius more."""
     machine, joints = motion.machine, motion.linkage.joints
     for rack in machine.racks:
-        ends = (rack.rack, rack.carrier)
-        slider = next(one for one in machine.sliders if (one.link, one.on) == ends)
+        pair = (rack.rack, rack.carrier)
+        slider = next(one for one in machine.sliders if (one.link, one.on) == pair)
         guide = Guide.seen_from(slider, rack.carrier)
         points = machine.points_of(rack.carrier)
         (pin,) = joints.pins_between(rack.pinion, rack.carrier)
@@ -48,5 +37,5 @@ def racks_of(motion: Motion) -> Iterator[Taut]:
         foot -= 1j * rack.left * rack.radius
         reach = foot.real - motion.sliders[slider.name].travel
         low, high = float(np.min(reach)) - rack.radius, float(np.max(reach)) + rack.radius
-        line = (complex(end, foot.imag) / guide.turn for end in (low, high))
-        yield Taut(rack.rack, guide.point, (next(line), next(line)))
+        ends = (complex(end, foot.imag) / guide.turn for end in (low, high))
+        yield Mark(rack.rack, guide.point, line("strand", *ends))

@@ -15,7 +15,8 @@ from equipoise.mechanism.model import FRAME, Machine
 from equipoise.quantities import DIGITS, display
 from equipoise.symbols.drives import Drive
 from equipoise.symbols.scene import Guide, Scene, bodies_of
-from equipoise.symbols.taut import Taut, strands_of
+from equipoise.symbols.shapes import Mark
+from equipoise.symbols.taut import strands_of
 from equipoise.symbols.wheels import Wheel, wheels_of
 from equipoise.web.block import Block, Values
 from equipoise.web.design import Design
@@ -244,7 +245,7 @@ def scene_of(sketch: Sketch) -> Scene:
         springs,
         {name: pose.angle * one for name, pose in sketch.poses.items()},
         drive,
-        taut=tuple(_strands(sketch)),
+        marks=tuple(_strands(sketch)),
         room=() if sketch.links else EMPTY,
     )
 
@@ -258,7 +259,7 @@ def _wheels(sketch: Sketch) -> list[Wheel]:
         return []
 
 
-def _strands(sketch: Sketch) -> list[Taut]:
+def _strands(sketch: Sketch) -> list[Mark]:
     """Strands of belts, as far as these have their pins by now."""
     try:
         return [*strands_of(sketch.joints, sketch.bodies)]

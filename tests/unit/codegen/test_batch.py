@@ -159,13 +159,13 @@ def test_gears_of_varying_ratio_are_written_where_the_crank_tells_their_angles()
 
 @pytest.mark.parametrize("kind", WRITTEN)
 def test_designs_of_every_kind(kind: str, numpy_engine: None) -> None:
-    """Links whose gears turn on otherwise than those of the base may be told as not computed."""
+    """Links whose couplings turn on otherwise than the base's may be told as not computed."""
     base = make(kind, 0).machine
     numbers = geometry_of(base, 0.15)
     values = drawn(numbers, 20, 0)
     told = np.array([reason_of(base, numbers, row) for row in values])
     _, reasons = Batch(base, paths_of(numbers), RMS, angles=60)(values)
-    reasons[(reasons == 6) & (told == 0) & bool(base.gears)] = 0
+    reasons[(reasons == 6) & (told == 0) & bool(base.couplings)] = 0
     assert np.array_equal(reasons, told)
 
 

@@ -321,6 +321,9 @@ def test_outputs_are_linear_in_stiffness_and_pull(kind: str) -> None:
     else:
         split = {name: joint.value - bare.joints[name].value
                  for name, joint in found.joints.items()}  # fmt: skip
+    before = bare.drives
+    split |= {f"drives.{name}.torque": whole - before[name]
+              for name, whole in found.drives.items()}  # fmt: skip
     size = max(float(np.max(joint.size)) for joint in found.joints.values())
     assert joints.keys() == split.keys()
     for name, column in joints.items():

@@ -261,16 +261,16 @@ def test_strands_and_pitch_line_are_drawn() -> None:
                     belts=(Belt("rocker", "wheel", radii=(0.1, 0.05), crossed=True),))  # fmt: skip
     motion = eq.move(wheel, 36)
     scene = Scene.of(motion)
-    *strands, line = scene.taut
+    *strands, line = scene.marks
     assert sorted(one.radius for one in scene.wheels) == [0.05, 0.07, 0.1]
     pin, other = (complex(*wheel.frame[name]) for name in ("D", "E"))
     for taut in strands:
         assert (taut.body, taut.point) == (FRAME, "D")
-        assert abs(taut.ends[0]) == pytest.approx(0.1)
-        assert abs(pin + taut.ends[1] - other) == pytest.approx(0.05)
+        assert abs(taut.shape.places[0]) == pytest.approx(0.1)
+        assert abs(pin + taut.shape.places[1] - other) == pytest.approx(0.05)
     place = motion.points["S"].place
     turn = np.exp(1j * motion.links["ram"].angle)
-    low, high = (place + turn * end for end in line.ends)
+    low, high = (place + turn * end for end in line.shape.places)
     way = (high - low) / abs(high - low)
     foot = (pin - low) / way
     np.testing.assert_allclose(foot.imag, 0.07, atol=1e-12)

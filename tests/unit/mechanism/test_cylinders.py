@@ -85,6 +85,16 @@ def test_a_stroke_that_cannot_be_had() -> None:
     )
 
 
+def test_links_that_come_to_a_dead_point_beyond_the_stroke() -> None:
+    """Bars that are not quite parallel cannot stretch: rates are infinite where that ends."""
+    whole = eq.load("hydraulic-loader")
+    lifted = replace(whole.links["boom"], points={**whole.links["boom"].points, "P": (0.0, 0.001)})
+    motion = eq.move(replace(whole, links={**whole.links, "boom": lifted}), 12)
+    length = np.abs(motion.points["B"].place - motion.points["A"].place)
+    law = whole.drive.stroke
+    np.testing.assert_allclose(length, law.value(motion.crank_angle)[0], rtol=1e-12)  # type: ignore[union-attr]
+
+
 def test_a_stroke_that_can_be_had_in_two_ways() -> None:
     with pytest.raises(ModelError, match=r"the stroke can be had with 'boom' from .* and from"):
         eq.move(boom(start=None))

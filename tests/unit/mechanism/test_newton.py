@@ -57,7 +57,7 @@ DYADS = [
 ]  # fmt: skip
 KINDS = ["crossed_guides", "slider_on_rocker", "guide_on_dyad", "swinging_block", "floating_watt",
          "slider_beside_pin", "geared_coupler", "sun_and_planet", "geared_five_bar",
-         "planetary_arm", "geared_counterweight"]  # fmt: skip
+         "planetary_arm", "geared_counterweight", "rolling_coupler"]  # fmt: skip
 
 
 def subject(name: str) -> eq.Machine:

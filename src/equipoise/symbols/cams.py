@@ -1,0 +1,42 @@
+"""Surfaces of cams, and the rollers and faces that ride on them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from equipoise.mechanism.cam_fits import Fit, fits_of
+from equipoise.mechanism.cam_shapes import Shape
+from equipoise.mechanism.kernels import cross
+from equipoise.mechanism.motion import Motion
+from equipoise.symbols.shapes import Array, Mark, circle, line
+
+CORNERS = 360
+"""Of a cam's surface."""
+BEYOND = 0.15
+"""How much farther a flat face reaches than the cam touches it, over the base radius."""
+
+
+def cams_of(motion: Motion) -> Iterator[Mark]:
+    """Every cam, then what rides on each; a knife's edge is a point, and has a sign already."""
+    turn = np.linspace(0.0, 2 * np.pi, CORNERS, endpoint=False)
+    cut = [(fit, fit.shape(turn)) for fit in fits_of(motion.machine, motion.linkage.joints)]
+    for fit, shape in cut:
+        flanks = [shape.outer] * (fit.cam.closed_by == "groove") + [shape.surface]
+        for flank in flanks:
+            yield Mark(fit.cam.driver, fit.cam_pin, line("cam", *flank, closed=True))
+    for fit, shape in cut:
+        if fit.cam.rides == "roller":
+            roller = circle("rider", 0j, fit.cam.roller_radius)
+            yield Mark(fit.cam.driven, fit.cam.point, roller)
+        elif fit.cam.rides == "flat":
+            yield Mark(fit.cam.driven, fit.cam.point, line("face", *_face(fit, shape)))
+
+
+def _face(fit: Fit, shape: Shape) -> Array:
+    """Both ends of a flat face, from its point and in the follower's axes, m."""
+    along = cross(shape.ride.normal, shape.contact[0] - shape.ride.place)
+    beyond = BEYOND * fit.cam.base_radius
+    ends = np.array([np.min(along) - beyond, np.max(along) + beyond])
+    return np.asarray(1j * fit.face * ends)
