@@ -15,12 +15,14 @@ from support.analyses import Subject, analysed, force_size, moment_size
 from support.machines_cams import KINDS, make
 from support.poses import from_motion
 
-CAMS = [f"{kind}:{seed}" for kind in KINDS for seed in range(10)]
+CAMS = [f"{kind}:{seed}" for kind in KINDS for seed in range(10)] + ["cam-pusher"]
 
 
 @cache
 def subject_of(name: str) -> Subject:
     kind, _, seed = name.partition(":")
+    if not seed:
+        return analysed(eq.load(name))
     case = make(kind, int(seed))
     return analysed(case.machine, case)
 

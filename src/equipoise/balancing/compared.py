@@ -15,7 +15,7 @@ from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import move
-from equipoise.mechanism.outputs import DECLARED, declared
+from equipoise.mechanism.outputs import DECLARED, GROUPS, declared
 from equipoise.planting.summary import plant
 from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import Outputs, unit_of_measure
@@ -30,7 +30,7 @@ SMALL = 0.1
 """Of the largest figure of its unit before: the growth of what was less is measured by that one."""
 FAINT = 1e-6
 """Of the largest figure of its unit: what is smaller is nobody's concern."""
-IMPORTANT = ("gauges", "rows", "forces", "joints", "gears")
+IMPORTANT = tuple(dict.fromkeys(("gauges", "rows", *GROUPS)))
 """Groups of outputs in the order in which a reader asks for them."""
 
 Pair = tuple[float, float]

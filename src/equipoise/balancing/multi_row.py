@@ -25,7 +25,7 @@ from equipoise.mechanism.balance import Measure, Objective
 from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.objectives import GAUGES, JOINTS, output_of, wrong_objective
+from equipoise.mechanism.objectives import GAUGES, output_of, wrong_objective
 from equipoise.results.analysis import Analysis
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.forced import chosen_model, steady_speed, usual_step
@@ -34,6 +34,8 @@ from equipoise.vibration.linkages import rows_of
 
 Combine = Literal["sum", "squares"]
 
+OF_ALL = ("forces", "drives", "rows", "gauges")
+"""Groups of outputs to which every row adds."""
 AREA_SAMPLES = 1440
 """In a turn, from which an area is summed."""
 SAMPLES, NEAR, NEWTON_ROUNDS, REACH = 360, 0.03, 4, 0.03
@@ -106,7 +108,8 @@ class Rows:
         for problem in wrong_objective(where, objective, self.machine):
             raise problem
         output = objective.output
-        if output.startswith(JOINTS) or output_of(output, self.machine).needs == "planes":
+        one = output_of(output, self.machine)
+        if one.group not in OF_ALL or one.needs == "planes":
             raise UsageError(
                 f"{output} acts within one row, so that no phase changes it; choose an output of "
                 "all rows"
@@ -137,9 +140,9 @@ class Rows:
     def _alike(self, output: str) -> Periodic | None:
         """A signal (1, K + 1) that is the same wherever its row is, such as the drive torque."""
         one = output_of(output, self.machine)
-        if one.needs == "rows" or one.about or one.dimension == "force":
+        if one.needs == "rows" or one.about or one.part:
             return None
-        values = one.values(Analysis(self._motion, forces(self._motion)))
+        values = one.values(Analysis(self._motion, forces(self._motion)), one.item_of(output) or "")
         return Periodic.of(values[None], self._motion.turns)
 
     def _gauge(self, name: str, speeds: Sequence[float]) -> RowSignals:

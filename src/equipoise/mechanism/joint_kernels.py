@@ -108,7 +108,8 @@ def belt_forces(force, moment, u, sense, radius, across, along):
 
 def rack_flank(force, u, along):
     """Sign of the force along the rack that it needs: it tells which flank of the teeth pushes."""
-    return flank(dot(u * along, force))
+    (sense,) = flank(dot(u * along, force))
+    return (sense,)
 
 
 def rack_forces(force, moment, c, pitch, u, sense, along, slant):

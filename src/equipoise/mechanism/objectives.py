@@ -152,8 +152,10 @@ def output_of(name: str, machine: Mechanism) -> Declared:
     names, kind = list(one.members(machine)), one.group.removesuffix("s")
     if kind == "gauge" and not names:
         raise ModelError("", "there is no gauge; give a support with gauges")
-    if not names:
+    if not names and one.reason:
         raise ModelError("", one.reason.format(what=name))
+    if not one.is_family:
+        raise ModelError("", unknown(name, balanced_names(machine), "output"))
     raise ModelError("", unknown(item, names, kind))
 
 

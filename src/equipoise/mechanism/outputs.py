@@ -139,22 +139,11 @@ linear("shaking_force", "force", to_say("shaking force"), XY, ordered=True, comp
 linear(
     "shaking_moment", "torque", to_say("shaking moment"), about=True, ordered=True, compared=MOMENT
 )
+TURNED: dict[str, Any] = {"members": lambda machine: () if machine.drive.pushes else ("",)}
+PUSHED: dict[str, Any] = {"members": lambda machine: ("",) if machine.drive.pushes else ()}
 EFFORT: dict[str, Any] = {"ordered": True, "compared": TORQUE}
-linear(
-    "drive_torque",
-    "torque",
-    to_say("drive torque"),
-    members=lambda machine: () if machine.drive.pushes else ("",),
-    **EFFORT,
-)
-linear(
-    "drive_force",
-    "force",
-    to_say("drive force"),
-    members=lambda machine: ("",) if machine.drive.pushes else (),
-    loop=None,
-    **EFFORT,
-)
+linear("drive_torque", "torque", to_say("drive torque"), **TURNED, **EFFORT)
+linear("drive_force", "force", to_say("drive force"), loop=None, **PUSHED, **EFFORT)
 linear("frame_force", "force", to_say("force on the frame"), XY, summed=(True, False))
 linear("frame_moment", "torque", to_say("moment on the frame"), about=True)
 of_space = alike(
@@ -320,7 +309,8 @@ of_rows("shaking_force", "force", to_say("shaking force"), XY, summed=(True, Fal
 of_rows("shaking_moment", "torque", to_say("shaking moment"), compared=FORCE)
 of_rows("roll_moment", "torque", to_say("roll moment"), compared=FORCE)
 of_rows("yaw_moment", "torque", to_say("yaw moment"), compared=FORCE)
-of_rows("drive_torque", "torque", to_say("drive torque"))
+of_rows("drive_torque", "torque", to_say("drive torque"), **TURNED)
+of_rows("drive_force", "force", to_say("drive force"), **PUSHED)
 DECLARED["gauges.{}"] = Declared(
     "gauges.{}",
     "length",

@@ -113,7 +113,7 @@ class Analysis(Result):
 
     @cached_property
     def together(self) -> Mapping[str, Array]:
-        """Shaking force (complex), shaking, roll and yaw moment, and drive torque (N,) of all rows.
+        """Shaking force (complex), shaking, roll and yaw moment, and what drives (N,) of all rows.
 
         Each row's crank is ahead by its phase.  Moments are about the drive's pivot of the first,
         but for the shaking moment, which is about the point that the forces have.  Empty where
@@ -124,19 +124,21 @@ class Analysis(Result):
             return {}
         found, count = self.solved, len(self.crank_angle)
         force = found.shaking_force
-        signals = np.array([force.x, force.y, found.shaking_moment, found.drive_torque])
+        effort = self.machine.drive.effort
+        exerted = getattr(found, effort)
+        signals = np.array([force.x, force.y, found.shaking_moment, exerted])
         rocking = found.across.rocking_moment.value if beside(self.machine) else np.zeros(count)
         signals = np.vstack([signals, np.real(rocking), np.imag(rocking)])
         one = Periodic.of(signals, self.motion.turns)
         whole = {"shaking_force": np.zeros(count, complex)}
-        whole |= {name: np.zeros(count) for name in ("shaking_moment", *LATERAL, "drive_torque")}
+        whole |= {name: np.zeros(count) for name in ("shaking_moment", *LATERAL, effort)}
         for row in rows:
-            x, y, moment, torque, roll, yaw = one.shifted(row.phase).samples(count)
+            x, y, moment, exerted, roll, yaw = one.shifted(row.phase).samples(count)
             whole["shaking_force"] += x + 1j * y
             whole["shaking_moment"] += moment + kernels.cross(complex(*row.offset), x + 1j * y)
             whole["roll_moment"] += roll - row.lateral * y
             whole["yaw_moment"] += yaw + row.lateral * x
-            whole["drive_torque"] += torque
+            whole[effort] += exerted
         return whole
 
     @property

@@ -14,7 +14,7 @@ from equipoise.mechanism.cam_fits import fits_of, sharpest
 from equipoise.mechanism.dynamics import forces, massless
 from equipoise.mechanism.motion import move
 from equipoise.mechanism.spoken import body_named
-from equipoise.quantities import PER_RPM, angle, format_exact, told
+from equipoise.quantities import PER_RPM, angle, told
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest
 from equipoise.signals import figures
@@ -84,7 +84,7 @@ def cams_told(machine: Machine, joints: Structure) -> Iterator[str]:
     """What each cam is, a sentence each."""
     for fit in fits_of(machine, joints):
         cam, (radius, where) = fit.cam, sharpest(fit)
-        law = f"{format_exact(cam.law.curve.extremes[1], cam.law.dimension)} at most"
+        law = f"{told(cam.law.curve.extremes[1], cam.law.dimension)} at most"
         yield (
             f"cam: {cam.driver} moves {cam.driven} by {law}, {cam.rides}, closed by "
             f"{cam.closed_by}; least radius of curvature {told(radius, 'length', 'mm')}, at cam "

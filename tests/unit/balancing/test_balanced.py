@@ -12,7 +12,9 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.balanced import Balanced, figures_of
+from equipoise.balancing.compared import worse_of
 from equipoise.mechanism.balance import AddedMass, Balance, Limit, Objective, Weight
+from equipoise.mechanism.outputs import DECLARED
 
 MACHINE = eq.load("yamashita-1")
 CRANK = AddedMass("crank", "A", Weight("any", 0.06, at_most=0.8))
@@ -214,3 +216,10 @@ def test_figures_of_gauges_and_rows() -> None:
         for row in machine.rows
     )
     assert figures["rows.shaking_force.rms"] == pytest.approx(np.sqrt(np.mean(np.abs(force) ** 2)))
+
+
+def test_every_output_that_is_compared_may_get_worse() -> None:
+    names = [f"{one.named('a')}.rms" for one in DECLARED.values() if "rms" in one.compared]
+    assert {"bearings.a.rms", "cams.a.rms", "belts.a.pull.rms"} & {*names}
+    found = worse_of(dict.fromkeys(names, 1.0), dict.fromkeys(names, 2.0), {})
+    assert {f"{one.objective.output}.rms" for one in found} == {*names}

@@ -13,13 +13,15 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.effects import Effects
+from equipoise.balancing.multi_row import Rows
 from equipoise.balancing.objectives import of_all_rows
 from equipoise.balancing.phase_bound import CLOSE
 from equipoise.balancing.phasing import choose_phases
 from equipoise.balancing.problem import Problem
-from equipoise.errors import UsageError
+from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.balance import AddedMass, Balance, Limit, Objective, Phases, Weight
 from equipoise.mechanism.support import Row
+from equipoise.signals import Periodic
 
 Array = np.ndarray[Any, Any]
 
@@ -188,3 +190,25 @@ def test_what_is_refused(limit: Limit, sentence: str) -> None:
     with pytest.raises(UsageError) as caught:
         eq.balance(TRANSPLANTER, plan)
     assert sentence in str(caught.value)
+
+
+def test_torque_of_each_of_several_drives() -> None:
+    rows = (Row(0.0, 0.0), Row(np.pi / 2, 0.0))
+    machine = replace(eq.load("pick-and-place"), rows=rows)
+    found = Rows(machine).signals(Objective("drives.right crank.torque"))
+    own = eq.analyze(machine, 720).forces.drives["right crank"]
+    first, second = (row[0, 1:4] for row in found.amplitudes[0])
+    np.testing.assert_allclose(second, first, rtol=1e-12)  # phases come with the plan
+    np.testing.assert_allclose(abs(first), abs(Periodic.of(own, 1).amplitudes[1:4]), rtol=1e-4)
+
+
+@pytest.mark.parametrize("output", ["bearings.front", "joints.B1"])
+def test_forces_within_a_row_have_no_phase(output: str) -> None:
+    rows = Rows(replace(eq.load("twin-engine"), rows=ROWS))
+    with pytest.raises(UsageError, match="acts within one row"):
+        rows.signals(Objective(output))
+
+
+def test_what_another_kind_of_drive_exerts_is_no_output() -> None:
+    with pytest.raises(ModelError, match="did you mean 'drive_force'"):
+        Rows(eq.load("hydraulic-loader")).signals(Objective("drive_torque"))

@@ -75,6 +75,15 @@ def test_gears_are_drawn_by_their_pitch_circles(tmp_path: Path) -> None:
     assert radii[0] / radii[1] == pytest.approx(abs(gear.speed_ratio))
 
 
+def test_cams_are_drawn_by_their_surfaces(tmp_path: Path) -> None:
+    drawing = drawn(eq.load("cam-pusher"), tmp_path / "x.dxf")
+    (surface,) = on_layer(drawing, "cams crank")
+    (axis,) = (one.dxf.insert for one in on_layer(drawing, "names") if one.dxf.text == "B")
+    reach = [abs(complex(x - axis.x, y - axis.y)) for x, y, *_ in surface.get_points()]
+    assert min(reach) == pytest.approx(18, abs=1e-3)
+    assert max(reach) == pytest.approx(18 + 12, abs=0.01)
+
+
 @pytest.mark.parametrize("name", BALANCED)
 def test_counterweights_weigh_what_they_are_to(name: str, tmp_path: Path) -> None:
     """Area of the closed outline, read back, times thickness and density; arcs in 2000 chords."""

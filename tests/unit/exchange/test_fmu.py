@@ -13,6 +13,7 @@ import pytest
 from fmpy.validation import validate_fmu
 
 import equipoise as eq
+from surface.running import example_text
 
 START = 0.3
 """Crank angle at which the FMU begins, rad."""
@@ -23,16 +24,39 @@ RUNNING = [
 compiled = pytest.mark.skipif(shutil.which("cc") is None, reason="needs a C compiler")
 
 
+RACK = """
+[links.ram]
+points.R = ["0 mm", "0 mm"]
+mass = "300 g"
+center_of_mass = ["20 mm", "5 mm"]
+inertia = "90 kg mm^2"
+
+[[sliders]]
+link = "ram"
+point = "R"
+on = "frame"
+through = "A"
+direction = "20 deg"
+
+[[racks]]
+pinion = "rocker"
+rack = "ram"
+radius = "25 mm"
+side = "left"
+"""
+MADE = {"rack": example_text("yamashita-1") + RACK}
+
+
 def run(name: str, path: Path, **options: Any) -> tuple[eq.Machine, Any]:
     """The machine, and what its FMU told over time."""
-    machine = eq.load(name)
+    machine = eq.loads(MADE[name]) if name in MADE else eq.load(name)
     eq.export(machine, path, crank_angle=START)
     assert validate_fmu(str(path)) == []
     return machine, fmpy.simulate_fmu(str(path), **options)
 
 
 @compiled
-@pytest.mark.parametrize("name", RUNNING)
+@pytest.mark.parametrize("name", [*RUNNING, *MADE])
 def test_every_output_over_a_turn(name: str, tmp_path: Path) -> None:
     machine, found = run(name, tmp_path / "x.fmu")
     angle = found["crank_angle"]
@@ -51,7 +75,8 @@ def test_every_output_over_a_turn(name: str, tmp_path: Path) -> None:
         np.testing.assert_allclose(found[one], outputs[one].values, rtol=0, atol=least, err_msg=one)
 
 
-KEPT = ("title", "drive", "frame", "links", "assembly", "sliders", "gears", "gravity", "springs")
+KEPT = ("title", "drive", "frame", "links", "assembly", "sliders", "gears", "racks", "gravity",
+        "springs")  # fmt: skip
 
 
 @compiled

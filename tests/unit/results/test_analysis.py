@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
+from equipoise.figures.forces import torque
+from equipoise.mechanism.support import Row
 from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import unit_of
 
@@ -40,7 +42,7 @@ def test_keys(name: str) -> None:
         assert list(point) == ["x", "y", "vx", "vy", "ax", "ay"]
     for joint in found["joints"].values():
         assert {"on", "by", "force_x", "force_y"} <= joint.keys()
-    assert {"shaking_force", "shaking_moment", "drive_torque", "summary"} <= found.keys()
+    assert {"shaking_force", "shaking_moment", machine.drive.effort, "summary"} <= found.keys()
     assert "missing" not in found
 
 
@@ -216,3 +218,13 @@ def test_machine_and_four_bar_of_an_analysis() -> None:
     assert found.machine is found.motion.machine
     assert found.four_bar is not None
     assert found.four_bar == eq.mechanism.four_bar(found.machine)
+
+
+def test_rows_of_a_machine_that_is_pushed() -> None:
+    """What pushes each row is added up, each row ahead by its phase."""
+    rows = (Row(0.0, -0.5), Row(0.4 * np.pi, 0.5))
+    found = eq.analyze(replace(eq.load("hydraulic-loader"), rows=rows), 45)
+    one, both = (found.outputs[name].values for name in ("drive_force", "rows.drive_force"))
+    np.testing.assert_allclose(both, one + np.roll(one, -9), rtol=1e-9)
+    assert "rows.drive_torque" not in found.outputs
+    assert {role for role, _ in torque(found).keys} == {"one", "all"}
