@@ -464,8 +464,11 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
         drives=tuple(replace(one, link=body(one.link)) for one in machine.drives),
         frame=keys(machine.frame),
         links={
-            names(name): replace(link, points=keys(link.points))
+            names(name): replace(link, points=keys(link.points), planes=keys(link.planes))
             for name, link in machine.links.items()
+        },
+        bearings={
+            name: replace(one, link=body(one.link)) for name, one in machine.bearings.items()
         },
         assembly=keys(machine.assembly),
         sliders=tuple(

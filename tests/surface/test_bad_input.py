@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -97,7 +98,8 @@ ELSEWHERE = {
                         "gears[1]", "either ratio or teeth"),
     "neither ratio nor teeth": ("geared-counterweight", "ratio = -0.47", "", "gears[1]",
                                 "either ratio or teeth"),
-    "ratio of 0": ("geared-counterweight", "ratio = -0.47", "ratio = 0", "gears[1]", "rigid"),
+    "ratio of 0": ("geared-counterweight", "ratio = -0.47", "ratio = 0", "gears[1]",
+                   "no pair of gears has that"),
     "ratio with a unit": ("geared-counterweight", "ratio = -0.47", 'ratio = "-0.47"',
                           "gears[1].ratio", "plain number"),
     "ratio that is not a number": ("geared-counterweight", "ratio = -0.47", "ratio = nan",
@@ -208,21 +210,9 @@ TEXTS = {
     "long number": (f"schema = {'1' * 5000}", "number"),
 }
 LINKAGES = {
-    "crank too long": (
-        four_bar('points.B = ["33.5 mm", "0 mm"]', 'points.B = ["120 mm", "0 mm"]'),
-        "the crank cannot turn fully: 'coupler' and 'rocker' reach each other only from",
-    ),
     "never joined": (
         four_bar('distance = "88 mm"', 'distance = "880 mm"'),
         "cannot be joined at any crank angle",
-    ),
-    "change point": (
-        four_bar('distance = "88 mm"', 'distance = "118 mm"'),  # 118 + 33.5 = 71.5 + 80
-        "change point at crank angle",
-    ),
-    "parallelogram": (
-        four_bar('distance = "88 mm"', 'distance = "71.5 mm"').replace('"80 mm"', '"33.5 mm"'),
-        "change point at crank angle",
     ),
     "link of no length": (
         four_bar('points.C = ["71.5 mm", "0 mm"]', 'points.C = ["0 mm", "0 mm"]'),
@@ -245,6 +235,22 @@ LINKAGES = {
         "drive.link: 'coupler' shares 0 points with the frame",
     ),
 }
+
+SWINGING = {
+    "crank too long": (
+        four_bar('points.B = ["33.5 mm", "0 mm"]', 'points.B = ["120 mm", "0 mm"]'),
+        "the crank cannot turn fully: 'coupler' and 'rocker' reach each other only from",
+    ),
+    "change point": (
+        four_bar('distance = "88 mm"', 'distance = "118 mm"'),  # 118 + 33.5 = 71.5 + 80
+        "change point at crank angle",
+    ),
+    "parallelogram": (
+        four_bar('distance = "88 mm"', 'distance = "71.5 mm"').replace('"80 mm"', '"33.5 mm"'),
+        "change point at crank angle",
+    ),
+}
+"""Models whose crank cannot turn fully, or not in a definite way."""
 
 
 FILES = {
@@ -278,6 +284,20 @@ def test_a_bad_model(text: str | bytes, place: str, said: str) -> None:
     line = refuses("check bad.toml", said)
     assert refused(equipoise("analyze", "bad.toml", "--json")) == line
     assert line.startswith(f"bad.toml: {place}: " if place else "bad.toml: ")
+
+
+@pytest.mark.parametrize(("text", "said"), SWINGING.values(), ids=SWINGING)
+def test_a_crank_that_cannot_turn(text: str, said: str) -> None:
+    """Which `check` refuses, while `analyze` shows it swinging and says by which motion."""
+    Path("bad.toml").write_text(text)
+    refuses("check bad.toml", said)
+    shown = equipoise("analyze", "bad.toml", "--json")
+    assert shown.status == 0
+    assert "note: the crank swings between" in shown.err
+    (motion,) = re.findall(r"motion = \{.*?\}", shown.err)
+    speed = 'speed = "193 rpm"'
+    Path("good.toml").write_text(replaced(text, (speed, f"{speed}\n{motion}")))
+    succeeded(equipoise("check", "good.toml"))
 
 
 def test_missing_sides_can_be_pasted() -> None:

@@ -273,7 +273,7 @@ def _stroke(
         high.crank_angle,
         rise,
         fall,
-        max(rise, fall) / min(rise, fall),
+        max(rise, fall) / min(rise, fall) if min(rise, fall) else float("nan"),
         held.angle,
         held.begin,
         advantage,
