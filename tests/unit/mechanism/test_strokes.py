@@ -259,3 +259,11 @@ def test_dwells_of_sliders_and_points() -> None:
 def test_wrong_dwells(name: str, tolerance: float | None, told: str) -> None:
     with pytest.raises(UsageError, match=told):
         eq.analyze(eq.load("quick-return"), 8).dwell(name, tolerance)
+
+
+def test_what_rests_on_its_guide_has_no_time_ratio() -> None:
+    machine = eq.load("four-stroke-engine")
+    (slider,) = machine.sliders
+    held = replace(machine, sliders=(replace(slider, on="crank"),)).with_drive(speed=31.52)
+    (stroke,) = eq.analyze(held).strokes.values()
+    assert np.isnan(stroke.time_ratio) or stroke.stroke > 0
