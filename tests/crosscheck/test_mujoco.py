@@ -18,6 +18,7 @@ from support.analyses import (
     subject_of,
     vector,
 )
+from support.cams import line_of_force
 from support.conformance import compared
 from support.engines import TOLERANCE, TOTALS, same_totals
 from support.free_bodies import (
@@ -66,6 +67,9 @@ def acting_on_links(subject: Subject) -> dict[str, Array]:
     for rack in machine.racks:
         at = rack_contact(rack, machine, poses).at
         actions.append((forces.racks[rack.name], at, np.zeros(len(at))))
+    for cam in machine.cams:
+        at, _ = line_of_force(machine, cam, poses)
+        actions.append((forces.cams[cam.name], at, np.zeros(len(at))))
     for belt in machine.belts:
         found = forces.belts[belt.name]
         strands = strand_contacts(belt, machine, poses)

@@ -117,12 +117,12 @@ class Rows:
         if output.startswith(GAUGES):
             found = self._gauge(output.removeprefix(GAUGES), objective.speeds)
         else:
-            rows, one = rows_of(self.machine), self._alike(output) or self._one
+            rows, signal = rows_of(self.machine), self._alike(output) or self._one
             levers = np.ones((len(rows), 1, 1))
-            if one is self._one:
+            if signal is self._one:
                 about, motion = objective.about, self._motion
                 levers = np.array([lever(motion, output, row, about) for row in rows])
-            found = RowSignals((levers @ one.amplitudes)[None], one.turns)
+            found = RowSignals((levers @ signal.amplitudes)[None], signal.turns)
         return found.kept(objective.orders)
 
     @cached_property
