@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import chain
+from typing import Any
 
 import numpy as np
 
@@ -51,16 +52,10 @@ def pushing(subject: Subject) -> list[tuple[str, Array]]:
     return [(b, action(subject, b, push.at, f, 0.0)) for b, f in both if b != FRAME]
 
 
-def acting_on_links(subject: Subject) -> dict[str, Array]:
-    """Add up all that joints, gears, loads, springs and drive do to each link."""
+def pushes(subject: Subject) -> list[tuple[Any, Array, Array]]:
+    """What gears, racks, cams and belts do: forces, the places where they act, and no couples."""
     machine, poses, forces = subject.machine, subject.poses, subject.forces
-    total = {name: np.zeros((poses.crank_angle.size, 3)) for name in machine.links}
-    sliders = {slider.name: (slider.link, slider.point) for slider in machine.sliders}
-    actions = []
-    for name, joint in forces.joints.items():
-        body, label = sliders.get(name, (joint.on, name.split("/")[0]))
-        at = poses.place(body, machine.points_of(body)[label])
-        actions.append((joint, at, getattr(joint, "moment", np.zeros(len(at)))))
+    actions: list[tuple[Any, Array, Array]] = []
     for gear in machine.gears:
         at = centre_line(gear, machine, poses)[0]
         actions.append((forces.gears[gear.name], at, np.zeros(len(at))))
@@ -77,6 +72,20 @@ def acting_on_links(subject: Subject) -> dict[str, Array]:
             actions.append(
                 (reaction(strand, tension[:, None]), strand.at, np.zeros(len(strand.at)))
             )
+    return actions
+
+
+def acting_on_links(subject: Subject) -> dict[str, Array]:
+    """Add up all that joints, gears, loads, springs and drive do to each link."""
+    machine, poses, forces = subject.machine, subject.poses, subject.forces
+    total = {name: np.zeros((poses.crank_angle.size, 3)) for name in machine.links}
+    sliders = {slider.name: (slider.link, slider.point) for slider in machine.sliders}
+    actions = []
+    for name, joint in forces.joints.items():
+        body, label = sliders.get(name, (joint.on, name.split("/")[0]))
+        at = poses.place(body, machine.points_of(body)[label])
+        actions.append((joint, at, getattr(joint, "moment", np.zeros(len(at)))))
+    actions += pushes(subject)
     for part, at, couple in actions:
         force = part.force if isinstance(part, Reaction) else vector(part)
         for body, sign in ((part.on, 1.0), (part.by, -1.0)):
