@@ -56,7 +56,7 @@ test: $(VENV)/.installed-test
 
 # Unit tests and laws as on a processor without wide instructions, where sums round otherwise.  Left
 # out is what compares texts and structures, the gallery, and shares of many random records.
-NO_ROUNDING = $(addprefix tests/unit/,i18n present quantities schema symbols web test_house.py \
+NO_ROUNDING = $(addprefix tests/unit/,exchange i18n present quantities schema symbols web test_house.py \
 	test_public_names.py figures/test_pictures.py measured/test_intervals.py)
 WIDE = import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"].get("found", []))
 narrow: $(VENV)/.installed-test
