@@ -32,6 +32,7 @@ from equipoise.mechanism.linkage import Linkage, ordered
 from equipoise.mechanism.model import FRAME, Machine, Vector
 from equipoise.mechanism.planes import demands_across
 from equipoise.mechanism.racks import Rack
+from equipoise.mechanism.rolling import beside
 from equipoise.mechanism.steps import (
     Array,
     Call,
@@ -161,8 +162,8 @@ def _beside(values: tuple[Any, ...]) -> Any:
     """Numbers as a column (P, 1); laws as one that takes angles (P, K), a row for each machine."""
     if not callable(values[0]):
         return column(values)
-    if all(law == values[0] for law in values):
-        return values[0]
+    with suppress(ValueError):
+        return beside(values)
 
     def law(angles: Any) -> tuple[Array, ...]:
         rows = (one(row) for one, row in zip(values, angles, strict=True))
