@@ -221,6 +221,8 @@ def _assembled(design: Design, goals: Goals, near: Solved, stuck: bool) -> Solve
 def _turned_over(design: Design, goals: Goals, stuck: bool) -> Solved | None:
     """The design with one dyad on its other side, if the points then come where they were put."""
     for joint, side in design.own.assembly.items() if goals else ():
+        if not _moves(design.own, joint, goals):
+            continue
         assembly = {**design.own.assembly, joint: OTHER_SIDE[side]}
         try:
             other = design.with_machine(replace(design.own, assembly=assembly))
@@ -230,6 +232,18 @@ def _turned_over(design: Design, goals: Goals, stuck: bool) -> Solved | None:
         if _reaches(found, goals):
             return found
     return None
+
+
+def _moves(machine: Machine, joint: str, points: Iterable[str]) -> bool:
+    """Whether the side of a dyad decides where any of these points is."""
+    try:
+        groups = [*assemble(machine).groups]
+    except EquipoiseError:
+        return True
+    while groups and groups[0].joint != joint:
+        del groups[0]
+    links = [machine.links[link] for group in groups for link in group.links]
+    return any(point in link.points for link in links for point in points)
 
 
 def _reaches(found: Solved, goals: Goals) -> bool:
