@@ -24,7 +24,7 @@ def _shape(rng: np.random.Generator, lobes: int, ratio: float) -> GearShape:
     if kind == "table":
         values = 1 + rng.uniform(-0.1, 0.1, 6) / lobes
         shape = GearShape("ratio", lobes=lobes, phase=phase, angle=angles, ratio=tuple(values))
-        factor = abs(law_of(shape, ratio).rate.factor)
+        factor = abs(law_of(shape, ratio).factor)
         return replace(shape, ratio=tuple(values * factor))
     kind = "ratio" if kind == "ratio" else "radius"
     return GearShape(kind, cosines=waves[0], sines=waves[1], lobes=lobes, phase=phase)
