@@ -18,7 +18,7 @@ from equipoise.mechanism.checks import ALTERNATIVES, unknown
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, Position, Vector
 from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.swings import swing
+from equipoise.mechanism.swings import SWUNG, swing
 from equipoise.quantities import clean, clean_place
 from equipoise.results.analysis import LEAST_ANGLES, Analysis, analyze
 from equipoise.symbols.scene import Scene
@@ -53,6 +53,14 @@ class Solved:
     @property
     def motion(self) -> Motion:
         return self.analysis.motion
+
+    @property
+    def moved(self) -> Design:
+        """The design, with the motion by which its crank swings where it cannot turn."""
+        if self.swings is None:
+            return self.design
+        changes = {name: getattr(self.analysis.machine, name) for name in SWUNG}
+        return self.design.with_machine(replace(self.design.own, **changes))
 
     @cached_property
     def scene(self) -> Scene:
