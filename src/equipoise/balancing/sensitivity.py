@@ -197,7 +197,7 @@ def _beside(link: Link, flat: Array, columns: Array) -> Array:
 
 
 def _by_change(link: Link, columns: Array) -> Array:
-    """Derivatives by what `CHANGES` within the plane (4, N) from those by the parameters of the regressor (4, N).
+    """Derivatives by what `CHANGES` within the plane (4, N) from those by the regressor's (4, N).
 
     These are about the origin of the link's axes: S = m g and J = I + m |g|^2, and the chain rule.
     """
