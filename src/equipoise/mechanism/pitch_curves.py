@@ -122,8 +122,8 @@ def wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterat
     low, high, steepest = _extent(shape, ratio)
     if low <= 1 <= high:
         told = Note(
-            "the ratio would go from {low:.4g} to {high:.4g}; of a ring and the gear in it it stays "
-            "on one side of 1: give a smaller eccentricity, or a flatter curve",
+            "the ratio would go from {low:.4g} to {high:.4g}; of a ring and the gear in it it "
+            "stays on one side of 1: give a smaller eccentricity, or a flatter curve",
             low=low,
             high=high,
         )
