@@ -414,6 +414,8 @@ def gathered(
         both[belt.name] = replace(pulled[-1], force=force)
     drives = {drive.link: unknowns[drive][:, 0] for drive in machine.driven}
     pulls = [pull_on_frame(*acting) for acting in springs_on_links(machine, poses)]
+    loads = zip(machine.loads, on_links(machine, poses), strict=False)  # the soil comes behind
+    pulls += [pull_on_frame(*acting) for load, acting in loads if load.reaction]
     torque = sum(drives.values())
     if machine.drive.stroke is not None:
         torque = 0.0
@@ -434,7 +436,7 @@ def reaction(contact: Contact, unknowns: Array, more: Array | float = 0.0) -> Re
 
 
 def pull_on_frame(link: str, at: Array, force: Array, couple: Array) -> Reaction:
-    """Return what a spring does to the frame, of which every point of its line is as good."""
+    """Return what a spring or a load does to the frame, of whose line every point is as good."""
     return Reaction(FRAME, link, at, -force, -couple)
 
 

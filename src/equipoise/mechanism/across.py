@@ -7,7 +7,7 @@ are.  Everything here is linear in the demands, as the forces in the plane are.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -32,6 +32,7 @@ class Across:
 
     inertia, weights, loads, springs : what each link needs, by what makes it.
     exerted : name -> force in each joint and mesh.
+    outer : those of the loads that come from outside.
     """
 
     motion: Motion
@@ -40,6 +41,7 @@ class Across:
     loads: Needed
     springs: Needed
     exerted: Mapping[str, JointForce]
+    outer: Needed = field(default_factory=dict)
 
     @cached_property
     def statics(self) -> Statics:
@@ -54,7 +56,7 @@ class Across:
     @cached_property
     def frame_rocking_moment(self) -> VectorSignal:
         """Moment of all joints and springs on the frame about x and y, in the plane 0, N m."""
-        return self._on_frame(self.inertia, self.weights, self.loads)
+        return self._on_frame(self.inertia, self.weights, self.outer)
 
     def _on_frame(self, *needed: Needed) -> VectorSignal:
         whole: Any = sum(value for one in needed for value in one.values())
