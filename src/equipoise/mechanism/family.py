@@ -26,8 +26,9 @@ from equipoise.keys import Frozen, changed, quantities_of
 from equipoise.mechanism import kernels
 from equipoise.mechanism.bodies import Body
 from equipoise.mechanism.body_checks import outlined_by_columns
+from equipoise.mechanism.cam_fits import can_be_made, fits_of
 from equipoise.mechanism.gears import Gear
-from equipoise.mechanism.joints import coupling_pins
+from equipoise.mechanism.joints import Structure, coupling_pins
 from equipoise.mechanism.linkage import Linkage, ordered
 from equipoise.mechanism.model import FRAME, Machine, Vector
 from equipoise.mechanism.racks import Rack
@@ -196,6 +197,7 @@ HOLDERS = {
     r"(gears)\[([1-9]\d*)\]": {"start", "pressure_angle"},
     r"(belts)\[([1-9]\d*)\]": {"start", "tension"},
     r"(racks)\[([1-9]\d*)\]": {"angle", "travel", "pressure_angle"},
+    r"(cams)\[([1-9]\d*)\]": {"base_radius", "roller_radius", "normal"},
     r"(springs)\[([1-9]\d*)\]": {"stiffness", "free_length"},
 }
 """What has numbers that may be columns, by its path in the model file, and their keys; None where
@@ -288,11 +290,14 @@ def _with(value: Value, **changes: Any) -> Value:
 
 def linkage_of(machine: Machine, base: Linkage) -> Linkage:
     """The linkage of a machine with columns, in the order in which its base is solved."""
-    joints = replace(base.joints, sliders=machine.sliders, couplings=machine.couplings)
     needed = base.needed_references
     start = {f"reference({name})": base.cycle.reference(name, np.zeros(1)) for name in needed}
     with np.errstate(all="ignore"):
-        return ordered(machine, joints, start)
+        return ordered(machine, _joints(machine, base), start)
+
+
+def _joints(machine: Machine, base: Linkage) -> Structure:
+    return replace(base.joints, sliders=machine.sliders, couplings=machine.couplings)
 
 
 def massive_link(path: str) -> str | None:
@@ -336,6 +341,8 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
         driver, driven = (planar(points[pin]) for pin in coupling_pins(base.joints, belt))
         yield abs(driver - driven) > sum(belt.pitch_radii)
         yield belt.tension is None or belt.tension > 0
+    fits = fits_of(machine, _joints(machine, base)) if machine.cams else ()
+    yield from (can_be_made(fit) for fit in fits if np.ndim(fit.rest))
     toothed: tuple[Gear | Rack, ...] = (*machine.gears, *machine.racks)
     for gear in toothed:
         yield (gear.pressure_angle >= 0) & (np.asarray(gear.pressure_angle) < pi / 2)
