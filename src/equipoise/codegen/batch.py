@@ -34,10 +34,11 @@ from equipoise.codegen.loops import STEPS, March
 from equipoise.codegen.source import Source
 from equipoise.errors import UsageError
 from equipoise.mechanism import cycle, full_turn
-from equipoise.mechanism.family import linkage_of, with_columns, wrong
+from equipoise.mechanism.family import linkage_of, with_columns
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import declared
+from equipoise.mechanism.refusing import wrong
 from equipoise.mechanism.steps import size_of_bodies
 
 Array = np.ndarray[Any, Any]
