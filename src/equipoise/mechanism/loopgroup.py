@@ -41,8 +41,13 @@ FAR = 0.25
 """Distance, in sizes of the machine, between a place in the file and the solution found from it."""
 
 
-def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Group:
-    """Make the group of these links, with `builder` knowing them afterwards."""
+def loop_group(
+    builder: Builder, joints: Structure, links: tuple[str, ...], near: Position | None = None
+) -> Group:
+    """Make the group of these links, with `builder` knowing them afterwards.
+
+    near : about where they are at crank angle 0, if not the file but others tell it.
+    """
     maker = Maker(builder, joints, links)
     before, loops = maker.prepare()
     touched = {FRAME, *(end.body for loop in loops for end in (loop.on, loop.by))}
@@ -61,7 +66,7 @@ def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> G
         solved = replace(unsolved, start=told[:, 0])
     else:
         run(before, builder.now)
-        solved, loops = _solve_start(builder, before, unsolved, loops)
+        solved, loops = _solve_start(builder, before, unsolved, loops, near)
     builder.add(maker.anchors, {maker.anchors[link] for link in links})
     builder.running.update(place.link for place in solved.tree if any(place.turning))
     reactions = tuple(maker.reaction(loop) for loop in loops)
@@ -219,10 +224,14 @@ class Maker:
 
 
 def _solve_start(
-    builder: Builder, before: tuple[Step, ...], group: LoopGroup, loops: tuple[Loop, ...]
+    builder: Builder,
+    before: tuple[Step, ...],
+    group: LoopGroup,
+    loops: tuple[Loop, ...],
+    near: Position | None,
 ) -> tuple[LoopGroup, tuple[Loop, ...]]:
     """The group with its solution at crank angle 0 and, from that, the offsets of its gears."""
-    position = builder.machine.position
+    position = near or builder.machine.position
     if position is None:
         raise ModelError(
             "position",
