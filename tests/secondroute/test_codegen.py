@@ -86,11 +86,14 @@ def test_random_machine(kind: str, seed: int, numpy_engine: None) -> None:
 
 @pytest.mark.parametrize("kind", ["slider_crank", "geared_counterweight", "v_twin"])
 def test_links_beside_each_other(kind: str, numpy_engine: None) -> None:
-    """Rocking moments and bearings too."""
+    """Rocking moments and bearings too, where planes vary, of a point as well."""
     base = set_apart(make(kind, 1).machine, np.random.default_rng(2), flat=True)
+    loose = next(name for name, k in base.links.items() if not k.points.keys() & base.frame.keys())
+    base = base.with_link(loose, planes={next(iter(base.links[loose].points)): 0.02})
     known = {*signals_of(base)}
     assert known > {"rocking_moment.x", "frame_rocking_moment"}
     assert known > {f"bearings.{name}.force_x" for name in base.bearings}
+    assert {f"links.{loose}.plane", "bearings.left of crank.plane"} < {*paths_of(numbers_of(base))}
     assert compared(base, 3, 1)
 
 

@@ -19,6 +19,10 @@ FLAGS = [
     "--disable-component-update",
     "--disable-background-networking",
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+    # Chromium heeds the last such list alone: Playwright's that matter here, and the two pages that
+    # wait behind the address bar of every window, which cost as much as the live page.
+    "--disable-features=AvoidUnnecessaryBeforeUnloadCheckSync,HttpsUpgrades,PaintHolding,"
+    "ThirdPartyStoragePartitioning,WebUIOmniboxAimPopup,WebUIOmniboxPopup",
 ]
 
 

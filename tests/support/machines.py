@@ -688,8 +688,8 @@ def geared_five_bar(rng: np.random.Generator) -> Case:
     return draft.case()
 
 
-def planetary_arm(rng: np.random.Generator) -> Case:
-    """A driven arm carries an idler and a planet round a sun that stands still."""
+def arm_with_planet(rng: np.random.Generator) -> Draft:
+    """Draw an arm that carries an idler and a planet, and drives neither yet."""
     draft = _draft(rng)
     a = draft.size
     draft.ground("A", (0, 0))
@@ -699,6 +699,12 @@ def planetary_arm(rng: np.random.Generator) -> Case:
         idler={"B": (0, 0)},
         planet={"C": (0, 0), "P": _scaled(rng, draft)},
     )
+    return draft
+
+
+def planetary_arm(rng: np.random.Generator) -> Case:
+    """A driven arm carries an idler and a planet round a sun that stands still."""
+    draft = arm_with_planet(rng)
     sun = _mesh(rng, FRAME, "idler", "arm")
     draft.gears.append(sun if rng.random() < 0.5 else _with_teeth(sun, rng))
     draft.gears.append(_mesh(rng, "idler", "planet", "arm"))

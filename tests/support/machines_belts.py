@@ -84,14 +84,7 @@ def belted_arm(rng: np.random.Generator) -> machines.Case:
     """A driven arm carries two links, each by a belt from the one before, the first from a pulley
     that stands still.
     """
-    draft = machines._draft(rng)
-    a = draft.size
-    draft.ground("A", (0, 0))
-    draft.add_shuffled(
-        arm={"A": (0, 0), "B": (a, 0), "C": np.array([2 * a, 0]) + rng.normal(size=2) * a / 3},
-        idler={"B": (0, 0)},
-        planet={"C": (0, 0), "P": machines._scaled(rng, draft)},
-    )
+    draft = machines.arm_with_planet(rng)
     first = _belt(rng, FRAME, "idler", _apart(draft, "arm", "A", "B"), "arm")
     second = _belt(rng, "idler", "planet", _apart(draft, "arm", "B", "C"), "arm")
     return _with(draft.case("arm"), first, second)

@@ -10,7 +10,7 @@ import numpy as np
 from equipoise.mechanism.gear_shapes import GearShape
 from equipoise.mechanism.model import FRAME, Gear
 from equipoise.mechanism.pitch_curves import law_of
-from support.machines import Case, _draft, _four_bar, _scaled, _spot
+from support.machines import Case, _four_bar, _scaled, _spot, arm_with_planet
 
 
 def _shape(rng: np.random.Generator, lobes: int, ratio: float) -> GearShape:
@@ -24,7 +24,7 @@ def _shape(rng: np.random.Generator, lobes: int, ratio: float) -> GearShape:
     if kind == "table":
         values = 1 + rng.uniform(-0.1, 0.1, 6) / lobes
         shape = GearShape("ratio", lobes=lobes, phase=phase, angle=angles, ratio=tuple(values))
-        factor = abs(law_of(shape, ratio).rate.factor)
+        factor = abs(law_of(shape, ratio).factor)
         return replace(shape, ratio=tuple(values * factor))
     kind = "ratio" if kind == "ratio" else "radius"
     return GearShape(kind, cosines=waves[0], sines=waves[1], lobes=lobes, phase=phase)
@@ -60,15 +60,7 @@ def rolling_coupler(rng: np.random.Generator) -> Case:
 
 def rolling_planet(rng: np.random.Generator) -> Case:
     """A driven arm carries an idler and a planet round a standing sun, none of them round."""
-    draft = _draft(rng)
-    a = draft.size
-    draft.ground("A", (0, 0))
-    far = np.array([2 * a, 0]) + rng.normal(size=2) * a / 3
-    draft.add_shuffled(
-        arm={"A": (0, 0), "B": (a, 0), "C": far},
-        idler={"B": (0, 0)},
-        planet={"C": (0, 0), "P": _scaled(rng, draft)},
-    )
+    draft = arm_with_planet(rng)
     draft.gears.append(_rolling(rng, FRAME, "idler", "arm"))
     draft.gears.append(_rolling(rng, "idler", "planet", "arm"))
     return draft.case("arm")

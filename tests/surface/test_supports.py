@@ -61,7 +61,6 @@ CANNOT = {
                    "              # assumed\n", "")], "forces need mass, center_of_mass and inert"),
     "no spring": ([(SPRING, "")], UNCARRIED),
     "no mounts": ([(SPRING, ""), (BEARING, "")], UNCARRIED),
-    "cannot turn": ([('points.B = ["33.5 mm", ', 'points.B = ["70 mm", ')], "the crank cannot tur"),
     "pushed away": ([FLAT, (SPRING, "")], "a constant force drives the support away in pitch"),
 }  # fmt: skip
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter
 
+from equipoise.cli.models import linkage_of
 from equipoise.cli.options import (
     CrankZero,
     File,
@@ -17,7 +18,6 @@ from equipoise.cli.options import (
     Speed,
     blaming,
     count,
-    linkage_of,
     naming,
     size,
 )

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from equipoise.cli.options import Angle, Out, blaming, linkage_of, naming, wants
+from equipoise.cli.models import linkage_of
+from equipoise.cli.options import Angle, Out, blaming, naming, wants
 from equipoise.cli.outputs import check_result_file, sources_of, tell, wrote
 from equipoise.errors import UsageError
 
@@ -63,7 +64,7 @@ def export(
     _check("it goes with a store", kept=kept)
     if not one.posed:
         _check(f"a file of {one.title} is the same at every crank angle", at=at)
-    machine = linkage_of(file)
+    machine = linkage_of(file, swings=not one.posed)
     check_result_file("--out", out, sources_of(machine, file))
     with naming(file):
         what = _balanced(machine) if balanced else machine

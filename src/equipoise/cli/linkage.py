@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import App, Parameter
 
+from equipoise.cli.models import linkage_of
 from equipoise.cli.options import (
     SIGNED,
     Angle,
@@ -24,7 +25,6 @@ from equipoise.cli.options import (
     count,
     crank_angles,
     ends_of_range,
-    linkage_of,
     naming,
     place_in,
     quantity,
@@ -44,7 +44,6 @@ from equipoise.cli.outputs import (
     write_text,
 )
 from equipoise.cli.progress import counted, generations
-from equipoise.cli.swinging import swinging
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note
 
@@ -103,7 +102,7 @@ def analyze(
 
     check_belonging("--json", outputs.json, split=split or None)
     check_belonging("--orders", orders is not None, crank_zero=crank_zero)
-    machine = swinging(file, angles)
+    machine = linkage_of(file, swings=isinstance(angles, int))
     zero = crank_zero or 0.0
     if csv is not None:
         check_result_file("--csv", csv, sources_of(machine, file))
@@ -281,7 +280,7 @@ def plant(
     from equipoise.planting.summary import table
 
     check_belonging("--csv", outputs.csv is not None, angles=angles)
-    machine = linkage_of(file, speed)
+    machine = linkage_of(file, speed, swings=False)
     outputs.check(sources_of(machine, file))
     with naming(file):
         figures = read_off(machine)
@@ -320,7 +319,7 @@ def fit(
 
     if seed is not None and seed < 0:
         raise UsageError(f"--seed: got {seed}; give 0 or more")
-    machine = linkage_of(file, speed)
+    machine = linkage_of(file, speed, swings=False)
     new = out if out is not None else f"{Path(file).stem}-fit.toml"
     check_new(machine, new)
     outputs.check(sources_of(machine, file), [targets, new])

@@ -210,14 +210,6 @@ ShownIn = Annotated[
 ]
 
 
-def linkage_of(file: str, speed: float | None = None) -> Machine:
-    """The machine of a file, whose crank turns at another speed where one is given, rad/s."""
-    from equipoise.schema.models import load_linkage
-
-    machine = load_linkage(file)
-    return machine if speed is None else machine.with_drive(speed=speed)
-
-
 # -- whose fault it is -----------------------------------------------------------------------------
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import App, Parameter
 
+from equipoise.cli.models import tell_swing, template_of
 from equipoise.cli.options import (
     AnySpeed,
     File,
@@ -93,8 +94,7 @@ def plot(
             name = f"{picture.name}.{kind}"
             write_all(folder, {name: render(picture.draw(), kind)})
             tell(f"{os.path.join(folder, name)}  {picture.caption}")
-    if not isinstance(found, ToolFindings) and found.swings is not None:
-        tell(f"note: {found.swings}", sys.stderr)
+    tell_swing(getattr(found, "swings", None))
     for part, why in found.failed.items():
         tell(f"{part}: left out, {why}", sys.stderr)
     tell_pictures(len(chosen), folder)
@@ -160,12 +160,11 @@ def landscape(
     """
     from equipoise.figures.studies import landscape as drawn_map
     from equipoise.figures.studies import told_best
-    from equipoise.schema.template import Template
     from equipoise.studies import objective_map as studies
 
     folder = pictures.of(file)
     objective = read_objective("OUTPUT", output)
-    model = Template.load(file)
+    model = template_of(file)
     if model.kind == "tool":
         raise UsageError("a map is of a linkage; use `equipoise tool vary` for a tool")
     both = [_range(model, *pair, points) for pair in (("FIRST", first), ("SECOND", second))]

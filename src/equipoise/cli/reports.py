@@ -7,6 +7,7 @@ import shlex
 import sys
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+from equipoise.cli.models import linkage_of
 from equipoise.cli.options import (
     SIGNED,
     File,
@@ -30,7 +31,6 @@ from equipoise.cli.outputs import (
     wrote,
 )
 from equipoise.cli.progress import counted
-from equipoise.cli.swinging import swinging
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
@@ -109,7 +109,7 @@ def animate(
         _check_tool(kind, **given, force=force or None)
         write(name, _tool_in_mode(file, mode, seconds, width))
         return wrote(name)
-    machine = swinging(file, speed=speed)
+    machine = linkage_of(file, speed)
     _check_support(machine, force, speed, exaggerate, mode)
     check_result_file("--out", name, sources_of(machine, file))
     options: dict[str, Any] = {"seconds": seconds, "width": width, "traced": trace}

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from equipoise.codegen.across import write_bearing
 from equipoise.codegen.coupled import can_write_couplings, shifts_laws
 from equipoise.codegen.figures import Figure, Gathered
 from equipoise.codegen.lines import write_demands, write_joints, write_motion
@@ -23,7 +24,6 @@ from equipoise.mechanism.newton import LoopGroup
 from equipoise.mechanism.outputs import DECLARED, Declared, declared
 from equipoise.mechanism.parts import JOINTS
 from equipoise.mechanism.planes import beside
-from equipoise.mechanism.statics import statics
 
 _LOOKED_UP = re.compile(r"\{([^}:]+)(:name)?\}")
 """Values in the expression of an output: of the machine, or of the member of a family."""
@@ -74,7 +74,10 @@ def _identified(writer: Writer, looked_up: re.Match[str], item: str) -> str:
     if not of_member:
         return writer.rate(value) if value in ("speed", "acceleration") else writer.name(value)
     if value == "bearing force":
-        return _bearing(writer, item)
+        if item not in writer.machine.bearings:
+            raise _Missing
+        force = lambda name: _reaction(writer, name, "joint force")  # noqa: E731
+        return write_bearing(writer.sheet, writer.linkage, item, force)
     if value in ORDERS:
         return _in_time(writer, _point(writer, item), ORDERS[value])
     if value == "drive torque" and item in [drive.link for drive in writer.machine.driven]:
@@ -103,20 +106,6 @@ def _reaction(writer: Writer, item: str, value: str) -> str:
     to, *_ = writer.point(slider.link, slider.point)
     at = writer.name(f"p({reaction.at})")
     return f"{sign} * {writer.name(reaction.couple)} + cross({at} - {to}, {force})"
-
-
-def _bearing(writer: Writer, item: str) -> str:
-    """Both bearings of a link bear what its pin in the frame does, with the pin's couple."""
-    given = writer.machine.bearings
-    if item not in given:
-        raise _Missing
-    found, own = statics(writer.linkage), given[item]
-    pin, needed, exerted = found.pin_of(own.link)
-    other = sum(one.plane for one in given.values() if one.link == own.link) - own.plane
-    exerted = {**exerted, pin.name: exerted.get(pin.name, 0.0) + pin.plane - other}
-    terms = [f"{factor!r} * {writer.name(f'Q({link})')}" for link, factor in needed.items()]
-    terms += [f"{f!r} * {_reaction(writer, name, 'joint force')}" for name, f in exerted.items()]
-    return f"({1 / (own.plane - other)!r} * ({' + '.join(terms)}))"
 
 
 def _point(writer: Writer, name: str) -> list[str]:

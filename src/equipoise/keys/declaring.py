@@ -105,11 +105,12 @@ def key(
     default: Any = REQUIRED,
     factory: Callable[[], Any] | None = None,
     compare: bool = True,
+    kw_only: bool = False,
     **more: Any,
 ) -> Any:
     """Declare a field that is a key of the file; `kind` may be the dimension of a quantity.
 
-    The other parameters are those of `Key`, and `factory` and `compare` as of a dataclass.
+    The other parameters are those of `Key`; `factory`, `compare`, `kw_only` as of a dataclass.
     """
     kind = Quantity(dimension=kind) if isinstance(kind, str) else kind  # type: ignore[arg-type]
     standing = factory() if factory is not None else default
@@ -117,7 +118,7 @@ def key(
     given: dict[str, Any] = {} if default is REQUIRED else {"default": default}
     if factory is not None:
         given = {"default_factory": factory}
-    return field(metadata={_KEY: declaration}, compare=compare, **given)
+    return field(metadata={_KEY: declaration}, compare=compare, kw_only=kw_only, **given)
 
 
 def inside(kind: Kind | str, *, default: Any = REQUIRED, compare: bool = True, **more: Any) -> Any:

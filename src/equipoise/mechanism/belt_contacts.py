@@ -16,7 +16,7 @@ from equipoise.mechanism.builder import Builder
 from equipoise.mechanism.couplings import Coupling
 from equipoise.mechanism.joints import Structure, coupling_pins, place_in_file
 from equipoise.mechanism.loops import End, Poses
-from equipoise.mechanism.steps import Call, Reaction, Step, demand_names, planar
+from equipoise.mechanism.steps import Reaction, Step, flanked, planar
 from equipoise.mechanism.strands import LEFT, RIGHT, Strands
 
 TOUCHING = 1e-9
@@ -43,17 +43,10 @@ class Pull:
 
     def steps(self, coupling: Coupling, ground: Reaction) -> tuple[Reaction, tuple[Step, ...]]:
         link, name = coupling.driven, coupling.name
-        force, couple, sense = f"R({name}/{link})", f"C({name}/{link})", f"flank({name})"
+        force, couple = f"R({name}/{link})", f"C({name}/{link})"
         push = Reaction(name, coupling.kind, link, coupling.driver, self.driven_pin, force, couple)
-        return push, (
-            Call(joint_kernels.flank, (f"M({link})",), (), (sense,)),
-            Call(
-                joint_kernels.belt_forces,
-                (*demand_names(link), f"u({coupling.carrier})", sense),
-                (self.radius, self.across, self.along),
-                (ground.force, force, couple, f"T({name})"),
-            ),
-        )
+        numbers = (self.radius, self.across, self.along)
+        return push, flanked(push, ground, coupling.carrier, joint_kernels.belt_forces, numbers)
 
     def place(self, poses: Poses, on: End, carrier: str) -> Any:
         """The driven pulley's pin."""

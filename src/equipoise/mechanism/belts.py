@@ -12,30 +12,25 @@ from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     Conditions,
     Flag,
-    Frozen,
-    Keys,
     Listing,
     Quantity,
-    Text,
     Whole,
     declared,
-    inside,
     key,
 )
 from equipoise.mechanism import kernels
-from equipoise.mechanism.checks import FRAME, Bodies
-from equipoise.mechanism.couplings import BETWEEN, Relation, as_fraction, wrong_ends
+from equipoise.mechanism.checks import Bodies
+from equipoise.mechanism.couplings import Relation, Turning, as_fraction, wrong_ends
 
 if TYPE_CHECKING:
     from equipoise.mechanism.strands import Strands
 
 
 @declared
-class Belt(Frozen):
+class Belt(Turning):
     """A toothed belt, or a chain, about two links pinned to the same carrier."""
 
     called = to_say("{what} of belt {number}")
-    beside: ClassVar[Keys] = {"between": BETWEEN}
     file_order = ("between", "teeth", "pitch", "radii", "crossed", "carrier", "start", "tension")
     conditions: ClassVar[Conditions] = {
         "oneOf": [{"required": ["teeth"]}, {"required": ["radii"]}],
@@ -45,8 +40,6 @@ class Belt(Frozen):
     table: ClassVar[str] = "belts"
     kind: ClassVar[str] = "belt"
 
-    driver: str = inside(Text())
-    driven: str = inside(Text())
     teeth: tuple[int, int] | None = key(
         Listing(Whole(1), (2,)),
         "of driver and driven; goes with `pitch`",
@@ -68,15 +61,6 @@ class Belt(Frozen):
     crossed: bool = key(
         Flag(), "its strands cross, so that both turn against each other", default=False
     )
-    carrier: str = key(
-        Text(of="body"), "link to which both are pinned", default=FRAME, example="frame"
-    )
-    start: float = key(
-        "angle",
-        "of the driven link in the frame at crank angle 0",
-        default=0.0,
-        word=to_say("angle at the start"),
-    )
     tension: float | None = key(
         "force",
         "of each strand where no torque is passed on; without it a chain, of which one strand "
@@ -85,18 +69,6 @@ class Belt(Frozen):
         example="80 N",
         above=0,
     )
-
-    @classmethod
-    def from_table(cls, given: dict[str, Any]) -> Belt:
-        return cls(*given.pop("between"), **given)
-
-    @classmethod
-    def to_table(cls, value: Belt) -> dict[str, Any]:
-        return {"between": (value.driver, value.driven), **super().to_table(value)}
-
-    @property
-    def name(self) -> str:
-        return f"{self.driver} to {self.driven}"
 
     @property
     def pitch_radii(self) -> tuple[Any, Any]:

@@ -10,7 +10,7 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Conditions, Frozen, Table, Text, declared, key, not_both
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link, unknown_point
-from equipoise.mechanism.couplings import Relation, coupled
+from equipoise.mechanism.couplings import Relation, coupled, name_of
 from equipoise.mechanism.laws import AngleLaw, Law, LengthLaw, wrong_law
 
 RIDES = ("roller", "flat", "knife")
@@ -99,7 +99,7 @@ class Cam(Frozen):
 
     @property
     def name(self) -> str:
-        return f"{self.driver} to {self.driven}"
+        return name_of(self.driver, self.driven)
 
     @property
     def law(self) -> Law:

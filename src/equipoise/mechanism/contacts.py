@@ -18,7 +18,7 @@ from equipoise.mechanism.couplings import Coupling, Law
 from equipoise.mechanism.gears import Gear
 from equipoise.mechanism.joints import Structure, coupling_pins, place_in_file
 from equipoise.mechanism.loops import Contact, End, Poses
-from equipoise.mechanism.steps import Call, Reaction, Step, demand_names, p, u
+from equipoise.mechanism.steps import Call, Reaction, Step, flanked, p, u
 
 
 def contact_of(builder: Builder, joints: Structure, coupling: Coupling) -> Contact:
@@ -29,6 +29,13 @@ def contact_of(builder: Builder, joints: Structure, coupling: Coupling) -> Conta
     ModelError : there is no such place.
     """
     return CONTACTS[coupling.table](builder, joints, coupling)
+
+
+def _push_of(coupling: Coupling) -> Reaction:
+    """The force between teeth, at their pitch point."""
+    name, link = coupling.name, coupling.driven
+    force = f"R({name}/{link})"
+    return Reaction(name, coupling.kind, link, coupling.driver, f"pitch({name})", force)
 
 
 @dataclass(frozen=True)
@@ -48,20 +55,11 @@ class Mesh:
     couples: ClassVar[bool] = False
 
     def steps(self, coupling: Coupling, ground: Reaction) -> tuple[Reaction, tuple[Step, ...]]:
-        link, name = coupling.driven, coupling.name
-        pitch, tooth, sense = f"pitch({name})", f"R({name}/{link})", f"flank({name})"
-        push = Reaction(name, coupling.kind, link, coupling.driver, pitch, tooth)
+        push, carrier = _push_of(coupling), coupling.carrier
+        numbers = (self.lever, self.radial)
         return push, (
-            Call(
-                kernels.point, (*p(self.driven_pin), *u(coupling.carrier)), (self.lever,), p(pitch)
-            ),
-            Call(joint_kernels.flank, (f"M({link})",), (), (sense,)),
-            Call(
-                joint_kernels.gear_forces,
-                (*demand_names(link), f"u({coupling.carrier})", sense),
-                (self.lever, self.radial),
-                (ground.force, tooth, f"T({name})"),
-            ),
+            Call(kernels.point, (*p(self.driven_pin), *u(carrier)), (self.lever,), p(push.at)),
+            *flanked(push, ground, carrier, joint_kernels.gear_forces, numbers),
         )
 
     def place(self, poses: Poses, on: End, carrier: str) -> Any:
@@ -93,25 +91,15 @@ class RollingMesh:
     couples: ClassVar[bool] = False
 
     def steps(self, coupling: Coupling, ground: Reaction) -> tuple[Reaction, tuple[Step, ...]]:
-        link, name, carrier = coupling.driven, coupling.name, coupling.carrier
-        pitch, tooth, sense = f"pitch({name})", f"R({name}/{link})", f"flank({name})"
-        lever, slope = f"lever({name})", f"slope({name})"
+        push, name, carrier = _push_of(coupling), coupling.name, coupling.carrier
+        place = lever, _ = f"lever({name})", f"slope({name})"
         angles = (f"phi({self.driver})", f"phi({carrier})")
-        push = Reaction(name, coupling.kind, link, coupling.driver, pitch, tooth)
+        at = (f"p({self.driven_pin})", f"u({carrier})", lever)
         return push, (
-            Call(rolled, angles, (self.law, self.centres), (lever, slope)),
-            Call(
-                joint_kernels.pitch_place, (f"p({self.driven_pin})", f"u({carrier})", lever), (),
-                (f"p({pitch})",),
-            ),
-            Call(joint_kernels.flank, (f"M({link})",), (), (sense,)),
-            Call(
-                joint_kernels.rolling_forces,
-                (*demand_names(link), f"u({carrier})", sense, lever, slope),
-                (self.radial,),
-                (ground.force, tooth, f"T({name})"),
-            ),
-        )  # fmt: skip
+            Call(rolled, angles, (self.law, self.centres), place),
+            Call(joint_kernels.pitch_place, at, (), (f"p({push.at})",)),
+            *flanked(push, ground, carrier, joint_kernels.rolling_forces, (self.radial,), place),
+        )
 
     def rolled(self, poses: Poses, carrier: str) -> tuple[Any, Any]:
         return rolled(poses[self.driver].angle, poses[carrier].angle, self.law, self.centres)

@@ -8,28 +8,22 @@ and never for a kind of coupling.
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from typing import Any, ClassVar, Protocol
+from math import pi, radians
+from typing import Any, ClassVar, Protocol, Self
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note
-from equipoise.keys import Key, Listing, Text
-from equipoise.mechanism.checks import Bodies, unknown_body
+from equipoise.i18n import Note, to_say
+from equipoise.keys import Frozen, Key, Keys, Listing, Text, declared, inside, key
+from equipoise.mechanism.checks import FRAME, Bodies, unknown_body
 
 Relation = tuple[Callable[..., tuple[Any, ...]], tuple[Any, ...]]
 """Kernel and its numbers: called with angle, first and second derivative of the driver, then of the
 carrier, then these numbers and an offset, it gives those of the driven body."""
 Law = Callable[[Any], tuple[Any, Any, Any]]
 """A function of an angle, with its first and second derivative."""
-BETWEEN = Key(
-    "between",
-    Listing(Text(of="body"), (2,)),
-    'driver and driven link; the driver is the one that is moved already, and may be `"frame"` '
-    "where the carrier turns",
-    example=["crank", "wheel"],
-)
-"""The key of both ends."""
 
 
 class Coupling(Protocol):
@@ -65,6 +59,79 @@ class Coupling(Protocol):
         """Turns of the driven body in a turn of the driver, both seen from the carrier; None where
         that is no ratio of whole numbers.
         """
+
+
+@declared
+class Turning(Frozen):
+    """What turns two links that are pinned to the same carrier: gears, and belts."""
+
+    beside: ClassVar[Keys] = {
+        "between": Key(
+            "between",
+            Listing(Text(of="body"), (2,)),
+            "driver and driven link; the driver is the one that is moved already, and may be "
+            '`"frame"` where the carrier turns',
+            example=["crank", "wheel"],
+        )
+    }
+    table: ClassVar[str]
+    kind: ClassVar[str]
+
+    driver: str = inside(Text())
+    driven: str = inside(Text())
+    carrier: str = key(
+        Text(of="body"),
+        "link to which both are pinned",
+        default=FRAME,
+        example="frame",
+        kw_only=True,
+    )
+    start: float = key(
+        "angle",
+        "of the driven link in the frame at crank angle 0",
+        default=0.0,
+        word=to_say("angle at the start"),
+        kw_only=True,
+    )
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Self:
+        return cls(*given.pop("between"), **given)
+
+    @classmethod
+    def to_table(cls, value: Self) -> dict[str, Any]:
+        return {"between": (value.driver, value.driven), **super().to_table(value)}
+
+    @property
+    def name(self) -> str:
+        return name_of(self.driver, self.driven)
+
+    @property
+    @abstractmethod
+    def speed_ratio(self) -> float:
+        """Speed of driven over driver relative to the carrier; the mean where it varies."""
+
+    @property
+    def ratios(self) -> tuple[float, float]:
+        """The smallest and the largest size of the ratio, with its sign."""
+        return self.speed_ratio, self.speed_ratio
+
+
+def name_of(driver: str, driven: str) -> str:
+    """What a coupling is called."""
+    return f"{driver} to {driven}"
+
+
+def pressure_angle(sets: str) -> Any:
+    """The key of teeth.  sets : which part of their force it does."""
+    return key(
+        "angle",
+        f"of the teeth; it sets {sets}",
+        default=radians(20),
+        at_least=0,
+        below=pi / 2,
+        why=Note("give an angle from 0 deg to less than 90 deg"),
+    )
 
 
 def as_fraction(ratio: float) -> Fraction | None:

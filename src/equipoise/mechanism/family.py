@@ -30,7 +30,9 @@ from equipoise.mechanism.gears import Gear
 from equipoise.mechanism.joints import coupling_pins
 from equipoise.mechanism.linkage import Linkage, ordered
 from equipoise.mechanism.model import FRAME, Machine, Vector
+from equipoise.mechanism.planes import demands_across
 from equipoise.mechanism.racks import Rack
+from equipoise.mechanism.rolling import beside
 from equipoise.mechanism.steps import (
     Array,
     Call,
@@ -160,8 +162,8 @@ def _beside(values: tuple[Any, ...]) -> Any:
     """Numbers as a column (P, 1); laws as one that takes angles (P, K), a row for each machine."""
     if not callable(values[0]):
         return column(values)
-    if all(law == values[0] for law in values):
-        return values[0]
+    with suppress(ValueError):
+        return beside(values)
 
     def law(angles: Any) -> tuple[Array, ...]:
         rows = (one(row) for one, row in zip(values, angles, strict=True))
@@ -191,7 +193,9 @@ HOLDERS = {
     r"(links)\.(.+)\.(bodies)\[([1-9]\d*)\]\.(at)": PAIR,
     r"(links)\.(.+)\.(bodies)\[([1-9]\d*)\]": {*quantities_of(Body)},
     r"(links)\.(.+)\.(sides)": None,
-    r"(links)\.(.+)": {"mass", "inertia", "length"},
+    r"(links)\.(.+)\.(planes)": None,
+    r"(links)\.(.+)": {"mass", "inertia", "length", "plane"},
+    r"(bearings)\.(.+)": {"plane"},
     r"(sliders)\[([1-9]\d*)\]": {"direction", "angle"},
     r"(gears)\[([1-9]\d*)\]": {"start", "pressure_angle"},
     r"(belts)\[([1-9]\d*)\]": {"start", "tension"},
@@ -300,7 +304,7 @@ def massive_link(path: str) -> str | None:
     whole, _, part = path.rpartition(".")
     with suppress(KeyError):
         match _holder(whole, {part}):
-            case ("links", link) if part != "length":
+            case ("links", link) if part not in ("length", "plane"):
                 return link
             case ("links", link, "center_of_mass" | "bodies", *_):
                 return link
@@ -339,5 +343,6 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
     toothed: tuple[Gear | Rack, ...] = (*machine.gears, *machine.racks)
     for gear in toothed:
         yield (gear.pressure_angle >= 0) & (np.asarray(gear.pressure_angle) < pi / 2)
+    yield from demands_across(machine)
     for spring in machine.springs:
         yield (spring.stiffness > 0) & (np.asarray(spring.free_length) >= 0)

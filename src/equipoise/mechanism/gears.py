@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from fractions import Fraction
-from math import dist, pi, radians
+from math import dist
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     Conditions,
-    Frozen,
     Key,
     Keys,
     Listing,
@@ -24,13 +24,14 @@ from equipoise.keys import (
     key,
 )
 from equipoise.mechanism import kernels
-from equipoise.mechanism.checks import FRAME, Bodies
+from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.couplings import (
-    BETWEEN,
     Law,
     Relation,
+    Turning,
     as_fraction,
     coupled,
+    pressure_angle,
     wrong_ends,
 )
 from equipoise.mechanism.gear_shapes import GearShape, wrong_shape
@@ -39,12 +40,12 @@ MESHES = ("external", "internal")
 
 
 @declared
-class Gear(Frozen):
+class Gear(Turning):
     """A pair of gears, both pinned to the same carrier; either ratio or teeth."""
 
     called = to_say("{what} of gear {number}")
     beside: ClassVar[Keys] = {
-        "between": BETWEEN,
+        **Turning.beside,
         "mesh": Key("mesh", Text(MESHES), "goes with `teeth`", default=None, shown="external"),
     }
     file_order = ("between", "ratio", "teeth", "mesh")
@@ -56,8 +57,6 @@ class Gear(Frozen):
     table: ClassVar[str] = "gears"
     kind: ClassVar[str] = "gear"
 
-    driver: str = inside(Text())
-    driven: str = inside(Text())
     ratio: float | None = key(
         Number(),
         "speed of driven over driver, both relative to the carrier; negative for an external mesh",
@@ -72,23 +71,7 @@ class Gear(Frozen):
         word=to_say("number of teeth"),
     )
     mesh: Literal["external", "internal"] = inside(Text(MESHES), default="external")
-    carrier: str = key(
-        Text(of="body"), "link to which both are pinned", default=FRAME, example="frame"
-    )
-    start: float = key(
-        "angle",
-        "of the driven link in the frame at crank angle 0",
-        default=0.0,
-        word=to_say("angle at the start"),
-    )
-    pressure_angle: float = key(
-        "angle",
-        "of the teeth; it sets the radial part of the tooth force",
-        default=radians(20),
-        at_least=0,
-        below=pi / 2,
-        why=Note("give an angle from 0 deg to less than 90 deg"),
-    )
+    pressure_angle: float = pressure_angle("the radial part of the tooth force")
     shape: GearShape | None = key(
         Table(GearShape, headed=True),
         "pitch curves, where the ratio varies; `ratio` or `teeth` then tell its mean",
@@ -106,16 +89,12 @@ class Gear(Frozen):
                     given=given["mesh"],
                 ),
             )
-        return cls(*given.pop("between"), **given)
+        return super().from_table(given)
 
     @classmethod
     def to_table(cls, value: Gear) -> dict[str, Any]:
         mesh = {} if value.teeth is None else {"mesh": value.mesh}
-        return {"between": (value.driver, value.driven), **mesh, **super().to_table(value)}
-
-    @property
-    def name(self) -> str:
-        return f"{self.driver} to {self.driven}"
+        return {**super().to_table(value), **mesh}
 
     @property
     def speed_ratio(self) -> float:
@@ -143,9 +122,8 @@ class Gear(Frozen):
 
     @property
     def ratios(self) -> tuple[float, float]:
-        """The smallest and the largest size of the ratio, with its sign."""
         if self.shape is None:
-            return self.speed_ratio, self.speed_ratio
+            return super().ratios
         from equipoise.mechanism.pitch_curves import ratios_of
 
         return ratios_of(self.shape, self.speed_ratio)
@@ -191,6 +169,16 @@ def _wrong_shape(where: str, shape: GearShape, gear: Gear, bodies: Bodies) -> It
         problems = [*wrong_curve(shape, gear, _distance(gear, bodies))]
     for name, told in problems:
         yield ModelError(f"{where}.{name}".rstrip("."), told)
+
+
+def closed(gear: Gear, bodies: Bodies) -> Gear:
+    """The pair with the table of its shape, if it has one, scaled so that the curves close."""
+    if gear.shape is None or not gear.shape.angle:
+        return gear
+    from equipoise.mechanism.pitch_curves import closed_table
+
+    shape = closed_table(gear.shape, gear.speed_ratio, _distance(gear, bodies))
+    return replace(gear, shape=shape)
 
 
 def _distance(gear: Gear, bodies: Bodies) -> float | None:

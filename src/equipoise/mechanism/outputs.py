@@ -271,21 +271,21 @@ of_bearing(
 )
 
 
-def _coupled(table: str, linear: str) -> Callable[..., None]:
-    """Outputs of a list of couplings."""
-    shared: dict[str, Any] = {"spoken": lambda name: name.replace(" to ", " → "), "linear": linear}
+def _coupled(table: str) -> Callable[..., None]:
+    """Outputs of couplings; linear for the flanks in contact and the strands that pull."""
+    shared: dict[str, Any] = {"spoken": lambda name: name.replace(" to ", " → "), "linear": True}
     shared["members"] = lambda machine: [one.name for one in getattr(machine, table)]
     read = lambda name, found, item: _members(getattr(found.forces, table), name, item)  # noqa: E731
     return alike(table + ".{}", read, **shared)
 
 
 TOOTH: dict[str, Any] = {"loop": "{joint force:name}", "summed": (True, False), "compared": FORCE}
-FLANK = "{what} goes with the flank in contact, which other masses may change"
-for of_teeth in (_coupled("gears", linear=FLANK), _coupled("racks", linear=FLANK)):
+PART_OF_TOOTH = {"summed": False, "linear": "{what} is only read; take the whole force instead"}
+for of_teeth in (_coupled("gears"), _coupled("racks")):
     of_teeth("", "force", to_say("tooth force {name}"), FORCES, **TOOTH)
-    of_teeth(".tangential", "force", to_say("tangential tooth force {name}"), summed=False)
-    of_teeth(".radial", "force", to_say("radial tooth force {name}"), summed=False)
-of_belt = _coupled("belts", linear="{what} is only read; take the force in a joint instead")
+    of_teeth(".tangential", "force", to_say("tangential tooth force {name}"), **PART_OF_TOOTH)
+    of_teeth(".radial", "force", to_say("radial tooth force {name}"), **PART_OF_TOOTH)
+of_belt = _coupled("belts")
 of_belt(".pull", "force", to_say("effective pull {name}"), compared=FORCE)
 of_belt(".left", "force", to_say("tension of the left strand {name}"), compared=FORCE)
 of_belt(".right", "force", to_say("tension of the right strand {name}"), compared=FORCE)

@@ -17,37 +17,49 @@ from equipoise.mechanism.rolling import (
     EccentricCircle,
     HalfAngle,
     PitchCurve,
-    RatioCurve,
+    RatioTable,
+    RatioWaves,
     Rolling,
-    Summed,
     Tabled,
     Waves,
 )
 
 MISFIT = 1e-4
 """Share by which a table may miss that its curves close; it is spread over all of it."""
-PIECES = 32
-"""Pieces of a lobe over which a ratio is summed, for each of its waves."""
+PIECES = 128
+"""Pieces of a lobe over which a ratio is summed up, for each of its waves."""
 
 
+@lru_cache(maxsize=256)
 def law_of(shape: GearShape, mean: float) -> Rolling:
     """The driven gear's angle by the driver's, both seen from the carrier; mean : ratio."""
-    if shape.kind in ("elliptic", "limacon"):
-        make = HalfAngle.ellipses if shape.kind == "elliptic" else HalfAngle.limacon
-        return replace(make(shape.eccentricity, mean, shape.lobes), zero=shape.phase)
-    return replace(_summed(replace(shape, phase=0.0), mean), zero=shape.phase)
+    return replace(_law(replace(shape, phase=0.0), mean), zero=shape.phase)
 
 
-@lru_cache(maxsize=32)
-def _summed(shape: GearShape, mean: float) -> Summed:
+@lru_cache(maxsize=64)
+def _law(shape: GearShape, mean: float) -> Rolling:
     """The law of a shape whose phase is 0."""
+    if shape.kind == "elliptic":
+        return HalfAngle.ellipses(shape.eccentricity, mean, shape.lobes)
+    if shape.kind == "limacon":
+        return HalfAngle.limacon(shape.eccentricity, mean, shape.lobes)
     curve = curve_of(shape)
-    knots = np.linspace(0.0, shape.period, PIECES * shape.waves + 1)
+    if shape.kind != "ratio":
+        return PitchCurve.closing(curve, mean, _knots(shape))
     if isinstance(curve, Tabled):
-        rows = curve.knots if shape.kind == "ratio" else -curve.knots[::-1]
-        knots = np.interp(np.arange(8 * len(rows) - 7) / 8, np.arange(len(rows)), rows)
-    make = RatioCurve if shape.kind == "ratio" else PitchCurve
-    return Summed.of(mean, make.closing(curve, mean, knots), knots)
+        return RatioTable.closing(curve, mean)
+    assert isinstance(curve, Waves)
+    return RatioWaves(mean, curve)
+
+
+def _knots(shape: GearShape) -> Array:
+    """Angles of the driver over a lobe (K + 1,), between which its radius is smooth, rad."""
+    if not shape.angle:
+        return np.linspace(0.0, shape.period, PIECES * shape.waves + 1)
+    rows = np.append(-shape.angle[0] - shape.period, -np.array(shape.angle[::-1]))
+    parts = max(8, -(-PIECES // len(rows)))
+    at = np.arange(parts * (len(rows) - 1) + 1) / parts
+    return np.asarray(np.interp(at, np.arange(len(rows)), rows))
 
 
 def curve_of(shape: GearShape) -> EccentricCircle | Tabled | Waves:
@@ -60,20 +72,38 @@ def curve_of(shape: GearShape) -> EccentricCircle | Tabled | Waves:
     return Waves(shape.cosines, shape.sines, shape.lobes)
 
 
-def fine(shape: GearShape) -> Array:
-    """Angles of the driver over a lobe (n,), between which its ratio hardly changes, rad."""
-    return shape.phase + np.linspace(0.0, shape.period, 8 * PIECES * shape.waves + 1)
-
-
 def ratios_of(shape: GearShape, mean: float) -> tuple[float, float]:
     """The smallest and the largest size of the ratio, with its sign."""
-    _, ratio, _ = law_of(shape, mean)(fine(shape))
-    return float(np.max(ratio)), float(np.min(ratio))
+    low, high, _ = _extent(shape, mean)
+    return (low, high) if mean > 0 else (high, low)
+
+
+@lru_cache(maxsize=256)
+def _extent(shape: GearShape, mean: float) -> tuple[float, float, float]:
+    """Lowest and highest ratio, and the tangent by which the pitch curves lean at most."""
+    _, first, second = law_of(shape, mean)(shape.phase + _fine(shape))
+    leaning = np.abs(kernels.pitch_slope(first, second))
+    return float(np.min(first)), float(np.max(first)), float(np.max(leaning))
+
+
+def _fine(shape: GearShape) -> Array:
+    """Angles over a lobe (n,), between which ratio and radius hardly change, rad."""
+    return np.linspace(0.0, shape.period, 2 * PIECES * shape.waves + 1)
+
+
+def closed_table(shape: GearShape, mean: float, distance: float | None) -> GearShape:
+    """The shape with its table scaled so that the curves close; distance : as of `wrong_curve`."""
+    law = law_of(shape, mean)
+    if not shape.angle or not isinstance(law, RatioTable | PitchCurve):
+        return shape
+    factor = abs(law.factor) * (1.0 if shape.kind == "ratio" else distance or 0.0)
+    values = tuple(factor * one for one in shape.ratio or shape.radius)
+    return replace(shape, **{shape.kind: values}) if factor else shape
 
 
 def wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterator[Told]:
     """What is wrong with the pitch curves that follow; distance : of the axes, if known, m."""
-    if shape.kind in TABLED and (lowest := float(np.min(curve_of(shape)(fine(shape))[0]))) <= 0:
+    if shape.kind in TABLED and (lowest := float(np.min(curve_of(shape)(_fine(shape))[0]))) <= 0:
         told = Note(
             "goes down to {lowest:.4g}; a pitch curve needs it above 0 all the way round",
             lowest=lowest,
@@ -83,8 +113,7 @@ def wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterat
     ratio = gears.speed_ratio
     law = law_of(shape, ratio)
     yield from _misfits(shape, law, ratio, distance)
-    _, first, second = law(fine(shape))
-    steepest = float(np.max(np.abs(kernels.pitch_slope(first, second))))
+    _, _, steepest = _extent(shape, ratio)
     most = degrees(np.arctan(steepest) + gears.pressure_angle)
     if not most < 90:
         told = Note(
@@ -99,9 +128,9 @@ def _misfits(
     shape: GearShape, law: Rolling, ratio: float, distance: float | None
 ) -> Iterator[Told]:
     """Tables whose curves do not close to a share of `MISFIT`."""
-    if not shape.angle or not isinstance(law, Summed):
+    if not shape.angle or not isinstance(law, RatioTable | PitchCurve):
         return
-    factor = abs(law.rate.factor)
+    factor = abs(law.factor)
     if shape.kind == "ratio" and abs(factor - 1) > MISFIT:
         told = Note(
             "the pitch curves do not close: the mean of the table is {mean:.7g}, and that of the "

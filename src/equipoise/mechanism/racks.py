@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from math import pi, radians
 from typing import ClassVar, Literal
 
 from equipoise.errors import ModelError, MotionError
@@ -12,7 +11,7 @@ from equipoise.i18n import Note, to_say
 from equipoise.keys import Frozen, Text, declared, key
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import FRAME, Bodies
-from equipoise.mechanism.couplings import Relation, wrong_ends
+from equipoise.mechanism.couplings import Relation, name_of, pressure_angle, wrong_ends
 
 HANDS = ("left", "right")
 ENDS = ("pinion", "rack")
@@ -60,14 +59,7 @@ class Rack(Frozen):
         default=0.0,
         word=to_say("travel at the start"),
     )
-    pressure_angle: float = key(
-        "angle",
-        "of the teeth; it sets the part of the tooth force across the rack",
-        default=radians(20),
-        at_least=0,
-        below=pi / 2,
-        why=Note("give an angle from 0 deg to less than 90 deg"),
-    )
+    pressure_angle: float = pressure_angle("the part of the tooth force across the rack")
 
     @property
     def driver(self) -> str:
@@ -79,7 +71,7 @@ class Rack(Frozen):
 
     @property
     def name(self) -> str:
-        return f"{self.driver} to {self.driven}"
+        return name_of(self.driver, self.driven)
 
     @property
     def start(self) -> float:

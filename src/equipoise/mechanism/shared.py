@@ -36,6 +36,8 @@ OPEN = 1e-9
 """Share of a joint in forces that hold each other, up to which it has none."""
 ROUNDING = 1e-11
 """Share of a singular value in the largest that rounding explains."""
+CLEAR = 1e-8
+"""The same of rows that clearly do not depend on each other."""
 WEAK = 1e-6
 """Smallest over largest stiffness against motion, up to which joints do not hold the machine."""
 BESIDE = 1e-3
@@ -91,11 +93,14 @@ class Shared(LoopForces):
 
     def solve(self, state: State, poses: Poses, senses: Sequence[Any]) -> list[list[Array]]:
         matrix, rows, units = self.balance(state, poses, senses)
-        inverse, loose = _parts(matrix)
+        demand = self.demand(state) / rows
+        right = np.moveaxis(demand.reshape(-1, *demand.shape[-2:]), 0, -1)
         if self.compliance:
-            inverse = self.by_stiffness(inverse, loose)
-        right = (self.demand(state) / rows)[..., None]
-        found = np.moveaxis((inverse @ right)[..., 0] * units, -1, 0)
+            told = self.by_stiffness(*_parts(matrix)) @ right
+        else:
+            told = _least(matrix, right)
+        found = np.moveaxis(told, (-1, 1), (1, 0)).reshape(len(units), *demand.shape[:-1])
+        found = found * units.reshape(-1, *np.ones(demand.ndim - 1, int))
         state["drive torque"], strengths = found[-1], iter(found)
         return [[next(strengths) for _ in range(loop.unknowns)] for loop in self.loops]
 
@@ -190,6 +195,20 @@ class Shared(LoopForces):
             for loop, reaction in zip(self.loops, self.reactions, strict=True)
         ]
         return frozenset(force for force, some in owners if any(some))
+
+
+def _least(matrix: Array, right: Array) -> Array:
+    """Least solutions (N, m, k) of equations (N, n, m) with right sides (N, n, k): by QR, and by
+    singular values where rows nearly depend on each other.
+    """
+    across, triangle = np.linalg.qr(np.swapaxes(matrix, -1, -2))
+    sizes = np.abs(np.diagonal(triangle, axis1=-2, axis2=-1))
+    clear = np.min(sizes, axis=-1) > CLEAR * np.max(sizes, axis=-1)
+    triangle[~clear] = np.eye(triangle.shape[-1])
+    found = across @ np.linalg.solve(np.swapaxes(triangle, -1, -2), right)
+    if not np.all(clear):
+        found[~clear] = _parts(matrix[~clear])[0] @ right[~clear]
+    return np.asarray(found)
 
 
 def _parts(matrix: Array) -> tuple[Array, Array]:

@@ -22,6 +22,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from equipoise.mechanism import joint_kernels
 from equipoise.mechanism.model import FRAME, Machine, Vector
 
 Array = np.ndarray[Any, Any]
@@ -159,6 +160,27 @@ def size_of_bodies(machine: Machine) -> Any:
 def demand_names(link: str) -> tuple[str, str]:
     """Names of what a link's joints must supply: force, and moment about its anchor."""
     return f"F({link})", f"M({link})"
+
+
+def flanked(
+    push: Reaction,
+    ground: Reaction,
+    carrier: str,
+    kernel: Callable[..., tuple[Any, ...]],
+    numbers: tuple[Any, ...],
+    reads: tuple[str, ...] = (),
+) -> tuple[Step, Step]:
+    """What a flank, or a strand, does to the driven body: the moment that this needs tells which.
+
+    ground : reaction of its pin.  reads : names of what the kernel takes beside it.
+    """
+    sense = f"flank({push.name})"
+    inputs = (*demand_names(push.on), f"u({carrier})", sense, *reads)
+    outputs = (ground.force, *push.outputs, f"T({push.name})")
+    return (
+        Call(joint_kernels.flank, (f"M({push.on})",), (), (sense,)),
+        Call(kernel, inputs, numbers, outputs),
+    )
 
 
 def pin_reaction(point: str, on: str, by: str) -> Reaction:

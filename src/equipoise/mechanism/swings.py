@@ -17,6 +17,8 @@ from equipoise.mechanism.reach import Reach, reach
 
 SHORT = 0.02
 """Of the range, that a crank stays away from both ends, where forces grow without bound."""
+SWUNG = ("drive", "gears", "position", "planting")
+"""What of a machine is another where its crank swings."""
 STEP = 0.02
 """rad: between crank angles at which the linkage is followed."""
 
@@ -38,8 +40,8 @@ class Swing:
         assert motion is not None and motion.between is not None
         low, high = (f'"{degrees(end):.4g} deg"' for end in motion.between)
         return Note(
-            "{range}; shown swinging a little short of that by a sine, as "
-            "motion = {{ between = [{low}, {high}] }} in [drive] says for all commands",
+            "{range}; without a motion in [drive] it swings a little short of that by a sine: "
+            "motion = {{ between = [{low}, {high}] }}",
             range=self.reach.note,
             low=low,
             high=high,

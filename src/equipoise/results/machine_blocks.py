@@ -204,31 +204,28 @@ def _parts(machine: Machine) -> Iterator[str]:
 
 
 def _couplings(machine: Machine) -> Iterator[str]:
-    for gear in machine.gears:
-        named = {"driver": gear.driver, "driven": gear.driven, "carrier": body_named(gear.carrier)}
-        if gear.shape is None:
+    for one in (*machine.gears, *machine.belts):
+        named = {
+            "what": say("Gears") if one.table == "gears" else say("Belt"),
+            "driver": body_named(one.driver),
+            "driven": one.driven,
+            "carrier": body_named(one.carrier),
+        }
+        low, high = one.ratios
+        if low == high:
             yield say(
-                "Gears: {driver} drives {driven} on {carrier} with the speed ratio {ratio}",
-                ratio=number(gear.speed_ratio),
+                "{what}: {driver} drives {driven} on {carrier} with the speed ratio {ratio}",
+                ratio=number(low),
                 **named,
             )
         else:
-            low, high = gear.ratios
             yield say(
-                "Gears: {driver} drives {driven} on {carrier} with a speed ratio from {low} to "
+                "{what}: {driver} drives {driven} on {carrier} with a speed ratio from {low} to "
                 "{high}",
                 low=number(low),
                 high=number(high),
                 **named,
             )
-    for belt in machine.belts:
-        yield say(
-            "Belt: {driver} drives {driven} on {carrier} with the speed ratio {ratio}",
-            driver=belt.driver,
-            driven=belt.driven,
-            carrier=body_named(belt.carrier),
-            ratio=number(belt.speed_ratio),
-        )
     for rack in machine.racks:
         yield say(
             "Rack: {driver} drives {driven} on {carrier}, pitch radius {radius}",

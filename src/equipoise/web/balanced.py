@@ -261,13 +261,14 @@ def _balance(session: Session, message: Message) -> Iterator[Reply]:
     with session.telling():
         what = say("balancing")
     yield Reply({"type": "busy", "seq": message.seq, "what": what})
-    found = balanced(base.design, message.flag("hold", False))
+    moved = base.moved
+    found = balanced(moved, message.flag("hold", False))
     with session.telling():
         nothing = nothing_gained(found)
     if nothing is not None:
         yield from session.told(message.seq, nothing)
         return
-    after = solved(balanced_design(base.design, found))
+    after = solved(balanced_design(moved, found))
     with session.telling():
         content = balanced_told(base, after, found)
     with session.lock:

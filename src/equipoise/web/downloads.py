@@ -74,9 +74,10 @@ def _report(found: Solved, message: Message, stem: str) -> Made:
     language = message.text("language", "en")
     if language not in LANGUAGES:
         raise UsageError(unknown(language, LANGUAGES, "language of reports"))
-    machine = found.design.machine
+    file = dumps(found.design.machine)
+    findings = Findings(found.analysis.machine, file, f"{stem}.toml", swings=found.swings)
     with drawing:
-        text = report_page(Findings(machine, dumps(machine), f"{stem}.toml"), language)
+        text = report_page(findings, language)
     return "-report.html", text.encode()
 
 

@@ -39,7 +39,7 @@ def chart_of(found: Solved, name: str, choice: str) -> Chart:
     UsageError : there is no such chart.
     EquipoiseError : it cannot be drawn of this machine.
     """
-    machine, analysis = found.design.machine, found.analysis
+    machine, analysis = found.analysis.machine, found.analysis
     if name == "response":
         from equipoise.figures.vibration import response_charts
 
@@ -100,7 +100,7 @@ def film_of(found: Solved) -> bytes:
     from equipoise.figures.swing import moving
     from equipoise.results.analysis import analyze
 
-    analysis = analyze(found.design.machine, smooth(in_a_turn("gif", SECONDS)))
+    analysis = analyze(found.analysis.machine, smooth(in_a_turn("gif", SECONDS)))
     with drawing:
         scene, _ = moving(analysis)
         return gif(scene, traced=followed(analysis.motion), seconds=SECONDS)

@@ -44,7 +44,7 @@ def can_be_shaken(machine: Machine) -> bool:
 @lru_cache(16)
 def responded(shown: Solved) -> Response:
     """The response of a design at its own speed, with the errors of `respond`."""
-    return respond(shown.design.machine)
+    return respond(shown.analysis.machine)
 
 
 def response_of(shown: Solved) -> tuple[Values, bytes] | None:
@@ -52,7 +52,7 @@ def response_of(shown: Solved) -> tuple[Values, bytes] | None:
 
     Where there is no steady state, no gauges and a note that says so.
     """
-    machine, block = shown.design.machine, Block()
+    machine, block = shown.analysis.machine, Block()
     if not can_be_shaken(machine):
         return None
     try:
@@ -73,7 +73,7 @@ def swept(shown: Solved, progress: Callable[[int, int], None]) -> tuple[Values, 
 
     progress : as of `sweep_speed`; what it raises ends the work.
     """
-    machine = shown.design.machine
+    machine = shown.analysis.machine
     try:
         found = responded(shown)
         ends = around(machine.drive, found.speed)
@@ -161,7 +161,7 @@ def more(
         planted = _told_against("planting", _planted, found, against)
         if not outdated():
             yield planted, b""
-    if not sweep or not can_be_shaken(found.design.machine):
+    if not sweep or not can_be_shaken(found.analysis.machine):
         return
 
     def progress(done: int, total: int) -> None:
@@ -237,14 +237,14 @@ def _strokes_of(analysis: Analysis) -> Iterator[tuple[str, _Told]]:
 
 def _plants(found: Solved) -> bool:
     """Whether there is a planting finger that moves."""
-    machine = found.design.machine
+    machine = found.analysis.machine
     return machine.planting is not None and machine.drive.speed != 0
 
 
 @lru_cache(8)
 def planted(found: Solved) -> PlantingFigures:
     """What a design plants, with the errors of `plant`."""
-    return plant(found.design.machine)
+    return plant(found.analysis.machine)
 
 
 def _planted(found: Solved) -> _Figures:

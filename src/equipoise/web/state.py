@@ -78,7 +78,7 @@ def state_of(
         "least": least_of(signals),
         "orders": _orders(analysis),
         "notes": [
-            *([said(found.swings)] if found.swings else []),
+            *(said(note) for note in (found.along, found.swings) if note),
             *([massless(machine)] if analysis.solved is None else []),
         ],
         "before": before is not None,

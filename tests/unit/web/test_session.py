@@ -230,6 +230,10 @@ def test_a_crank_that_cannot_turn_swings_and_can_be_dragged() -> None:
     moved = [{"move": "C", "to": [0.1, 0.1], "at": 3}]
     found = state(ask(session, "edit", seq=2, edits=moved, label="move C")[0]).content
     assert found["status"]["finished"] and found["angles"] == first["angles"]
+    film = ask(session, "download", kind="film")
+    assert film[1].buffer.startswith(b"GIF")
+    told = ask(session, "balance", seq=3)[1].content
+    assert told["type"] == "balanced" and told["aims"][0]["after"] < told["aims"][0]["before"]
 
 
 @pytest.mark.parametrize(
