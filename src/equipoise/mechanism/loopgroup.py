@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import ceil, degrees, pi
 
@@ -241,7 +241,6 @@ def _solve_start(
                 names=", ".join(group.links),
             ),
         )
-    starts = {one.name: one.start for one in builder.machine.couplings}
     meshes = {loop.name: loop for loop in loops if isinstance(loop, CouplingLoop)}
     if meshes and position.crank_angle != 0:
         raise ModelError(
@@ -252,13 +251,7 @@ def _solve_start(
                 crank_angle=degrees(position.crank_angle),
             ),
         )
-    # Its gears stand still at the angle at which they start.
-    standing = tuple(
-        replace(loop, carrier=FRAME, kernel=kernels.gear, numbers=(0.0,), offset=starts[loop.name])
-        if isinstance(loop, CouplingLoop)
-        else loop
-        for loop in loops
-    )
+    standing = _standing(loops, {one.name: one.start for one in builder.machine.couplings})
     rough = replace(group, tree=tuple(map(Free, group.links)), equations=standing)
     steps = max(2, ceil(abs(position.crank_angle) / (2 * pi) * STEPS_PER_TURN))
     path = np.linspace(0.0, position.crank_angle, steps)
@@ -286,6 +279,16 @@ def _solve_start(
         tuple(meshed.get(loop.name, loop) for loop in some) for some in (loops, group.equations)
     )
     return replace(group, start=start, equations=equations), loops
+
+
+def _standing(loops: Sequence[Loop], starts: Mapping[str, float]) -> tuple[Loop, ...]:
+    """The same with gears that stand still at the angles at which they start."""
+    return tuple(
+        replace(loop, carrier=FRAME, kernel=kernels.gear, numbers=(0.0,), offset=starts[loop.name])
+        if isinstance(loop, CouplingLoop)
+        else loop
+        for loop in loops
+    )
 
 
 def _check_near(builder: Builder, poses: Poses, position: Position, group: LoopGroup) -> None:
