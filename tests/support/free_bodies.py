@@ -384,12 +384,12 @@ def tensions(belt: Belt, transmitted: Array) -> tuple[Array, Array]:
 
 def leaning(gear: Gear, poses: Poses, tangential: Array, unit: Array) -> Array:
     """Return the same where the pitch curves lean: the tooth pushes along their tangent, turned by
-    the pressure angle towards the driven gear.
+    the pressure angle towards the driven gear, or away from it where either is a ring.
     """
     tilt = Rolling(gear).tilt(seen_from_carrier(gear, poses))
     way = np.where(tangential < 0, -1.0, 1.0)
     push = way * (unit[:, 0] + 1j * unit[:, 1]) * 1j * np.exp(1j * tilt)
-    push *= np.exp(-1j * way * gear.pressure_angle)
+    push *= np.exp(1j * way * np.sign(gear.speed_ratio) * gear.pressure_angle)
     toward = unit[:, 0] - 1j * unit[:, 1]
     along, across = (push * toward).real, (push * toward).imag
     return (along / across * tangential)[:, None] * unit
