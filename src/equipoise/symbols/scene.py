@@ -101,7 +101,7 @@ class Scene:
     planned : springs that balancing may set, likewise.
     room : places besides that are to be in sight, complex, m.
     rows : those of its machine, where all of them are to be seen.
-    marks : cams with what rides on them, strands of belts, and pitch lines of racks.
+    marks : cams with what rides on them, strands of belts, and racks.
     swing : how the support moves, where it is to be seen; places are in the frame's axes all along.
     """
 
