@@ -11,6 +11,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.motion import Motion
@@ -123,3 +125,18 @@ def pushes_across(motion: Motion, acting: Iterable[Acting]) -> dict[str, Any]:
         plane = motion.machine.links[link].plane_of(point)
         found[link] = found.get(link, 0.0) - plane * force
     return found
+
+
+def apart(whole: Across, exerted: Mapping[str, JointForce], shape: tuple[int, ...]) -> Across:
+    """What links do across the plane, by cause and link: arrays of a shape (5, L, N)."""
+
+    def by(cause: int, needed: Needed) -> Needed:
+        found = {}
+        for k, link in enumerate(whole.motion.machine.links):
+            found[link] = np.zeros(shape, complex)
+            found[link][cause, k] = needed.get(link, 0.0)
+        return found
+
+    parts = (whole.inertia, whole.weights, whole.loads, whole.springs, whole.outer)
+    inertia, weights, loads, springs, outer = map(by, (0, 2, 3, 4, 3), parts)
+    return Across(whole.motion, inertia, weights, loads, springs, exerted, outer)

@@ -19,7 +19,7 @@ import numpy as np
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism import kernels
-from equipoise.mechanism.across import Across, masses_across, pushes_across
+from equipoise.mechanism.across import Across, apart, masses_across, pushes_across
 from equipoise.mechanism.acting import (
     acting_loads,
     acting_springs,
@@ -322,26 +322,10 @@ def split(whole: Forces) -> Split:
         solved.racks,
         solved.belts(tension_told),
         solved.cams,
-        _across_apart(whole, solved, shape) if beside(motion.machine) else None,
+        apart(whole.across, solved.exerted, shape) if beside(motion.machine) else None,
         links,
         drive_force=pushed(solved),
     )
-
-
-def _across_apart(whole: Forces, solved: Pass, shape: tuple[int, ...]) -> Across:
-    """What links do across the plane, by cause and link."""
-    one = whole.across
-    parts = (one.inertia, one.weights, one.loads, one.springs, one.outer)
-
-    def apart(cause: int, needed: Mapping[str, Any]) -> dict[str, Array]:
-        found = {}
-        for k, link in enumerate(whole.inertia):
-            found[link] = np.zeros(shape, complex)
-            found[link][cause, k] = needed.get(link, 0.0)
-        return found
-
-    inertia, weights, loads, springs, outer = map(apart, (0, 2, 3, 4, 3), parts)
-    return Across(whole.motion, inertia, weights, loads, springs, solved.exerted, outer)
 
 
 def _causes(whole: Forces, link: str) -> list[Demand]:
