@@ -24,6 +24,7 @@ from equipoise.planting.figures import tip_figures
 from equipoise.planting.ground import GroundPath, Loop
 from equipoise.planting.shaking import shaking
 from equipoise.planting.stroke import Visit, finger_base, tray_crossings, visits, wrapped
+from equipoise.planting.twins import nearly_alike
 from equipoise.results.result import Result
 from equipoise.signals import Array, Figures, figures
 
@@ -268,6 +269,7 @@ def _machine_notes(curve: TipCurve, known: Mapping[str, float]) -> Iterator[Note
             "units",
             units_per_turn=curve.planting.units_per_turn,
         )
+    yield from nearly_alike(curve.machines[0])
     yield from _collisions(known)
 
 
