@@ -16,7 +16,7 @@ import numpy as np
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.builder import Group
-from equipoise.mechanism.cam_fits import fits_of, pressure_angle
+from equipoise.mechanism.cam_fits import pressure_angle
 from equipoise.mechanism.checks import Named, Vector, bodies_at
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import Drive, Machine, Slider
@@ -99,9 +99,10 @@ class Motion:
     @cached_property
     def pressure_angles(self) -> Mapping[str, Array]:
         """Angle (N,) of each cam, rad, from the way in which its follower rises to the normal."""
-        fits = fits_of(self.machine, self.linkage.joints)
-        found = ((fit.cam.name, self._full(pressure_angle(fit, self.state))) for fit in fits)
-        return Named("cam", found)
+        cams = self.machine.cams
+        return Named(
+            "cam", ((cam.name, self._full(pressure_angle(cam, self.state))) for cam in cams)
+        )
 
     def slider(self, slider: Slider) -> SliderMotion:
         """Motion of one of the sliding joints, likewise."""
