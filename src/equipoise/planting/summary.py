@@ -243,10 +243,8 @@ def _of_drive(curve: TipCurve) -> dict[str, float]:
 
 def _collisions(known: Mapping[str, float]) -> Iterator[Note]:
     """Links that go where they should not."""
-    for name, value in known.items():
-        body = name.rpartition(".")[0]
-        if not name.endswith(".value"):
-            continue
+    values = {name.removesuffix(".value"): known[name] for name in known if name.endswith(".value")}
+    for body, value in values.items():
         if body.startswith("clearance.soil.") and value < 0:
             link, depth = body.removeprefix("clearance.soil."), f"{-1e3 * value:.4g} mm"
             yield Note("{link} goes {depth} into the soil", link=link, depth=depth)
@@ -259,14 +257,13 @@ def _machine_notes(curve: TipCurve, known: Mapping[str, float]) -> Iterator[Note
     """What is of no arm alone."""
     if curve.forward[0, 0] == 0:
         yield Note(
-            "forward_speed is 0: there is no path over ground, and the figures of"
-            " that path are left out"
+            "forward_speed is 0: there is no path over ground, and the figures of that path are "
+            "left out"
         )
     if curve.planting.units_per_turn > 1:
         yield Note(
-            "units_per_turn is {units_per_turn}: soil loads, and clearances "
-            "without the tip, are those of the tips named, not of the other "
-            "units",
+            "units_per_turn is {units_per_turn}: soil loads, and clearances without the tip, are "
+            "those of the tips named, not of the other units",
             units_per_turn=curve.planting.units_per_turn,
         )
     yield from nearly_alike(curve.machines[0])
