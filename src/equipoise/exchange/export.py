@@ -78,7 +78,7 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
     if machine.racks and one.name in WITHOUT_RACKS:
         raise UsageError(f"racks[1]: a file of {one.title} has no rack; give another format")
     job = Job(machine, crank_angle, changes)
-    if machine.drive.pushes:
+    if machine.pushers:
         job.leave_out("what pushes the machine, and its stroke")
     data: str | bytes = import_module(f"equipoise.exchange.{one.name}").made(job)
     return job, data

@@ -18,9 +18,10 @@ import numpy as np
 from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism import groups
-from equipoise.mechanism.builder import Builder, Group, Guide, Outer
+from equipoise.mechanism.builder import Builder, Group, Outer, outer_joints
 from equipoise.mechanism.checks import MODE, MODES, meant
 from equipoise.mechanism.cycle import Cycle, close
+from equipoise.mechanism.groups import hung
 from equipoise.mechanism.joints import (
     Structure,
     drive_pivot,
@@ -69,6 +70,12 @@ class Linkage:
     shared: Shared | None = None
 
     @cached_property
+    def grounded(self) -> tuple[str, ...]:
+        """Driven links that turn about points of the frame."""
+        hung = {link for group in self.groups if group.kind == "hung" for link in group.links}
+        return tuple(one.link for one in self.machine.driven if one.link not in hung)
+
+    @cached_property
     def motion(self) -> tuple[Step, ...]:
         """Steps from the drive's rotation to that of every link."""
         return tuple(step for group in self.groups for step in group.motion)
@@ -89,7 +96,7 @@ class Linkage:
         """Every joint, the pins of the drives first."""
         if self.shared is not None:
             return self.shared.reactions
-        drives = (pin_reaction(self.anchors[d.link], d.link, FRAME) for d in self.machine.driven)
+        drives = (pin_reaction(self.anchors[link], link, FRAME) for link in self.grounded)
         return (*drives, *(reaction for group in self.groups for reaction in group.reactions))
 
     @cached_property
@@ -213,8 +220,12 @@ def _grouped(
     if mode not in MODES:
         mode = MODES[0] if joints.mobility < 1 else None
     drives = {machine.drive.link: drive_pivot(joints, machine.drive.link)}
+    pushed = []
     for number, one in enumerate(machine.drives, 1):
-        drives[one.link] = drive_pivot(joints, one.link, f"drives[{number}].link")
+        if one.pushes and not joints.pins_between(FRAME, one.link):
+            pushed.append(one.link)
+        else:
+            drives[one.link] = drive_pivot(joints, one.link, f"drives[{number}].link")
     points, running = set(machine.frame), {FRAME, *drives}
     builder = Builder(machine, points=points, running=running, told=start, mode=mode)
     surplus: frozenset[str] = frozenset()
@@ -227,9 +238,12 @@ def _grouped(
     while unknown:
         try:
             ready = [
-                link for link in unknown if link not in surplus or _held(builder, joints, link)
+                link
+                for link in unknown
+                if link not in pushed and (link not in surplus or _held(builder, joints, link))
             ]
-            group = next_group(builder, joints, ready)
+            waiting = [link for link in pushed if link in unknown]
+            group = hung(builder, joints, waiting) or next_group(builder, joints, ready)
         except ModelError:
             if choices:  # sides come first: on a wrong one what hangs on it cannot be right
                 raise sides.missing(machine, choices) from None
@@ -331,18 +345,3 @@ def _dyad(builder: Builder, joints: Structure, first: Outer, second: Outer) -> G
     build: Any = getattr(groups, kinds.lower())
     group: Group = build(builder, first, second, pins[0] if pins else slides[0])
     return group
-
-
-def outer_joints(builder: Builder, joints: Structure, link: str) -> list[Outer]:
-    """Joints of an unknown link to known bodies."""
-    result = []
-    for point in builder.machine.links[link].points:
-        known = [body for body in joints.pins.get(point, ()) if body in builder.rank]
-        if known:
-            result.append(Outer(link, builder.carrier_of(known), point))
-    for slider in joints.sliders:
-        other = slider.on if slider.link == link else slider.link
-        if link in (slider.link, slider.on) and other in builder.rank:
-            guide = Guide.seen_from(slider, other)
-            result.append(Outer(link, other, guide.base, guide))
-    return result

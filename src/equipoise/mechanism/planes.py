@@ -46,7 +46,7 @@ def moments_across(link: Link, point: str | None = None) -> tuple[Any, Any]:
 
 def wrong_planes(machine: Mechanism) -> Iterator[ModelError]:
     """Everything that is wrong with planes of pins and with bearings."""
-    if machine.drive.pushes and beside(machine):
+    if machine.pushers and beside(machine):
         yield ModelError(
             "drive",
             Note(
