@@ -110,6 +110,8 @@ def acting_on_links(subject: Subject) -> dict[str, Array]:
 @every_subject
 def test_totals_and_what_each_link_carries(name: str) -> float:
     """Each link gets just what MuJoCo asks for it, weight included."""
+    if name.startswith("crossed_yokes"):
+        pytest.skip("no file of MuJoCo has a loop of sliders alone")
     return carried(subject_of(name))
 
 

@@ -17,6 +17,7 @@ import equipoise as eq
 from equipoise.errors import ChangePointError, ModelError, MotionError, RangeError
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.planes import beside
 
 Array = np.ndarray[Any, Any]
 Plain = dict[str, Any]
@@ -46,6 +47,8 @@ def plain_of(machine: Machine) -> Plain:
                 "mass": link.mass,
                 "center": None if link.center_of_mass is None else list(link.center_of_mass),
                 "inertia": link.inertia,
+                "plane": link.plane,
+                "planes": dict(link.planes),
             }
             for name, link in machine.links.items()
         },
@@ -58,9 +61,14 @@ def plain_of(machine: Machine) -> Plain:
             {"angle": r.angle, "travel": r.travel, "pressure_angle": r.pressure_angle}
             for r in machine.racks
         ],
+        "cams": [
+            {"base_radius": c.base_radius, "roller_radius": c.roller_radius, "normal": c.normal}
+            for c in machine.cams
+        ],
         "springs": [
             {"stiffness": s.stiffness, "free_length": s.free_length} for s in machine.springs
         ],
+        "bearings": {name: {"plane": one.plane} for name, one in machine.bearings.items()},
         "polar": {},
     }
 
@@ -71,16 +79,19 @@ def machine_of(base: Machine, plain: Plain) -> Machine:
     for name, link in plain["links"].items():
         center = None if link["center"] is None else tuple(link["center"])
         points = {point: tuple(place) for point, place in link["points"].items()}
-        own = base.links[name]
         links[name] = eq.Link(
-            points, link["mass"], center, link["inertia"], plane=own.plane, planes=own.planes
+            points,
+            link["mass"],
+            center,
+            link["inertia"],
+            **{k: link[k] for k in ("plane", "planes")},
         )
     listed = {
         key: tuple(
             replace(value, **changes)
             for value, changes in zip(getattr(base, key), plain[key], strict=True)
         )
-        for key in ("sliders", "gears", "belts", "racks", "springs")
+        for key in ("sliders", "gears", "belts", "racks", "cams", "springs")
     }
     return Machine(
         title=base.title,
@@ -91,7 +102,9 @@ def machine_of(base: Machine, plain: Plain) -> Machine:
         assembly=dict(base.assembly),
         position=base.position,
         loads=base.loads,
-        bearings=base.bearings,
+        bearings={
+            name: replace(one, **plain["bearings"][name]) for name, one in base.bearings.items()
+        },
         gravity=tuple(plain["gravity"]),
         **listed,
     )
@@ -132,6 +145,7 @@ def numbers_of(machine: Machine, share: float = 0.01, polar: bool = False) -> li
     return [
         *_places(machine, share, polar),
         *_of_links(machine),
+        *(_across(machine) if beside(machine) else ()),
         *_of_drive(machine),
         *_listed(machine),
     ]
@@ -227,6 +241,18 @@ def _of_links(machine: Machine) -> Iterator[Number]:
                 yield Number(f"links.{name}.{key}", value, put, _times(value))
 
 
+def _across(machine: Machine) -> Iterator[Number]:
+    spread = size_of(machine)
+    for name, link in machine.links.items():
+        ways = {("plane",): link.plane, **{("planes", k): z for k, z in link.planes.items()}}
+        for keys, z in ways.items():
+            path = ".".join(("links", name, *keys))
+            yield Number(path, z, _putter("links", name, *keys), _near(z, spread))
+    for name, one in machine.bearings.items():
+        put = _putter("bearings", name, "plane")
+        yield Number(f"bearings.{name}.plane", one.plane, put, _near(one.plane, spread / 5))
+
+
 def _of_drive(machine: Machine) -> Iterator[Number]:
     speed, acceleration = machine.drive.speed, machine.drive.acceleration
     scaled = _times(speed or 10.0)
@@ -261,6 +287,12 @@ def _listed(machine: Machine) -> Iterator[Number]:
         key = "travel" if rack.drives == "pinion" else "angle"
         yield number("racks", k, key, _near(getattr(rack, key), 0.3))
         yield number("racks", k, "pressure_angle", lambda rng: float(rng.uniform(0, 0.5)))
+    for k, cam in enumerate(machine.cams):
+        yield number("cams", k, "base_radius", _times(cam.base_radius))
+        if cam.rides == "roller":
+            yield number("cams", k, "roller_radius", _times(cam.roller_radius))
+        if cam.normal is not None:
+            yield number("cams", k, "normal", _near(cam.normal, 0.1))
     for k, spring in enumerate(machine.springs):
         yield number("springs", k, "stiffness", _times(spring.stiffness))
         yield number("springs", k, "free_length", _times(spring.free_length))

@@ -24,16 +24,16 @@ def _shape(rng: np.random.Generator, lobes: int, ratio: float) -> GearShape:
     if kind == "table":
         values = 1 + rng.uniform(-0.1, 0.1, 6) / lobes
         shape = GearShape("ratio", lobes=lobes, phase=phase, angle=angles, ratio=tuple(values))
-        factor = abs(law_of(shape, ratio).rate.factor)
+        factor = abs(law_of(shape, ratio).factor)
         return replace(shape, ratio=tuple(values * factor))
     kind = "ratio" if kind == "ratio" else "radius"
     return GearShape(kind, cosines=waves[0], sines=waves[1], lobes=lobes, phase=phase)
 
 
 def _rolling(rng: np.random.Generator, driver: str, driven: str, carrier: str = FRAME) -> Gear:
-    """Draw a pair of few lobes."""
-    lobes, others = int(rng.integers(1, 3)), int(rng.integers(1, 3))
-    ratio = Fraction(-lobes, others)
+    """Draw a pair of few lobes, of which either may be a ring about the other."""
+    lobes, others = int(rng.integers(1, 3)), int(rng.integers(1, 4))
+    ratio = Fraction(lobes, others) * (1 if lobes != others and rng.random() < 0.5 else -1)
     gear = Gear(
         driver, driven, ratio=float(ratio), carrier=carrier, start=float(rng.uniform(-3, 3)),
         pressure_angle=float(rng.choice([0.0, np.radians(20)])),

@@ -310,7 +310,7 @@ REFUSED = {
             "--objective: got '100'; the unit is missing; give an angular speed, such"
         ),
         "four-row-transplanter --limit 'joints.B <= 5 N'": (
-            "no phase changes the force in a joint; leave its limit out"
+            "no phase changes a force inside of a row; leave its limit out"
         ),
         "conditions yamashita-1 --crank-counterweight": "Unknown option: --crank-counterweight.",
     },

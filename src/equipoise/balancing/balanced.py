@@ -283,7 +283,7 @@ def proved_of(found: Solution) -> Iterator[Note]:
     if any(part.stopped(own) for part, own in problem.with_numbers(found.numbers)):
         yield Note("within where it was stopped")
     if problem.flips:
-        yield Note("for the flanks of gears in contact here")
+        yield Note("for the flanks of teeth and strands of chains that bear here")
     if any(geared_range(geared) for geared in problem.plan.geared):
         yield Note("for each of the gears tried")
 

@@ -25,7 +25,6 @@ from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.parameters import (
     parameter_values,
     parameters_of,
-    spring_columns,
     spring_units,
 )
 from equipoise.mechanism.springs import Spring
@@ -259,18 +258,6 @@ class FreeSpring(DesignVariables):
             "points, where its free length was stopped; give it free_length",
             link=self.link,
         )
-
-    def columns(self, motion: Motion, output: str) -> Array:
-        """Effect (2, N) on what the drive exerts or on the force in a joint or mesh."""
-        choice = self.choice
-        effort, joints = spring_columns(motion, choice.link, choice.point, choice.to)
-        found = (
-            effort
-            if output == motion.machine.drive.effort
-            else joints[output.removeprefix("joints.")]
-        )
-        units = self._units * np.array([1.0, -1.0])  # the pull is towards the frame's point
-        return np.asarray(found * units[:, None])
 
     def pulls(self, motion: Motion) -> Array:
         """Force (2, N) on the link's point, of a unit of each number."""

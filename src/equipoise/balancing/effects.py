@@ -6,6 +6,7 @@ real, or complex where it is a vector in the plane.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -16,13 +17,23 @@ from equipoise.balancing.design_variables import DesignVariables, FreeSpring, Li
 from equipoise.errors import UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.across import Across
+from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics import Forces, demand_of_inertia, forces, place_of
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.objectives import balanced_names
 from equipoise.mechanism.outputs import Declared, Found, matches
-from equipoise.mechanism.reactions import JointForce, Pass, VectorSignal, reactions
+from equipoise.mechanism.reactions import (
+    BeltForce,
+    CamForce,
+    JointForce,
+    MeshForce,
+    Pass,
+    VectorSignal,
+    demands_of,
+    reactions,
+)
 from equipoise.mechanism.undecided import refuse_unbounded
 from equipoise.signals import Array
 
@@ -177,7 +188,18 @@ class Effects:
                 demands[part.link], self.inertia, self.weight, strict=True
             ):
                 whole[rows] = one[rows] + other[rows]
+        for spring, rows in self.springs:
+            held = [(spring.link, spring.choice.point, spring.pulls(self.motion), 0.0)]
+            for whole, one in zip(
+                demands[spring.link], demands_of(self.motion, held)[spring.link], strict=True
+            ):
+                whole[rows] = one
         return reactions(self.motion, demands, self.flanks)
+
+    @cached_property
+    def present(self) -> Pass:
+        """The run over the joints as they are, with teeth on the flanks that count."""
+        return self.start.solved_like(self.flanks)
 
     @cached_property
     def flanks(self) -> Pass:
@@ -189,13 +211,6 @@ class Effects:
     def full(self, columns: Array) -> Array:
         """Columns (K, N), also where the output is the same at every crank angle."""
         return np.broadcast_to(columns, (self.count, len(self.motion.crank_angle)))
-
-    def with_springs(self, columns: Array, output: str) -> Array:
-        """Columns (K, N) of masses, with those of springs beside them."""
-        full = np.array(self.full(columns))
-        for spring, rows in self.springs:
-            full[rows] = spring.columns(self.motion, output)
-        return full
 
     @cached_property
     def across(self) -> Across:
@@ -211,9 +226,7 @@ class Effects:
         for spring, rows in self.springs:
             plane = links[spring.link].plane_of(spring.choice.point)
             springs[spring.link][rows] = -plane * spring.pulls(self.motion)
-        exerted = _JointsOfUnit(self)
-        named = {name: exerted[name] for name in self.solved.exerted}
-        return Across(self.motion, inertia, weights, {}, springs, named)
+        return Across(self.motion, inertia, weights, {}, springs, self.solved.exerted)
 
     def moment(self, demands: Demand, about: complex) -> Array:
         """Moment on the frame (K, N) of demands."""
@@ -225,14 +238,65 @@ class Effects:
 
 
 @dataclass(frozen=True)
-class Present:
-    """Forces of the machine from which the numbers count, as outputs are read of them.
+class Solved(ABC):
+    """Forces of joints and couplings, and of the drive, as outputs are read of them.
 
     about : point about which moments are taken, m.
     """
 
     effects: Effects
     about: complex
+
+    @property
+    @abstractmethod
+    def solved(self) -> Pass: ...
+
+    @property
+    def drive_torque(self) -> Array:
+        return self.solved.drive_torque
+
+    @property
+    def drives(self) -> Mapping[str, Array]:
+        return self.solved.drives
+
+    @property
+    def drive_force(self) -> Array:
+        return self.solved.drive_force
+
+    @property
+    def joints(self) -> Mapping[str, JointForce]:
+        return self.solved.joints
+
+    @property
+    def gears(self) -> Mapping[str, MeshForce]:
+        return self.solved.gears
+
+    @property
+    def racks(self) -> Mapping[str, MeshForce]:
+        return self.solved.racks
+
+    @property
+    def belts(self) -> Mapping[str, BeltForce]:
+        return self.solved.belts(self.tension)
+
+    @property
+    def cams(self) -> Mapping[str, CamForce]:
+        return self.solved.cams
+
+    def tension(self, belt: Belt) -> float:
+        """What both strands of a belt have anyway."""
+        return 0.0
+
+
+class Present(Solved):
+    """Of the machine from which the numbers count."""
+
+    @property
+    def solved(self) -> Pass:
+        return self.effects.present
+
+    def tension(self, belt: Belt) -> float:
+        return belt.tension or 0.0
 
     @property
     def shaking_force(self) -> VectorSignal:
@@ -253,41 +317,16 @@ class Present:
         return np.asarray(start.frame_moment + shift)
 
     @property
-    def drive_torque(self) -> Array:
-        return self.effects.start.drive_torque
-
-    @property
-    def drives(self) -> Mapping[str, Array]:
-        return self.effects.start.drives
-
-    @property
-    def drive_force(self) -> Array:
-        return self.effects.start.drive_force
-
-    @property
-    def joints(self) -> Mapping[str, JointForce]:
-        return self.solved.joints
-
-    @property
-    def cams(self) -> Mapping[str, JointForce]:
-        return self.solved.cams
-
-    @property
-    def solved(self) -> Pass:
-        """The run over the joints, with teeth on the flanks that count."""
-        return self.effects.start.solved_like(self.effects.flanks)
-
-    @property
     def across(self) -> Across:
         return replace(self.effects.start.across, exerted=self.solved.exerted)
 
 
-@dataclass(frozen=True)
-class Unit:
-    """The same of a unit of each number; arrays (K, N)."""
+class Unit(Solved):
+    """Of a unit of each number; arrays (K, N)."""
 
-    effects: Effects
-    about: complex
+    @property
+    def solved(self) -> Pass:
+        return self.effects.solved
 
     @property
     def shaking_force(self) -> VectorSignal:
@@ -307,41 +346,5 @@ class Unit:
         return np.asarray(self.shaking_moment + weight)
 
     @property
-    def drive_torque(self) -> Array:
-        return self.effects.with_springs(self.effects.solved.drive_torque, "drive_torque")
-
-    @property
-    def drives(self) -> Mapping[str, Array]:
-        found = self.effects.solved.drives.items()
-        return {
-            link: self.effects.with_springs(torque, f"drives.{link}.torque")
-            for link, torque in found
-        }
-
-    @property
-    def drive_force(self) -> Array:
-        return self.effects.with_springs(self.effects.solved.drive_force, "drive_force")
-
-    @property
-    def joints(self) -> Mapping[str, JointForce]:
-        return _JointsOfUnit(self.effects)
-
-    @property
-    def cams(self) -> Mapping[str, JointForce]:
-        return _JointsOfUnit(self.effects)
-
-    @property
     def across(self) -> Across:
         return self.effects.across
-
-
-class _JointsOfUnit(dict[str, JointForce]):
-    """Forces of joints and cams (K, N) of a unit of each number, each made when it is asked for."""
-
-    def __init__(self, effects: Effects) -> None:
-        super().__init__()
-        self.effects = effects
-
-    def __missing__(self, name: str) -> JointForce:
-        joint = self.effects.solved.exerted[name]
-        return replace(joint, value=self.effects.with_springs(joint.value, f"joints.{name}"))

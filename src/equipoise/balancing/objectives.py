@@ -22,7 +22,7 @@ from equipoise.errors import ModelError
 from equipoise.mechanism.balance import Measure, Objective
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of, quantity_of
+from equipoise.mechanism.objectives import GAUGES, OF_ROWS, WITHIN, output_of, quantity_of
 from equipoise.mechanism.parameters import parameter_values
 from equipoise.mechanism.planes import beside
 from equipoise.mechanism.support import Row
@@ -57,7 +57,7 @@ def signals_of(effects: Effects, objective: Objective, near: Near) -> list[Signa
     output, machine = objective.output, effects.machine
     if output.startswith(GAUGES):
         found = _gauge_signals(effects, objective, near)
-    elif output in OF_ROWS or (len(machine.rows) > 1 and not output.startswith(JOINTS)):
+    elif output in OF_ROWS or (len(machine.rows) > 1 and not output.startswith(WITHIN)):
         found = [of_all_rows(effects, output, objective.about)]
     else:
         found = [effects.signal(output, objective.about)]

@@ -29,7 +29,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.objectives import JOINTS
+from equipoise.mechanism.objectives import WITHIN
 from equipoise.signals import Array
 from equipoise.vibration.forced import check_moving
 
@@ -209,12 +209,12 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
     told = progress or (lambda done, most: None)
     linkage, solution = replace(plan, phases=None), None
     scope: tuple[Note, ...] = ()
-    limits = tuple(one for one in plan.limits if not one.objective.output.startswith(JOINTS))
+    limits = tuple(one for one in plan.limits if not one.objective.output.startswith(WITHIN))
     search = PhaseSearch(machine, plan.objectives, plan.phases, plan.combine, limits)
     method = Note("branch and bound over all phases of the rows")
     if linkage.changes_nothing:
         if len(limits) < len(plan.limits):
-            raise UsageError(Note("no phase changes the force in a joint; leave its limit out"))
+            raise UsageError(Note("no phase changes a force inside of a row; leave its limit out"))
         phasing = choose_phases(
             machine, plan.objectives, plan.phases, plan.combine, progress, limits
         )

@@ -23,6 +23,7 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.objectives import WITHIN
 from equipoise.signals import Array
 
 WITHOUT_EFFECT = 1e-9
@@ -83,10 +84,12 @@ class Problem:
 
     @property
     def flips(self) -> bool:
-        """Whether joints count in which it matters on which flank gears are in contact."""
-        return bool(self.start.couplings) and any(
-            o.output.startswith("joints.") for o in self.asked
-        )
+        """Whether forces count in which it matters on which flank gears are in contact, or which
+        strand of a chain pulls.
+        """
+        chains = any(belt.tension is None for belt in self.start.belts)
+        may = bool(self.start.gears or self.start.racks or chains)
+        return may and any(one.output.startswith(WITHIN) for one in self.asked)
 
     @cached_property
     def supports_more(self) -> bool:

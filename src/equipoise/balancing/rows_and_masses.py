@@ -32,7 +32,7 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.objectives import GAUGES, JOINTS
+from equipoise.mechanism.objectives import GAUGES, WITHIN
 from equipoise.signals import Array, Periodic
 
 CLOSE = 1e-3
@@ -214,7 +214,7 @@ class Together:
         limits = [one.objective for one in self.problem.plan.limits]
         return [
             *self.problem.plan.objectives,
-            *(o for o in limits if not o.output.startswith(JOINTS)),
+            *(o for o in limits if not o.output.startswith(WITHIN)),
         ]
 
     def _amplitudes(self, near: Machine) -> list[Array]:

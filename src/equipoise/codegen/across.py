@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from equipoise.codegen.source import Read, Sheet
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.planes import moments_across
+from equipoise.mechanism.statics import contacts, statics
 
 
 def write_across(
@@ -23,8 +24,7 @@ def write_across(
     loads, springs : identifiers of the force that holds each, of springs at each end on a link.
     """
     machine = linkage.machine
-    links = machine.links
-    needed: dict[str, list[str]] = {link: [] for link in links}
+    needed: dict[str, list[str]] = {link: [] for link in machine.links}
     for link, terms in needed.items():
         _, p1, p2, turn, w, a = body(link)
         own = [
@@ -42,11 +42,11 @@ def write_across(
             terms.append(sheet.name(force))
     sheet.put("rocking moment", _about(terms[0] for terms in needed.values()))
     for force, load in zip(loads, machine.loads, strict=True):
-        needed[load.link].append(f"{links[load.link].plane_of(load.point)!r} * {force}")
+        needed[load.link].append(f"{_plane(sheet, load.link, load.point)} * {force}")
     sheet.put("frame rocking moment", _about(term for terms in needed.values() for term in terms))
     ends = (end for spring in machine.springs for end in spring.ends)
     for force, (link, point) in zip(springs, ends, strict=True):
-        needed[link].append(f"{links[link].plane_of(point)!r} * {force}")
+        needed[link].append(f"{_plane(sheet, link, point)} * {force}")
     for link, terms in needed.items():
         sheet.put(f"Q({link})", " + ".join(terms))
 
@@ -54,6 +54,42 @@ def write_across(
 def _about(terms: Iterable[str]) -> str:
     """Moment on the frame about x and y."""
     return f"-1j * ({' + '.join(terms)})"
+
+
+def _plane(sheet: Sheet, link: str, point: str | None) -> str:
+    what = f"plane({link}/{point})"
+    return sheet.slot(what, lambda found: found.machine.links[link].plane_of(point))
+
+
+def write_bearing(
+    sheet: Sheet, linkage: Linkage, bearing: str, exerted: Callable[[str], str]
+) -> str:
+    """The force of a bearing: both of a link bear what its pin in the frame does, with its couple.
+
+    exerted : expression of the force in a joint or mesh, by name.
+    """
+    given = linkage.machine.bearings
+    held = [name for name in given if given[name].link == given[bearing].link]
+    first = held.index(bearing)
+    own, other = (_bearing_plane(sheet, held[k]) for k in (first, 1 - first))
+    solved = statics(linkage)
+    number, pin = solved.pin_of(given[bearing].link)
+    needed, by_plane = solved.factors(number)
+    terms = [f"{factor!r} * {sheet.name(f'Q({link})')}" for link, factor in needed.items()]
+    for place, one in enumerate(solved.contacts):
+        factor = by_plane.get(one.name, 0.0) + (one.name == pin.name)
+        if factor:
+            terms.append(f"{factor!r} * {_joint_plane(sheet, place)} * {exerted(one.name)}")
+    terms.append(f"-{other} * {exerted(pin.name)}")
+    return f"(({' + '.join(terms)}) * (1 / ({own} - {other})))"
+
+
+def _bearing_plane(sheet: Sheet, name: str) -> str:
+    return sheet.slot(f"plane of {name}", lambda found: found.machine.bearings[name].plane)
+
+
+def _joint_plane(sheet: Sheet, place: int) -> str:
+    return sheet.slot(f"plane of joint {place}", lambda found: contacts(found)[place].plane)
 
 
 def _moment(linkage: Linkage, link: str, place: int) -> Read:

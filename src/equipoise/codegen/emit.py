@@ -8,8 +8,10 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from equipoise.codegen.across import write_bearing
 from equipoise.codegen.coupled import can_write_couplings, shifts_laws
 from equipoise.codegen.figures import Figure, Gathered
+from equipoise.codegen.followers import can_write_followers
 from equipoise.codegen.lines import write_demands, write_joints, write_motion
 from equipoise.codegen.loops import can_write
 from equipoise.codegen.source import Source, source_of
@@ -23,11 +25,12 @@ from equipoise.mechanism.newton import LoopGroup
 from equipoise.mechanism.outputs import DECLARED, Declared, declared
 from equipoise.mechanism.parts import JOINTS
 from equipoise.mechanism.planes import beside
-from equipoise.mechanism.statics import statics
 
 _LOOKED_UP = re.compile(r"\{([^}:]+)(:name)?\}")
 """Values in the expression of an output: of the machine, or of the member of a family."""
 ORDERS = {"position": 0, "velocity": 1, "acceleration": 2}
+OF_CAMS = {"cam push": "T({})", "cam forth": "forth({})", "cam normal": "normal({})"}
+"""Values of a state that tell of a cam."""
 TURNING = {"angular velocity": 1, "angular acceleration": 2}
 """How often a position, or an angle, is differentiated by time."""
 
@@ -74,7 +77,10 @@ def _identified(writer: Writer, looked_up: re.Match[str], item: str) -> str:
     if not of_member:
         return writer.rate(value) if value in ("speed", "acceleration") else writer.name(value)
     if value == "bearing force":
-        return _bearing(writer, item)
+        if item not in writer.machine.bearings:
+            raise _Missing
+        force = lambda name: _reaction(writer, name, "joint force")  # noqa: E731
+        return write_bearing(writer.sheet, writer.linkage, item, force)
     if value in ORDERS:
         return _in_time(writer, _point(writer, item), ORDERS[value])
     if value == "drive torque" and item in [drive.link for drive in writer.machine.driven]:
@@ -91,6 +97,8 @@ def _reaction(writer: Writer, item: str, value: str) -> str:
     reaction = dict(writer.linkage.named_reactions).get(item)
     if reaction is None:
         raise _Missing
+    if value in OF_CAMS:
+        return writer.name(OF_CAMS[value].format(item))
     order = writer.linkage.joints.bodies.index
     told = reaction.kind not in JOINTS or order(reaction.on) > order(reaction.by)
     sign = 1.0 if told else -1.0
@@ -103,20 +111,6 @@ def _reaction(writer: Writer, item: str, value: str) -> str:
     to, *_ = writer.point(slider.link, slider.point)
     at = writer.name(f"p({reaction.at})")
     return f"{sign} * {writer.name(reaction.couple)} + cross({at} - {to}, {force})"
-
-
-def _bearing(writer: Writer, item: str) -> str:
-    """Both bearings of a link bear what its pin in the frame does, with the pin's couple."""
-    given = writer.machine.bearings
-    if item not in given:
-        raise _Missing
-    found, own = statics(writer.linkage), given[item]
-    pin, needed, exerted = found.pin_of(own.link)
-    other = sum(one.plane for one in given.values() if one.link == own.link) - own.plane
-    exerted = {**exerted, pin.name: exerted.get(pin.name, 0.0) + pin.plane - other}
-    terms = [f"{factor!r} * {writer.name(f'Q({link})')}" for link, factor in needed.items()]
-    terms += [f"{f!r} * {_reaction(writer, name, 'joint force')}" for name, f in exerted.items()]
-    return f"({1 / (own.plane - other)!r} * ({' + '.join(terms)}))"
 
 
 def _point(writer: Writer, name: str) -> list[str]:
@@ -144,13 +138,13 @@ def can_emit(linkage: Linkage) -> bool:
     couplings at angles that designs change, no drive that pushes, and no joints whose forces only
     all free bodies together tell.
     """
-    if linkage.shared is not None or linkage.machine.pushers or linkage.machine.cams:
+    if linkage.shared is not None or linkage.machine.pushers:
         return False
     machine = linkage.machine
     if machine.planting is not None and machine.planting.soil is not None:
         return False
     loops = [step for step in linkage.motion if isinstance(step, LoopGroup)]
-    if not can_write_couplings(linkage):
+    if not (can_write_couplings(linkage) and can_write_followers(linkage)):
         return False
     return all(map(can_write, loops)) and not (loops and machine.couplings)
 
@@ -173,7 +167,7 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]
     if any(one.is_of_row for one in wanted):
         write_demands(writer)
-    passed = ["{joint ", "{bearing "]
+    passed = ["{joint ", "{bearing ", "{cam push"]
     passed += [] if linkage.machine.has_crank else ["{drive torque"]
     if any(value in (one.loop or "") for one in wanted for value in passed):
         if any(isinstance(step, LoopGroup) for step in linkage.motion):

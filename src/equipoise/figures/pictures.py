@@ -56,10 +56,10 @@ def pictures_of(result: Any) -> Pictures:
 def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> Pictures:
     """Every picture of an analysis by name, which also does for a file.
 
-    ``linkage``; ``curves`` and ``hodograph`` where points move; ``centrodes`` where links
-    roll; where masses are known ``polar``, ``force``, ``moment``, ``torque``, ``joints`` and
-    ``joint-polars``, with ``joints-2`` and so on where there are many; ``spectrum`` where the
-    crank angles are those of a whole cycle, at least 90 in a turn.
+    ``linkage``; ``side`` where links lie beside each other; ``curves`` and ``hodograph`` where
+    points move; ``centrodes`` where links roll; where masses are known ``polar``, ``force``,
+    ``moment``, ``torque``, ``joints`` and ``joint-polars``, with ``joints-2`` and so on where there
+    are many; ``spectrum`` where the crank angles are those of a whole cycle, at least 90 in a turn.
 
     Of a single crank angle there is the linkage alone.
 
@@ -68,8 +68,12 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
     from equipoise.figures import forces, points
     from equipoise.figures.analysis import joint_polars, joints
     from equipoise.figures.linkage import centrodes, linkage, rolling
+    from equipoise.figures.side import side
+    from equipoise.mechanism.planes import beside
 
     found: Pictures = {"linkage": linkage(analysis, at)}
+    if beside(analysis.machine):
+        found["side"] = side(analysis, at)
     if len(analysis.crank_angle) < 2:
         return found
     if points.moving(analysis.motion):

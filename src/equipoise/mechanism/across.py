@@ -86,7 +86,7 @@ class Across:
         for name, bearing in given.items():
             both = {at: one.plane for at, one in given.items() if one.link == bearing.link}
             other = sum(both.values()) - bearing.plane
-            pin, *_ = self.statics.pin_of(bearing.link)
+            _, pin = self.statics.pin_of(bearing.link)
             if pin.name not in self._couples:
                 continue
             force = self.exerted[pin.name]

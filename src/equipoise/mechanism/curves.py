@@ -15,6 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.mechanism.curve_kernels import piece_value
+
 Array = np.ndarray[Any, Any]
 
 MOST_POWERS = 8
@@ -51,14 +53,22 @@ class Curve:
 
     def at(self, x: Any) -> tuple[Array, Array, Array]:
         """y and its two derivatives by x, each as `x` (...)."""
+        rounds, piece, way = self.place(x)
+        amplitude, rate, phase = self.waves[piece].T.reshape(3, *np.shape(way))
+        turned = rate * way + phase
+        powers = self.powers[piece].T.reshape(MOST_POWERS, *np.shape(way))
+        wave = amplitude, rate, np.cos(turned), np.sin(turned)
+        y, y1, y2 = piece_value(way, *powers, *wave)  # type: ignore[call-arg,no-untyped-call]
+        return y + self.rise * rounds, y1, y2
+
+    def place(self, x: Any) -> tuple[Array, Array, Array]:
+        """Rounds before x, and of what is left the piece and the way into it, as `x` (...)."""
         x = np.asarray(x, dtype=float)
         near = ROUNDING * self.length
         rounds = np.floor((x + near) / self.length)
         since = x - rounds * self.length
         piece = np.searchsorted(self.knots[1:-1], since + near, side="right")
-        way = since - self.knots[piece]
-        y, y1, y2 = (self._value(piece, way, order) for order in range(3))
-        return y + self.rise * rounds, y1, y2
+        return rounds, piece, since - self.knots[piece]
 
     def jumps(self, order: int) -> Array:
         """Where within the length the derivative of this order jumps, rising (J,)."""
@@ -98,19 +108,39 @@ class Curve:
         pieces = np.arange(len(self.powers))
         sides = (np.zeros(len(pieces)), self._widths)
         return np.array(
-            [[self._value(pieces, way, order) for way in sides] for order in range(ORDERS)]
+            [[self.value(pieces, way, order) for way in sides] for order in range(ORDERS)]
         )
 
-    def _value(self, piece: Array, way: Array, order: int) -> Array:
+    def value(self, piece: Array, way: Array, order: int) -> Array:
         """Derivative of an order, at ways into pieces."""
         value = np.zeros(np.shape(way))
-        for power in range(MOST_POWERS - 1, order - 1, -1):
+        for power in range(self._degree, order - 1, -1):
             factor = factorial(power) / factorial(power - order)
             value = value * way + factor * self.powers[piece, power]
-        amplitude, rate, phase = self.waves[piece].T.reshape(3, *np.shape(way))
+        if not self._waved:
+            return value
+        amplitude, rate, phase = np.moveaxis(self.waves[piece], -1, 0)
         turned = rate * way + phase + order * (pi / 2)
         wave: Array = value + amplitude * rate**order * np.sin(turned)
         return wave
+
+    @cached_property
+    def _degree(self) -> int:
+        """Highest power that any piece has."""
+        return int(np.max(np.flatnonzero(np.any(self.powers, axis=0)), initial=0))
+
+    @cached_property
+    def _waved(self) -> bool:
+        return bool(np.any(self.waves[:, 0]))
+
+    def summed(self) -> Curve:
+        """What a curve of polynomials sums up to, from 0 on."""
+        powers = np.zeros_like(self.powers)
+        powers[:, 1:] = self.powers[:, :-1] / np.arange(1, MOST_POWERS)
+        pieces = Curve(self.knots, powers, self.waves)
+        ends = pieces.value(np.arange(len(powers)), self._widths, 0)
+        powers[1:, 0] = np.cumsum(ends[:-1])
+        return Curve(self.knots, powers, self.waves)
 
     def stretched(self, length: float, rise: float) -> Curve:
         """The same curve over another length, and higher by a factor."""
@@ -126,6 +156,39 @@ class Curve:
         powers = self.powers.copy()
         powers[:, 0] += by
         return Curve(self.knots, powers, self.waves)
+
+
+@dataclass(frozen=True, eq=False)
+class Curves:
+    """Curves of the same knots, one for each row of what they are asked at, (..., P, N).
+
+    one : tells the knots.  every : pieces of all, one curve after the other.
+    begins, rises : (P, 1) first piece of each in `every`, and its rise.
+    """
+
+    one: Curve
+    every: Curve
+    begins: Array
+    rises: Array
+
+    @classmethod
+    def of(cls, curves: Sequence[Curve]) -> Curves:
+        """Raises a `ValueError` where their knots differ."""
+        one = curves[0]
+        if any(not np.array_equal(other.knots, one.knots) for other in curves):
+            raise ValueError
+        powers, waves = (
+            np.concatenate([getattr(c, n) for c in curves]) for n in ("powers", "waves")
+        )
+        begins = len(one.powers) * np.arange(len(curves))
+        rises = np.array([other.rise for other in curves])
+        return cls(one, Curve(one.knots, powers, waves), begins[:, None], rises[:, None])
+
+    def at(self, x: Any) -> tuple[Array, Array, Array]:
+        """y and its two derivatives by x, each as `x`."""
+        rounds, piece, way = self.one.place(x)
+        y, y1, y2 = (self.every.value(piece + self.begins, way, order) for order in range(3))
+        return y + self.rises * rounds, y1, y2
 
 
 def joined(curves: Sequence[Curve]) -> Curve:

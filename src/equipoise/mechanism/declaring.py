@@ -131,12 +131,8 @@ class Declared:
 
     @property
     def is_split(self) -> bool:
-        """Whether it can be told by cause and by link: it is linear, and a force of one row.
-
-        Couplings are too, on the flank or the strand that the whole load decides.
-        """
-        decided = self.group == "belts" or self.name in ("gears.{}", "racks.{}")
-        return self.is_of_row and (not self.reason or decided)
+        """Whether it can be told by cause and by link: it is linear, and a force of one row."""
+        return self.is_of_row and not self.reason
 
     @property
     def is_of_row(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from fractions import Fraction
 from math import dist
 from typing import Any, ClassVar, Literal
@@ -168,6 +169,16 @@ def _wrong_shape(where: str, shape: GearShape, gear: Gear, bodies: Bodies) -> It
         problems = [*wrong_curve(shape, gear, _distance(gear, bodies))]
     for name, told in problems:
         yield ModelError(f"{where}.{name}".rstrip("."), told)
+
+
+def closed(gear: Gear, bodies: Bodies) -> Gear:
+    """The pair with the table of its shape, if it has one, scaled so that the curves close."""
+    if gear.shape is None or not gear.shape.angle:
+        return gear
+    from equipoise.mechanism.pitch_curves import closed_table
+
+    shape = closed_table(gear.shape, gear.speed_ratio, _distance(gear, bodies))
+    return replace(gear, shape=shape)
 
 
 def _distance(gear: Gear, bodies: Bodies) -> float | None:

@@ -41,6 +41,8 @@ OF_ROWS = tuple(
 )
 """About x and y, from linkages side by side."""
 JOINTS, GAUGES = "joints.", "gauges."
+WITHIN = (JOINTS, "gears.", "racks.", "belts.", "cams.")
+"""How forces begin that act inside of one linkage, whichever row it is."""
 OF_NUMBERS = ("ripple", "peak_to_peak", "area")
 """Measures of outputs that are one number at each crank angle."""
 MOST_NUMBERS = 200
@@ -56,7 +58,8 @@ class Objective(Frozen):
     output: str = key(
         Text(),
         "such as `shaking_force.y`, `shaking_force`, `shaking_moment`, `drive_torque`, "
-        "`frame_force`, `frame_moment`, `joints.NAME`, `gauges.NAME`, `roll_moment`, `yaw_moment`",
+        "`frame_force`, `frame_moment`, `joints.NAME`, `gears.NAME`, `belts.NAME.pull`, "
+        "`gauges.NAME`, `roll_moment`, `yaw_moment`",
         example="shaking_moment",
     )
     measure: Measure = key(

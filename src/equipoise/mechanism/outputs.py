@@ -290,21 +290,21 @@ of_bearing(
 )
 
 
-def _coupled(table: str, linear: str) -> Callable[..., None]:
-    """Outputs of a list of couplings."""
-    shared: dict[str, Any] = {"spoken": lambda name: name.replace(" to ", " → "), "linear": linear}
+def _coupled(table: str) -> Callable[..., None]:
+    """Outputs of couplings; linear for the flanks in contact and the strands that pull."""
+    shared: dict[str, Any] = {"spoken": lambda name: name.replace(" to ", " → "), "linear": True}
     shared["members"] = lambda machine: [one.name for one in getattr(machine, table)]
     read = lambda name, found, item: _members(getattr(found.forces, table), name, item)  # noqa: E731
     return alike(table + ".{}", read, **shared)
 
 
 TOOTH: dict[str, Any] = {"loop": "{joint force:name}", "summed": (True, False), "compared": FORCE}
-FLANK = "{what} goes with the flank in contact, which other masses may change"
-for of_teeth in (_coupled("gears", linear=FLANK), _coupled("racks", linear=FLANK)):
+PART_OF_TOOTH = {"summed": False, "linear": "{what} is only read; take the whole force instead"}
+for of_teeth in (_coupled("gears"), _coupled("racks")):
     of_teeth("", "force", to_say("tooth force {name}"), FORCES, **TOOTH)
-    of_teeth(".tangential", "force", to_say("tangential tooth force {name}"), summed=False)
-    of_teeth(".radial", "force", to_say("radial tooth force {name}"), summed=False)
-of_belt = _coupled("belts", linear="{what} is only read; take the force in a joint instead")
+    of_teeth(".tangential", "force", to_say("tangential tooth force {name}"), **PART_OF_TOOTH)
+    of_teeth(".radial", "force", to_say("radial tooth force {name}"), **PART_OF_TOOTH)
+of_belt = _coupled("belts")
 of_belt(".pull", "force", to_say("effective pull {name}"), compared=FORCE)
 of_belt(".left", "force", to_say("tension of the left strand {name}"), compared=FORCE)
 of_belt(".right", "force", to_say("tension of the right strand {name}"), compared=FORCE)
@@ -317,9 +317,11 @@ of_cam = alike("cams.{}", lambda name, found, cam: _members(found.forces.cams, n
 of_cam("", "force", to_say("contact force {name}"), FORCES, linear=True,
        loop="{joint force:name}", summed=(True, False), compared=FORCE)  # fmt: skip
 READ = "{what} is only read; take the whole contact force instead"
-of_cam(".normal", "force", to_say("contact force along the normal {name}"), linear=READ)
+of_cam(".normal", "force", to_say("contact force along the normal {name}"), linear=READ,
+       loop="{cam push:name}")  # fmt: skip
 slant = alike("cams.{}.", lambda _, found, cam: found.motion.pressure_angles[cam], **CAMMED)
-slant("pressure_angle", "angle", to_say("pressure angle {name}"), needs="motion")
+slant("pressure_angle", "angle", to_say("pressure angle {name}"), needs="motion",
+      loop="angle_of({cam forth:name}.conjugate() * {cam normal:name})")  # fmt: skip
 
 # -- rows and support ------------------------------------------------------------------------------
 

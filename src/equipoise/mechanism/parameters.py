@@ -20,7 +20,6 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import MassError, UsageError
-from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.across import Across, needed_by_inertia
 from equipoise.mechanism.acting import spring_direction, spring_vector
@@ -34,7 +33,7 @@ from equipoise.mechanism.dynamics import (
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.planes import beside, moments_across
-from equipoise.mechanism.reactions import Demand, Pass, demands_of, pushed, reactions
+from equipoise.mechanism.reactions import Pass, pushed, reactions
 from equipoise.mechanism.shares import Shares
 from equipoise.mechanism.steps import Array, planar
 
@@ -80,9 +79,11 @@ class BaseParameters:
         return "\n".join(" ".join(f"{x:+.6g} {n}" for x, n in r if x) for r in rows)
 
 
-def parameter_names(machine: Machine) -> tuple[tuple[str, str], ...]:
+def parameter_names(
+    machine: Machine, quantities: Sequence[str] = QUANTITIES
+) -> tuple[tuple[str, str], ...]:
     """Pairs of link and quantity, in file order."""
-    return tuple((link, quantity) for link in machine.links for quantity in QUANTITIES)
+    return tuple((link, quantity) for link in machine.links for quantity in quantities)
 
 
 def parameter_values(machine: Machine) -> Array:
@@ -206,7 +207,8 @@ def base_parameters(
 
     Parameters
     ----------
-    outputs : names of outputs of `Regressor`; by default what frame and drive feel.
+    outputs : names of outputs of `Regressor`; by default what frame and drive feel.  With rocking
+        moments the sums of `ACROSS` are parameters too, behind all others.
     angles : crank angles a turn at which the outputs are compared.
 
     Notes
@@ -225,14 +227,20 @@ def base_parameters(
     for name, link in machine.links.items():
         if not link.has_mass:  # which combinations count does not depend on masses
             known = known.with_link(name, mass=1.0, center_of_mass=(0.0, 0.0), inertia=1.0)
-    motion = move(known, angles)
-    matrix = np.concatenate([_rows(motion, output, size) for output in outputs])
-    scale = np.tile([1.0, size, size, size**2], len(machine.links))
+    motion, count = move(known, angles), len(machine.links)
+    rows = [_rows(motion, output, size) for output in outputs]
+    width = max(part.shape[1] for part in rows)
+    matrix = np.concatenate([np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in rows])
+    scale, beside = np.tile([1.0, size, size, size**2], count), width > len(names)
+    if beside:
+        names += parameter_names(machine, ACROSS)
+        scale = np.append(scale, np.tile([size, size**2, size**2], count))
     kept, grouping = independent_columns(matrix * scale)
     combinations = grouping * scale[kept][:, None] / scale
-    complete = all(link.has_mass for link in machine.links.values())
-    values = combinations @ parameter_values(machine) if complete else None
-    return BaseParameters(names, combinations, values)
+    if not all(link.has_mass for link in machine.links.values()):
+        return BaseParameters(names, combinations, None)
+    own = values_across(machine) if beside else parameter_values(machine)
+    return BaseParameters(names, combinations, combinations @ own)
 
 
 def _rows(motion: Motion, output: str, size: float) -> Array:
@@ -243,8 +251,8 @@ def _rows(motion: Motion, output: str, size: float) -> Array:
         found = regressor(case).of_machine
         if output not in found:
             raise UsageError(unknown(output, found, "output"))
-        array = found[output]
-        parts += [array.real.T, array.imag.T] if np.iscomplexobj(array) else [array.T / size]
+        array = found[output] / (1.0 if output.endswith("force") else size)
+        parts += [array.real.T, array.imag.T] if np.iscomplexobj(array) else [array.T]
     return np.concatenate(parts)
 
 
@@ -268,42 +276,13 @@ def independent_columns(matrix: Array, tolerance: float = 1e-9) -> tuple[list[in
     return kept, factors
 
 
-def spring_columns(
-    motion: Motion, link: str, point: str, to: str
-) -> tuple[Array, dict[str, Array]]:
-    """Drive torque or force (2, N); by name each drive's torque (2, N), and the force in each joint
-    and mesh (2, N), complex.
-
-    First row: of a spring of 1 N/m without a free length; second row: of a pull of 1 N towards the
-    frame's point; each alone.  Shaking force and moment, and force and moment on the frame, have
-    nothing of a spring.  Gears press on the flank that all forces of the machine together choose.
+def spring_units(motion: Motion, link: str, point: str, to: str) -> Array:
+    """Force (2, N) on a link's point, N, complex: of a spring of 1 N/m without a free length, and
+    of a pull of 1 N towards the frame's point, each alone.
 
     Raises
     ------
-    MassError : there are gears, and a link has no mass given.
     ModelError : the ends meet, so that a pull has no direction.
-    UsageError : there is no such link or point.
     """
-    links, frame = motion.machine.links, motion.machine.frame
-    if link not in links:
-        raise UsageError(unknown(link, links, "link"))
-    if point not in (points := links[link].points):
-        raise UsageError(unknown(point, points, Note("point of {body}", body=link)))
-    if to not in frame:
-        raise UsageError(unknown(to, frame, "point of the frame"))
-    units = spring_units(motion, link, point, to)
-    zero = np.zeros(units.shape)
-    demands: dict[str, Demand] = dict.fromkeys(motion.machine.links, (zero + 0j, zero))
-    demands |= demands_of(motion, [(link, point, units, 0.0)])
-    like = forces(motion).solved if motion.machine.couplings else None
-    solved = reactions(motion, demands, like)
-    effort = pushed(solved)
-    effort = solved.drive_torque if effort is None else effort
-    found = {f"drives.{link}.torque": torque for link, torque in solved.drives.items()}
-    return effort, found | {name: one.value for name, one in solved.exerted.items()}
-
-
-def spring_units(motion: Motion, link: str, point: str, to: str) -> Array:
-    """Force (2, N) on a link's point of these two springs, N, complex."""
     along = spring_direction(motion, link, point, to)
     return np.stack([spring_vector(motion, point, to), along])

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
-from math import degrees
+from math import degrees, pi
+from typing import Any
 
 import numpy as np
 
@@ -17,37 +18,51 @@ from equipoise.mechanism.rolling import (
     EccentricCircle,
     HalfAngle,
     PitchCurve,
-    RatioCurve,
+    RatioTable,
+    RatioWaves,
     Rolling,
-    Summed,
     Tabled,
     Waves,
 )
 
 MISFIT = 1e-4
 """Share by which a table may miss that its curves close; it is spread over all of it."""
-PIECES = 32
-"""Pieces of a lobe over which a ratio is summed, for each of its waves."""
+CUT = 1e-3
+"""Of the distance of the axes: more than what a drawing of curves by corners may miss."""
+PIECES = 128
+"""Pieces of a lobe over which a ratio is summed up, for each of its waves."""
 
 
+@lru_cache(maxsize=256)
 def law_of(shape: GearShape, mean: float) -> Rolling:
     """The driven gear's angle by the driver's, both seen from the carrier; mean : ratio."""
-    if shape.kind in ("elliptic", "limacon"):
-        make = HalfAngle.ellipses if shape.kind == "elliptic" else HalfAngle.limacon
-        return replace(make(shape.eccentricity, mean, shape.lobes), zero=shape.phase)
-    return replace(_summed(replace(shape, phase=0.0), mean), zero=shape.phase)
+    return replace(_law(replace(shape, phase=0.0), mean), zero=shape.phase)
 
 
-@lru_cache(maxsize=32)
-def _summed(shape: GearShape, mean: float) -> Summed:
+@lru_cache(maxsize=64)
+def _law(shape: GearShape, mean: float) -> Rolling:
     """The law of a shape whose phase is 0."""
+    if shape.kind == "elliptic":
+        return HalfAngle.ellipses(shape.eccentricity, mean, shape.lobes)
+    if shape.kind == "limacon":
+        return HalfAngle.limacon(shape.eccentricity, mean, shape.lobes)
     curve = curve_of(shape)
-    knots = np.linspace(0.0, shape.period, PIECES * shape.waves + 1)
+    if shape.kind != "ratio":
+        return PitchCurve.closing(curve, mean, _knots(shape))
     if isinstance(curve, Tabled):
-        rows = curve.knots if shape.kind == "ratio" else -curve.knots[::-1]
-        knots = np.interp(np.arange(8 * len(rows) - 7) / 8, np.arange(len(rows)), rows)
-    make = RatioCurve if shape.kind == "ratio" else PitchCurve
-    return Summed.of(mean, make.closing(curve, mean, knots), knots)
+        return RatioTable.closing(curve, mean)
+    assert isinstance(curve, Waves)
+    return RatioWaves(mean, curve)
+
+
+def _knots(shape: GearShape) -> Array:
+    """Angles of the driver over a lobe (K + 1,), between which its radius is smooth, rad."""
+    if not shape.angle:
+        return np.linspace(0.0, shape.period, PIECES * shape.waves + 1)
+    rows = np.append(-shape.angle[0] - shape.period, -np.array(shape.angle[::-1]))
+    parts = max(8, -(-PIECES // len(rows)))
+    at = np.arange(parts * (len(rows) - 1) + 1) / parts
+    return np.asarray(np.interp(at, np.arange(len(rows)), rows))
 
 
 def curve_of(shape: GearShape) -> EccentricCircle | Tabled | Waves:
@@ -60,20 +75,41 @@ def curve_of(shape: GearShape) -> EccentricCircle | Tabled | Waves:
     return Waves(shape.cosines, shape.sines, shape.lobes)
 
 
-def fine(shape: GearShape) -> Array:
-    """Angles of the driver over a lobe (n,), between which its ratio hardly changes, rad."""
-    return shape.phase + np.linspace(0.0, shape.period, 8 * PIECES * shape.waves + 1)
-
-
 def ratios_of(shape: GearShape, mean: float) -> tuple[float, float]:
     """The smallest and the largest size of the ratio, with its sign."""
-    _, ratio, _ = law_of(shape, mean)(fine(shape))
-    return float(np.max(ratio)), float(np.min(ratio))
+    low, high, _ = _extent(shape, mean)
+    return (low, high) if mean > 0 else (high, low)
+
+
+@lru_cache(maxsize=256)
+def _extent(shape: GearShape, mean: float) -> tuple[float, float, float]:
+    """Lowest and highest ratio, and the tangent by which the pitch curves lean at most."""
+    _, first, second = law_of(shape, mean)(shape.phase + _fine(shape))
+    with np.errstate(all="ignore"):  # a ratio of 1 is told of
+        leaning = np.abs(kernels.pitch_slope(first, second))
+    return float(np.min(first)), float(np.max(first)), float(np.max(leaning))
+
+
+def _fine(shape: GearShape) -> Array:
+    """Angles over a lobe (n,), between which ratio and radius hardly change, rad."""
+    return np.linspace(0.0, shape.period, 2 * PIECES * shape.waves + 1)
+
+
+def closed_table(shape: GearShape, mean: float, distance: float | None) -> GearShape:
+    """The shape with its table scaled so that the curves close; distance : as of `wrong_curve`."""
+    law = law_of(shape, mean)
+    if not shape.angle or not isinstance(law, RatioTable | PitchCurve):
+        return shape
+    factor = abs(law.factor) * (1.0 if shape.kind == "ratio" else distance or 0.0)
+    values: dict[str, Any] = {
+        shape.kind: tuple(factor * one for one in shape.ratio or shape.radius)
+    }
+    return replace(shape, **values) if factor else shape
 
 
 def wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterator[Told]:
     """What is wrong with the pitch curves that follow; distance : of the axes, if known, m."""
-    if shape.kind in TABLED and (lowest := float(np.min(curve_of(shape)(fine(shape))[0]))) <= 0:
+    if shape.kind in TABLED and (lowest := float(np.min(curve_of(shape)(_fine(shape))[0]))) <= 0:
         told = Note(
             "goes down to {lowest:.4g}; a pitch curve needs it above 0 all the way round",
             lowest=lowest,
@@ -83,8 +119,16 @@ def wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterat
     ratio = gears.speed_ratio
     law = law_of(shape, ratio)
     yield from _misfits(shape, law, ratio, distance)
-    _, first, second = law(fine(shape))
-    steepest = float(np.max(np.abs(kernels.pitch_slope(first, second))))
+    low, high, steepest = _extent(shape, ratio)
+    if low <= 1 <= high:
+        told = Note(
+            "the ratio would go from {low:.4g} to {high:.4g}; of a ring and the gear in it it "
+            "stays on one side of 1: give a smaller eccentricity, or a flatter curve",
+            low=low,
+            high=high,
+        )
+        yield "", told
+        return
     most = degrees(np.arctan(steepest) + gears.pressure_angle)
     if not most < 90:
         told = Note(
@@ -93,15 +137,45 @@ def wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterat
             most=most,
         )
         yield "", told
+    if ratio > 0 and (deepest := _overlap(shape, ratio)) > CUT:
+        told = Note(
+            "the gear would cut its ring where they do not mesh, by {deepest:.2g} of the distance "
+            "of the axes; give a smaller eccentricity, a flatter curve or a larger ring",
+            deepest=deepest,
+        )
+        yield "", told
+
+
+@lru_cache(maxsize=64)
+def _overlap(shape: GearShape, mean: float) -> float:
+    """How far a gear reaches out of the ring in which it turns, over the distance of the axes.
+
+    Where they mesh it does so nowhere: of curves that roll, the difference of their curvatures
+    vanishes nowhere.
+    """
+    law = law_of(shape, mean)
+    sides = []
+    for share, turns in ((1.0, 1.0), (0.0, 1 / mean)):  # driver at 1, driven gear at 0
+        x = np.linspace(0.0, 2 * pi * turns, 721)
+        y, ratio, _ = law(x)
+        radius = (ratio if share else 1.0) / (1 - ratio)
+        sides.append((share, radius * np.exp(-1j * (x if share else y))))
+    (inner_at, inner), (outer_at, outer) = sides if mean < 1 else sides[::-1]
+    at = np.linspace(0.0, shape.period, 90)
+    turned = np.exp(1j * np.array([at, law(at)[0]])[..., None])
+    of_inner, of_outer = turned if mean < 1 else turned[::-1]
+    seen = (inner_at + inner * of_inner - outer_at) / of_outer
+    room = np.interp(np.angle(seen), np.angle(outer), np.abs(outer), period=2 * pi)
+    return float(np.max(np.abs(seen) - room))
 
 
 def _misfits(
     shape: GearShape, law: Rolling, ratio: float, distance: float | None
 ) -> Iterator[Told]:
     """Tables whose curves do not close to a share of `MISFIT`."""
-    if not shape.angle or not isinstance(law, Summed):
+    if not shape.angle or not isinstance(law, RatioTable | PitchCurve):
         return
-    factor = abs(law.rate.factor)
+    factor = abs(law.factor)
     if shape.kind == "ratio" and abs(factor - 1) > MISFIT:
         told = Note(
             "the pitch curves do not close: the mean of the table is {mean:.7g}, and that of the "

@@ -41,6 +41,21 @@ def moments_across(link: Link, point: str | None = None) -> tuple[Any, Any]:
     return sum(m for m, _ in parts), sum((m * arm for m, arm in parts), start=0j)
 
 
+def demands_across(machine: Mechanism) -> Iterator[Any]:
+    """What has to be true of planes of pins and bearings: flags, or columns of them."""
+    held = [(one.link, one.plane) for one in machine.bearings.values()]
+    yield from (here != there for (on, here), (to, there) in combinations(held, 2) if on == to)
+    for _, told in _told_of_pins(machine):
+        yield from (here == there for (_, here), (_, there) in combinations(told, 2))
+
+
+def _told_of_pins(machine: Mechanism) -> Iterator[tuple[str, list[tuple[str, float]]]]:
+    """Every pin with the links that tell its plane, and that plane."""
+    for point, bodies in bodies_at(machine.bodies).items():
+        links = [(name, machine.links[name].planes) for name in bodies if name != FRAME]
+        yield point, [(name, planes[point]) for name, planes in links if point in planes]
+
+
 # -- checks ----------------------------------------------------------------------------------------
 
 
@@ -62,8 +77,7 @@ def wrong_planes(machine: Mechanism) -> Iterator[ModelError]:
                     "links beside each other take belts without it; leave it out, or their planes"
                 ),
             )
-    for point, bodies in bodies_at(machine.bodies).items():
-        told = [(k, machine.links[k].planes[point]) for k in bodies if _tells(machine, k, point)]
+    for point, told in _told_of_pins(machine):
         for (one, here), (other, there) in combinations(told, 2):
             if here != there:
                 yield ModelError(
@@ -78,10 +92,6 @@ def wrong_planes(machine: Mechanism) -> Iterator[ModelError]:
                 )
     for name, bearing in machine.bearings.items():
         yield from _wrong_bearing(f"bearings.{name}", bearing, machine)
-
-
-def _tells(machine: Mechanism, body: str, point: str) -> bool:
-    return body != FRAME and point in machine.links[body].planes
 
 
 def _wrong_bearing(where: str, bearing: Bearing, machine: Mechanism) -> Iterator[ModelError]:

@@ -5,15 +5,29 @@ from __future__ import annotations
 import numpy as np
 
 from equipoise.mechanism.drives import Drive, FurtherDrive
+from equipoise.mechanism.model import Machine, Slider
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.steps import Array
+
+
+def slider_of(machine: Machine, drive: Drive | FurtherDrive) -> Slider:
+    """The sliding joint that is driven."""
+    return next(one for one in machine.sliders if one.name == drive.slider)
+
+
+def ends_of(machine: Machine, drive: Drive | FurtherDrive) -> tuple[str, str]:
+    """The bodies that a drive pushes apart."""
+    if drive.slider:
+        one = slider_of(machine, drive)
+        return one.on, one.link
+    return drive.ends(machine.bodies)
 
 
 def pushes(motion: Motion, drive: Drive | FurtherDrive) -> list[tuple[str, Array, Array]]:
     """Bodies that a force of 1 N of a drive acts on, with its place (N,) and direction (N,)."""
     machine = motion.machine
     if drive.slider:
-        one = next(one for one in machine.sliders if one.name == drive.slider)
+        one = slider_of(machine, drive)
         at = motion.points[one.point].place
         turn = motion.state[f"u({one.on})"] * np.exp(1j * one.direction)
         return [(one.link, at, turn + 0 * at), (one.on, at, -turn + 0 * at)]

@@ -82,14 +82,18 @@ class Statics:
     """Couples across the plane as sums of what the links need and of what the joints exert.
 
     contacts : K of them, of which J bear couples.
-    by_needed : (J, L) of sums Q of each link.  by_force : (J, K) of each contact's force.
-    open : names of joints whose couples statics leaves open.
+    by_needed : (J, L) of sums Q of each link.
+    by_plane : (J, K) of each contact's plane times force.
     """
 
-    links: tuple[str, ...]
+    machine: Any
     contacts: tuple[Contact, ...]
     by_needed: Array
-    open: tuple[str, ...]
+    by_plane: Array
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        return tuple(self.machine.links)
 
     @cached_property
     def bearing(self) -> tuple[Contact, ...]:
@@ -97,38 +101,37 @@ class Statics:
         return tuple(one for one in self.contacts if one.bears)
 
     @cached_property
-    def by_force(self) -> Array:
-        """What is handed on of forces beside the links' own planes."""
-        levers = _signs(self.links, self.contacts) * self._planes
-        return np.asarray(-self.by_needed @ levers)
-
-    @property
-    def _planes(self) -> Array:
-        return np.array([one.plane for one in self.contacts])
+    def open(self) -> tuple[str, ...]:
+        """Names of joints whose couples statics leaves open."""
+        held = {end for one in self.bearing for end in _ends(one) if FRAME in _ends(one)}
+        free = [link for link in self.links if link not in held]
+        return tuple(_open(self.machine, self.contacts, free))
 
     def factors(self, number: int) -> tuple[dict[str, float], dict[str, float]]:
-        """Of the couple of one of `bearing`: those of what links need, and of forces, by name."""
+        """Of the couple of one of `bearing`: those of what links need, and of planes of contacts
+        times their forces, by name.
+        """
         needed = _used(self.by_needed[number], self.links)
-        return needed, _used(self.by_force[number], [one.name for one in self.contacts])
+        return needed, _used(self.by_plane[number], [one.name for one in self.contacts])
 
-    def pin_of(self, link: str) -> tuple[Contact, dict[str, float], dict[str, float]]:
-        """The joint by which a link turns in its bearings, with the factors of its couple."""
-        number, pin = next(
+    def pin_of(self, link: str) -> tuple[int, Contact]:
+        """The joint by which a link turns in its bearings, and its number among `bearing`."""
+        return next(
             (k, one) for k, one in enumerate(self.bearing) if (one.on, one.by) == (link, FRAME)
         )
-        return pin, *self.factors(number)
 
     def couples(self, needed: Mapping[str, Array], exerted: Mapping[str, Array]) -> dict[str, Any]:
         """Couple of each joint by name, as a sum of planes times forces, N m; of those that follow
         from the forces that are told.
         """
-        found = {}
+        found, planes = {}, {one.name: one.plane for one in self.contacts}
         for number, one in enumerate(self.bearing):
-            by_needed, by_force = self.factors(number)
-            if not {one.name, *by_force} <= exerted.keys():
+            by_needed, by_plane = self.factors(number)
+            levers = {k: factor * planes[k] for k, factor in by_plane.items() if planes[k]}
+            if not {one.name, *levers} <= exerted.keys():
                 continue
             terms = [factor * needed[link] for link, factor in by_needed.items()]
-            terms += [factor * exerted[name] for name, factor in by_force.items()]
+            terms += [lever * exerted[name] for name, lever in levers.items()]
             found[one.name] = sum(terms, start=0.0)
         return found
 
@@ -166,8 +169,7 @@ def statics(linkage: Any) -> Statics:
     found[np.ix_(~fixed, ~held)] = np.linalg.pinv(signs[np.ix_(~held, ~fixed)])
     rest = np.eye(len(links)) - signs[:, ~fixed] @ found[~fixed]
     found[fixed] = np.linalg.pinv(signs[np.ix_(held, fixed)]) @ rest[held]
-    free = [link for link, one in zip(links, held, strict=True) if not one]
-    return Statics(links, all_of, found, tuple(_open(machine, all_of, free)))
+    return Statics(machine, all_of, found, -found @ _signs(links, all_of))
 
 
 def _open(machine: Any, joints: Sequence[Contact], free: Sequence[str]) -> Iterator[str]:

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from equipoise.errors import UsageError
+from equipoise.mechanism.gears import closed
 from equipoise.mechanism.model import FRAME, Machine, Vector, unknown
 from equipoise.planting.twins import kept_alike, twins_of
 from equipoise.planting.variables import Draft, Variable, joined, usual, variables
@@ -69,7 +70,9 @@ class Designs:
         return start
 
     def build(self, values: Sequence[float] | Array) -> Machine:
-        """The machine that has these values; places that have moved are rounded to `DIGITS`."""
+        """The machine that has these values; places that have moved are rounded to `DIGITS`, and
+        tables of gears scaled so that their curves close.
+        """
         machine = self.machine
         names = (FRAME, *machine.links)
         bodies = {name: _places(machine.points_of(name)) for name in names}
@@ -89,7 +92,11 @@ class Designs:
             "either": size if values[-1] >= 0 else -size,
         }[self.sense]
         drive = replace(machine.drive, speed=speed)
-        gears = tuple(draft.gears)
+        changed = {number for variable in self.variables for number in variable.gears}
+        gears = tuple(
+            closed(gear, points) if number in changed else gear
+            for number, gear in enumerate(draft.gears)
+        )
         made = replace(machine, frame=points[FRAME], links=links, gears=gears, drive=drive)
         return kept_alike(made, self.twins)
 

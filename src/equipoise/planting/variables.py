@@ -26,6 +26,13 @@ ECCENTRIC = (0.0, 0.5)
 """Limits of an eccentricity where none are given."""
 USUAL = ("tip.x", "tip.y", "gears.shape.eccentricity")
 GEARS = re.compile(r"gears(?:\[(\d+(?:, *\d+)*)\])?\.(start|shape\..+)")
+OF_GEARS: dict[str, Dimension] = {
+    "start": "angle",
+    "shape.phase": "angle",
+    "shape.angle": "angle",
+    "shape.radius": "length",
+}
+"""Dimensions of numbers of gears; others are plain."""
 POINTS = re.compile(r"(.+)\.([^.]+)\.(x|y|distance|direction)")
 Places = tuple[tuple[str, str], ...]
 """Bodies with a point of each."""
@@ -68,7 +75,7 @@ def dimension_of_number(name: str) -> Dimension | None:
     """What the limits of a number are; None of plain ones."""
     gears = GEARS.fullmatch(name)
     if gears is not None:
-        return "angle" if gears[2] in ("start", "shape.phase") else None
+        return OF_GEARS.get(gears[2].partition("[")[0])
     return "angle" if name == "ground_angle" or name.endswith(".direction") else "length"
 
 

@@ -105,11 +105,13 @@ def kinematic(analysis: Analysis, name: str) -> str:
 
 
 def planted(found: PlantingFigures | None) -> str:
-    """How deep the finger goes."""
-    depth = None if found is None else found.figures.get("soil.depth")
-    if depth is None:
+    """How deep the finger goes; of several arms the deepest."""
+    if found is None:
         return ""
-    return say("The tip goes {depth} into the soil", depth=told(depth, "length", digits=3))
+    depth = told(max(arm["soil.depth"] for arm in found.arms), "length", digits=3)
+    if found.further:
+        return say("The tips go up to {depth} into the soil", depth=depth)
+    return say("The tip goes {depth} into the soil", depth=depth)
 
 
 def geared(analysis: Analysis, link: str) -> str:

@@ -11,6 +11,7 @@ from equipoise.balancing.told import capital, good_already, helps_told
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.spoken import joint_named, named
+from equipoise.planting.summary import PlantingFigures
 from equipoise.present.findings import Findings
 from equipoise.present.pages import Answer, Tile
 from equipoise.present.shaking import Shaking, acting, largest_joint
@@ -253,28 +254,47 @@ def vibration_told(found: Findings) -> Iterator[str]:
 
 
 def planting_told(found: Findings) -> Iterator[str]:
-    """Depth, entry and exit, hills, speed of the tip."""
+    """Depth, entry and exit of each arm, hills, speed of the fastest tip."""
     if found.planting is None:
         return
-    get = found.planting.figures.get
-
-    def figure(name: str, dimension: Dimension = "length") -> str:
-        return told(get(name) or 0.0, dimension, digits=3)
-
-    yield say(
+    arms = found.planting.arms
+    several = len(arms) > 1
+    of_one = to_say(
         "The tip of the finger goes {depth} into the soil; it enters at a crank angle of "
-        "{entry} and leaves at {exit}.",
-        depth=figure("soil.depth"),
-        entry=angle(get("entry.crank_angle") or 0.0, 0),
-        exit=angle(get("exit.crank_angle") or 0.0, 0),
+        "{entry} and leaves at {exit}."
     )
-    if get("hill_spacing"):
+    of_several = to_say(
+        "The tip {tip} goes {depth} into the soil; it enters at a crank angle of {entry} and "
+        "leaves at {exit}."
+    )
+    for arm in arms:
         yield say(
-            "Hills are {spacing} apart; the hole at the surface is {hole} long.",
-            spacing=figure("hill_spacing"),
-            hole=figure("soil.hole_length"),
+            of_several if several else of_one,
+            tip=arm.tip,
+            depth=told(arm["soil.depth"], "length", digits=3),
+            entry=angle(arm["entry.crank_angle"], 0),
+            exit=angle(arm["exit.crank_angle"], 0),
         )
-    yield say(
-        "The tip moves at up to {speed} relative to the machine.",
-        speed=figure("max_speed.value", "speed"),
+    if found.planting["hill_spacing"]:
+        yield from _hills(found.planting)
+    fastest = told(max(arm["max_speed.value"] for arm in arms), "speed", digits=3)
+    of_one = to_say("The tip moves at up to {speed} relative to the machine.")
+    of_several = to_say("The tips move at up to {speed} relative to the machine.")
+    yield say(of_several if several else of_one, speed=fastest)
+
+
+def _hills(planting: PlantingFigures) -> Iterator[str]:
+    """How far apart they are, and how long their holes."""
+    ends = [planting.get(f"hills.{end}_distance") for end in ("smallest", "largest")]
+    low, high = (told(end or planting["hill_spacing"], "length", digits=3) for end in ends)
+    spacing = low if low == high else say("{low} to {high}", low=low, high=high)
+    holes = [hole for arm in planting.arms if (hole := arm.get("soil.hole_length")) is not None]
+    if not holes:
+        yield say("Hills are {spacing} apart.", spacing=spacing)
+        return
+    of_one = to_say("Hills are {spacing} apart; the hole at the surface is {hole} long.")
+    of_several = to_say(
+        "Hills are {spacing} apart; the holes at the surface are up to {hole} long."
     )
+    template = of_several if len(planting.arms) > 1 else of_one
+    yield say(template, spacing=spacing, hole=told(max(holes), "length", digits=3))

@@ -13,6 +13,7 @@ from scipy.optimize import minimize
 import equipoise as eq
 from equipoise.balancing.branch_and_bound import Square
 from equipoise.balancing.design_variables import FreeSpring, with_parameters
+from equipoise.balancing.effects import Effects
 from equipoise.balancing.objectives import measured
 from equipoise.balancing.program import Affine, NoSolutionError, Program
 from equipoise.mechanism.balance import Balance, Objective, SpringChoice
@@ -209,12 +210,11 @@ def test_numbers_stand_for_stiffness_and_pull() -> None:
     spring = part.spring(numbers)
     assert spring is not None
     assert spring.stiffness == pytest.approx(80.0)
-    without = eq.forces(motion).drive_torque
-    found = numbers @ part.columns(motion, "drive_torque")
+    effect = Effects(MACHINE, [part], motion).signal("drive_torque")
     machine = replace(MACHINE, springs=(spring,))
     with_it = eq.forces(eq.move(machine, 90, acceleration=0.0)).drive_torque
-    assert found == pytest.approx(with_it - without, abs=1e-10 * np.max(np.abs(with_it)))
-    assert np.max(np.abs(found)) > 0
+    assert effect.at(numbers) == pytest.approx(with_it, abs=1e-10 * np.max(np.abs(with_it)))
+    assert np.max(np.abs(effect.columns)) > 0
     assert part.spring(np.array([1e-9, 0.0])) is None
     assert not np.any(part.effect)
 

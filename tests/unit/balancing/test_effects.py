@@ -51,14 +51,21 @@ LINKAGES = (
     "watt",
     "quick_return",
     "geared_five_bar",
+    "belted_coupler",
+    "rack_on_coupler",
+    "pinion_on_frame",
 )
 
 
 def subject(kind: str, seed: int) -> Problem:
-    """Masses and a centre free on every link, and a spring."""
+    """Masses and a centre free on every link, and a spring; no flank matters."""
     machine = make(kind, seed).machine
-    gears = tuple(replace(gear, pressure_angle=0.0) for gear in machine.gears)
-    machine = replace(machine, gears=gears)
+    gears, racks = (
+        tuple(replace(one, pressure_angle=0.0) for one in table)
+        for table in (machine.gears, machine.racks)
+    )
+    belts = tuple(replace(belt, tension=belt.tension or 10.0) for belt in machine.belts)
+    machine = replace(machine, gears=gears, racks=racks, belts=belts)
     point, link = next(
         (point, name)
         for name, link in reversed(machine.links.items())
@@ -111,7 +118,16 @@ def test_every_output_is_that_of_the_changed_machine(kind: str, seed: int) -> No
         ("frame_moment", None): forces.frame_moment,
         ("frame_moment", about): there.frame_moment,
         ("drive_torque", None): forces.drive_torque,
-        **{(f"joints.{name}", None): joint.value for name, joint in forces.joints.items()},
+        **{
+            (f"{of}.{name}", None): one.value
+            for of in ("joints", "gears", "racks")
+            for name, one in getattr(forces, of).items()
+        },
+        **{
+            (f"belts.{name}.{part}", None): getattr(belt, part)
+            for name, belt in forces.belts.items()
+            for part in ("pull", "left", "right")
+        },
     }
     for (output, pole), values in wanted.items():
         signal = problem.effects.signal(output, pole)

@@ -182,7 +182,10 @@ def test_roll_counts_for_the_linkage_too() -> None:
             Limit(Objective("roll_moment"), ratio=0.5),
             "the rms of roll_moment is 0 before, of which",
         ),
-        (Limit(Objective("joints.A"), ratio=1.0), "no phase changes the force in a joint; leave"),
+        (
+            Limit(Objective("joints.A"), ratio=1.0),
+            "no phase changes a force inside of a row;",
+        ),
     ],
 )
 def test_what_is_refused(limit: Limit, sentence: str) -> None:

@@ -202,7 +202,9 @@ def test_flanks_of_gears_are_those_of_the_result() -> None:
     assert after == pytest.approx(np.sqrt(np.mean(force**2)))
     assert after < 8.44135
     assert found.gap < 1e-8
-    assert [*map(str, found.scope)] == ["for the flanks of gears in contact here"]
+    assert [*map(str, found.scope)] == [
+        "for the flanks of teeth and strands of chains that bear here"
+    ]
 
 
 FORCE, TORQUE = Objective("shaking_force", "peak"), Objective("drive_torque", "rms")

@@ -81,6 +81,23 @@ def test_names() -> None:
     assert list(analysis_pictures(eq.analyze(massless, 90))) == MOTION
 
 
+def test_planes_from_the_side() -> None:
+    """Bodies as thick as they are, crank pins a stroke apart, and each sign in its plane."""
+    twin = eq.load("twin-engine")
+    (panel,) = charts_of("twin-engine")["side"].panels
+    boxes = [shape.places for shape in panel.signs if shape.role == "solid"]
+    spans = [(places.real.min(), places.real.max()) for places in boxes]
+    assert np.allclose(spans, [(-0.025, 0.025), (-0.052, -0.028), (0.028, 0.052)])
+    assert [np.ptp(places.imag) for places in boxes] == pytest.approx([0.076, 0.02, 0.02])
+    pins = {complex(np.round(s.places[0], 9)) for s in panel.signs if s.role == "pin"}
+    assert {-0.04 + 0.025j, 0.04 - 0.025j, 0j} < pins
+    stands = {complex(shape.places[0]) for shape in panel.signs if shape.role == "stand"}
+    assert stands == {-0.075 + 0j, 0.075 + 0j}
+    assert {mark.text for mark in panel.marks} == {*twin.links, *twin.bearings}
+    loose = analysis_pictures(eq.analyze(replace(twin, bearings={}), [0.0]), at=[0.0])["side"]
+    assert [s.places[0] for s in loose.panels[0].signs if s.role == "stand"] == [0j]
+
+
 def test_curves_are_the_forces() -> None:
     found, charts = analysis_of("yamashita-1").forces, charts_of("yamashita-1")
     force = found.shaking_force

@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.errors import ModelError, MotionError, UsageError
+from equipoise.errors import ModelError, MotionError
 from equipoise.mechanism.acting import resistance, soil_force, spring_force
 from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.field import Planting, Soil, SoilTable
-from equipoise.mechanism.parameters import spring_columns
+from equipoise.mechanism.parameters import spring_units
 from equipoise.mechanism.tip import surface_of
-from support.machines import make
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, refused
 
 EXAMPLES = ("kim-chung-a", "kim-chung-b")
@@ -281,7 +280,7 @@ def test_ends_that_meet() -> None:
     found = eq.analyze(lone_crank(0.0), 360).forces
     assert found.drive_torque[90] == pytest.approx(0, abs=1e-14)
     with pytest.raises(ModelError, match="meets 'S' at crank angle 90 deg"):
-        spring_columns(found.motion, "crank", "B", "S")
+        spring_units(found.motion, "crank", "B", "S")
 
 
 def test_torque_of_a_spring_on_a_crank() -> None:
@@ -292,60 +291,3 @@ def test_torque_of_a_spring_on_a_crank() -> None:
     np.testing.assert_allclose(found.joints["A"].value, -force, atol=1e-13)
     np.testing.assert_allclose(found.frame_force.value, 0, atol=1e-13)
     np.testing.assert_allclose(found.frame_moment, 0, atol=1e-13)
-
-
-# -- columns ---------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("kind", ["crank_rocker", "stephenson", "quick_return", "geared_coupler"])
-def test_outputs_are_linear_in_stiffness_and_pull(kind: str) -> None:
-    """Gears aside, whose flanks the whole load chooses: with it in place, they are too."""
-    machine = make(kind, 3).machine
-    machine = replace(machine, frame={**machine.frame, "far": (90.0, 40.0)}, springs=())
-    link = list(machine.links)[-1]
-    point = next(p for p in machine.links[link].points if p not in machine.frame)
-    bare = eq.analyze(machine, THETA).forces
-    spring = eq.Spring(link, point, "far", 0.4, 70.0)
-    with_it = machine.with_springs([spring])
-    found = eq.analyze(with_it, THETA).forces
-    torque, joints = spring_columns(found.motion, link, point, "far")
-    assert torque.shape == (2, len(THETA))
-    factors = np.array([0.4, -0.4 * 70.0])
-    size = float(np.max(np.abs(found.drive_torque)))
-    np.testing.assert_allclose(bare.drive_torque + factors @ torque, found.drive_torque,
-                               rtol=0, atol=1e-12 * size)  # fmt: skip
-    if machine.gears:
-        names = [("joints", name) for name in found.joints]
-        names += [("gears", name) for name in found.gears]
-        split = {name: found.split.by_cause(f"{of}.{name}")["spring"] for of, name in names}
-    else:
-        split = {name: joint.value - bare.joints[name].value
-                 for name, joint in found.joints.items()}  # fmt: skip
-    before = bare.drives
-    split |= {f"drives.{name}.torque": whole - before[name]
-              for name, whole in found.drives.items()}  # fmt: skip
-    size = max(float(np.max(joint.size)) for joint in found.joints.values())
-    assert joints.keys() == split.keys()
-    for name, column in joints.items():
-        assert column.shape == (2, len(THETA))
-        np.testing.assert_allclose(factors @ column, split[name], rtol=0, atol=1e-11 * size)
-
-
-def test_columns_need_no_masses() -> None:
-    bare = replace(FOUR, links={name: eq.Link(link.points) for name, link in FOUR.links.items()})
-    torque, _ = spring_columns(eq.move(bare, THETA), "coupler", "C", "S")
-    wanted, _ = spring_columns(eq.move(FOUR, THETA), "coupler", "C", "S")
-    np.testing.assert_array_equal(torque, wanted)
-
-
-@pytest.mark.parametrize(
-    ("ends", "words"),
-    [
-        (("couple", "C", "S"), "no link is called 'couple'"),
-        (("coupler", "X", "S"), "no point of coupler is called 'X'"),
-        (("coupler", "C", "B"), "no point of the frame is called 'B'"),
-    ],
-)
-def test_columns_of_unknown_ends(ends: tuple[str, str, str], words: str) -> None:
-    with pytest.raises(UsageError, match=words):
-        spring_columns(eq.move(FOUR, THETA), *ends)

@@ -12,9 +12,12 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.mechanism.family import Family, can_vary, linkage_of, with_columns, wrong
+from equipoise.mechanism.family import Family, _beside, can_vary, linkage_of, with_columns
+from equipoise.mechanism.gear_shapes import GearShape
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import Gear, Machine
+from equipoise.mechanism.pitch_curves import law_of
+from equipoise.mechanism.refusing import wrong
 from support.batches import every_dyad
 from support.designs import Array, Number, design, drawn, named, numbers_of, plain_of, reason_of
 from support.machines import KINDS, make
@@ -369,3 +372,37 @@ def test_several_numbers_together() -> None:
 
 def test_points_that_are_no_pins_may_lie_together() -> None:
     assert refusals(["links.coupler.points.P.x", "links.coupler.points.P.y"], [[0, 0]]) == [False]
+
+
+ROWS = {"angle": (0.0, 1.0, 2.5, 4.0)}
+SHAPES = {
+    "elliptic": [{"eccentricity": 0.3}, {"eccentricity": 0.1, "phase": 1.0}],
+    "limacon": [{"eccentricity": 0.3}, {"eccentricity": 0.2}],
+    "eccentric": [{"eccentricity": 0.3}, {"eccentricity": 0.0, "phase": -2.0}],
+    "ratio": [{"cosines": (0.3, 0.1)}, {"cosines": (0.2, 0.0), "phase": 1.0}],
+    "radius": [{"cosines": (0.3,), "sines": (0.1,)}, {"cosines": (0.2,), "sines": (0.0,)}],
+    "table of ratios": [
+        {**ROWS, "ratio": (1.02, 1.31, 0.91, 0.8)}, {**ROWS, "ratio": (0.97, 1.36, 0.92, 0.8)}
+    ],
+    "table of radii": [
+        {**ROWS, "radius": (0.3, 0.2, 0.2, 0.25)}, {**ROWS, "radius": (0.2, 0.2, 0.3, 0.25)}
+    ],
+    "other rows": [
+        {"angle": (0.0, 1.0, 2.5), "radius": (0.3, 0.2, 0.2)}, {**ROWS, "radius": (0.2,) * 4}
+    ],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", SHAPES)
+def test_laws_of_gears_side_by_side(kind: str) -> None:
+    """Each design turns as by its own law; tables with other rows are taken one by one."""
+    name = {"table of ratios": "ratio", "table of radii": "radius", "other rows": "radius"}
+    laws = [
+        law_of(GearShape(name.get(kind, kind), **given), -1.0)
+        for given in (*SHAPES[kind], SHAPES[kind][0])
+    ]
+    theta = rows(len(laws)) * 3 - 9
+    found = _beside(tuple(laws))(theta)
+    alone = [law(row) for law, row in zip(laws, theta, strict=True)]
+    for values, want in zip(found, zip(*alone, strict=True), strict=True):
+        np.testing.assert_allclose(values, np.array(want), atol=1e-13)

@@ -9,7 +9,10 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
+from equipoise.mechanism.gear_shapes import GearShape
+from equipoise.mechanism.gears import closed
 from equipoise.mechanism.linkage import Linkage
+from equipoise.mechanism.model import FRAME
 from equipoise.planting.designs import Designs
 from equipoise.planting.goals import Goal, Problem
 from equipoise.planting.search import Fit, fit_planting
@@ -311,6 +314,41 @@ def test_the_eccentricity_of_gears_is_found_again() -> None:
     assert fit.values[ECCENTRICITY] == pytest.approx(0.2, abs=1e-6)
     shapes = [gear.shape.eccentricity for gear in fit.machine.gears if gear.shape is not None]
     assert shapes == [fit.values[ECCENTRICITY]] * 4
+
+
+FREE = {
+    "eccentric": ({"eccentricity": 0.2}, "gears.shape.eccentricity", (0.1, 0.3)),
+    "limacon": ({"eccentricity": 0.2}, "gears.shape.eccentricity", (0.1, 0.3)),
+    "ratio": (
+        {"cosines": (-0.35, 0.05), "sines": (0.02,)}, "gears.shape.cosines[1]", (-0.4, -0.2)
+    ),
+    "radius": (
+        {"angle": (0.0, 1.5, 3.0, 4.5), "radius": (0.021, 0.026, 0.031, 0.026)},
+        "gears.shape.radius[3]", (0.026, 0.04),
+    ),
+}  # fmt: skip
+"""Kinds of shape: what the wanted machine has, which number is looked for, and where."""
+
+
+@pytest.mark.parametrize("kind", FREE)
+def test_gears_of_any_shape_can_be_judged(kind: str) -> None:
+    """A table is scaled so that its curves close, whatever a number of it becomes."""
+    given, name, limits = FREE[kind]
+    rotary = eq.load("rotary-transplanter")
+    bodies = {FRAME: rotary.frame, **{one: link.points for one, link in rotary.links.items()}}
+    gears = [
+        closed(replace(gear, shape=GearShape(kind, phase=gear.shape.phase, **given)), bodies)
+        for gear in rotary.gears
+        if gear.shape is not None
+    ]
+    designs = Designs(replace(rotary, gears=tuple(gears)), {name: limits})
+    values = np.append(designs.start, limits)[:, None]
+    places = [eq.move(designs.build(row), 3600).points["P"].place for row in values]
+    heights = [np.ptp(place.imag) for place in places]
+    goals = [Goal("curve.height", target=heights[0], tolerance=1.0)]
+    outcome = Problem(designs, goals).judge(values)
+    np.testing.assert_allclose(outcome.off[:, 0], np.array(heights) - heights[0], atol=1e-6)
+    assert np.all(outcome.kept) and len({round(height, 4) for height in heights}) == 3
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from copy import copy
 from dataclasses import replace
 from math import pi
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,12 +15,13 @@ from equipoise.i18n import Note, speaking
 from equipoise.present.cells import grid, noted, printed
 from equipoise.present.composition import balance_blocks
 from equipoise.present.pictures import pictures
-from equipoise.present.summary import Shaking, answers, tiles
+from equipoise.present.summary import Shaking, answers, planting_told, tiles
 from equipoise.present.tool_summary import tool_answers
 from equipoise.quantities import brief
 from equipoise.results.analysis_blocks import shares
 from equipoise.results.blocks import Table
 from support.found import found as found_of
+from unit.planting.build import two_arms
 
 
 def text_of(found) -> str:
@@ -91,6 +93,20 @@ def test_no_placeholder_is_left(language):
     with speaking(language):
         told = text_of(found_of("kim-chung-a"))
     assert not {"{", "}"} & set(told)
+
+
+@pytest.mark.parametrize(
+    ("ahead", "hills"), [(pi, "Hills are 78.5 mm apart"), (2.0, "Hills are 50.0 mm to 107 mm")]
+)
+def test_every_arm_is_told(ahead: float, hills: str):
+    figures = eq.plant(two_arms(ahead))
+    first, second, holes, fastest = planting_told(SimpleNamespace(planting=figures))
+    for told, arm in ((first, figures.arms[0]), (second, figures.arms[1])):
+        entry = np.degrees(arm["entry.crank_angle"])
+        assert f"The tip {arm.tip} goes 30.0 mm into the soil" in told
+        assert f"enters at a crank angle of {entry:.0f}" in told
+    assert holes.startswith(hills) and "the holes at the surface are up to" in holes
+    assert fastest.startswith("The tips move at up to")
 
 
 def test_numbers_are_set_as_in_print():

@@ -1,0 +1,184 @@
+"""Links beside each other, seen along x or y: planes, shafts, bearings and masses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from equipoise.figures.linkage import told_angle
+from equipoise.figures.style import short
+from equipoise.i18n import say
+from equipoise.mechanism.body_checks import outlines
+from equipoise.mechanism.checks import FRAME
+from equipoise.mechanism.motion import move
+from equipoise.mechanism.planes import masses_of
+from equipoise.mechanism.statics import contacts
+from equipoise.results.charts import Array, Axis, Chart, Mark, Panel
+from equipoise.symbols.shapes import PIN, Shape, block, circle, line, mass, pivot
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.motion import Motion
+    from equipoise.results.analysis import Analysis
+
+ROOM = 0.06
+"""Around what is drawn, over its size: for the signs of bearings and masses."""
+
+
+def side(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
+    """The machine along x or y of the frame, by which it reaches less far: z to the right.
+
+    at : crank angles, rad, of which the first is drawn; where they are not given, one at which
+        links reach far.
+    """
+    motion = analysis.motion
+    if at is not None:
+        motion = move(analysis.machine, at[:1], motion.speed, motion.acceleration)
+    view = _View(motion)
+    angle = told_angle(float(motion.links[motion.machine.drive.link].angle[view.k]))
+    told = {"link": short(motion.machine.drive.link), "angle": angle}
+    what = say("Linkage from the side, to scale; angle of {link} in the frame: {angle}", **told)
+    keys = [("solid", say("bodies"))] if view.solids else []
+    keys += [("mass", say("centre of mass"))] if view.loose else []
+    return Chart("side", analysis.machine.title, what, (view.panel(),), keys=tuple(keys))
+
+
+class _View:
+    """A machine at one of the crank angles of a motion; places are z + i times the height, m.
+
+    nodes : of each link, the place of every point of it.
+    """
+
+    def __init__(self, motion: Motion) -> None:
+        self.machine, self.motion, self.k = motion.machine, motion, 0
+        spreads = [self._spread(part) for part in "xy"]
+        self.axis = "xy"[int(np.argmax([np.max(spread) for spread in spreads]))]
+        self.k = int(np.argmax(spreads["xy".index(self.axis)]))
+        planes = {
+            (body, reaction.at): one.plane
+            for one, (_, reaction) in zip(
+                contacts(motion.linkage), motion.linkage.named_reactions, strict=True
+            )
+            for body in (one.on, one.by)
+        }
+        self.pins = [(*key, plane) for key, plane in planes.items() if key[1] in motion.points]
+        self.nodes = {
+            name: {
+                point: complex(planes.get((name, point), link.plane_of(point)), self.height(point))
+                for point in link.points
+            }
+            for name, link in self.machine.links.items()
+        }
+        self.solids, self.loose = [*self._solids()], [*self._loose()]
+
+    def _spread(self, part: str) -> Array:
+        """How far links reach along an axis of the frame, (N,)."""
+        places = [
+            np.stack([self._part(self.motion.points[point].place, part) for point in link.points])
+            for link in self.machine.links.values()
+        ]
+        return np.asarray(np.sum([np.ptp(heights, axis=0) for heights in places], axis=0))
+
+    @staticmethod
+    def _part(place: Array, part: str) -> Array:
+        return np.asarray(place.real if part == "x" else place.imag)
+
+    def height(self, point: str) -> float:
+        return float(self._part(self.motion.points[point].place, self.axis)[self.k])
+
+    def _seen(self, link: str, places: Array) -> Array:
+        """Heights of places (n,) in a link's axes, complex, m."""
+        first, own = next(iter(self.machine.links[link].points.items()))
+        base, turned = (
+            self.motion.points[first].place[self.k],
+            self.motion.links[link].angle[self.k],
+        )
+        return self._part(base + (places - complex(*own)) * np.exp(1j * turned), self.axis)
+
+    def _solids(self) -> Iterator[Shape]:
+        """Bodies as boxes: as thick as they are, in their planes."""
+        for name, link in self.machine.links.items():
+            for body in link.bodies:
+                for corners, radius in outlines(body, link.points)[:1]:
+                    heights = self._seen(name, np.array(corners))
+                    low, high = float(heights.min()) - radius, float(heights.max()) + radius
+                    z = link.plane if body.plane is None else body.plane
+                    half = (body.thickness or 0.0) / 2
+                    ends = ((z - half, low), (z + half, low), (z + half, high), (z - half, high))
+                    yield line("solid", *(complex(*end) for end in ends), closed=True)
+
+    def _loose(self) -> Iterator[complex]:
+        """Centres of masses of which no outline is known."""
+        for name, link in self.machine.links.items():
+            drawn = [bool(outlines(body, link.points)) for body in link.bodies] or [False]
+            for (own, center, z), seen in zip(masses_of(link), drawn, strict=False):
+                if own and not seen:
+                    yield complex(z, self._seen(name, np.array([center]))[0])
+
+    def _bars(self, name: str) -> Iterator[tuple[complex, complex]]:
+        """A link: upright in its plane, and along z to points beside it and to its bearings."""
+        z, nodes = self.machine.links[name].plane, self.nodes[name]
+        heights = [node.imag for node in nodes.values()]
+        yield complex(z, min(heights)), complex(z, max(heights))
+        for point, node in nodes.items():
+            held = [one.plane for one in self.machine.bearings.values() if one.link == name]
+            ends = [node.real, z, *(held if point in self.machine.frame else ())]
+            if max(ends) > min(ends):
+                yield complex(min(ends), node.imag), complex(max(ends), node.imag)
+
+    def signs(self) -> Iterator[Shape]:
+        """Bodies behind, then links, then what holds them."""
+        yield from self.solids
+        for name in self.machine.links:
+            bars = [*self._bars(name)]
+            for role in ("edge", "body"):
+                yield from (line(role, *ends) for ends in bars)
+        yield from self._held()
+        for body, point, plane in self.pins:
+            if body != FRAME:
+                yield circle("pin", complex(plane, self.height(point)), grown=PIN)
+        for center in self.loose:
+            yield from mass(center)
+
+    def _held(self) -> Iterator[Shape]:
+        """Blocks in guides, bearings, and pins in the frame where no bearings are told."""
+        for slider in self.machine.sliders:
+            place = self.nodes[slider.link][slider.point]
+            for one in block():
+                yield Shape(one.role, one.places + place, 1j * one.offsets, one.closed)
+        for name, nodes in self.nodes.items():
+            held = [one.plane for one in self.machine.bearings.values() if one.link == name]
+            for point in (point for point in nodes if point in self.machine.frame):
+                for plane in held or [nodes[point].real]:
+                    yield from pivot(complex(plane, nodes[point].imag))
+
+    def _names(self) -> Iterator[Mark]:
+        for name, nodes in self.nodes.items():
+            heights = [node.imag for node in nodes.values()]
+            at = complex(self.machine.links[name].plane, (min(heights) + max(heights)) / 2)
+            yield Mark.of(at, short(name), "lines", 20.0, sign=False, near=8.0)
+        for name, bearing in self.machine.bearings.items():
+            (pin,) = self.nodes[bearing.link].keys() & self.machine.frame.keys()
+            at = complex(bearing.plane, self.nodes[bearing.link][pin].imag)
+            yield Mark.of(at, short(name), "ink", -60.0, sign=False, near=8.0)
+
+    def panel(self) -> Panel:
+        """The view with its axes and names."""
+        places = [node for nodes in self.nodes.values() for node in nodes.values()]
+        places += [*self.loose, *(one.plane + 1j * 0 for one in self.machine.bearings.values())]
+        every = np.concatenate([places, *(shape.places for shape in self.solids)])
+        low, high = (complex(end(every.real), end(every.imag)) for end in (np.min, np.max))
+        room = ROOM * abs(high - low) * (1 + 1j)
+        size = [abs(high - low)]
+        x = Axis.of(say("{axis} in the frame", axis="z"), "length", size, room=0.0)
+        y = Axis.of(say("{axis} in the frame", axis=self.axis), "length", size, room=0.0)
+        return Panel(
+            x,
+            y,
+            marks=tuple(self._names()),
+            equal=True,
+            zero=False,
+            signs=tuple(self.signs()),
+            held=(low - room, high + room),
+        )
