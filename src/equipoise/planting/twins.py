@@ -97,7 +97,7 @@ def _paired(
     arms that are not alike.
     """
     carrier = machine.links[machine.drive.link].points
-    if len(first) != len(other) or machine.drive.pushes:
+    if len(first) != len(other) or machine.pushers:
         return
     pivot = complex(*carrier[assemble(machine).pivot])
     for mate, number in zip(first, other, strict=True):
