@@ -18,21 +18,12 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism import kernels
+from equipoise.mechanism import acting, kernels
 from equipoise.mechanism.across import Across, apart, masses_across, pushes_across
-from equipoise.mechanism.acting import (
-    acting_loads,
-    acting_springs,
-    inner_demands,
-    load_demands,
-    outer_loads,
-    spring_demands,
-)
 from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.planes import beside
-from equipoise.mechanism.pushing import lengths
 from equipoise.mechanism.reactions import (
     BeltForce,
     CamForce,
@@ -126,7 +117,7 @@ class Forces:
     @property
     def outer(self) -> Forces:
         """The same without what links and frame exert on each other: springs, and loads between."""
-        outside = demands_of(self.motion, outer_loads(self.motion))
+        outside = demands_of(self.motion, acting.outer_loads(self.motion))
         return replace(self, loads=outside, springs={}, inner={})
 
     @property
@@ -136,7 +127,7 @@ class Forces:
 
     @property
     def drives(self) -> Mapping[str, Array]:
-        """Torque of each drive on its link, N m, by the name of the link."""
+        """Torque of each drive on its link, N m, or its force, N, by the name of the link."""
         return self.solved.drives
 
     @property
@@ -158,10 +149,7 @@ class Forces:
     @cached_property
     def _work_by_angle(self) -> dict[str, Array]:
         """Work of each drive by crank angle (N,), N m, by the name of its link."""
-        motion, links = self.motion, self.motion.links
-        if motion.machine.drive.pushes:
-            return {motion.machine.drive.link: self.drive_force * lengths(motion)[1]}
-        return {link: torque * links[link].angle_1 for link, torque in self.drives.items()}
+        return {link: one * self.motion.way(link) for link, one in self.drives.items()}
 
     @cached_property
     def joints(self) -> Mapping[str, JointForce]:
@@ -192,9 +180,9 @@ class Forces:
     def across(self) -> Across:
         """What links beside each other do across the plane."""
         motion = self.motion
-        loads = pushes_across(motion, acting_loads(motion))
-        springs = pushes_across(motion, acting_springs(motion))
-        outer = pushes_across(motion, outer_loads(motion))
+        loads = pushes_across(motion, acting.acting_loads(motion))
+        springs = pushes_across(motion, acting.acting_springs(motion))
+        outer = pushes_across(motion, acting.outer_loads(motion))
         return Across(motion, *masses_across(motion), loads, springs, self.solved.exerted, outer)
 
     @cached_property
@@ -244,7 +232,7 @@ def forces(motion: Motion, about: str | Vector | complex | None = None) -> Force
         mass, moment, turning = inertia_about(machine.links[link], motion.linkage.anchors[link])
         inertia[link] = demand_of_inertia(motion, link, speed2, mass, moment, turning)
         weights[link] = kernels.weight_demand(motion.state[f"u({link})"], mass, moment, gravity)
-    held = load_demands(motion), spring_demands(motion), inner_demands(motion)
+    held = acting.load_demands(motion), acting.spring_demands(motion), acting.inner_demands(motion)
     return Forces(motion, pole, inertia, weights, *held)
 
 
