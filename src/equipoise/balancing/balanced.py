@@ -11,7 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.compared import WORSE, Pair, Worse, figures_of, merged, worse_of, worth
+from equipoise.balancing.compared import (
+    WORSE,
+    Pair,
+    Worse,
+    figures_of,
+    merged,
+    planting_of,
+    worse_of,
+    worth,
+)
 from equipoise.balancing.design_variables import Bound
 from equipoise.balancing.effects import ANGLES
 from equipoise.balancing.geared import geared_range
@@ -106,17 +115,22 @@ class Balanced(Result):
     @property
     def added_mass(self) -> float:
         """kg."""
-        return self.after["mass"] - self.before["mass"]
+        return self.machine.mass - self.original.mass
 
     @cached_property
     def before(self) -> dict[str, float]:
         """Figures of the machine as it was, by name; SI units."""
-        return figures_of(self.original)
+        return self._shaking[0] | planting_of(self.original)
 
     @cached_property
     def after(self) -> dict[str, float]:
         """The same of the balanced machine."""
-        return figures_of(self.machine)
+        return self._shaking[1] | planting_of(self.machine)
+
+    @cached_property
+    def _shaking(self) -> tuple[dict[str, float], dict[str, float]]:
+        """Before and after without planting, which every remedy that is tried would compute."""
+        return figures_of(self.original), figures_of(self.machine)
 
     @cached_property
     def aims(self) -> dict[Objective, Pair]:
@@ -128,7 +142,7 @@ class Balanced(Result):
         """Every figure that got larger by more than 1 %, the important ones first."""
         each = {one: self.objectives[one.name] for one in self.plan.objectives}
         own = (one for one in each if one.speeds or one.about or one.orders)
-        return worse_of(self.before, self.after, {one: each[one] for one in own})
+        return worse_of(*self._shaking, {one: each[one] for one in own})
 
     @property
     def gain(self) -> float:
@@ -204,7 +218,7 @@ class Balanced(Result):
         Shaking forces and moments grow with the square of the speed (Lee and Kim, conclusions).
         What is gone but for rounding has no such speed.
         """
-        old, new = self.before, self.after
+        old, new = self._shaking
         return {
             name: self.original.drive.speed * sqrt(old[name] / new[name])
             for name in old
