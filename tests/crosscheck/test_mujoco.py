@@ -109,7 +109,8 @@ def test_totals_and_what_each_link_carries(name: str) -> float:
     subject = subject_of(name)
     apart = [same_totals(subject, mujoco_engine.totals)]
     machine, poses = subject.machine, subject.poses
-    asked = mujoco_engine.demands(machine, poses, machine.gravity).links
+    model = mujoco_engine.model_of(machine)
+    asked = mujoco_engine.demands(model, machine, poses, machine.gravity).links
     force, moment = force_size(machine, poses), moment_size(machine, poses)
     for link, got in acting_on_links(subject).items():
         want = asked.get(link, np.zeros_like(got))
