@@ -6,6 +6,7 @@ from itertools import chain
 from typing import Any
 
 import numpy as np
+import pytest
 
 from equipoise.mechanism.model import FRAME
 from support import mujoco_engine
@@ -107,6 +108,8 @@ def acting_on_links(subject: Subject) -> dict[str, Array]:
 def test_totals_and_what_each_link_carries(name: str) -> float:
     """Each link gets just what MuJoCo asks for it, weight included."""
     subject = subject_of(name)
+    if name.startswith("crossed_yokes"):
+        pytest.skip("no file of MuJoCo has a loop of sliders alone")
     apart = [same_totals(subject, mujoco_engine.totals)]
     machine, poses = subject.machine, subject.poses
     model = mujoco_engine.model_of(machine)

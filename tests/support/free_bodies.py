@@ -123,6 +123,12 @@ def solve(
     system = equations(machine, poses)
     passing = [*joints, *gears, *racks, *belts]
     unknowns = solved(system, passing)
+    unknown = sum(1 if isinstance(one, tuple) else one.size for one in passing)
+    if unknown + len(machine.driven) > system.known.shape[1]:  # least squares weigh whole pushes
+        slanted = [leant(gear, one, machine, poses, unknowns)
+                   for gear, one in zip(machine.gears, gears, strict=True)]  # fmt: skip
+        unknowns = solved(system, [*joints, *slanted, *racks, *belts])
+        return gathered(machine, poses, joints, (gears, racks, belts), unknowns)
     for gear, contact in zip(machine.gears, gears, strict=True):
         tangential = unknowns[gear.name][:, 0]
         apart = separating(gear, machine, poses, tangential)
@@ -136,6 +142,15 @@ def solve(
             system.known -= mean[:, None] * system.pair(strand, strand.directions[0], 0.0)
     unknowns = solved(system, passing)
     return gathered(machine, poses, joints, (gears, racks, belts), unknowns)
+
+
+def leant(
+    gear: Gear, contact: Contact, machine: Machine, poses: Poses, unknowns: Mapping[str, Array]
+) -> Contact:
+    """Return teeth whose push per unit of its tangential part has what separates them."""
+    sense = np.sign(unknowns[gear.name][:, 0])
+    apart = separating(gear, machine, poses, sense) * sense[:, None]
+    return replace(contact, directions=(contact.directions[0] + apart,))
 
 
 def equations(machine: Machine, poses: Poses) -> System:
@@ -369,12 +384,12 @@ def tensions(belt: Belt, transmitted: Array) -> tuple[Array, Array]:
 
 def leaning(gear: Gear, poses: Poses, tangential: Array, unit: Array) -> Array:
     """Return the same where the pitch curves lean: the tooth pushes along their tangent, turned by
-    the pressure angle towards the driven gear.
+    the pressure angle towards the driven gear, or away from it where either is a ring.
     """
     tilt = Rolling(gear).tilt(seen_from_carrier(gear, poses))
     way = np.where(tangential < 0, -1.0, 1.0)
     push = way * (unit[:, 0] + 1j * unit[:, 1]) * 1j * np.exp(1j * tilt)
-    push *= np.exp(-1j * way * gear.pressure_angle)
+    push *= np.exp(1j * way * np.sign(gear.speed_ratio) * gear.pressure_angle)
     toward = unit[:, 0] - 1j * unit[:, 1]
     along, across = (push * toward).real, (push * toward).imag
     return (along / across * tangential)[:, None] * unit

@@ -201,6 +201,7 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
     used = {slider.through for slider in machine.sliders if slider.on == FRAME}
     used |= {spring.to for spring in machine.springs} | linkage.joints.pins.keys()
     used |= {*(machine.drive.between or ())}
+    used |= {spring.to for spring in machine.balance.springs} if machine.balance else set()
     for point in machine.frame:
         if point not in used:
             yield f"frame.points.{point} is not used by any joint or spring"

@@ -24,7 +24,7 @@ from equipoise.mechanism.laws import LengthLaw
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.pushing import Levels, lengths
+from equipoise.mechanism.pushing import Levels, ends_of, lengths
 from equipoise.mechanism.reach import reach
 from equipoise.mechanism.steps import Array
 from equipoise.quantities import angle, format_exact
@@ -35,6 +35,8 @@ INSIDE = 1e-7
 """rad: how far from where a dyad is stretched out."""
 ITERATIONS, SETTLED = 60, 1e-15
 """Of Newton's method; the last change in the angle, rad."""
+SQUARED = 1e-9
+"""rad: a change of Newton's method after which only rounding is left, as errors square."""
 HALVINGS = 36
 """Of the step in which a dead point lies."""
 AGREES = 1e-9
@@ -126,7 +128,7 @@ class Commanded:
                 new = at - (here - length) / slope
             new = np.where((new >= low) & (new <= high), new, 0.5 * (low + high))
             change, at = np.max(np.abs(new - at), initial=0.0), new
-            if change <= SETTLED * (1 + np.max(np.abs(at), initial=0.0)):
+            if change <= SQUARED:
                 break
         return np.asarray(at)
 
@@ -154,7 +156,7 @@ def _meshing(machine: Machine, near: float) -> float:
 
     def over(shift: float) -> float:
         linkage = assemble(_turned(machine, shift))
-        at = Followed.over(linkage, -STEP, STEP, STEP)
+        at = Followed.over(linkage, -STEP, STEP, STEP, ends_of(machine, drive))
         return float(_lengths(at, np.zeros(1), drive)[0][0]) - wanted
 
     old, new = near, near + STEP
@@ -202,7 +204,7 @@ def _commanded(machine: Machine, shift: float) -> Commanded:
     found = reach(linkage)
     low, high = (-pi, pi) if found is None else (found.low + INSIDE, found.high - INSIDE)
     far = high if found is not None else high + 2 * pi  # a turn may begin anywhere
-    followed = Followed.over(linkage, low, far, STEP)
+    followed = Followed.over(linkage, low, far, STEP, ends_of(bare, drive))
     branches = _branches(lambda at: _lengths(followed, at, drive), low, high, found is None)
     return Commanded(followed, drive, law, shift, _chosen(drive, law, branches, shift))
 

@@ -298,9 +298,11 @@ of_cam = alike("cams.{}", lambda name, found, cam: _members(found.forces.cams, n
 of_cam("", "force", to_say("contact force {name}"), FORCES, linear=True,
        loop="{joint force:name}", summed=(True, False), compared=FORCE)  # fmt: skip
 READ = "{what} is only read; take the whole contact force instead"
-of_cam(".normal", "force", to_say("contact force along the normal {name}"), linear=READ)
+of_cam(".normal", "force", to_say("contact force along the normal {name}"), linear=READ,
+       loop="{cam push:name}")  # fmt: skip
 slant = alike("cams.{}.", lambda _, found, cam: found.motion.pressure_angles[cam], **CAMMED)
-slant("pressure_angle", "angle", to_say("pressure angle {name}"), needs="motion")
+slant("pressure_angle", "angle", to_say("pressure angle {name}"), needs="motion",
+      loop="angle_of({cam forth:name}.conjugate() * {cam normal:name})")  # fmt: skip
 
 # -- rows and support ------------------------------------------------------------------------------
 

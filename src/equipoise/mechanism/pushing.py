@@ -6,6 +6,7 @@ import numpy as np
 
 from equipoise.mechanism import kernels
 from equipoise.mechanism.drives import Drive
+from equipoise.mechanism.model import Machine, Slider
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.steps import Array
 
@@ -20,9 +21,9 @@ def lengths(motion: Motion, drive: Drive | None = None) -> Levels:
     """
     drive = drive or motion.machine.drive
     if drive.slider:
-        slid = motion.sliders[drive.slider]
+        slid = motion.slider(slider_of(motion.machine, drive))
         return slid.travel, slid.travel_1, slid.travel_2
-    a, b = (motion.points[name] for name in drive.between or ())
+    a, b = (motion.point(name) for name in drive.between or ())
     d, d1, d2 = b.place - a.place, b.place_1 - a.place_1, b.place_2 - a.place_2
     length = np.abs(d)
     first = kernels.dot(d, d1) / length
@@ -30,11 +31,24 @@ def lengths(motion: Motion, drive: Drive | None = None) -> Levels:
     return length, first, second
 
 
+def slider_of(machine: Machine, drive: Drive) -> Slider:
+    """The sliding joint that is driven."""
+    return next(one for one in machine.sliders if one.name == drive.slider)
+
+
+def ends_of(machine: Machine, drive: Drive) -> tuple[str, str]:
+    """The bodies that a drive pushes apart."""
+    if drive.slider:
+        one = slider_of(machine, drive)
+        return one.on, one.link
+    return drive.ends(machine.bodies)
+
+
 def pushes(motion: Motion) -> list[tuple[str, Array, Array]]:
     """Bodies that a force of 1 N of the drive acts on, with its place (N,) and direction (N,)."""
     machine, drive = motion.machine, motion.machine.drive
     if drive.slider:
-        one = next(one for one in machine.sliders if one.name == drive.slider)
+        one = slider_of(machine, drive)
         at = motion.points[one.point].place
         turn = motion.state[f"u({one.on})"] * np.exp(1j * one.direction)
         return [(one.link, at, turn + 0 * at), (one.on, at, -turn + 0 * at)]

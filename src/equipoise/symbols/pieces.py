@@ -81,7 +81,7 @@ def pieces(scene: Scene, traced: Collection[str] = (), field: bool = True) -> li
     """
     found = [*_soil(scene)] if field else []
     found += [*_carrier(scene), *_rows(scene), *_wheels(scene), *_stands(scene)]
-    found += _links(scene)
+    found += [*_links(scene), *_drawn(scene, strands=True)]
     found += [*_springs(scene), *_cylinder(scene), Piece("pivots", tuple(_pivots(scene)))]
     found += [
         Piece("blocks", tuple(block()), Hold(guide.point, guide=guide.name), part=_part(guide))
@@ -172,13 +172,21 @@ def _wheels(scene: Scene) -> Iterator[Piece]:
         body = bodies[gear.link]
         center = scene.local(body, scene.places[gear.center])
         yield Piece("wheels", tuple(wheel(center, gear.radius, gear.curve)), _with(body), part=part)
+    yield from _drawn(scene, strands=False)
+
+
+def _drawn(scene: Scene, strands: bool) -> Iterator[Piece]:
+    """What moves with bodies; strands of belts lie above their carrier."""
+    bodies = {body.name: body for body in scene.bodies}
     for mark in scene.marks:
+        if (mark.shape.role == "strand") != strands:
+            continue
         start, hold = complex(scene.places[mark.point][0]), None
         if mark.body != FRAME:
             start = scene.local(bodies[mark.body], scene.places[mark.point])
             hold = _with(bodies[mark.body])
         moved = replace(mark.shape, places=mark.shape.places + start)
-        yield Piece("wheels", (moved,), hold)
+        yield Piece("springs" if strands else "wheels", (moved,), hold)
 
 
 def _stands(scene: Scene) -> Iterator[Piece]:

@@ -1,8 +1,9 @@
-"""Straight lines of belts and racks: strands between their pulleys, and pitch lines."""
+"""What is straight of belts and racks: strands between pulleys, and bars with teeth."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import pi, radians, tan
 
 import numpy as np
 
@@ -11,7 +12,12 @@ from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.joints import Structure, coupling_pins
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.strands import LEFT, RIGHT
-from equipoise.symbols.shapes import Mark, line
+from equipoise.symbols.shapes import Array, Mark, line
+
+MOST_TEETH = 80
+"""That are drawn of a rack."""
+SLOPE = tan(radians(20))
+"""Of their flanks."""
 
 
 def strands_of(joints: Structure, bodies: Bodies) -> Iterator[Mark]:
@@ -25,7 +31,7 @@ def strands_of(joints: Structure, bodies: Bodies) -> Iterator[Mark]:
 
 
 def racks_of(motion: Motion) -> Iterator[Mark]:
-    """The pitch line of every rack, as long as its pinion rolls on it, and a radius more."""
+    """Every rack, as far as its pinion rolls on it, and a radius more."""
     machine, joints = motion.machine, motion.linkage.joints
     for rack in machine.racks:
         pair = (rack.rack, rack.carrier)
@@ -37,5 +43,22 @@ def racks_of(motion: Motion) -> Iterator[Mark]:
         foot -= 1j * rack.left * rack.radius
         reach = foot.real - motion.sliders[slider.name].travel
         low, high = float(np.min(reach)) - rack.radius, float(np.max(reach)) + rack.radius
-        ends = (complex(end, foot.imag) / guide.turn for end in (low, high))
-        yield Mark(rack.rack, guide.point, line("strand", *ends))
+        toward = 1j * rack.left  # the pinion, of a bar along the x axis
+        corners = low + 1j * foot.imag + _bar(high - low, rack.radius, toward)
+        yield Mark(rack.rack, guide.point, line("wheel", *(corners / guide.turn), closed=True))
+
+
+def _bar(length: float, radius: float, toward: complex) -> Array:
+    """Corners of a bar whose pitch line begins at 0, with teeth; `toward` is the way these point.
+
+    A file says nothing of the teeth's size; it has to do with the pinion's, and be seen.
+    """
+    count = max(1, min(MOST_TEETH, round(10 * length / (pi * radius))))
+    pitch = length / count
+    module = pitch / pi
+    root, top = (pitch / 4 + sign * deep * module * SLOPE for sign, deep in ((1, 1.25), (-1, 1.0)))
+    tooth = [-root - 1.25j * module, -top + 1j * module, top + 1j * module, root - 1.25j * module]
+    teeth = (np.arange(count)[:, None] + 0.5) * pitch + np.array(tooth)
+    square = np.array([-3.5j, -1.25j]) * module
+    corners = np.array([*square, *teeth.ravel(), *(length + square[::-1])])
+    return np.asarray(corners.real + corners.imag * toward)

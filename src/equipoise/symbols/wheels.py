@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,11 +38,13 @@ class Wheel:
     curve: Array | None = None
 
 
-def called(wheels: Iterable[Wheel]) -> str:
+def called(wheels: Sequence[Wheel]) -> str:
     """What these are called together."""
     if any(wheel.curve is not None for wheel in wheels):
         return say("pitch curves of gears")
-    return say("pitch circles of gears")
+    if any(wheel.pair for wheel in wheels):
+        return say("pitch circles of gears")
+    return say("pitch circles of pulleys and pinions")
 
 
 def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) -> Iterator[Wheel]:

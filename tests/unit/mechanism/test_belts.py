@@ -252,8 +252,8 @@ def test_what_drives_tells_its_own_place() -> None:
 # -- pictures and files ----------------------------------------------------------------------------
 
 
-def test_strands_and_pitch_line_are_drawn() -> None:
-    """Strands end on both pulleys; the pinion rolls on the rack's pitch line, which slides."""
+def test_strands_and_racks_are_drawn() -> None:
+    """Strands end on both pulleys; the pinion rolls on the pitch line of the bar, which slides."""
     rack = Rack("rocker", "ram", 0.07, "left")
     four = racked(rack)
     wheel = replace(four, frame={**four.frame, "E": (2.0, 0.5)},
@@ -270,12 +270,12 @@ def test_strands_and_pitch_line_are_drawn() -> None:
         assert abs(pin + taut.shape.places[1] - other) == pytest.approx(0.05)
     place = motion.points["S"].place
     turn = np.exp(1j * motion.links["ram"].angle)
-    low, high = (place + turn * end for end in line.shape.places)
-    way = (high - low) / abs(high - low)
-    foot = (pin - low) / way
-    np.testing.assert_allclose(foot.imag, 0.07, atol=1e-12)
-    assert foot.real.min() == pytest.approx(0.07)
-    assert (abs(high - low) - foot.real).min() == pytest.approx(0.07)
+    bar = (place[:, None] + turn[:, None] * line.shape.places - pin) / np.exp(0.3j)
+    tips, back = bar.imag.max(), bar.imag.min()
+    module = (tips - back) / 4.5  # a tooth reaches one of them above the pitch line
+    np.testing.assert_allclose(bar.imag.max(axis=1), module - 0.07, atol=1e-12)
+    assert bar.real.min(axis=1).max() == pytest.approx(-0.07)
+    assert bar.real.max(axis=1).min() == pytest.approx(0.07)
 
 
 def test_a_file_without_racks_refuses_them(tmp_path: Path) -> None:
