@@ -54,9 +54,9 @@ class Curve:
     def at(self, x: Any) -> tuple[Array, Array, Array]:
         """y and its two derivatives by x, each as `x` (...)."""
         rounds, piece, way = self.place(x)
-        amplitude, rate, phase = self.waves[piece].T.reshape(3, *np.shape(way))
+        amplitude, rate, phase = np.moveaxis(self.waves[piece], -1, 0)
         turned = rate * way + phase
-        powers = self.powers[piece].T.reshape(MOST_POWERS, *np.shape(way))
+        powers = np.moveaxis(self.powers[piece], -1, 0)
         wave = amplitude, rate, np.cos(turned), np.sin(turned)
         y, y1, y2 = piece_value(way, *powers, *wave)  # type: ignore[call-arg,no-untyped-call]
         return y + self.rise * rounds, y1, y2
