@@ -11,16 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.compared import (
-    WORSE,
-    Pair,
-    Worse,
-    figures_of,
-    merged,
-    planting_of,
-    worse_of,
-    worth,
-)
+from equipoise.balancing import compared
 from equipoise.balancing.design_variables import Bound
 from equipoise.balancing.effects import ANGLES
 from equipoise.balancing.geared import geared_range
@@ -120,29 +111,29 @@ class Balanced(Result):
     @cached_property
     def before(self) -> dict[str, float]:
         """Figures of the machine as it was, by name; SI units."""
-        return self._shaking[0] | planting_of(self.original)
+        return self._shaking[0] | compared.planting_of(self.original)
 
     @cached_property
     def after(self) -> dict[str, float]:
         """The same of the balanced machine."""
-        return self._shaking[1] | planting_of(self.machine)
+        return self._shaking[1] | compared.planting_of(self.machine)
 
     @cached_property
     def _shaking(self) -> tuple[dict[str, float], dict[str, float]]:
         """Before and after without planting, which every remedy that is tried would compute."""
-        return figures_of(self.original), figures_of(self.machine)
+        return compared.figures_of(self.original), compared.figures_of(self.machine)
 
     @cached_property
-    def aims(self) -> dict[Objective, Pair]:
+    def aims(self) -> dict[Objective, compared.Pair]:
         """What was made small, before and after; of an output at several speeds the loudest."""
-        return merged(self.plan, self.objectives)
+        return compared.merged(self.plan, self.objectives)
 
     @cached_property
-    def worse(self) -> tuple[Worse, ...]:
+    def worse(self) -> tuple[compared.Worse, ...]:
         """Every figure that got larger by more than 1 %, the important ones first."""
         each = {one: self.objectives[one.name] for one in self.plan.objectives}
         own = (one for one in each if one.speeds or one.about or one.orders)
-        return worse_of(*self._shaking, {one: each[one] for one in own})
+        return compared.worse_of(*self._shaking, {one: each[one] for one in own})
 
     @property
     def gain(self) -> float:
@@ -155,9 +146,8 @@ class Balanced(Result):
     def helps(self) -> bool:
         """Whether it is worth a change; of what nobody asked for more is wanted."""
         if self.tried:
-            return worth(self.worse, self.gain)
-        pairs = self.objectives.values()
-        moved = (abs(after - before) > WORSE * before for before, after in pairs)
+            return compared.worth(self.worse, self.gain)
+        moved = (abs(b - a) > compared.WORSE * a for a, b in self.objectives.values())
         return bool(self.plan.limits) or any(moved)
 
     @property
