@@ -138,7 +138,7 @@ def can_emit(linkage: Linkage) -> bool:
     couplings at angles that designs change, no drive that pushes, and no joints whose forces only
     all free bodies together tell.
     """
-    if linkage.shared is not None or linkage.machine.drive.pushes:
+    if linkage.shared is not None or linkage.machine.pushers:
         return False
     machine = linkage.machine
     if machine.planting is not None and machine.planting.soil is not None:
