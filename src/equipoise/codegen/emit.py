@@ -138,7 +138,7 @@ def can_emit(linkage: Linkage) -> bool:
     couplings at angles that designs change, no drive that pushes, and no joints whose forces only
     all free bodies together tell.
     """
-    if linkage.shared is not None or linkage.machine.drive.pushes:
+    if linkage.shared is not None or linkage.machine.pushers:
         return False
     machine = linkage.machine
     if machine.planting is not None and machine.planting.soil is not None:
@@ -160,7 +160,8 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     if not can_emit(linkage):
         raise UsageError(
             "large groups of loops, fingers in soil, parallel cranks, double guides, drives that "
-            "push, couplings beside loops and gears of varying ratio on links that dyads move cannot be computed in a loop"
+            "push, couplings beside loops, and gears of varying ratio on links that dyads move cannot "
+            "be computed in a loop"
         )
     writer = Writer(linkage)
     write_motion(writer)

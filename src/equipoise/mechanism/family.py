@@ -63,7 +63,7 @@ class Family:
         """Steps that solve all machines at once; None where a running angle has to be counted on
         from a machine's own cycle.
         """
-        if any(one.machine.drive.pushes for one in self.linkages):
+        if any(one.machine.pushers for one in self.linkages):
             return None
         known = (FRAME, self.first.machine.drive.link)
         steps: list[Step] = []

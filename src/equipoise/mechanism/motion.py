@@ -19,7 +19,7 @@ from equipoise.mechanism.builder import Group
 from equipoise.mechanism.cam_fits import pressure_angle
 from equipoise.mechanism.checks import Named, Vector, bodies_at
 from equipoise.mechanism.linkage import Linkage, assemble
-from equipoise.mechanism.model import Drive, Machine, Slider
+from equipoise.mechanism.model import Drive, FurtherDrive, Machine, Slider
 from equipoise.mechanism.rates import LinkMotion, PointMotion, SliderMotion
 from equipoise.mechanism.steps import Array, State, p, plain_angle, running_angle, u
 from equipoise.mechanism.swinging import middle_angle, solve_swinging
@@ -60,6 +60,26 @@ class Motion:
         """The same positions at another speed (rad/s) or acceleration (rad/s2) of the crank."""
         w, a = _rates(self, speed, acceleration)
         return replace(self, speed=w, acceleration=a)
+
+    def lengths(self, drive: Drive | FurtherDrive) -> tuple[Array, Array, Array]:
+        """Length between the points that a drive pushes apart, or travel of its sliding joint, m,
+        and both derivatives by crank angle, each (N,).
+        """
+        if drive.slider:
+            one = next(one for one in self.machine.sliders if one.name == drive.slider)
+            slid = self.slider(one)
+            return slid.travel, slid.travel_1, slid.travel_2
+        a, b = (self.point(name) for name in drive.between or ())
+        d, d1, d2 = b.place - a.place, b.place_1 - a.place_1, b.place_2 - a.place_2
+        length = np.abs(d)
+        first = kernels.dot(d, d1) / length
+        second = (np.abs(d1) ** 2 + kernels.dot(d, d2) - first**2) / length
+        return length, first, second
+
+    def way(self, link: str) -> Array:
+        """By crank angle (N,): what the drive of a link goes, m, or turns, rad."""
+        drive = next(one for one in self.machine.driven if one.link == link)
+        return self.lengths(drive)[1] if drive.pushes else self.links[link].angle_1
 
     @cached_property
     def links(self) -> Mapping[str, LinkMotion]:
