@@ -8,14 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from math import degrees
 
 import numpy as np
 
+from equipoise.i18n import Note
 from equipoise.mechanism.family import Family
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.tip import planting_of, tip_link
 from equipoise.signals import Array
+
+ALIKE, NEARLY = 1e-5, 0.35
+"""Gears of arms that are this far, rad, from doing the same do it to the digits of a file, or are
+meant to."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +62,22 @@ def kept_alike(machine: Machine, twins: Sequence[Twin]) -> Machine:
         start = float(np.angle(np.exp(1j * (angle + twin.offset))))
         gears[twin.gear] = replace(gears[twin.gear], start=start)
     return replace(machine, gears=tuple(gears))
+
+
+def nearly_alike(machine: Machine) -> Iterator[Note]:
+    """Gears of further arms that would be like those of the first at another start."""
+    for twin in twins_of(machine):
+        off = float(np.angle(np.exp(1j * twin.offset)))
+        if ALIKE < abs(off) < NEARLY:
+            gear, mate = machine.gears[twin.gear], machine.gears[twin.mate]
+            yield Note(
+                "{link} does not do what {mate} does: for that gears[{number}] would start at "
+                "{start:.7g} deg",
+                link=gear.driven,
+                mate=mate.driven,
+                number=twin.gear + 1,
+                start=degrees(gear.start - off),
+            )
 
 
 def _chain(machine: Machine, link: str) -> Iterator[int]:
