@@ -84,13 +84,11 @@ def same_reaction(name: str, got: Any, want: Reaction, force: float, moment: flo
 
 def same_totals(forces: Any, solved: FreeBodies, force: float, moment: float) -> None:
     """Compare what the drives exert and what the frame bears."""
-    if forces.motion.machine.drive.pushes:
-        (push,) = solved.drives.values()
-        agree("drive", forces.drive_force, push, TOLERANCE, force)
-    else:
-        for link, torque in solved.drives.items():
-            agree(f"drive torque of {link}", forces.drives[link], torque, TOLERANCE, moment)
-        assert forces.drive_torque is next(iter(forces.drives.values()))
+    for drive in forces.motion.machine.driven:
+        size, wanted = (force if drive.pushes else moment), solved.drives[drive.link]
+        agree(f"drive of {drive.link}", forces.drives[drive.link], wanted, TOLERANCE, size)
+    first = forces.motion.machine.drive
+    assert getattr(forces, first.effort) is forces.drives[first.link]
     agree("frame force", vector(forces.frame_force), solved.frame_force, TOLERANCE, force)
     agree("frame moment", forces.frame_moment, solved.frame_moment, TOLERANCE, moment)
 

@@ -210,17 +210,16 @@ def solved(system: System, passing: list[Contact | Strands]) -> dict[str, Array]
 def driving(system: System, drive: Drive | FurtherDrive) -> Array:
     """Return the column of a drive: a torque on its link, or a force between two bodies."""
     machine = system.machine
-    if machine.drive.stroke is not None:
-        push = cylinder(machine, system.poses)
+    if drive.stroke is not None:
+        push = cylinder(machine, drive, system.poses)
         return system.pair(push, push.directions[0], 0.0)
     torque = np.zeros_like(system.known)
     torque[:, system.rows[drive.link] + 2] = 1.0
     return torque
 
 
-def cylinder(machine: Machine, poses: Poses) -> Contact:
+def cylinder(machine: Machine, drive: Drive | FurtherDrive, poses: Poses) -> Contact:
     """Return where a drive that pushes acts, and along which line."""
-    drive = machine.drive
     if drive.slider:
         one = next(one for one in machine.sliders if one.name == drive.slider)
         at = poses.place(one.link, machine.links[one.link].points[one.point])
@@ -429,10 +428,11 @@ def gathered(
         both[belt.name] = replace(pulled[-1], force=force)
     drives = {drive.link: unknowns[drive][:, 0] for drive in machine.driven}
     pulls = [pull_on_frame(*acting) for acting in springs_on_links(machine, poses)]
-    torque = sum(drives.values())
-    if machine.drive.stroke is not None:
-        torque = 0.0
-        pulls.append(reaction(cylinder(machine, poses), unknowns[machine.drive]))
+    loads = zip(machine.loads, on_links(machine, poses), strict=False)  # the soil comes behind
+    pulls += [pull_on_frame(*acting) for load, acting in loads if load.reaction]
+    pushing = [drive for drive in machine.driven if drive.stroke is not None]
+    pulls += [reaction(cylinder(machine, one, poses), unknowns[one]) for one in pushing]
+    torque = sum(drives[one.link] for one in machine.driven if one not in pushing)
     every = [*held.values(), *meshed.values(), *racked.values(), *pulled, *pulls]
     force, moment = on_frame(machine, every)
     pressed = {cam.name: held.pop(cam.name) for cam in machine.cams}
@@ -449,7 +449,7 @@ def reaction(contact: Contact, unknowns: Array, more: Array | float = 0.0) -> Re
 
 
 def pull_on_frame(link: str, at: Array, force: Array, couple: Array) -> Reaction:
-    """Return what a spring does to the frame, of which every point of its line is as good."""
+    """Return what a spring or a load does to the frame, of whose line every point is as good."""
     return Reaction(FRAME, link, at, -force, -couple)
 
 

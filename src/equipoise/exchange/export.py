@@ -75,7 +75,7 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
         check_turning(machine, one.title)
     _check_joints(machine, one)
     job = Job(machine, crank_angle, changes)
-    if machine.drive.pushes:
+    if machine.pushers:
         job.leave_out("what pushes the machine, and its stroke")
     data: str | bytes = import_module(f"equipoise.exchange.{one.name}").made(job)
     return job, data

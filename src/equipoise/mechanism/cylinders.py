@@ -24,13 +24,14 @@ from equipoise.mechanism.laws import LengthLaw
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.pushing import Levels, ends_of, lengths
+from equipoise.mechanism.pushing import ends_of
 from equipoise.mechanism.reach import reach
 from equipoise.mechanism.steps import Array
 from equipoise.quantities import angle, format_exact
 
 STEP = pi / 360
 """rad: between angles of the link at which the length is looked at."""
+Levels = tuple[Array, Array, Array]
 INSIDE = 1e-7
 """rad: how far from where a dyad is stretched out."""
 ITERATIONS, SETTLED = 60, 1e-15
@@ -49,12 +50,13 @@ DEAD = 1e-9
 class Shifted:
     """A crank that stands at another angle than 0 at crank angle 0."""
 
+    link: str
     by: float
 
-    def value(self, crank_angle: Any) -> tuple[Any, Any, Any]:
+    def moved(self, crank_angle: Any) -> dict[str, tuple[Any, Any, Any]]:
         """Angle of the link and its two derivatives."""
         theta = np.asarray(crank_angle)
-        return theta + self.by, np.ones(theta.shape), np.zeros(theta.shape)
+        return {self.link: (theta + self.by, np.ones(theta.shape), np.zeros(theta.shape))}
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +103,10 @@ class Commanded:
         w = first / slope
         found = at + self.shift, w, (second - bend * w * w) / slope
         return tuple(part.reshape(theta.shape) for part in found)  # type: ignore[return-value]
+
+    def moved(self, crank_angle: Any) -> dict[str, tuple[Array, Array, Array]]:
+        """The same by the link's name."""
+        return {self.drive.link: self.value(crank_angle)}
 
     @property
     def windings(self) -> int:
@@ -215,13 +221,13 @@ def _turned(machine: Machine, shift: float) -> Machine:
     position = machine.position and replace(machine.position, crank_angle=0.0)
     bare = replace(machine, drive=drive, position=position, loads=(), planting=None, balance=None,
                    support=None, rows=())  # fmt: skip
-    bare.__dict__["turning"] = Shifted(shift)
+    bare.__dict__["turning"] = Shifted(drive.link, shift)
     return bare
 
 
 def _lengths(bare: Followed, theta: Array, drive: Drive) -> Levels:
     with np.errstate(all="ignore"):  # other links may be infinitely fast, at ends of the way
-        return lengths(Motion(bare.linkage, theta, 1.0, 0.0, False, bare.solve(theta)), drive)
+        return Motion(bare.linkage, theta, 1.0, 0.0, False, bare.solve(theta)).lengths(drive)
 
 
 def _branches(

@@ -20,6 +20,7 @@ from equipoise.keys.kinds import choice
 from equipoise.mechanism.builder import Builder, Group
 from equipoise.mechanism.checks import MODE, MODES, meant
 from equipoise.mechanism.cycle import Cycle, close
+from equipoise.mechanism.groups import hung
 from equipoise.mechanism.joints import Structure, drive_pivot, name_in_outputs, structure
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.ordering import held, next_group
@@ -62,6 +63,12 @@ class Linkage:
     shared: Shared | None = None
 
     @cached_property
+    def grounded(self) -> tuple[str, ...]:
+        """Driven links that turn about points of the frame."""
+        hung = {link for group in self.groups if group.kind == "hung" for link in group.links}
+        return tuple(one.link for one in self.machine.driven if one.link not in hung)
+
+    @cached_property
     def motion(self) -> tuple[Step, ...]:
         """Steps from the drive's rotation to that of every link."""
         return tuple(step for group in self.groups for step in group.motion)
@@ -84,7 +91,7 @@ class Linkage:
         if self.shared is not None:
             decided = self.shared.decided
             return (*self.shared.reactions, *(one for group in decided for one in group.reactions))
-        drives = (pin_reaction(self.anchors[d.link], d.link, FRAME) for d in self.machine.driven)
+        drives = (pin_reaction(self.anchors[link], link, FRAME) for link in self.grounded)
         return (*drives, *(reaction for group in self.groups for reaction in group.reactions))
 
     @cached_property
@@ -212,8 +219,12 @@ def _grouped(
     if mode not in MODES:
         mode = MODES[0] if joints.mobility < 1 else None
     drives = {machine.drive.link: drive_pivot(joints, machine.drive.link)}
+    pushed = []
     for number, one in enumerate(machine.drives, 1):
-        drives[one.link] = drive_pivot(joints, one.link, f"drives[{number}].link")
+        if one.pushes and not joints.pins_between(FRAME, one.link):
+            pushed.append(one.link)
+        else:
+            drives[one.link] = drive_pivot(joints, one.link, f"drives[{number}].link")
     points, running = set(machine.frame), {FRAME, *drives}
     builder = Builder(machine, points=points, running=running, told=start, mode=mode)
     surplus: frozenset[str] = frozenset()
@@ -225,8 +236,13 @@ def _grouped(
     choices: list[sides.Choice] = []
     while unknown:
         try:
-            ready = [link for link in unknown if link not in surplus or held(builder, joints, link)]
-            group = next_group(builder, joints, ready)
+            ready = [
+                link
+                for link in unknown
+                if link not in pushed and (link not in surplus or held(builder, joints, link))
+            ]
+            waiting = [link for link in pushed if link in unknown]
+            group = hung(builder, joints, waiting) or next_group(builder, joints, ready)
         except ModelError:
             if choices:  # sides come first: on a wrong one what hangs on it cannot be right
                 raise sides.missing(machine, choices) from None

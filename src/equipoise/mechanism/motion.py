@@ -16,10 +16,10 @@ import numpy as np
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.builder import Group
-from equipoise.mechanism.cam_fits import fits_of, pressure_angle
+from equipoise.mechanism.cam_fits import pressure_angle
 from equipoise.mechanism.checks import Named, Vector, bodies_at
 from equipoise.mechanism.linkage import Linkage, assemble
-from equipoise.mechanism.model import Drive, Machine, Slider
+from equipoise.mechanism.model import Drive, FurtherDrive, Machine, Slider
 from equipoise.mechanism.rates import LinkMotion, PointMotion, SliderMotion
 from equipoise.mechanism.steps import Array, State, p, plain_angle, running_angle, u
 from equipoise.mechanism.swinging import middle_angle, solve_swinging
@@ -61,6 +61,26 @@ class Motion:
         w, a = _rates(self, speed, acceleration)
         return replace(self, speed=w, acceleration=a)
 
+    def lengths(self, drive: Drive | FurtherDrive) -> tuple[Array, Array, Array]:
+        """Length between the points that a drive pushes apart, or travel of its sliding joint, m,
+        and both derivatives by crank angle, each (N,).
+        """
+        if drive.slider:
+            one = next(one for one in self.machine.sliders if one.name == drive.slider)
+            slid = self.slider(one)
+            return slid.travel, slid.travel_1, slid.travel_2
+        a, b = (self.point(name) for name in drive.between or ())
+        d, d1, d2 = b.place - a.place, b.place_1 - a.place_1, b.place_2 - a.place_2
+        length = np.abs(d)
+        first = kernels.dot(d, d1) / length
+        second = (np.abs(d1) ** 2 + kernels.dot(d, d2) - first**2) / length
+        return length, first, second
+
+    def way(self, link: str) -> Array:
+        """By crank angle (N,): what the drive of a link goes, m, or turns, rad."""
+        drive = next(one for one in self.machine.driven if one.link == link)
+        return self.lengths(drive)[1] if drive.pushes else self.links[link].angle_1
+
     @cached_property
     def links(self) -> Mapping[str, LinkMotion]:
         """Motion of each link, by name."""
@@ -99,9 +119,10 @@ class Motion:
     @cached_property
     def pressure_angles(self) -> Mapping[str, Array]:
         """Angle (N,) of each cam, rad, from the way in which its follower rises to the normal."""
-        fits = fits_of(self.machine, self.linkage.joints)
-        found = ((fit.cam.name, self._full(pressure_angle(fit, self.state))) for fit in fits)
-        return Named("cam", found)
+        cams = self.machine.cams
+        return Named(
+            "cam", ((cam.name, self._full(pressure_angle(cam, self.state))) for cam in cams)
+        )
 
     def slider(self, slider: Slider) -> SliderMotion:
         """Motion of one of the sliding joints, likewise."""

@@ -11,7 +11,7 @@ import numpy as np
 from equipoise.errors import MobilityError, MotionError
 from equipoise.i18n import Note
 from equipoise.mechanism import groups
-from equipoise.mechanism.builder import Builder, Group, Guide, Outer
+from equipoise.mechanism.builder import Builder, Group, Outer, outer_joints
 from equipoise.mechanism.joints import Structure, held_fast, subsets
 from equipoise.mechanism.model import Position
 from equipoise.mechanism.newton import LoopGroup, poses_in
@@ -164,18 +164,3 @@ def _dyad(builder: Builder, joints: Structure, first: Outer, second: Outer) -> G
     build: Any = getattr(groups, kinds.lower())
     group: Group = build(builder, first, second, pins[0] if pins else slides[0])
     return group
-
-
-def outer_joints(builder: Builder, joints: Structure, link: str) -> list[Outer]:
-    """Joints of an unknown link to known bodies."""
-    result = []
-    for point in builder.machine.links[link].points:
-        known = [body for body in joints.pins.get(point, ()) if body in builder.rank]
-        if known:
-            result.append(Outer(link, builder.carrier_of(known), point))
-    for slider in joints.sliders:
-        other = slider.on if slider.link == link else slider.link
-        if link in (slider.link, slider.on) and other in builder.rank:
-            guide = Guide.seen_from(slider, other)
-            result.append(Outer(link, other, guide.base, guide))
-    return result

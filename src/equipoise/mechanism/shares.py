@@ -76,7 +76,8 @@ class Split(Shares):
             found[f"joints.{name}"] = joint.value
             if isinstance(joint, SliderForce):
                 found[f"joints.{name}.moment"] = joint.moment
-        found |= {f"drives.{name}.torque": torque for name, torque in self.drives.items()}
+        for name, effort in self.drives.items():
+            found |= {f"drives.{name}.{what}": effort for what in ("torque", "force")}
         found |= {f"gears.{name}": mesh.value for name, mesh in self.gears.items()}
         found |= {f"racks.{name}": mesh.value for name, mesh in self.racks.items()}
         for name, belt in self.belts.items():

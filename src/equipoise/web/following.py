@@ -216,6 +216,8 @@ def _fewest(matrix: Array, wanted: Array, cost: Array) -> Array:
     for _ in range(ROUNDS):
         least = LEAST * np.max(np.abs(change), initial=0.0)
         scale = (np.abs(change) + least) / cost
-        change = scale * np.linalg.lstsq(matrix * scale, wanted, rcond=SAME)[0]
+        old, change = change, scale * np.linalg.lstsq(matrix * scale, wanted, rcond=SAME)[0]
+        if np.max(np.abs(change - old), initial=0.0) <= least:
+            break
     helps = np.abs(change) > THERE * np.max(np.abs(change), initial=0.0)
     return np.where(helps, change, 0.0)

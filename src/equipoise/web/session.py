@@ -100,7 +100,9 @@ class Session:
         elif "example" in message.values:
             design = opened_example(message.text("example"))
         else:
-            design = opened_text(message.text("name", "machine.toml"), message.text("text"))
+            design = opened_text(
+                message.text("name", "machine.toml"), message.text("text"), message.files
+            )
         disk = self.disk if message.flag("file", False) else None
         try:
             self.open(design)
@@ -272,7 +274,9 @@ class Session:
     def _go(self, history: History, found: Solved | Drawn | None = None) -> None:
         """Show where a history has come to; nothing has changed where that cannot be computed."""
         found = found or computed(history.now.design)
-        self.seen.last = self.found if isinstance(self.found, Solved) else None
+        self.seen.last = last = self.found if isinstance(self.found, Solved) else None
+        if last is not None and last.design is not found.design:
+            last.design.forget()
         self.found = found
         self.history, self.preview = history, None
         if self.before is not None and self.before.design is history.now.design:
