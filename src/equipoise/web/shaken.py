@@ -13,7 +13,7 @@ from equipoise.i18n import said, say
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.spoken import joint_named
-from equipoise.mechanism.strokes import declared_figures, dimension_of
+from equipoise.mechanism.stroke_figures import declared_figures, dimension_of
 from equipoise.mechanism.support import FREEDOMS, PLANAR
 from equipoise.planting.blocks import cell
 from equipoise.planting.names import FIGURES, figure_named, of_all_arms
