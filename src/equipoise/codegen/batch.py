@@ -172,7 +172,8 @@ class Batch:
         self.threads = threads or processors()
         self.needed = 2 if any(figure.name not in SMOOTH for figure in self.wanted) else 1
         has_steps = any(load.jumps for load in machine.loads)
-        has_steps |= any(len(cam.law.jumps(2)) for cam in machine.cams)
+        laws = [*machine.laws.values(), *(cam.law for cam in machine.cams)]
+        has_steps |= any(len(law.jumps(2)) for law in laws)
         self.least = STEP / tolerance if has_steps else FIRST
         self.source = emit(self.base, Gathered.of(self.wanted))
         self.gathered = self.source.gathered
