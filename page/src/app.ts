@@ -51,6 +51,11 @@ export class App {
   private readonly readings = new Readings();
   private readonly planted = new FigureTable(say("Figures of the planting finger"));
   private readonly strokes = new FigureTable(say("Figures of sliders and rockers"));
+  private readonly across = h("img", {
+    class: "across",
+    alt: say("The planes of links, masses and bearings, from the side and to scale."),
+    hidden: true,
+  });
   private readonly balance: BalancePanel;
   private readonly toolbar: Toolbar;
   private readonly tools: Tools;
@@ -60,7 +65,7 @@ export class App {
     () => this.hello?.version ?? "",
     () => this.tour.begin(),
   );
-  private readonly picker = picker((file) => void this.read(file));
+  private readonly picker = picker((files) => void this.read(files));
   private readonly gallery = new Gallery({
     wanted: () => this.talk.ask({ type: "gallery" }),
     stores: () => this.talk.ask({ type: "stores" }),
@@ -107,6 +112,8 @@ export class App {
         this.add("response", message.notes);
       },
       planting: (message) => this.plant(message),
+      side: ({ svg }) =>
+        set(this.across, { src: `data:image/svg+xml,${encodeURIComponent(svg)}`, hidden: false }),
       ghost: (message, numbers) => {
         this.seeing.pale(message.scene, numbers);
         this.charts.pale(numbers);
@@ -236,7 +243,7 @@ export class App {
     stage.append(this.heading.about, this.tools.palette.root, this.board.root);
     stage.append(this.transport.root, this.seeing.root, this.heading.notes, this.readings.root);
     stage.append(this.seeing.variants.root);
-    stage.append(this.strokes.root, this.planted.root);
+    stage.append(this.across, this.strokes.root, this.planted.root);
     const empty = say(
       "Forces, torque and paths stand here as soon as the machine moves. What is missing is told above the drawing.",
     );
@@ -256,7 +263,7 @@ export class App {
       ...this.views.roots,
     );
     this.root.append(
-      dropZone(this.root, (file) => void this.read(file)),
+      dropZone(this.root, (files) => void this.read(files)),
       this.help,
       this.gallery.root,
       this.picker,
@@ -338,6 +345,7 @@ export class App {
     if (other) this.tools.anew();
     if (other || !state.planting) this.planted.hide();
     if (other) this.strokes.hide();
+    if (other || !state.beside) this.across.hidden = true;
     if (!state.before) this.balance.hide();
     this.board.clear(this.held || other);
     this.show(state, other);
@@ -475,13 +483,21 @@ export class App {
     void this.open({ type: "open", new: true }, say("a new machine"));
   }
 
-  private async read(file: File): Promise<void> {
-    if (this.bench.take(file)) return;
-    const problem = tooLarge(file, this.hello?.largest ?? Infinity);
-    if (problem) return this.board.say(problem, true);
+  /** Open a model with the tables that come with it, or take a record or what is traced over. */
+  private async read(given: File[]): Promise<void> {
+    const isTable = ({ name }: File) => /\.csv$/i.test(name);
+    const file = given.find((one) => !isTable(one)) ?? given[0];
+    if (!file || this.bench.take(file)) return;
+    const tables = given.filter((one) => one !== file && isTable(one));
+    for (const one of [file, ...tables]) {
+      const problem = tooLarge(one, this.hello?.largest ?? Infinity);
+      if (problem) return this.board.say(problem, true);
+    }
     const [{ name }, text] = [file, await file.text()];
-    if (/\.csv$/i.test(name)) this.command({ type: "record", name, text });
-    else void this.open({ type: "open", name, text }, name);
+    if (isTable(file)) return this.command({ type: "record", name, text });
+    const texts = tables.map(async (one) => [one.name, await one.text()] as const);
+    const files = Object.fromEntries(await Promise.all(texts));
+    void this.open({ type: "open", name, text, files }, name);
   }
 
   private command(asked: Asked): void {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from itertools import chain
 
 from equipoise.codegen.source import Read, Sheet
 from equipoise.mechanism.linkage import Linkage
@@ -41,9 +42,14 @@ def write_across(
             sheet.call(kernel, arguments, (force, f"{force}, moment"))
             terms.append(sheet.name(force))
     sheet.put("rocking moment", _about(terms[0] for terms in needed.values()))
-    for force, load in zip(loads, machine.loads, strict=True):
-        needed[load.link].append(f"{_plane(sheet, load.link, load.point)} * {force}")
-    sheet.put("frame rocking moment", _about(term for terms in needed.values() for term in terms))
+    acting = [
+        (load, f"{_plane(sheet, load.link, load.point)} * {force}")
+        for force, load in zip(loads, machine.loads, strict=True)
+    ]
+    outer = (term for load, term in acting if load.reaction is None)
+    sheet.put("frame rocking moment", _about((*chain(*needed.values()), *outer)))
+    for load, term in acting:
+        needed[load.link].append(term)
     ends = (end for spring in machine.springs for end in spring.ends)
     for force, (link, point) in zip(springs, ends, strict=True):
         needed[link].append(f"{_plane(sheet, link, point)} * {force}")

@@ -22,9 +22,9 @@ from equipoise.codegen.writer import Writer
 from equipoise.errors import MassError
 from equipoise.mechanism import cam_kernels, kernels
 from equipoise.mechanism.cam_groups import Displacement
-from equipoise.mechanism.contacts import rolled
 from equipoise.mechanism.couplings import coupled
 from equipoise.mechanism.dynamics import inertia_about, massless
+from equipoise.mechanism.gear_contacts import rolled
 from equipoise.mechanism.model import FRAME, Drive, FurtherDrive
 from equipoise.mechanism.newton import LoopGroup
 from equipoise.mechanism.planes import beside
@@ -153,7 +153,9 @@ def write_demands(writer: Writer) -> None:
         held = [[force for _, force, _ in each] for each in (loads, springs)]
         write_across(writer.sheet, writer.linkage, writer.body, *held)
     _write_frame(writer, "shaking", moving)
-    _write_frame(writer, "frame", [*moving, *weights, *loads])
+    each = zip(machine.loads, loads, strict=True)
+    outer = [held for load, held in each if load.reaction is None]
+    _write_frame(writer, "frame", [*moving, *weights, *outer])
     for link in links:
         parts = [held for held in (*moving, *weights, *loads, *springs) if held[0] == link]
         force, moment = demand_names(link)

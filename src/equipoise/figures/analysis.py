@@ -82,7 +82,11 @@ def angle_axis(analysis: Analysis) -> Axis:
 
 
 def settled(values: Array, least: float) -> Array:
-    """Values (N,), or zeros where none is larger than what is told as rounding."""
+    """Values (N,), or zeros where none is larger than what is told as rounding; of each component
+    of complex ones.
+    """
+    if np.iscomplexobj(values):
+        return settled(values.real, least) + 1j * settled(values.imag, least)
     return values if float(np.max(np.abs(values), initial=0.0)) > least else 0 * values
 
 
@@ -117,7 +121,7 @@ def each(analysis: Analysis, output: str) -> Mapping[str, Array]:
     if output == "shaking_force":
         own, least = own.value, force
     else:
-        least = moment
+        least = force if output == "drive_force" else moment
     if not analysis.together:
         return {ALL: settled(own, least)}
     return {ONE: settled(own, least), ALL: settled(analysis.together[output], least)}
@@ -153,7 +157,7 @@ class Joint:
 
 
 def joints_of(analysis: Analysis) -> dict[str, Joint]:
-    """Every joint and pair of gears; of a sliding joint its couple too; rounding as zeros."""
+    """Every joint, pair of gears and bearing; of a slider its couple too; rounding as zeros."""
     found, forces = {}, analysis.forces
     every = forces.solved.contacts
     largest = max((float(np.max(joint.size)) for joint in every.values()), default=0.0)
@@ -163,6 +167,9 @@ def joints_of(analysis: Analysis) -> dict[str, Joint]:
         if isinstance(joint, SliderForce):
             told = say("{name}: couple on {on}", name=short(name), on=short(joint.on))
             found[f"{name}.moment"] = Joint(told, settled(joint.moment, moment))
+    for name in analysis.machine.bearings:
+        value = forces.across.bearings[name].value
+        found[f"bearings.{name}"] = Joint(say("bearing {name}", name=short(name)), value)
     return found
 
 

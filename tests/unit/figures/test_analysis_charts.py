@@ -26,6 +26,7 @@ from equipoise.results.charts import Chart, Panel
 from equipoise.signals import Periodic
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
+from unit.figures.checks import check
 from unit.figures.samples import BUNDLED, drawn, long_cycle, one_link, read_off, words
 
 MOTION = ["linkage", "curves", "hodograph", "centrodes"]
@@ -98,6 +99,17 @@ def test_planes_from_the_side() -> None:
     assert [s.places[0] for s in loose.panels[0].signs if s.role == "stand"] == [0j]
 
 
+def test_what_links_beside_each_other_bear_is_drawn() -> None:
+    charts, across = charts_of("twin-engine"), analysis_of("twin-engine").forces.across
+    drawn = [values for panel in charts["moment"].panels[1:] for values in signals(panel)]
+    assert has(drawn, across.rocking_moment.x)
+    assert has(drawn, across.rocking_moment.y)
+    panels = [*charts["joints"].panels, *charts["joints-2"].panels]
+    assert [panel.title for panel in panels[-2:]] == ["bearing front", "bearing rear"]
+    every = [values for panel in panels for values in signals(panel)]
+    assert all(has(every, bearing.size) for bearing in across.bearings.values())
+
+
 def test_curves_are_the_forces() -> None:
     found, charts = analysis_of("yamashita-1").forces, charts_of("yamashita-1")
     force = found.shaking_force
@@ -160,6 +172,13 @@ def test_what_is_rounding_is_told_to_be_zero() -> None:
     force = view.each(eq.analyze(opposed, 360), "shaking_force")["all"]
     orders = np.abs(np.fft.fft(force))
     assert np.max(orders[1::2]) < 1e-9 * np.max(orders) > 0
+    light = eq.load("scotch-yoke")
+    for link in ("crank", "block"):
+        light = light.with_link(link, mass=1e-30, inertia=0.0)
+    only_along = eq.analyze(light, 360)
+    force = view.each(only_along, "shaking_force")["all"]
+    assert np.any(force.real) and not np.any(force.imag)
+    check(forces.force(only_along))
     couples = [one for one in of_joints.joints_of(eq.analyze(rotor(), 360)).values() if one.couple]
     assert all(not np.any(one.values) for one in couples)
 
