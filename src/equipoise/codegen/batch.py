@@ -16,7 +16,7 @@ import numpy as np
 
 from equipoise.codegen.backends import processors, run_loop
 from equipoise.codegen.coupled import shifts_laws
-from equipoise.codegen.emit import emit
+from equipoise.codegen.emit import emit, moves_shared
 from equipoise.codegen.figures import (
     CHANGE_POINT,
     COMPUTED,
@@ -162,6 +162,11 @@ class Batch:
         if shifts_laws(machine, paths):
             raise UsageError("got the start of a body from whose angle a varying ratio counts")
         self.base = assemble(machine)
+        if moves_shared(self.base, paths):
+            raise UsageError(
+                "got lengths of a linkage whose joints hold more than its motion needs; each "
+                "design has to be looked at by itself, whether they agree"
+            )
         self.paths, self.wanted = tuple(paths), tuple(wanted)
         self.angles, self.tolerance = angles, tolerance
         self.threads = threads or processors()
@@ -278,7 +283,7 @@ class Batch:
         strongest = found[:, self.source.strongest].copy()
         self._look_closer(table, weakest, strongest, count)
         dyads = [*zip(weakest.T, strongest.T, strict=True)][: len(set(self.source.watched))]
-        groups = [group.margin for group in self.base.groups]
+        groups = [group.margin for group in self.base.groups if not group.through]
         for margin in reversed(groups):
             if margin is None:
                 if self.march:
