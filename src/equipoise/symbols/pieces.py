@@ -47,6 +47,13 @@ BARREL, ROD, INSIDE = 0.55, 0.95, 0.8
 """Length of a cylinder's barrel over the largest stroke, of both over the smallest, and how much of
 the barrel the rod leaves free when it is out.
 """
+LAYERS = {
+    "strand": {"springs": "strand"},
+    "cam": {"wheels": "cam", "springs": "cam-edge"},
+    "rider": {"riders": "rider"},
+    "face": {"riders": "face"},
+}
+"""Of marks that do not lie below all links: their roles by layer, so that links hide none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +61,7 @@ class Piece:
     """Shapes that move together, in axes of their own; those without a hold stand still.
 
     layer : ``field``, ``support``, ``rows``, ``wheels``, ``guides``, ``stands``, ``links``,
-        ``springs``, ``pivots``, ``blocks``, ``joints``, ``tray`` or ``drive``.
+        ``springs``, ``pivots``, ``blocks``, ``riders``, ``joints``, ``tray`` or ``drive``.
     link : whose plate or bar it is, if any.
     part : ``slider`` or ``gears``, and the name of that which it tells, if any.
     still : whether it stands on the ground, and not on the support.
@@ -82,12 +89,13 @@ def pieces(scene: Scene, traced: Collection[str] = (), field: bool = True) -> li
     """
     found = [*_soil(scene)] if field else []
     found += [*_carrier(scene), *_rows(scene), *_wheels(scene), *_stands(scene)]
-    found += [*_links(scene), *_drawn(scene, strands=True)]
+    found += [*_links(scene), *_drawn(scene, "springs")]
     found += [*_springs(scene), *_cylinder(scene), Piece("pivots", tuple(_pivots(scene)))]
     found += [
         Piece("blocks", tuple(block()), Hold(guide.point, guide=guide.name), part=_part(guide))
         for guide in scene.guides
     ]
+    found += _drawn(scene, "riders")
     found += [
         Piece("joints", tuple(_marks(scene, body, traced)), _with(body)) for body in scene.bodies
     ]
@@ -173,21 +181,22 @@ def _wheels(scene: Scene) -> Iterator[Piece]:
         body = bodies[gear.link]
         center = scene.local(body, scene.places[gear.center])
         yield Piece("wheels", tuple(wheel(center, gear.radius, gear.curve)), _with(body), part=part)
-    yield from _drawn(scene, strands=False)
+    yield from _drawn(scene, "wheels")
 
 
-def _drawn(scene: Scene, strands: bool) -> Iterator[Piece]:
-    """What moves with bodies; strands of belts lie above their carrier."""
+def _drawn(scene: Scene, layer: str) -> Iterator[Piece]:
+    """What moves with bodies and lies in a layer, of marks that lie in one or two."""
     bodies = {body.name: body for body in scene.bodies}
     for mark in scene.marks:
-        if (mark.shape.role == "strand") != strands:
+        role = LAYERS.get(mark.shape.role, {"wheels": mark.shape.role}).get(layer)
+        if role is None:
             continue
         start, hold = complex(scene.places[mark.point][0]), None
         if mark.body != FRAME:
             start = scene.local(bodies[mark.body], scene.places[mark.point])
             hold = _with(bodies[mark.body])
-        moved = replace(mark.shape, places=mark.shape.places + start)
-        yield Piece("springs" if strands else "wheels", (moved,), hold)
+        moved = replace(mark.shape, role=role, places=mark.shape.places + start)
+        yield Piece(layer, (moved,), hold)
 
 
 def _stands(scene: Scene) -> Iterator[Piece]:
