@@ -46,9 +46,9 @@ except ModuleNotFoundError as missing:
 WANTED = [Figure(signal, "rms") for signal in SIGNALS]
 LIKE_FOUR_BAR = (
     "watt-six-bar", "stephenson-six-bar", "balance-geared-a", "geared-counterweight",
-    "elliptic-quick-return",
+    "elliptic-quick-return", "knife-drive",
 )  # fmt: skip
-"""The last but one has its gear on a link that the crank moves unevenly."""
+"""`geared-counterweight` has its gear on a link that the crank moves unevenly."""
 EXACT, CLOSE = 1e-12, 1e-9
 """Share to which the same arithmetic agrees, and other formulas."""
 Array = np.ndarray

@@ -98,8 +98,7 @@ class Problem:
 
     @property
     def asked(self) -> tuple[Objective, ...]:
-        """Every output and measure that counts."""
-        return (*self.plan.objectives, *(limit.objective for limit in self.plan.limits))
+        return self.plan.asked
 
     @property
     def reads_gauges(self) -> bool:

@@ -144,6 +144,11 @@ class Balance(Frozen):
         "mass", "the most that may be added in all", default=None, example="500 g", above=0
     )
 
+    @property
+    def asked(self) -> tuple[Objective, ...]:
+        """Every output and measure that counts."""
+        return (*self.objectives, *(limit.objective for limit in self.limits))
+
     def combined(self, values: Sequence[float]) -> float:
         """Objectives, each over its value before, as one number."""
         found = [one.weight * value for one, value in zip(self.objectives, values, strict=True)]

@@ -6,15 +6,20 @@ drawing: the sides of dyads, the start of gears, the rough position of loops.
 
 from __future__ import annotations
 
-from cmath import phase
-from collections.abc import Iterator, Mapping
+from cmath import exp, phase
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import cos, hypot, pi, remainder, sin
 from typing import Any
 
+import numpy as np
+
+from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.joints import Structure, joined
 from equipoise.mechanism.linkage import assemble, sides_at_position
 from equipoise.mechanism.model import FRAME, Drive, Gear, Link, Machine, Position, Slider, Vector
+from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.racks import Rack
 from equipoise.quantities import clean, clean_place
 
 TITLE = "Untitled machine"
@@ -136,14 +141,16 @@ class Outline:
         ModelError : what it has contradicts itself, or it has no drive.
         """
         drive = self.drive or self._usual_drive()
+        turning = self._meshed(drive.link)
+        count = len(self.gears)
         return Machine(
             drive=drive,
             frame=self.frame,
             links=self.links,
             sliders=self.sliders,
-            gears=tuple(self._meshed(drive.link)),
+            gears=turning[:count],
             position=self._position(),
-            **self.rest,
+            **{**self.rest, "belts": turning[count:]},
         )
 
     def settled(self) -> Machine:
@@ -155,6 +162,8 @@ class Outline:
         """
         machine = self.machine()
         machine = replace(machine, assembly=sides_at_position(machine))
+        if machine.racks:
+            machine = replace(machine, racks=self._engaged(machine))
         loops = any(group.kind == "loops" for group in assemble(machine).groups)
         return machine if loops else replace(machine, position=None)
 
@@ -164,27 +173,59 @@ class Outline:
         angles = {name: clean(pose.angle) for name, pose in self.poses.items()}
         return Position(clean(self.crank_angle), points, angles)
 
-    def _meshed(self, drive: str) -> Iterator[Gear]:
-        """Gears that start so that they come to where they are drawn, as far as that is known."""
+    def travel(self, slider: Slider) -> float:
+        """How far a slider is along its guide, m."""
+        way = self.places[slider.point] - self.places[slider.through]
+        return (way / exp(1j * (slider.direction + self.pose(slider.on).angle))).real
+
+    def _meshed(self, drive: str) -> tuple[Any, ...]:
+        """Gears, then belts, that start so that what they drive comes to where it is drawn, as far
+        as that is known.
+        """
         angles = {FRAME: (0.0, 0.0)}  # at crank angle 0, and as drawn
         if drive in self.links:
             angles[drive] = 0.0, self.pose(drive).angle
-        for gear in self.gears:
-            start = gear.start
-            if {gear.driver, gear.carrier} <= angles.keys() and gear.driven not in angles:
-                way = _way(gear, angles[gear.driver], angles[gear.carrier])
-                drawn = self.pose(gear.driven).angle - way
-                if abs(remainder(drawn - start, 2 * pi)) > MESHING:
-                    start = clean(remainder(drawn, 2 * pi), "angle")
-                angles[gear.driven] = start, start + way
-            yield gear if start == gear.start else replace(gear, start=start)
+        found: list[Gear | Belt] = [*self.gears, *self.rest.get("belts", ())]
+        left = [*range(len(found))]
+        while ready := [k for k in left if _known(found[k], angles)]:
+            k = ready[0]
+            left.remove(k)
+            one, start = found[k], found[k].start
+            way = _way(one, angles[one.driver], angles[one.carrier])
+            drawn = self.pose(one.driven).angle - way
+            if abs(remainder(drawn - start, 2 * pi)) > MESHING:
+                start = clean(remainder(drawn, 2 * pi), "angle")
+                found[k] = replace(one, start=start)
+            angles[one.driven] = start, start + way
+        return tuple(found)
+
+    def _engaged(self, machine: Machine) -> tuple[Rack, ...]:
+        """Racks that start so that what they drive comes to where it is drawn."""
+        motion = move(machine, np.array([self.crank_angle]))
+        return tuple(self._put(rack, motion) for rack in machine.racks)
+
+    def _put(self, rack: Rack, motion: Motion) -> Rack:
+        if rack.drives == "pinion":
+            ends = (rack.rack, rack.carrier)
+            slider = next(one for one in self.sliders if (one.link, one.on) == ends)
+            off = self.travel(slider) - float(motion.sliders[slider.name].travel[0])
+            near = abs(off) <= MESHING * rack.radius
+            return rack if near else replace(rack, travel=clean(rack.travel + off, "length"))
+        turned = self.pose(rack.pinion).angle - float(motion.links[rack.pinion].angle[0])
+        off = remainder(turned, 2 * pi)
+        return rack if abs(off) <= MESHING else replace(rack, angle=clean(rack.angle + off))
 
     def _usual_drive(self) -> Drive:
         """In the place of one that has not been chosen."""
         return Drive(next(iter(self.links), ""), 0.0)
 
 
-def _way(gear: Gear, driver: tuple[float, float], carrier: tuple[float, float]) -> float:
+def _known(one: Gear | Belt, angles: Mapping[str, tuple[float, float]]) -> bool:
+    """Whether its driver and its carrier stand where it is known, and what it drives does not."""
+    return {one.driver, one.carrier} <= angles.keys() and one.driven not in angles
+
+
+def _way(gear: Gear | Belt, driver: tuple[float, float], carrier: tuple[float, float]) -> float:
     """How far a driven gear turns while driver and carrier turn from one angle to another."""
     kernel, numbers = gear.relation
     before, after = (

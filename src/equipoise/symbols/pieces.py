@@ -55,7 +55,7 @@ class Piece:
     layer : ``field``, ``support``, ``rows``, ``wheels``, ``guides``, ``stands``, ``links``,
         ``springs``, ``pivots``, ``blocks``, ``joints``, ``tray`` or ``drive``.
     link : whose plate or bar it is, if any.
-    part : ``slider`` or ``gears``, and the name of that which it tells, if any.
+    part : ``slider``, ``gears``, ``belts`` or ``racks``, and the name of that which it tells.
     still : whether it stands on the ground, and not on the support.
     """
 
@@ -164,14 +164,15 @@ def _wheels(scene: Scene) -> Iterator[Piece]:
         if gear.curve is None and key in seen:
             continue
         seen.add(key)
-        part = ("gears", gear.pair) if gear.pair else None
         if gear.link == FRAME:
             still = complex(scene.places[gear.center][0])
-            yield Piece("wheels", (rim(still, gear.radius, gear.curve),), part=part)
+            shape = rim(still, gear.radius, gear.curve)
+            yield Piece("wheels", (shape,), part=gear.part)
             continue
         body = bodies[gear.link]
         center = scene.local(body, scene.places[gear.center])
-        yield Piece("wheels", tuple(wheel(center, gear.radius, gear.curve)), _with(body), part=part)
+        shapes = tuple(wheel(center, gear.radius, gear.curve))
+        yield Piece("wheels", shapes, _with(body), part=gear.part)
     yield from _drawn(scene, strands=False)
 
 
@@ -186,7 +187,7 @@ def _drawn(scene: Scene, strands: bool) -> Iterator[Piece]:
             start = scene.local(bodies[mark.body], scene.places[mark.point])
             hold = _with(bodies[mark.body])
         moved = replace(mark.shape, places=mark.shape.places + start)
-        yield Piece("springs" if strands else "wheels", (moved,), hold)
+        yield Piece("springs" if strands else "wheels", (moved,), hold, part=mark.part)
 
 
 def _stands(scene: Scene) -> Iterator[Piece]:

@@ -144,7 +144,11 @@ class Scene:
             tuple((one.point, one.to) for one in planned if (one.point, one.to) not in springs),
             _field(motion),
             Carrier.of(machine),
-            marks=(*cams_of(motion), *strands_of(joints, machine.bodies), *racks_of(motion)),
+            marks=(
+                *cams_of(motion),
+                *strands_of(joints, machine.bodies),
+                *racks_of(joints, machine.bodies, lambda one: motion.sliders[one.name].travel),
+            ),
         )
 
     def with_rows(self, motion: Motion) -> Scene:
