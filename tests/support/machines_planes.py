@@ -43,8 +43,7 @@ def set_apart(machine: Machine, rng: np.random.Generator, flat: bool = False) ->
         for name in shafts
         for side, place in (("left", -1.0), ("right", 1.0))
     }
-    belts = tuple(replace(belt, tension=None) for belt in machine.belts)
-    return replace(machine, links=links, bearings=bearings, belts=belts)
+    return replace(machine, links=links, bearings=bearings)
 
 
 def _in_two_planes(link: Link, rng: np.random.Generator, size: float) -> dict[str, object]:

@@ -78,6 +78,10 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
     if machine.racks and one.name in WITHOUT_RACKS:
         raise UsageError(f"racks[1]: a file of {one.title} has no rack; give another format")
     job = Job(machine, crank_angle, changes)
+    if one.name in WITHOUT_RACKS:
+        for belt in machine.belts:
+            if belt.tension is not None:
+                job.leave_out(f"the tension of the belt {belt.name}, which its pins bear")
     if machine.drive.pushes:
         job.leave_out("what pushes the machine, and its stroke")
     data: str | bytes = import_module(f"equipoise.exchange.{one.name}").made(job)

@@ -44,46 +44,49 @@ FORMATS: Mapping[str, Format] = {
             "mjcf",
             ".xml",
             "MuJoCo (MJCF)",
-            "bodies, pins, sliders, gears, springs, constant loads, rows, the support on its "
-            "mounts, the drive at constant speed",
+            "bodies, pins, sliders, gears, belts, springs, constant loads, rows, the support on "
+            "its mounts, the drive at constant speed",
             turns=True,
         ),
         Format(
             "exudyn",
             ".py",
             "Exudyn",
-            "a script that builds and runs bodies, pins, sliders, gears, springs, constant loads, "
-            "rows, the support on its mounts in the plane, the drive at constant speed",
+            "a script that builds and runs bodies, pins, sliders, gears, belts, springs, constant "
+            "loads, rows, the support on its mounts in the plane, the drive at constant speed",
             turns=True,
         ),
         Format(
             "urdf",
             ".urdf",
             "robots (URDF)",
-            "the tree: links with masses, hinges, slides, gears of two joints; loops are cut",
+            "the tree: links with masses, hinges, slides, gears and belts of two joints; loops are "
+            "cut",
         ),
         Format(
             "fmu",
             ".fmu",
             "co-simulation (FMI 2.0)",
             "motion and forces as outputs, speed and acceleration of the crank as inputs; gears, "
-            "springs, constant loads; C sources, and a library where a C compiler is found",
+            "belts, racks, springs, constant loads; C sources, and a library where a C compiler is "
+            "found",
             turns=True,
         ),
         Format(
             "modelica",
             ".mo",
             "Modelica",
-            "one flat model: equations of motion of each link, pins, sliders, gears, springs, "
-            "constant loads, the drive at constant speed",
+            "one flat model: equations of motion of each link, pins, sliders, gears, belts, "
+            "springs, constant loads, the drive at constant speed",
             turns=True,
         ),
         Format(
             "dxf",
             ".dxf",
             "drawing (DXF)",
-            "the linkage at a crank angle, paths of its points, pitch circles of gears, parts to "
-            "be cut: outlines and holes of links made of bodies, and of counterweights; in mm",
+            "the linkage at a crank angle, paths of its points, pitch circles of gears, strands of "
+            "belts, racks, parts to be cut: outlines and holes of links made of bodies, and of "
+            "counterweights; in mm",
             needs="ezdxf",
         ),
         Format(

@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import Any
 
 from equipoise.mechanism import kernels
+from equipoise.mechanism.acting import acting_strands
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.planes import moments_across
@@ -116,8 +117,22 @@ def masses_across(motion: Motion) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def pushes_across(motion: Motion, acting: Iterable[Acting]) -> dict[str, Any]:
     """What holds forces at points of links."""
+    links = motion.machine.links
+    return _held((link, links[link].plane_of(point), force) for link, point, force, _ in acting)
+
+
+def strands_across(motion: Motion) -> dict[str, Any]:
+    """What holds the tension of belts, which run in the plane of their driven link."""
+    links = motion.machine.links
+    return _held(
+        (link, links[belt.driven].plane, force)
+        for belt, ends in acting_strands(motion)
+        for link, _, force, _ in ends
+    )
+
+
+def _held(pushes: Iterable[tuple[str, float, Any]]) -> dict[str, Any]:
     found: dict[str, Any] = {}
-    for link, point, force, _ in acting:
-        plane = motion.machine.links[link].plane_of(point)
+    for link, plane, force in pushes:
         found[link] = found.get(link, 0.0) - plane * force
     return found

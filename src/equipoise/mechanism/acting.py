@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 from math import degrees
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
+from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.field import Soil
 from equipoise.mechanism.joints import coupling_pins
 from equipoise.mechanism.loads import load_at
@@ -36,12 +38,12 @@ def spring_demands(motion: Motion) -> dict[str, Demand]:
     ------
     ModelError : the ends of a spring with a free length meet.
     """
-    return demands_of(motion, acting_springs(motion))
+    strands = (one for _, ends in acting_strands(motion) for one in ends)
+    return demands_of(motion, chain(acting_springs(motion), strands))
 
 
 def acting_springs(motion: Motion) -> Iterator[Acting]:
-    """Link, point and force of each end of a spring on a link, and of the tension of belts; they
-    have no torque.
+    """Link, point and force of each end of a spring on a link; they have no torque.
 
     Raises
     ------
@@ -51,18 +53,17 @@ def acting_springs(motion: Motion) -> Iterator[Acting]:
         force = spring_force(motion, spring)
         for (link, point), pull in zip(spring.ends, (force, -force), strict=False):
             yield link, point, pull, 0.0
-    yield from _tensions(motion)
 
 
-def _tensions(motion: Motion) -> Iterator[Acting]:
-    """What the tension of belts does to their links, whether or not they pass a torque on."""
+def acting_strands(motion: Motion) -> Iterator[tuple[Belt, list[Acting]]]:
+    """Belts with what their tension does to their links, whether or not they pass a torque on."""
     for belt in motion.machine.belts:
         if belt.tension is not None:
             driver, driven = coupling_pins(motion.linkage.joints, belt)
             apart = motion.points[driven].place - motion.points[driver].place
             pull = belt.tension * belt.strands(apart).toward
             ends = (belt.driver, driver, pull), (belt.driven, driven, -pull)
-            yield from ((*end, 0.0) for end in ends if end[0] != FRAME)
+            yield belt, [(*end, 0.0) for end in ends if end[0] != FRAME]
 
 
 def acting_loads(motion: Motion) -> Iterator[Acting]:

@@ -19,7 +19,7 @@ import numpy as np
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism import kernels
-from equipoise.mechanism.across import Across, masses_across, pushes_across
+from equipoise.mechanism.across import Across, masses_across, pushes_across, strands_across
 from equipoise.mechanism.acting import acting_loads, acting_springs, load_demands, spring_demands
 from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
@@ -174,6 +174,8 @@ class Forces:
         motion = self.motion
         loads = pushes_across(motion, acting_loads(motion))
         springs = pushes_across(motion, acting_springs(motion))
+        for link, held in strands_across(motion).items():
+            springs[link] = springs.get(link, 0.0) + held
         return Across(motion, *masses_across(motion), loads, springs, self.solved.exerted)
 
     @cached_property

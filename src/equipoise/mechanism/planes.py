@@ -9,7 +9,7 @@ from typing import Any
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism.bodies import inertia_of
-from equipoise.mechanism.checks import FRAME, bodies_at, numbered, unknown
+from equipoise.mechanism.checks import FRAME, bodies_at, unknown
 from equipoise.mechanism.links import Link
 from equipoise.mechanism.parts import Bearing, Mechanism
 
@@ -69,14 +69,6 @@ def wrong_planes(machine: Mechanism) -> Iterator[ModelError]:
                 "links and bodies, and bearings"
             ),
         )
-    for where, belt in numbered("belts", machine.belts):
-        if belt.tension is not None and beside(machine):
-            yield ModelError(
-                f"{where}.tension",
-                Note(
-                    "links beside each other take belts without it; leave it out, or their planes"
-                ),
-            )
     for point, told in _told_of_pins(machine):
         for (one, here), (other, there) in combinations(told, 2):
             if here != there:

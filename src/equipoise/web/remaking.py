@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from equipoise.errors import UsageError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.checks import Bodies, unknown
 from equipoise.mechanism.model import FRAME
@@ -26,7 +26,7 @@ from equipoise.web.moving import straight
 from equipoise.web.naming import What, named_in, renamed_in
 from equipoise.web.sketch import Sketch
 
-COUPLED = {"gears": "pair of gears", "belts": "belt", "racks": "rack"}
+COUPLED = {"gears": to_say("pair of gears"), "belts": to_say("belt"), "racks": to_say("rack")}
 """Lists of couplings, with what one of each is called."""
 TABLES = ("planting", "balance")
 """Tables of which there is one, and which go with a point or link that they name."""

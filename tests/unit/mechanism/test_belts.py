@@ -282,5 +282,9 @@ def test_a_file_without_racks_refuses_them(tmp_path: Path) -> None:
     given = racked(Rack("rocker", "ram", 0.07, "left"))
     with pytest.raises(UsageError, match=r"racks\[1\]: a file of MuJoCo .* has no rack"):
         eq.export(given, tmp_path / "a.xml", format="mjcf")
-    eq.export(belted(belt()), tmp_path / "b.xml", format="mjcf")
+    left = eq.export(belted(belt(tension=9.0)), tmp_path / "b.xml", format="mjcf")
+    assert left == ("the tension of the belt crank to wheel, which its pins bear",)
+    pytest.importorskip("ezdxf")
+    eq.export(belted(belt()), tmp_path / "b.dxf")
+    assert (tmp_path / "b.dxf").read_text(encoding="utf-8").count("LWPOLYLINE\n") == 2
     assert "crank to wheel" in (tmp_path / "b.xml").read_text(encoding="utf-8")
