@@ -6,6 +6,7 @@ from itertools import chain
 from typing import Any
 
 import numpy as np
+import pytest
 
 from equipoise.mechanism.model import FRAME
 from support import mujoco_engine
@@ -31,6 +32,7 @@ from support.free_bodies import (
     strand_contacts,
 )
 from support.loads import on_links, springs_on_links
+from support.machines_strokes import PUSHED
 from support.poses import Array, cross
 from support.sources import MUJOCO
 
@@ -42,14 +44,15 @@ def action(subject: Subject, link: str, at: Array, force: Array, couple: Array |
 
 
 def pushing(subject: Subject) -> list[tuple[str, Array]]:
-    """What a drive that pushes does to the links between which it is."""
+    """What drives that push do to the links between which they are."""
     machine = subject.machine
-    if not machine.drive.pushes:
-        return []
-    push = cylinder(machine, subject.poses)
-    force = subject.forces.drive_force[:, None] * push.directions[0]
-    both = ((push.on, force), (push.by, -force))
-    return [(b, action(subject, b, push.at, f, 0.0)) for b, f in both if b != FRAME]
+    found = []
+    for drive in machine.pushers:
+        push = cylinder(machine, drive, subject.poses)
+        force = subject.forces.drives[drive.link][:, None] * push.directions[0]
+        both = ((push.on, force), (push.by, -force))
+        found += [(b, action(subject, b, push.at, f, 0.0)) for b, f in both if b != FRAME]
+    return found
 
 
 def pushes(subject: Subject) -> list[tuple[Any, Array, Array]]:
@@ -97,8 +100,9 @@ def acting_on_links(subject: Subject) -> dict[str, Array]:
         total[link] += action(subject, link, at, force, torque)
     for body, action_of_push in pushing(subject):
         total[body] += action_of_push
-    for link, torque in forces.drives.items():
-        total[link][:, 2] += torque
+    for drive in machine.driven:
+        if not drive.pushes:
+            total[drive.link][:, 2] += forces.drives[drive.link]
     return total
 
 
@@ -106,7 +110,18 @@ def acting_on_links(subject: Subject) -> dict[str, Array]:
 @every_subject
 def test_totals_and_what_each_link_carries(name: str) -> float:
     """Each link gets just what MuJoCo asks for it, weight included."""
-    subject = subject_of(name)
+    if name.startswith("crossed_yokes"):
+        pytest.skip("no file of MuJoCo has a loop of sliders alone")
+    return carried(subject_of(name))
+
+
+@pytest.mark.parametrize("name", PUSHED)
+def test_what_is_pushed_gets_just_what_it_needs(name: str) -> None:
+    carried(subject_of(name))
+
+
+def carried(subject: Subject) -> float:
+    """Compare what each link gets; tell how far it is off."""
     apart = [same_totals(subject, mujoco_engine.totals)]
     machine, poses = subject.machine, subject.poses
     asked = mujoco_engine.demands(machine, poses, machine.gravity).links

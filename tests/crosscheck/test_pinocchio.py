@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import pytest
+
 from support import pinocchio_engine
 from support.analyses import every_apart, every_subject, subject_of
 from support.conformance import compared
 from support.engines import TOLERANCE, TOTALS, same_totals
+from support.machines_strokes import PUSHED
 from support.sources import PINOCCHIO
 
 
@@ -13,6 +16,11 @@ from support.sources import PINOCCHIO
 @every_subject
 def test_totals(name: str) -> float:
     return same_totals(subject_of(name), pinocchio_engine.totals)
+
+
+@pytest.mark.parametrize("name", PUSHED)
+def test_totals_of_what_is_pushed(name: str) -> None:
+    same_totals(subject_of(name), pinocchio_engine.totals)
 
 
 @compared(PINOCCHIO, f"{TOTALS}, of links beside each other", TOLERANCE)

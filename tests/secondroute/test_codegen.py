@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +13,10 @@ import equipoise as eq
 from equipoise.codegen.batch import Batch
 from equipoise.codegen.emit import can_emit
 from equipoise.codegen.figures import Figure
+from equipoise.mechanism.laws import LengthLaw
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Gear, Machine
+from support import machines_cams
 from support.batches import by_numpy, every_dyad, known_of, same_figures, signals_of, wanted_of
 from support.designs import design, drawn, named, numbers_of, paths_of, reason_of
 from support.machines import KINDS, make
@@ -82,6 +85,29 @@ def test_example(name: str, numpy_engine: None) -> None:
 @pytest.mark.parametrize(("kind", "seed"), RANDOM)
 def test_random_machine(kind: str, seed: int, numpy_engine: None) -> None:
     assert compared(make(kind, seed).machine, 4, seed, polar=seed == 1)
+
+
+CAMS = [(kind, seed) for kind in machines_cams.KINDS for seed in range(3)]
+
+
+@pytest.mark.parametrize(("kind", "seed"), CAMS)
+def test_cams(kind: str, seed: int, numpy_engine: None) -> None:
+    """Laws that the crank angle tells, and such as are looked up at each design's own angle."""
+    base = machines_cams.make(kind, seed).machine
+    assert compared(base, 12, seed)
+
+
+def test_a_cam_of_many_rows(numpy_engine: None) -> None:
+    """More pieces than are told apart by comparing."""
+    base = eq.load("cam-pusher")
+    (cam,) = base.cams
+    angles = tuple(np.linspace(0.0, 2 * np.pi, 31)[:-1] + 0.03 * np.cos(np.arange(30)))
+    heights = tuple(0.006 * (1 - np.cos(angle)) for angle in angles)
+    rows = LengthLaw(crank_angles=angles, values=heights, phase=1.0)
+    base = replace(base, cams=(replace(cam, lift=rows),))
+    wanted = wanted_of(["drive_torque", f"cams.{cam.name}.normal"], "rms", "max")
+    wanted += wanted_of([f"cams.{cam.name}.pressure_angle"], "peak", "min_at")
+    assert compared(base, 12, 2, wanted) > 3
 
 
 @pytest.mark.parametrize("kind", ["slider_crank", "geared_counterweight", "v_twin"])

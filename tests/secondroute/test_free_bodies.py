@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.parameters import regressor, values_across
 from support import free_bodies, machines_planes
 from support.analyses import (
     Subject,
@@ -83,13 +84,11 @@ def same_reaction(name: str, got: Any, want: Reaction, force: float, moment: flo
 
 def same_totals(forces: Any, solved: FreeBodies, force: float, moment: float) -> None:
     """Compare what the drives exert and what the frame bears."""
-    if forces.motion.machine.drive.pushes:
-        (push,) = solved.drives.values()
-        agree("drive", forces.drive_force, push, TOLERANCE, force)
-    else:
-        for link, torque in solved.drives.items():
-            agree(f"drive torque of {link}", forces.drives[link], torque, TOLERANCE, moment)
-        assert forces.drive_torque is next(iter(forces.drives.values()))
+    for drive in forces.motion.machine.driven:
+        size, wanted = (force if drive.pushes else moment), solved.drives[drive.link]
+        agree(f"drive of {drive.link}", forces.drives[drive.link], wanted, TOLERANCE, size)
+    first = forces.motion.machine.drive
+    assert getattr(forces, first.effort) is forces.drives[first.link]
     agree("frame force", vector(forces.frame_force), solved.frame_force, TOLERANCE, force)
     agree("frame moment", forces.frame_moment, solved.frame_moment, TOLERANCE, moment)
 
@@ -140,3 +139,38 @@ def test_everything_across_the_plane(name: str) -> float:
     for key, want in solved.bearings.items():
         found.append(agree(key, vector(across.bearings[key]), want, TOLERANCE, force))
     return max(found)
+
+
+@every_apart
+def test_parts_across_the_plane(name: str) -> None:
+    """Splits by link are what each link alone does; parameters and what acts give the whole."""
+    subject = subject_of(name)
+    machine, poses, forces = subject.machine, subject.poses, subject.forces
+    span = max(abs(one.plane) for one in machine.bearings.values())
+    force = FLOOR * force_size(machine, poses)
+    split, parameters = forces.split, regressor(forces.motion)
+    inertial = split.across.rocking_moment.value[:2].sum(axis=0)
+    own = dict(
+        zip(
+            machine.links,
+            zip(inertial, split.across.frame_rocking_moment.value[2], strict=True),
+            strict=True,
+        )
+    )
+    for link in machine.links:
+        wants = machines_planes.rocking_of(machine, poses, link)
+        for value, want in zip(own[link], wants, strict=True):
+            agree(link, np.column_stack([value.real, value.imag]), want, TOLERANCE, force * span)
+    whole, acting = values_across(machine), slice(3, None)
+
+    def told(across: Any) -> dict[str, Any]:
+        found = {"rocking": across.rocking_moment, "frame": across.frame_rocking_moment}
+        return found | {**across.tilting_moments} | {**across.bearings}
+
+    causes, columns = told(split.across), told(parameters.across)
+    for key, one in told(forces.across).items():
+        got = whole @ columns[key].value + causes[key].value[acting].sum(axis=(0, 1))
+        size = force if key in machine.bearings else force * span
+        assert np.max(np.abs(got - one.value)) <= TOLERANCE * max(
+            np.max(np.abs(one.value)), size
+        ), key

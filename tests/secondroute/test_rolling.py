@@ -104,6 +104,13 @@ SHAPES = {
     "table of the radius": (
         GearShape("radius", angle=ANGLES, radius=(0.03, 0.05, 0.04, 0.04, 0.05)), -1.0,
     ),
+    "ellipse in a ring": (GearShape("elliptic", eccentricity=0.3, phase=0.3), 0.5),
+    "ring about two ellipses": (GearShape("elliptic", eccentricity=0.1, lobes=3), 1.5),
+    "limacon in a ring": (GearShape("limacon", eccentricity=0.3), 1 / 3),
+    "ring as a limacon": (GearShape("limacon", eccentricity=0.1, lobes=3), 3.0),
+    "eccentric circle in a ring": (GearShape("eccentric", eccentricity=0.3), 0.5),
+    "series of a ring's radius": (GearShape("radius", cosines=(0.1,), lobes=2), 2.0),
+    "series of the ratio in a ring": (GearShape("ratio", cosines=(0.2, 0.1)), 0.5),
 }  # fmt: skip
 
 

@@ -19,12 +19,12 @@ WITHIN = 1e-12
 def bundled() -> Rotary:
     """The bundled machine: its numbers as they stand in the file, in SI units."""
     idler, planet = -7.3066e-3 + 51.9891e-3j, 20.5142e-3 + 96.5116e-3j
-    bend, tip = np.radians(-40), 0.13 + 0j
+    bends, tip = np.radians([-40, 140]), 0.13 + 0j
     return Rotary(
         0.2,
         (
-            Arm((idler, planet), 0.0, bend, (0.0, np.radians(-15)), tip),
-            Arm((-idler, -planet), np.pi, bend, (np.pi, np.radians(-44.98706)), tip),
+            Arm((idler, planet), 0.0, bends[0], (0.0, np.radians(-15)), tip),
+            Arm((-idler, -planet), np.pi, bends[1], (0.0, np.radians(-44.98706)), tip),
         ),
         Body(1.2, 0j, 5.2e-3),
         Body(0.2, 0.7307e-3 - 5.1989e-3j, 68e-6),
@@ -119,10 +119,14 @@ def test_figures_of_planting_stand_on_these_paths() -> None:
     assert figures["hills.largest_distance"] == pytest.approx(0.16, abs=1e-6)
 
 
-def test_both_arms_take_the_same_path() -> None:
-    motion = eq.move(MACHINES["bundled"], CYCLE)
-    first, second = (motion.points[tip].place for tip in "PQ")
-    np.testing.assert_allclose(second, np.roll(first, len(CYCLE) // 2), atol=1e-7)  # file's digits
+def test_both_arms_take_the_same_path_and_shake_alike() -> None:
+    """So that everything comes twice a turn, to the digits of the file."""
+    half = len(CYCLE) // 2
+    analysis = eq.analyze(MACHINES["bundled"].with_planting(soil=None), CYCLE)
+    first, second = (analysis.motion.points[tip].place for tip in "PQ")
+    np.testing.assert_allclose(second, np.roll(first, half), atol=1e-7)
+    for values in (analysis.forces.shaking_force.value, analysis.forces.shaking_moment):
+        np.testing.assert_allclose(values, np.roll(values, half), atol=1e-6)
 
 
 def test_named_arms_are_those_of_the_file() -> None:

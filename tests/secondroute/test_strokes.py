@@ -13,16 +13,16 @@ from secondroute.test_free_bodies import acting_on_the_later, same_forces
 from secondroute.test_motion import same_motion
 from support import newton
 from support.analyses import ANGLES, Subject
-from support.machines_strokes import SLIDING, TURNING, stroked
+from support.machines_strokes import SLIDING, TOGETHER, TURNING, stroked, together
 from support.poses import from_motion
 
-SUBJECTS = [(kind, False) for kind in TURNING] + [(kind, True) for kind in SLIDING]
+SUBJECTS = [(kind, False) for kind in (*TURNING, *TOGETHER)] + [(kind, True) for kind in SLIDING]
 each = pytest.mark.parametrize(("kind", "by_slider"), SUBJECTS)
 SEEDS = (0, 1)
 
 
 def subject_of(kind: str, seed: int, by_slider: bool) -> Subject:
-    case = stroked(kind, seed, by_slider)
+    case = together(kind, seed) if kind in TOGETHER else stroked(kind, seed, by_slider)
     analysis = eq.analyze(case.machine, angles=ANGLES)
     return Subject(case.machine, analysis.motion, analysis, case)
 
@@ -51,4 +51,4 @@ def test_motion_forces_and_power(kind: str, seed: int, by_slider: bool) -> None:
     rows = [*rows, *-spring_power(found)]
     size = np.max(np.sum(np.abs(rows), axis=0) + np.abs(found.power))
     alike(found.power, np.sum(rows, axis=0), 1e-12, float(size))
-    assert not np.any(found.drive_torque)
+    assert np.any(found.drive_torque) != subject.machine.drive.pushes

@@ -13,6 +13,7 @@ import equipoise as eq
 from equipoise.errors import MassError
 from equipoise.mechanism.field import PlantingArm, Soil, SoilTable
 from equipoise.mechanism.model import Machine
+from support import machines_strokes
 from support.loads import springs_on_links
 from support.machines import KINDS, Case, make
 from support.machines_planes import set_apart
@@ -66,6 +67,9 @@ def subject_of(name: str) -> Subject:
     kind, _, seed = name.partition(":")
     if not seed:
         return analysed(eq.load(name))
+    if name in machines_strokes.PUSHED:
+        case = machines_strokes.named(name)
+        return analysed(case.machine, case)
     kind, soil, _ = kind.partition(" in soil")
     kind, apart, _ = kind.partition(" apart")
     case = make(kind, int(seed))

@@ -61,6 +61,10 @@ def plain_of(machine: Machine) -> Plain:
             {"angle": r.angle, "travel": r.travel, "pressure_angle": r.pressure_angle}
             for r in machine.racks
         ],
+        "cams": [
+            {"base_radius": c.base_radius, "roller_radius": c.roller_radius, "normal": c.normal}
+            for c in machine.cams
+        ],
         "springs": [
             {"stiffness": s.stiffness, "free_length": s.free_length} for s in machine.springs
         ],
@@ -87,7 +91,7 @@ def machine_of(base: Machine, plain: Plain) -> Machine:
             replace(value, **changes)
             for value, changes in zip(getattr(base, key), plain[key], strict=True)
         )
-        for key in ("sliders", "gears", "belts", "racks", "springs")
+        for key in ("sliders", "gears", "belts", "racks", "cams", "springs")
     }
     return Machine(
         title=base.title,
@@ -283,6 +287,12 @@ def _listed(machine: Machine) -> Iterator[Number]:
         key = "travel" if rack.drives == "pinion" else "angle"
         yield number("racks", k, key, _near(getattr(rack, key), 0.3))
         yield number("racks", k, "pressure_angle", lambda rng: float(rng.uniform(0, 0.5)))
+    for k, cam in enumerate(machine.cams):
+        yield number("cams", k, "base_radius", _times(cam.base_radius))
+        if cam.rides == "roller":
+            yield number("cams", k, "roller_radius", _times(cam.roller_radius))
+        if cam.normal is not None:
+            yield number("cams", k, "normal", _near(cam.normal, 0.1))
     for k, spring in enumerate(machine.springs):
         yield number("springs", k, "stiffness", _times(spring.stiffness))
         yield number("springs", k, "free_length", _times(spring.free_length))

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from math import cos, pi, sin
 
-from equipoise.mechanism.laws import AngleLaw, LengthLaw
+from scipy.interpolate import make_interp_spline
+
+from equipoise.mechanism.laws import SPLINES, AngleLaw, LengthLaw
 from equipoise.mechanism.model import Drive, FurtherDrive
 
 Rates = tuple[float, float, float]
@@ -64,6 +66,13 @@ def followed(law: AngleLaw | LengthLaw, crank_angle: float) -> Rates:
         return (
             low + half * (1 - cos(turned)), half * rate * sin(turned), half * rate**2 * cos(turned)
         )  # fmt: skip
+    if law.values:
+        knots = [*law.crank_angles, law.crank_angles[0] + period]
+        through = make_interp_spline(
+            knots, [*law.values, law.values[0]], SPLINES[law.spline], bc_type="periodic"
+        )
+        x = knots[0] + (since - knots[0]) % period
+        return float(through(x)), float(through(x, 1)), float(through(x, 2))
     gained = cycles * (law.segments[-1].to - law.start)
     before = law.start
     for segment in law.segments[:-1]:

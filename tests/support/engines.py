@@ -24,7 +24,7 @@ def same_totals(subject: Subject, engine: Engine) -> float:
     force, moment = FLOOR * force_size(machine, poses), FLOOR * moment_size(machine, poses)
     # engines tell the work of all drives by crank angle
     torque = sum(forces.drives[d.link] * poses.omega[d.link] for d in machine.driven)
-    torque = (forces.power if machine.drive.pushes else torque) / machine.drive.speed
+    torque = (forces.power if machine.pushers else torque) / machine.drive.speed
     across = subject.forces.across
     return max(
         agree("rocking", vector(across.rocking_moment), told.rocking_moment, TOLERANCE, moment),

@@ -123,6 +123,12 @@ def solve(
     system = equations(machine, poses)
     passing = [*joints, *gears, *racks, *belts]
     unknowns = solved(system, passing)
+    unknown = sum(1 if isinstance(one, tuple) else one.size for one in passing)
+    if unknown + len(machine.driven) > system.known.shape[1]:  # least squares weigh whole pushes
+        slanted = [leant(gear, one, machine, poses, unknowns)
+                   for gear, one in zip(machine.gears, gears, strict=True)]  # fmt: skip
+        unknowns = solved(system, [*joints, *slanted, *racks, *belts])
+        return gathered(machine, poses, joints, (gears, racks, belts), unknowns)
     for gear, contact in zip(machine.gears, gears, strict=True):
         tangential = unknowns[gear.name][:, 0]
         apart = separating(gear, machine, poses, tangential)
@@ -136,6 +142,15 @@ def solve(
             system.known -= mean[:, None] * system.pair(strand, strand.directions[0], 0.0)
     unknowns = solved(system, passing)
     return gathered(machine, poses, joints, (gears, racks, belts), unknowns)
+
+
+def leant(
+    gear: Gear, contact: Contact, machine: Machine, poses: Poses, unknowns: Mapping[str, Array]
+) -> Contact:
+    """Return teeth whose push per unit of its tangential part has what separates them."""
+    sense = np.sign(unknowns[gear.name][:, 0])
+    apart = separating(gear, machine, poses, sense) * sense[:, None]
+    return replace(contact, directions=(contact.directions[0] + apart,))
 
 
 def equations(machine: Machine, poses: Poses) -> System:
@@ -195,17 +210,16 @@ def solved(system: System, passing: list[Contact | Strands]) -> dict[str, Array]
 def driving(system: System, drive: Drive | FurtherDrive) -> Array:
     """Return the column of a drive: a torque on its link, or a force between two bodies."""
     machine = system.machine
-    if machine.drive.stroke is not None:
-        push = cylinder(machine, system.poses)
+    if drive.stroke is not None:
+        push = cylinder(machine, drive, system.poses)
         return system.pair(push, push.directions[0], 0.0)
     torque = np.zeros_like(system.known)
     torque[:, system.rows[drive.link] + 2] = 1.0
     return torque
 
 
-def cylinder(machine: Machine, poses: Poses) -> Contact:
+def cylinder(machine: Machine, drive: Drive | FurtherDrive, poses: Poses) -> Contact:
     """Return where a drive that pushes acts, and along which line."""
-    drive = machine.drive
     if drive.slider:
         one = next(one for one in machine.sliders if one.name == drive.slider)
         at = poses.place(one.link, machine.links[one.link].points[one.point])
@@ -369,12 +383,12 @@ def tensions(belt: Belt, transmitted: Array) -> tuple[Array, Array]:
 
 def leaning(gear: Gear, poses: Poses, tangential: Array, unit: Array) -> Array:
     """Return the same where the pitch curves lean: the tooth pushes along their tangent, turned by
-    the pressure angle towards the driven gear.
+    the pressure angle towards the driven gear, or away from it where either is a ring.
     """
     tilt = Rolling(gear).tilt(seen_from_carrier(gear, poses))
     way = np.where(tangential < 0, -1.0, 1.0)
     push = way * (unit[:, 0] + 1j * unit[:, 1]) * 1j * np.exp(1j * tilt)
-    push *= np.exp(-1j * way * gear.pressure_angle)
+    push *= np.exp(1j * way * np.sign(gear.speed_ratio) * gear.pressure_angle)
     toward = unit[:, 0] - 1j * unit[:, 1]
     along, across = (push * toward).real, (push * toward).imag
     return (along / across * tangential)[:, None] * unit
@@ -414,10 +428,9 @@ def gathered(
         both[belt.name] = replace(pulled[-1], force=force)
     drives = {drive.link: unknowns[drive][:, 0] for drive in machine.driven}
     pulls = [pull_on_frame(*acting) for acting in springs_on_links(machine, poses)]
-    torque = sum(drives.values())
-    if machine.drive.stroke is not None:
-        torque = 0.0
-        pulls.append(reaction(cylinder(machine, poses), unknowns[machine.drive]))
+    pushing = [drive for drive in machine.driven if drive.stroke is not None]
+    pulls += [reaction(cylinder(machine, one, poses), unknowns[one]) for one in pushing]
+    torque = sum(drives[one.link] for one in machine.driven if one not in pushing)
     every = [*held.values(), *meshed.values(), *racked.values(), *pulled, *pulls]
     force, moment = on_frame(machine, every)
     pressed = {cam.name: held.pop(cam.name) for cam in machine.cams}

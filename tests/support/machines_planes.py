@@ -91,12 +91,10 @@ def solve(machine: Machine, poses: Poses, flat: FreeBodies) -> Spatial:
     nothing = np.zeros((poses.crank_angle.size, 2))
     rocking, on_frame = nothing, nothing
     asked = dict.fromkeys(machine.links, nothing)
-    for name, link in machine.links.items():
-        for mass, at, plane, _ in pieces(link):
-            moved = about_axes(plane, mass * poses.change(name, at))
-            carried = about_axes(plane, nothing + mass * np.array(machine.gravity))
-            rocking, on_frame = rocking - moved, on_frame + carried - moved
-            asked[name] = asked[name] + moved - carried
+    for name in machine.links:
+        shaken, carried = rocking_of(machine, poses, name)
+        rocking, on_frame = rocking + shaken, on_frame + carried + shaken
+        asked[name] = asked[name] - shaken - carried
     loads = zip(_of_loads(machine), on_links(machine, poses), strict=True)
     springs = zip(_of_springs(machine), springs_on_links(machine, poses), strict=True)
     for acting, whole in ((loads, 1.0), (springs, 0.0)):
@@ -120,6 +118,15 @@ def solve(machine: Machine, poses: Poses, flat: FreeBodies) -> Spatial:
     for shaft in shafts:
         bearings |= borne(machine, shaft, flat, planes, couples)
     return Spatial(rocking, on_frame, couples, bearings)
+
+
+def rocking_of(machine: Machine, poses: Poses, name: str) -> tuple[Array, Array]:
+    """Moments about x and y of what a link's pieces shake with, and of their weight, (N, 2)."""
+    shaken = carried = np.zeros((poses.crank_angle.size, 2))
+    for mass, at, plane, _ in pieces(machine.links[name]):
+        shaken = shaken - about_axes(plane, mass * poses.change(name, at))
+        carried = carried + about_axes(plane, 0 * shaken + mass * np.array(machine.gravity))
+    return shaken, carried
 
 
 def _of_loads(machine: Machine) -> list[float]:

@@ -31,9 +31,9 @@ def _shape(rng: np.random.Generator, lobes: int, ratio: float) -> GearShape:
 
 
 def _rolling(rng: np.random.Generator, driver: str, driven: str, carrier: str = FRAME) -> Gear:
-    """Draw a pair of few lobes."""
-    lobes, others = int(rng.integers(1, 3)), int(rng.integers(1, 3))
-    ratio = Fraction(-lobes, others)
+    """Draw a pair of few lobes, of which either may be a ring about the other."""
+    lobes, others = int(rng.integers(1, 3)), int(rng.integers(1, 4))
+    ratio = Fraction(lobes, others) * (1 if lobes != others and rng.random() < 0.5 else -1)
     gear = Gear(
         driver, driven, ratio=float(ratio), carrier=carrier, start=float(rng.uniform(-3, 3)),
         pressure_angle=float(rng.choice([0.0, np.radians(20)])),

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from equipoise.mechanism.model import FRAME, Gear, Slider
 from support.machines import Case, Draft, _draft, _spot, _unit, slider_crank
 from support.newton import Constraints, closed
 from support.poses import Array
@@ -129,4 +130,75 @@ def double_guide(rng: np.random.Generator) -> Case:
                                          sliders=(first, *more)))  # fmt: skip
 
 
-REDUNDANT = {one.__name__: one for one in (parallel_cranks, straw_walker, double_guide)}
+def planet_train(rng: np.random.Generator) -> Case:
+    """Two to four planets between a ring and a sun; their arm is driven, or the sun."""
+    draft = _draft(rng)
+    count, a = int(rng.integers(2, 5)), draft.size
+    sun, planet = (int(k) for k in rng.choice([12, 18, 24, 36], 2))
+    ways = np.arange(count) * 2 * np.pi / count + rng.uniform(-0.3, 0.3, count)
+    draft.ground("A", (0, 0))
+    draft.add("crank", A=(0, 0), **{f"P{k}": a * _unit(way) for k, way in enumerate(ways)})
+    draft.add("sun", A=(0, 0), S=a * np.array(_spot(rng)))
+    laying, start = Laying(draft), draft.turns["crank"]
+    laying.lay("crank", start, "A", np.zeros(2))
+    laying.lay("sun", draft.turns["sun"], "A", np.zeros(2))
+    for k, way in enumerate(ways):
+        name = f"planet {k}"
+        draft.add(name, **{f"P{k}": (0, 0), f"T{k}": 0.3 * a * np.array(_spot(rng))})
+        laying.lay(name, draft.turns[name], f"P{k}", a * _unit(start + way))
+        ring, mesh = (sun + 2 * planet, planet), (planet, sun)
+        draft.gears += [Gear(FRAME, name, teeth=ring, mesh="internal", carrier="crank"),
+                        Gear(name, "sun", teeth=mesh, carrier="crank")]  # fmt: skip
+    return laying.case()
+
+
+def rocking_screen(rng: np.random.Generator) -> Case:
+    """Two equal cranks, geared to each other through an idler, that both carry a screen; a rod of
+    this swings a rocker.
+    """
+    draft = _draft(rng)
+    a = draft.size
+    between = a * float(rng.uniform(4, 8)) * _unit(rng.uniform(-np.pi, np.pi))
+    idler = between * float(rng.uniform(0.3, 0.7)) + a * np.array(_spot(rng))
+    ratio = -float(rng.integers(1, 3))
+    for label, at in (("A", (0, 0)), ("D", between), ("I", idler)):
+        draft.ground(label, at)
+    draft.add("crank", A=(0, 0), B=(a, 0))
+    draft.add("idler", I=(0, 0), T=a * np.array(_spot(rng)))
+    draft.add("second", D=(0, 0), C=(a, 0))
+    draft.add("screen", B=(0, 0), C=between, P=a * np.array(_spot(rng, 3)))
+    laying, start = Laying(draft), draft.turns["crank"]
+    laying.lay("crank", start, "A", np.zeros(2))
+    laying.lay("idler", draft.turns["idler"], "I", idler)
+    laying.lay("second", start, "D", between)
+    laying.lay("screen", 0.0, "B", a * _unit(start))
+    at = start - draft.turns["second"]
+    draft.gears += [Gear("crank", "idler", ratio), Gear("idler", "second", 1 / ratio, start=at)]
+    return laying.case()
+
+
+def crossed_yokes(rng: np.random.Generator) -> Case:
+    """A crank's block runs in two yokes, each on its own guide in the frame."""
+    draft = _draft(rng)
+    a, way = draft.size, float(rng.uniform(-np.pi, np.pi))
+    square = way + float(rng.uniform(0.9, 2.2))
+    draft.ground("A", (0, 0))
+    draft.add("crank", A=(0, 0), B=(a, 0))
+    draft.add("block", B=(0, 0))
+    laying, start = Laying(draft), draft.turns["crank"]
+    laying.lay("crank", start, "A", np.zeros(2))
+    laying.lay("block", 0.0, "B", a * _unit(start))
+    for name, along, across in (("up", way, square), ("aside", square, way)):
+        base = 3 * a * np.array(_spot(rng))
+        draft.ground(f"G{name}", base)
+        draft.add(name, **{f"H{name}": (0, 0), f"K{name}": a * np.array(_spot(rng))})
+        laying.lay(name, 0.0, f"H{name}", base)
+        turned, of_block = -along - draft.turns[name], -across - draft.turns["block"]
+        draft.sliders.append(Slider(name, f"H{name}", FRAME, f"G{name}", along, turned))
+        inward = draft.line(name, across)
+        draft.sliders.append(Slider("block", "B", name, f"K{name}", inward, of_block))
+    return laying.case()
+
+
+MAKERS = (parallel_cranks, straw_walker, double_guide, planet_train, rocking_screen, crossed_yokes)
+REDUNDANT = {one.__name__: one for one in MAKERS}

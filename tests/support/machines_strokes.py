@@ -7,15 +7,15 @@ within a part of the turn over which the length only rises or only falls.
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import permutations, product
+from itertools import pairwise, permutations, product
 from typing import Any
 
 import numpy as np
 
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.mechanism.drives import Drive
-from equipoise.mechanism.laws import LengthLaw, LengthSegment
-from equipoise.mechanism.model import FRAME, Machine
+from equipoise.mechanism.laws import AngleLaw, LengthLaw, LengthSegment
+from equipoise.mechanism.model import FRAME, FurtherDrive, Link, Load, Machine
 from equipoise.mechanism.motion import move
 from support.machines import CYCLE, KINDS, Case, make
 from support.poses import Array, from_motion
@@ -118,6 +118,116 @@ def stroked(kind: str, seed: int, by_slider: bool = False) -> Case:
         except EquipoiseError:  # the points hang on gears, whose start is another one then
             continue
         return replace(case, machine=pushing)
+    raise AssertionError(f"{kind}:{seed} cannot be pushed")
+
+
+# -- several drives of which one or more push ------------------------------------------------------
+
+KNOTS = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+"""Crank angles at which the lengths of a stroke are given."""
+NEAR = 0.1
+"""rad: by which a link may start elsewhere than it is told to."""
+
+
+def sine(rng: np.random.Generator) -> tuple[float, float, float]:
+    """Draw the middle, the amplitude and the phase of a swing."""
+    return float(rng.uniform(-3, 3)), float(rng.uniform(0.05, 0.2)), float(rng.uniform(-3, 3))
+
+
+def through(values: Array) -> LengthLaw:
+    """A stroke through lengths at the knots."""
+    return LengthLaw(crank_angles=tuple(KNOTS), values=tuple(values.tolist()), spline="quintic")
+
+
+def pushed_arm(rng: np.random.Generator) -> Machine:
+    """An arm of two or three links, one on the other, each pushed by a cylinder to the one before
+    it; or the first turned by a swing."""
+    count, size = int(rng.integers(2, 4)), float(10 ** rng.uniform(-1, 0.5))
+    bodies, angles = [FRAME, *(f"link {k}" for k in range(count))], [np.zeros(24)]
+    points: dict[str, dict[str, Any]] = {FRAME: {"J0": tuple(rng.normal(size=2) * size)}}
+    drives: list[Drive | FurtherDrive] = []
+    for k, (before, body) in enumerate(pairwise(bodies)):
+        middle, amplitude, phase = sine(rng)
+        angles.append(middle + amplitude * np.sin(KNOTS + phase))
+        points[body] = {f"J{k}": (0.0, 0.0), f"J{k + 1}": (size * float(rng.uniform(1, 2)), 0.0)}
+        seen = angles[-1] - angles[-2]
+        along, apart = rng.uniform(-3, 3), rng.choice([-1, 1]) * rng.uniform(0.5, 2.6)
+        own, other = size * rng.uniform(0.3, 1, 2) * np.exp(1j * np.array([along, along + apart]))
+        turned = other * np.exp(1j * np.mean(seen))  # so that the cylinder has a lever
+        held = complex(*points[before][f"J{k}"]) + turned
+        points[before][f"V{k}"] = (held.real, held.imag)
+        points[body][f"U{k}"] = (own.real, own.imag)
+        found = abs(own * np.exp(1j * seen) - turned)
+        pair = (f"V{k}", f"U{k}") if rng.random() < 0.5 else (f"U{k}", f"V{k}")
+        start = float(angles[-1][0]) + float(rng.uniform(-NEAR, NEAR))
+        stroke: dict[str, Any] = {"between": pair, "stroke": through(found), "start": start}
+        if k == 0 and rng.random() < 0.3:
+            swing = (middle - amplitude, middle + amplitude)
+            stroke = {"motion": AngleLaw(between=swing, phase=np.pi / 2 - phase)}
+        first = Drive(body, float(rng.uniform(1, 9)), **stroke) if k == 0 else None
+        drives.append(first or FurtherDrive(body, **stroke))
+    links = {
+        body: Link(points[body], float(rng.uniform(1, 5)), tuple(rng.normal(size=2) * size),
+                   float(rng.uniform(0.1, 1)) * size**2)
+        for body in bodies[1:]
+    }  # fmt: skip
+    first, *others = drives
+    assert isinstance(first, Drive)
+    load = Load(bodies[-1], point=f"J{count}", force=tuple(rng.normal(size=2) * 30))
+    return Machine("arm", first, points[FRAME], links, {}, drives=tuple(others), loads=(load,))  # type: ignore[arg-type]
+
+
+def pushed_five_bar(rng: np.random.Generator) -> Machine:
+    """A five-bar of which one crank or both are pushed, between any two points."""
+    case = make("geared_five_bar", int(rng.integers(1000)))
+    swings = [AngleLaw(between=(m - a, m + a), phase=p) for m, a, p in (sine(rng), sine(rng))]
+    (gear,) = case.machine.gears
+    drive = Drive(case.machine.drive.link, case.machine.drive.speed, motion=swings[0])
+    other = FurtherDrive(gear.driven, motion=swings[1])
+    machine = replace(case.machine, gears=(), drive=drive, drives=(other,), loads=())
+    motion = move(machine, KNOTS)
+    found = drives(machine, by_slider=False)
+    both = rng.permutation(len(found))[:2]
+    pushing: list[Any] = []
+    for one, k in zip((drive, other), both, strict=True):
+        if pushing == [drive] or rng.random() < 0.7:
+            whole = lengths(machine, replace(drive, motion=None, **found[k]))
+            length = np.interp(KNOTS, CYCLE, whole)
+            start = float(motion.links[one.link].angle[0])
+            one = replace(one, motion=None, stroke=through(length), start=start, **found[k])  # noqa: PLW2901
+        pushing.append(one)
+    return replace(machine, drive=pushing[0], drives=(pushing[1],))
+
+
+TOGETHER = {"arm": pushed_arm, "five-bar": pushed_five_bar}
+
+
+PUSHED = [
+    *(f"pushed {kind}:0" for kind in ("stephenson", "quick_return", "geared_coupler", *TOGETHER)),
+    *(f"driven {kind}:0" for kind in ("slider_crank", "crossed_guides")),
+    *(f"pushed {kind}:1" for kind in TOGETHER),
+]
+"""Names of some: by a cylinder, or along a sliding joint."""
+
+
+def named(name: str) -> Case:
+    """One of these by its name."""
+    how, _, which = name.partition(" ")
+    kind, _, seed = which.partition(":")
+    make_one = together if kind in TOGETHER else stroked
+    return make_one(kind, int(seed)) if how == "pushed" else stroked(kind, int(seed), True)
+
+
+def together(kind: str, seed: int) -> Case:
+    """A random machine of several drives of which one or more push, the same at every call."""
+    rng = np.random.default_rng([seed, *kind.encode()])
+    for _ in range(200):
+        try:
+            machine = TOGETHER[kind](rng)
+            move(machine, [0.0])
+        except EquipoiseError:
+            continue
+        return Case(machine)
     raise AssertionError(f"{kind}:{seed} cannot be pushed")
 
 

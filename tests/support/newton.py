@@ -84,7 +84,7 @@ class Constraints:
 
     def _driven(self, q: Array, rate: Array, drive: Drive | FurtherDrive, wanted: float) -> Row:
         """Return the equation of a drive: an angle, or the length that pushes."""
-        if not isinstance(drive, Drive) or drive.stroke is None:
+        if drive.stroke is None:
             return self._turn({drive.link: 1.0}, q, -wanted)
         if drive.slider:
             one = next(one for one in self.machine.sliders if one.name == drive.slider)

@@ -83,10 +83,15 @@ def ratio_of(shape: GearShape, mean: float) -> Callable[[Any], Any]:
     far, near = np.max(radius(grid).real), np.min(radius(grid).real)
 
     def missing(apart: float) -> float:
-        return float(np.mean((radius(grid) / (apart - radius(grid))).real)) + mean
+        return float(np.mean((radius(grid) / (radius(grid) + apart)).real)) - mean
 
-    apart = brentq(missing, far * (1 + 1e-9), 1e3 * far + near, xtol=1e-15, rtol=1e-15)
-    return lambda x: -radius(-x) / (apart - radius(-x))
+    # to the driven gear's radius the driver's one and the distance add up, with these signs
+    if mean < 0:
+        ends = (-1e3 * far, -far * (1 + 1e-9))
+    else:
+        ends = (-near * (1 - 1e-9), -1e-3 * near) if mean > 1 else (1e-3 * near, 1e3 * far)
+    apart = brentq(missing, *ends, xtol=1e-15, rtol=1e-15)
+    return lambda x: radius(-x) / (radius(-x) + apart)
 
 
 class Rolling:

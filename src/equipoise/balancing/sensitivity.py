@@ -20,7 +20,8 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.model import Link, Machine, unknown
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
-from equipoise.mechanism.parameters import QUANTITIES, regressor
+from equipoise.mechanism.parameters import ACROSS, QUANTITIES, regressor
+from equipoise.mechanism.planes import moments_across
 from equipoise.mechanism.tip import roots
 from equipoise.quantities import Dimension, angle, display, fixed
 from equipoise.results.blocks import Block, Cell, Column, Table, Text, Value
@@ -32,10 +33,11 @@ CHANGES: dict[str, tuple[Dimension, str, str]] = {
     "mass": ("mass", "kg", to_say("mass")),
     "center_x": ("length", "mm", to_say("centre of mass, x")),
     "center_y": ("length", "mm", to_say("centre of mass, y")),
+    "center_z": ("length", "mm", to_say("centre of mass, z")),
     "inertia": ("inertia", "kg mm^2", to_say("inertia")),
 }
 """Mass at a fixed centre of mass, that centre at a fixed mass, inertia about it: what each is, the
-unit in which it is usually shown, and what it is called."""
+unit in which it is usually shown, and what it is called.  z matters to rocking moments alone."""
 NOTHING = 1e-10
 """Share of the largest effect below which there is none."""
 LEAST_ANGLES = 8
@@ -119,7 +121,7 @@ def known_outputs(machine: Machine) -> list[str]:
     return [
         one.name
         for one in DECLARED.values()
-        if one.needs == "masses"
+        if one.is_of_row
         and not (one.reason or one.is_family or one.is_vector)
         and one.members(machine)
     ]
@@ -148,14 +150,15 @@ def sensitivities(
     if not isinstance(given, int | np.integer) or given < LEAST_ANGLES:
         raise UsageError(f"got {given!r} crank angles; give a number of at least {LEAST_ANGLES}")
     motion = move(machine, int(angles), acceleration=0.0)
-    values = _derivatives(motion, output)
+    values, changes = _derivatives(motion, output), _changes(output)
     size, mass = machine_size(machine), machine.mass or 1.0
     effects = np.max(np.abs(values), axis=1)
-    effects = effects * np.tile([mass, size, size, mass * size**2], len(machine.links))
+    scales = {"mass": mass, "inertia": mass * size**2}
+    effects = effects * np.tile([scales.get(one, size) for one in changes], len(machine.links))
     values[effects <= NOTHING * np.max(effects)] = 0.0  # which is only rounding
     by_name = {}
     each = zip(values, _sign_changes(motion, output, values), strict=True)
-    for (link, change), (own, at) in zip(product(machine.links, CHANGES), each, strict=True):
+    for (link, change), (own, at) in zip(product(machine.links, changes), each, strict=True):
         body = machine.links[link]
         step = {"mass": body.mass or 0.0, "inertia": body.inertia or 0.0}.get(change, size)
         rms = float(np.sqrt(np.mean(own**2)))
@@ -163,16 +166,38 @@ def sensitivities(
     return Sensitivities(machine, output, motion.crank_angle, motion.turns, by_name)
 
 
+def _changes(output: str) -> list[str]:
+    """Those of `CHANGES` that an output may depend on."""
+    return [one for one in CHANGES if one != "center_z" or DECLARED[output].needs == "planes"]
+
+
 def _derivatives(motion: Motion, output: str) -> Array:
-    """Derivatives of an output by `CHANGES` of each link (4 L, N)."""
+    """Derivatives of an output by `_changes` of each link, C of them (C L, N)."""
     one, links = DECLARED[output], motion.machine.links
     columns = one.component(one.vector(Found(motion, regressor(motion))))
-    of_links = columns.reshape(len(links), len(QUANTITIES), -1)
-    return np.concatenate(list(map(_by_change, links.values(), of_links)))
+    flat, across = np.split(columns, [len(QUANTITIES) * len(links)])
+    of_links = flat.reshape(len(links), len(QUANTITIES), -1)
+    found = list(map(_by_change, links.values(), of_links))
+    if len(across):
+        beside = across.reshape(len(links), len(ACROSS), -1)
+        found = list(map(_beside, links.values(), found, beside))
+    return np.concatenate(found)
+
+
+def _beside(link: Link, flat: Array, columns: Array) -> Array:
+    """Derivatives (5, N), with the centre's z, from those (4, N) of masses in the plane 0 and those
+    by mass times plane, and that times x and y (3, N); more mass lies as it does already.
+    """
+    (whole, moment), (x, y) = moments_across(link), link.center_of_mass or (0.0, 0.0)
+    by_whole, by_x, by_y = columns
+    by_mass = (whole * by_whole + moment.real * by_x + moment.imag * by_y) / (link.mass or np.inf)
+    own = np.stack([by_mass, whole * by_x, whole * by_y, 0 * by_mass])
+    by_z = (link.mass or 0.0) * (by_whole + x * by_x + y * by_y)
+    return np.insert(flat + own, 3, by_z, axis=0)
 
 
 def _by_change(link: Link, columns: Array) -> Array:
-    """Derivatives by `CHANGES` (4, N) from those by the parameters of the regressor (4, N).
+    """Derivatives by what `CHANGES` within the plane (4, N) from those by the regressor's (4, N).
 
     These are about the origin of the link's axes: S = m g and J = I + m |g|^2, and the chain rule.
     """

@@ -169,6 +169,11 @@ def compiled_functions() -> dict[str, Any]:
         "greatest": _instruction("llvm.maxnum", 2, ("fast",)),
         "angle_of": numba.njit(**INLINE)(angle_of),
         "rotation": numba.njit(**INLINE)(_rotation(_instruction("llvm.rint", 1))),
+        "chosen": numba.njit(**INLINE)(lambda flag, yes, no: yes if flag else no),
+        "floored": _instruction("llvm.floor", 1),
+        "picked": numba.njit(**INLINE)(
+            _picked(_instruction("llvm.minnum", 2), _instruction("llvm.maxnum", 2))
+        ),
     }
 
 
@@ -225,6 +230,14 @@ def _rotation(nearest: Callable[[Any], Any]) -> Callable[[Any], Any]:
     return rotation
 
 
+def _picked(smaller: Callable[..., Any], larger: Callable[..., Any]) -> Callable[..., Any]:
+    def picked(values: Any, place: Any) -> Any:
+        """One of some values, by its place from 0 on; no other is read, whatever the place."""
+        return values[np.int32(smaller(larger(place, 0.0), values.shape[0] - 1.0))]
+
+    return picked
+
+
 def _instruction(name: str, count: int, fastmath: tuple[str, ...] = ()) -> Any:
     """A function of one number or two that is a single instruction.
 
@@ -262,6 +275,11 @@ NUMPY_FUNCTIONS = {
     "greatest": np.maximum,
     "angle_of": np.angle,
     "rotation": lambda angle: np.exp(1j * angle),
+    "chosen": np.where,
+    "floored": np.floor,
+    "picked": lambda values, place: values[
+        np.clip(np.nan_to_num(place), 0, len(values) - 1).astype(int)
+    ],
 }
 
 

@@ -34,10 +34,11 @@ from equipoise.codegen.loops import STEPS, March
 from equipoise.codegen.source import Source
 from equipoise.errors import UsageError
 from equipoise.mechanism import cycle, full_turn
-from equipoise.mechanism.family import linkage_of, with_columns, wrong
+from equipoise.mechanism.family import linkage_of, with_columns
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import declared
+from equipoise.mechanism.refusing import wrong
 from equipoise.mechanism.steps import size_of_bodies
 
 Array = np.ndarray[Any, Any]
@@ -57,8 +58,9 @@ SMOOTH = ("mean", "rms")
 """Figures that stand still for good once they do.  Extremes have to do so twice: crank angles may
 by chance come as close to the top as before."""
 STEP = 4
-"""Crank angles, over the tolerance, that loads take which begin or end at once: means over them
-come closer as 1 / N, and may by chance stand still before."""
+"""Crank angles, over the tolerance, that loads take which begin or end at once, and laws of cams
+whose acceleration jumps: means over them come closer as 1 / N, and may by chance stand still
+before."""
 FAR = -0.5
 """Cosine of the angle between a link and the base's, beyond which it may go the other way round."""
 ROUNDING = 1e-12
@@ -81,6 +83,7 @@ def sizes_of(machine: Machine, signals: Iterable[str]) -> dict[str, Any]:
     mass = sum(0.0 if link.mass is None else link.mass for link in machine.links.values())
     force = mass * (size * speed**2 + np.hypot(*machine.gravity))
     sizes = {
+        "angle": 1.0,
         "length": size,
         "speed": size * speed,
         "acceleration": size * speed**2,
@@ -164,6 +167,7 @@ class Batch:
         self.threads = threads or processors()
         self.needed = 2 if any(figure.name not in SMOOTH for figure in self.wanted) else 1
         has_steps = any(load.jumps for load in machine.loads)
+        has_steps |= any(len(cam.law.jumps(2)) for cam in machine.cams)
         self.least = STEP / tolerance if has_steps else FIRST
         self.source = emit(self.base, Gathered.of(self.wanted))
         self.gathered = self.source.gathered

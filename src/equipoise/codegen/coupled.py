@@ -15,6 +15,7 @@ import numpy as np
 
 from equipoise.codegen.writer import Writer
 from equipoise.mechanism import kernels
+from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.couplings import Coupling, coupled
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.model import FRAME, Machine
@@ -53,6 +54,7 @@ def can_write_couplings(linkage: Linkage) -> bool:
         one.relation[0] in (kernels.gear, kernels.rolled, kernels.wound)
         or {one.driver, one.carrier} <= told
         for one in linkage.machine.couplings
+        if not isinstance(one, Cam)
     )
 
 

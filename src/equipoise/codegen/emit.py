@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from equipoise.codegen.across import write_bearing
 from equipoise.codegen.coupled import can_write_couplings, shifts_laws
 from equipoise.codegen.figures import Figure, Gathered
+from equipoise.codegen.followers import can_write_followers
 from equipoise.codegen.lines import write_demands, write_joints, write_motion
 from equipoise.codegen.loops import can_write
 from equipoise.codegen.source import Source, source_of
@@ -28,6 +29,8 @@ from equipoise.mechanism.planes import beside
 _LOOKED_UP = re.compile(r"\{([^}:]+)(:name)?\}")
 """Values in the expression of an output: of the machine, or of the member of a family."""
 ORDERS = {"position": 0, "velocity": 1, "acceleration": 2}
+OF_CAMS = {"cam push": "T({})", "cam forth": "forth({})", "cam normal": "normal({})"}
+"""Values of a state that tell of a cam."""
 TURNING = {"angular velocity": 1, "angular acceleration": 2}
 """How often a position, or an angle, is differentiated by time."""
 
@@ -94,6 +97,8 @@ def _reaction(writer: Writer, item: str, value: str) -> str:
     reaction = dict(writer.linkage.named_reactions).get(item)
     if reaction is None:
         raise _Missing
+    if value in OF_CAMS:
+        return writer.name(OF_CAMS[value].format(item))
     order = writer.linkage.joints.bodies.index
     told = reaction.kind not in JOINTS or order(reaction.on) > order(reaction.by)
     sign = 1.0 if told else -1.0
@@ -133,13 +138,13 @@ def can_emit(linkage: Linkage) -> bool:
     couplings at angles that designs change, no drive that pushes, and no joints whose forces only
     all free bodies together tell.
     """
-    if linkage.shared is not None or linkage.machine.drive.pushes or linkage.machine.cams:
+    if linkage.shared is not None or linkage.machine.pushers:
         return False
     machine = linkage.machine
     if machine.planting is not None and machine.planting.soil is not None:
         return False
     loops = [step for step in linkage.motion if isinstance(step, LoopGroup)]
-    if not can_write_couplings(linkage):
+    if not (can_write_couplings(linkage) and can_write_followers(linkage)):
         return False
     return all(map(can_write, loops)) and not (loops and machine.couplings)
 
@@ -162,7 +167,7 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]
     if any(one.is_of_row for one in wanted):
         write_demands(writer)
-    passed = ["{joint ", "{bearing "]
+    passed = ["{joint ", "{bearing ", "{cam push"]
     passed += [] if linkage.machine.has_crank else ["{drive torque"]
     if any(value in (one.loop or "") for one in wanted for value in passed):
         if any(isinstance(step, LoopGroup) for step in linkage.motion):

@@ -17,7 +17,7 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, MOST_ANGLES, NO_MACHINE, NOT_STILL, Figure
 from equipoise.errors import UsageError
 from equipoise.mechanism.dynamics import forces
-from equipoise.mechanism.family import can_vary, massive_link, with_columns, wrong
+from equipoise.mechanism.family import can_vary, massive_link, with_columns
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, size_of
 from equipoise.mechanism.motion import move
@@ -28,6 +28,7 @@ from equipoise.mechanism.parameters import (
     parameters_of,
     regressor,
 )
+from equipoise.mechanism.refusing import wrong
 from equipoise.quantities.units import HUGE, TINY
 
 Array = np.ndarray[Any, Any]

@@ -15,11 +15,13 @@ from equipoise.codegen.across import write_across
 from equipoise.codegen.angles import write_running_angle
 from equipoise.codegen.applied import Held, names, write_load, write_spring, write_tension
 from equipoise.codegen.coupled import write_coupling, write_rolled
+from equipoise.codegen.followers import write_displacement, write_swung
 from equipoise.codegen.loops import write_loops
 from equipoise.codegen.source import Read
 from equipoise.codegen.writer import Writer
 from equipoise.errors import MassError
-from equipoise.mechanism import kernels
+from equipoise.mechanism import cam_kernels, kernels
+from equipoise.mechanism.cam_groups import Displacement
 from equipoise.mechanism.contacts import rolled
 from equipoise.mechanism.couplings import coupled
 from equipoise.mechanism.dynamics import inertia_about, massless
@@ -91,8 +93,12 @@ def _write_step(writer: Writer, step: Step, steps: str, number: int) -> None:
             write_coupling(writer, step)
         elif step.kernel is rolled:
             write_rolled(writer, step, number)
+        elif step.kernel is cam_kernels.swung and not writer.counted:
+            write_swung(writer, step, number)
         else:
             _write_call(writer, step, steps, number)
+    elif isinstance(step, Displacement):
+        write_displacement(writer, step)
     elif isinstance(step, LoopGroup):
         write_loops(sheet, writer.linkage, number)
         writer.points.update(step.anchors)

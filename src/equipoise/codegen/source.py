@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.figures import KINDS, Gathered
-from equipoise.mechanism import joint_kernels, kernels
+from equipoise.mechanism import cam_kernels, curve_kernels, joint_kernels, kernels
 from equipoise.mechanism.linkage import Linkage
 from equipoise.signals import ROUNDING
 
@@ -31,15 +31,15 @@ Read = Callable[[Linkage], Any]
 PLACE = {"highest": "{x} - {g} >", "lowest": "{g} - {x} >"}
 """An extreme has a new place where it grows by more than rounding, so that of equal ones the first
 is told; this takes a branch, which costs the loop its speed."""
-KERNELS = (kernels, joint_kernels)
+KERNELS = (kernels, joint_kernels, cam_kernels, curve_kernels)
 """Modules whose functions the lines call, those first that others are made of."""
 CALLED = {
     name: found for one in KERNELS for name, found in vars(one).items() if inspect.isfunction(found)
 }
 """These functions, by name."""
-RESERVED = {*CALLED}
-RESERVED |= {*keyword.kwlist, "smallest", "greatest", "angle_of", "rotation", "complex", "range"}
-RESERVED |= {"abs", "state", "loop", "table", "grid", "out", "i", "k"}
+GIVEN = {"smallest", "greatest", "angle_of", "rotation", "chosen", "floored", "picked"}
+RESERVED = {*CALLED, *keyword.kwlist, *GIVEN, "complex", "range", "abs", "array"}
+RESERVED |= {"state", "loop", "table", "grid", "out", "i", "k"}
 LANES = 32
 """Designs that a march does side by side: their values fit into the nearest cache."""
 MARCH = ("step", "marked", "steady")
@@ -129,6 +129,7 @@ class Sheet:
         self.rows: dict[str, Row] = {}
         self.running: dict[str, str] = {}
         self.carried: dict[str, float | complex] = {}
+        self.constants: dict[str, list[float]] = {}
         self._names: dict[str, str] = {}
 
     def name(self, value: str) -> str:
@@ -156,6 +157,11 @@ class Sheet:
         found = self.name(name)
         self.rows.setdefault(found, Row(found, values, formula))
         return found
+
+    def constant(self, name: str, values: Array) -> str:
+        """Numbers that all designs share, of which one is picked at a time."""
+        self.constants[self.name(name)] = values.tolist()
+        return self.name(name)
 
     def carry(self, value: str, start: float | complex) -> str:
         """A value of the crank angle before; that of this one is put as ``next`` of it."""
@@ -206,6 +212,8 @@ def source_of(
     loop = _march(sheet, gathered, arguments, carried) if carried else None
     lines = [
         '"""Written out by equipoise.codegen from the steps of a linkage."""',
+        *(["", "from numpy import array", ""] if sheet.constants else []),
+        *(f"{name} = array({values!r})" for name, values in sheet.constants.items()),
         "",
         "",
         f"def state({arguments}):",

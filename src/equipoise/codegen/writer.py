@@ -8,7 +8,7 @@ from equipoise.codegen.angles import turned
 from equipoise.codegen.source import Sheet
 from equipoise.mechanism import kernels
 from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.steps import Call, RunningAngle, Step, p, planar, u
 
 
@@ -26,7 +26,7 @@ class Writer:
 
     def __init__(self, linkage: Linkage) -> None:
         self.linkage, self.machine, self.sheet = linkage, linkage.machine, Sheet()
-        steps = any(map(_counts, linkage.motion))
+        steps = any(map(_counts, linkage.motion)) or _drives_on(self.machine)
         self.counted = steps or not self.machine.has_crank
         self.orders: dict[str, float] = {FRAME: 0.0, self.machine.drive.link: 1.0}
         self.points = set(self.machine.frame)
@@ -68,6 +68,12 @@ class Writer:
         own = [g.margin for g in self.linkage.groups if g.margin is not None]
         found = {self.name(number): k for k, number in enumerate(own)}
         return found | {self.apart[n]: k for k, n in enumerate(own) if n in self.apart}
+
+
+def _drives_on(machine: Machine) -> bool:
+    """Whether the angle of a pinned follower is one that another coupling starts from."""
+    asked = {body for one in machine.couplings for body in (one.driver, one.carrier)}
+    return any(cam.driven in asked for cam in machine.cams)
 
 
 def _counts(step: Step) -> bool:

@@ -8,7 +8,7 @@ from math import isfinite
 
 from equipoise.balancing.balanced import Balanced
 from equipoise.errors import ChangePointError, RangeError, UsageError, needed, unknown
-from equipoise.exchange.formats import FORMATS, Format, Job
+from equipoise.exchange.formats import CAM, FORMATS, RACK, VARYING, Format, Job
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
@@ -73,23 +73,29 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
     machine, changes = (what.machine, what.changes) if isinstance(what, Balanced) else (what, ())
     if one.turns:
         check_turning(machine, one.title)
-    if machine.cams and one.name in (*WITHOUT_RACKS, "fmu"):
-        raise UsageError(f"cams[1]: a file of {one.title} has no cam; give another format")
-    if machine.racks and one.name in WITHOUT_RACKS:
-        raise UsageError(f"racks[1]: a file of {one.title} has no rack; give another format")
+    _check_joints(machine, one)
     job = Job(machine, crank_angle, changes)
-    if one.name in WITHOUT_RACKS:
+    if RACK in one.lacks:
         for belt in machine.belts:
             if belt.tension is not None:
                 job.leave_out(f"the tension of the belt {belt.name}, which its pins bear")
-    if machine.drive.pushes:
+    if machine.pushers:
         job.leave_out("what pushes the machine, and its stroke")
     data: str | bytes = import_module(f"equipoise.exchange.{one.name}").made(job)
     return job, data
 
 
-WITHOUT_RACKS = ("mjcf", "urdf", "exudyn", "modelica")
-"""Formats in which nothing turns as something else slides."""
+def _check_joints(machine: Machine, one: Format) -> None:
+    """Refuse a machine with joints that a format lacks."""
+    shapes = (f"gears[{k}].shape" for k, gear in enumerate(machine.gears, 1) if gear.shape)
+    found = {
+        CAM: "cams[1]" if machine.cams else None,
+        RACK: "racks[1]" if machine.racks else None,
+        VARYING: next(shapes, None),
+    }
+    for joint, where in found.items():
+        if where is not None and joint in one.lacks:
+            raise UsageError(f"{where}: a file of {one.title} has no {joint}; give another format")
 
 
 def check_turning(machine: Machine, title: str) -> None:

@@ -13,7 +13,6 @@ from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import (
     Tree,
     constant_loads,
-    even_ratios,
     mass_of,
     moment_of,
     preloads,
@@ -132,7 +131,8 @@ def _geared(tree: Tree) -> list[Data]:
     UsageError : gears sit on three bodies of which none follows another or stands still.
     """
     shares: dict[str, dict[str, float]] = {}
-    for gear, ratio in even_ratios(tree.machine):
+    for gear in (*tree.machine.gears, *tree.machine.belts):
+        ratio = gear.speed_ratio
         total = dict[str, float]()
         for body, share in ((gear.driver, ratio), (gear.carrier, 1 - ratio)):
             for root, factor in shares.get(body, {body: 1.0}).items():

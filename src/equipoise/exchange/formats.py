@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
 
 
+CAM, RACK, VARYING = "cam", "rack", "gears of varying ratio"
+"""Joints that some formats lack."""
+
+
 @dataclass(frozen=True)
 class Format:
     """One kind of file.
@@ -25,6 +29,7 @@ class Format:
     `exchange`.  of_store : whether it is of the designs of a study, not of a machine.
     posed : whether it shows the machine at a crank angle, or begins there.
     turns : whether it turns the driven link all the way round at constant speed.
+    lacks : joints that it has none for.
     """
 
     name: str
@@ -35,6 +40,7 @@ class Format:
     of_store: bool = False
     posed: bool = True
     turns: bool = False
+    lacks: tuple[str, ...] = ()
 
 
 FORMATS: Mapping[str, Format] = {
@@ -47,6 +53,7 @@ FORMATS: Mapping[str, Format] = {
             "bodies, pins, sliders, gears, belts, springs, constant loads, rows, the support on "
             "its mounts, the drive at constant speed",
             turns=True,
+            lacks=(CAM, RACK, VARYING),
         ),
         Format(
             "exudyn",
@@ -55,6 +62,7 @@ FORMATS: Mapping[str, Format] = {
             "a script that builds and runs bodies, pins, sliders, gears, belts, springs, constant "
             "loads, rows, the support on its mounts in the plane, the drive at constant speed",
             turns=True,
+            lacks=(CAM, RACK, VARYING),
         ),
         Format(
             "urdf",
@@ -62,6 +70,7 @@ FORMATS: Mapping[str, Format] = {
             "robots (URDF)",
             "the tree: links with masses, hinges, slides, gears and belts of two joints; loops are "
             "cut",
+            lacks=(CAM, RACK, VARYING),
         ),
         Format(
             "fmu",
@@ -71,6 +80,7 @@ FORMATS: Mapping[str, Format] = {
             "belts, racks, springs, constant loads; C sources, and a library where a C compiler is "
             "found",
             turns=True,
+            lacks=(CAM, VARYING),
         ),
         Format(
             "modelica",
@@ -79,6 +89,7 @@ FORMATS: Mapping[str, Format] = {
             "one flat model: equations of motion of each link, pins, sliders, gears, belts, "
             "springs, constant loads, the drive at constant speed",
             turns=True,
+            lacks=(CAM, RACK, VARYING),
         ),
         Format(
             "dxf",

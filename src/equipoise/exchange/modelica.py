@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from equipoise.exchange.formats import Job
-from equipoise.exchange.tree import constant_loads, even_ratios, mass_of, weighed
+from equipoise.exchange.tree import constant_loads, mass_of, weighed
 from equipoise.mechanism.joints import structure
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.motion import Motion, move
@@ -172,7 +172,8 @@ def _sliders(model: Flat, motion: Motion) -> None:
 
 def _gears(model: Flat, motion: Motion) -> None:
     """What teeth do, as couples on driver, driven and carrier that do no work together."""
-    for number, (gear, ratio) in enumerate(even_ratios(model.machine), 1):
+    for number, gear in enumerate((*model.machine.gears, *model.machine.belts), 1):
+        ratio = gear.speed_ratio
         couple = f"G_{number}"
         shares = ((gear.driven, 1.0), (gear.driver, -ratio), (gear.carrier, ratio - 1.0))
         model.real(couple)

@@ -16,7 +16,6 @@ import numpy as np
 from equipoise.errors import MassError, UsageError
 from equipoise.exchange.formats import Job
 from equipoise.mechanism.bodies import inertia_of
-from equipoise.mechanism.couplings import Coupling
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import FRAME, Link, Load, Machine, Slider, Vector
@@ -115,30 +114,14 @@ class Tree:
     @property
     def gears(self) -> Iterator[tuple[str, dict[str, float]]]:
         """Of each pair of gears its name, and link -> factor of its hinge in a sum that is 0."""
-        for gear, ratio in even_ratios(self.machine):
+        for gear in (*self.machine.gears, *self.machine.belts):
+            ratio = gear.speed_ratio
             factors = dict[str, float]()
             shares = ((gear.driven, 1.0), (gear.driver, -ratio), (gear.carrier, ratio - 1))
             for body, share in shares:
                 for link in self.turning(body):
                     factors[link] = factors.get(link, 0.0) + share
             yield gear.name, {link: one for link, one in factors.items() if one}
-
-
-def even_ratios(machine: Machine) -> Iterator[tuple[Coupling, float]]:
-    """Pairs of gears, then belts, each with its speed ratio.
-
-    Raises
-    ------
-    UsageError : that of a pair varies.
-    """
-    for gear in machine.gears:
-        if gear.shape is not None:
-            raise UsageError(
-                f"the ratio of the gears {gear.name} varies, which this format has no joint for; "
-                "give another format, or gears without a shape"
-            )
-        yield gear, gear.speed_ratio
-    yield from ((belt, belt.speed_ratio) for belt in machine.belts)
 
 
 def trees(job: Job) -> tuple[Tree, ...]:

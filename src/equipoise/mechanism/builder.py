@@ -11,6 +11,7 @@ import numpy as np
 from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import MODE, MODES
+from equipoise.mechanism.joints import Structure
 from equipoise.mechanism.model import Machine, Slider
 from equipoise.mechanism.steps import (
     Call,
@@ -43,7 +44,7 @@ class Group:
     through : whether they go on through change points, where the margin is zero.
     """
 
-    kind: Literal["dyad", "coupled", "loops", "pointed"]
+    kind: Literal["dyad", "coupled", "loops", "pointed", "hung"]
     links: tuple[str, ...]
     motion: tuple[Step, ...]
     forces: tuple[Step, ...]
@@ -199,3 +200,18 @@ class Builder:
 def guide_reaction(guide: Guide, on: str, by: str, at: str) -> Reaction:
     key = f"({guide.name}/{on})"
     return Reaction(guide.name, "slider", on, by, at, f"R{key}", f"C{key}")
+
+
+def outer_joints(builder: Builder, joints: Structure, link: str) -> list[Outer]:
+    """Joints of an unknown link to known bodies."""
+    result = []
+    for point in builder.machine.links[link].points:
+        known = [body for body in joints.pins.get(point, ()) if body in builder.rank]
+        if known:
+            result.append(Outer(link, builder.carrier_of(known), point))
+    for slider in joints.sliders:
+        other = slider.on if slider.link == link else slider.link
+        if link in (slider.link, slider.on) and other in builder.rank:
+            guide = Guide.seen_from(slider, other)
+            result.append(Outer(link, other, guide.base, guide))
+    return result

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from math import degrees, pi
+from functools import partial
+from math import degrees, pi, radians
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,16 @@ import numpy as np
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism.builder import Guide
-from equipoise.mechanism.cam_shapes import Array, Path, Shape, Sliding, Swinging, lowest
+from equipoise.mechanism.cam_shapes import (
+    BESIDE,
+    Array,
+    Path,
+    Shape,
+    Sliding,
+    Swinging,
+    design,
+    lowest,
+)
 from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.joints import Structure, place_in_file
 from equipoise.mechanism.kernels import cross, dot
@@ -21,6 +31,11 @@ from equipoise.mechanism.steps import State, planar
 
 STEEPEST = 1e-6
 """Cosine of the pressure angle at which the follower jams."""
+NEAR, FEWEST, WIDEST = 0.1, 8, radians(3)
+"""Of a value's size: what is lower may be below 0 between angles of a cam that are this far apart,
+and so many in each piece of its law."""
+AT_ONCE = 128
+"""Designs that are looked at together, so that their values stay in the processor's cache."""
 BOTH = {(1, 0), (0, 1)}
 """Numbers of sliding joints and pins between follower and carrier: one of them."""
 
@@ -98,6 +113,11 @@ def fitted(machine: Machine, joints: Structure, cam: Cam) -> Fit:
     return _on_pin(machine, cam, pivots[0], pins[0], where)
 
 
+def _is(flag: Any) -> bool:
+    """Whether it is so of one machine; of columns of designs `can_be_made` tells."""
+    return np.ndim(flag) == 0 and bool(flag)
+
+
 def _place(machine: Machine, body: str, point: str) -> complex:
     return planar(machine.points_of(body)[point])
 
@@ -112,22 +132,23 @@ def _on_guide(machine: Machine, cam: Cam, cam_pin: str, guide: Guide, where: str
     if cam.rides == "flat":
         face = 1 / guide.turn if cam.normal is None else np.exp(1j * cam.normal)
         way = face * guide.turn
-        if np.any(way.real < STEEPEST):
+        if _is(way.real < STEEPEST):
             told = Note("the face does not look along the guide; turn it by 180 deg, or less")
             raise ModelError(f"{where}.normal", told)
-        rest = (cam.base_radius - dot(way, shift)) / way.real
+        reach = np.where(way.real < STEEPEST, np.nan, way.real)[()]
+        rest = (cam.base_radius - dot(way, shift)) / reach
         normal = way * n
     else:
         height2 = cam.radius**2 - shift.imag**2
-        if np.any(height2 <= 0):
+        if _is(height2 <= 0):
             raise ModelError(
                 f"{where}.base_radius",
                 Note(
                     "the way of {point!r} passes the cam's axis at {offset:.4g} mm, and a radius "
                     "of {radius:.4g} mm does not reach that; give more than that",
                     point=cam.point,
-                    offset=abs(np.max(np.abs(shift.imag))) * 1e3,
-                    radius=np.min(cam.radius) * 1e3,
+                    offset=abs(shift.imag) * 1e3,
+                    radius=cam.radius * 1e3,
                 ),
             )
         rest = height2**0.5 - shift.real
@@ -145,15 +166,15 @@ def _on_pin(machine: Machine, cam: Cam, cam_pin: str, pin: str, where: str) -> F
         cosine = (distance**2 + cam.radius**2 - abs(arm) ** 2) / (2 * distance * cam.radius)
     else:
         cosine = (cam.base_radius - dot(face, arm)) / distance
-    if not np.all(abs(cosine) < 1):
+    if _is(abs(cosine) >= 1):
         raise ModelError(
             f"{where}.base_radius",
             Note(
                 "{point!r}, {arm:.4g} mm from its pivot, does not reach the base circle, which "
                 "has its centre {distance:.4g} mm from that; change one of these",
                 point=cam.point,
-                arm=np.max(abs(arm)) * 1e3,
-                distance=np.max(distance) * 1e3,
+                arm=abs(arm) * 1e3,
+                distance=distance * 1e3,
             ),
         )
     sense = -1.0 if cam.side == "left" else 1.0
@@ -170,12 +191,9 @@ def fits_of(machine: Machine, joints: Structure) -> tuple[Fit, ...]:
     return tuple(fitted(machine, joints, cam) for cam in machine.cams)
 
 
-def pressure_angle(fit: Fit, state: State) -> Array:
+def pressure_angle(cam: Cam, state: State) -> Array:
     """From the way in which a follower rises to the common normal, rad, as of a motion's state."""
-    cam = fit.cam
-    carrier, normal = state[f"u({cam.carrier})"], state[f"normal({cam.name})"]
-    at = state[f"p(contact({cam.name}))" if cam.rides == "flat" else f"p({cam.point})"]
-    forth = fit.path.forth((at - state[f"p({fit.cam_pin})"]) / carrier) * carrier
+    forth, normal = state[f"forth({cam.name})"], state[f"normal({cam.name})"]
     slant: Array = np.arctan2(cross(forth, normal), dot(forth, normal))
     return slant
 
@@ -195,70 +213,106 @@ def _knots(fit: Fit) -> Array:
 # -- what cannot be made ---------------------------------------------------------------------------
 
 
+@dataclass(frozen=True)
+class Demand:
+    """Something (N,) that has to be above 0 all over a cam.
+
+    told : what is said where it is not, of its least value and the cam angle of that, deg.
+    size : that it has far from 0.
+    """
+
+    value: Callable[[Shape], Array]
+    told: Callable[[float, float], Note]
+    size: Any = 1.0
+
+
 def check_shape(fit: Fit, where: str) -> None:
     """Raise an error where the follower jams or the cam is undercut."""
     knots = _knots(fit)
-    shape = fit.shape(knots)
+    for demand in _demands(fit.cam):
+        least, angle = lowest(fit.shape(knots), demand.value, knots)
+        if least <= 0:
+            raise ModelError(where, demand.told(least, degrees(angle % (2 * pi))))
 
-    def least(value: Callable[[Shape], Array]) -> tuple[float, float]:
-        return lowest(shape, value, knots)
 
-    if fit.cam.rides == "flat":
-        _check_speed(least, where)
-    cosine, angle = least(lambda one: np.cos(one.pressure_angle))
-    if cosine < STEEPEST:
-        raise ModelError(
-            where,
-            Note(
-                "the follower jams at cam angle {angle:.4g} deg, where the pressure angle is 90 "
-                "deg; give a larger base_radius, or another place of the follower",
-                angle=degrees(angle),
+def can_be_made(fit: Fit) -> Array:
+    """Of which designs (P, 1), whose numbers are columns, the cam can be made."""
+    cam = fit.cam
+    made: Array = np.isfinite(fit.rest) & (np.asarray(cam.base_radius) > 0)
+    if cam.rides == "roller":
+        made = made & (np.asarray(cam.roller_radius) > 0)
+    count, knots = np.size(fit.rest), _knots(fit)
+    shape = fit.shape(_spread(knots))
+    with np.errstate(all="ignore"):
+        for begin in range(0, count, AT_ONCE):
+            some = slice(begin, begin + AT_ONCE)
+            for demand in _demands(cam):
+                least = np.min(demand.value(shape.of(some)), axis=-1, keepdims=True)
+                made[some] &= least > 0
+                near = made[some] & (least < NEAR * design(demand.size, some))
+                for k in begin + np.flatnonzero(near):
+                    made[k] = lowest(shape.of(k), demand.value, knots)[0] > 0
+    return made
+
+
+def _spread(knots: Array) -> Array:
+    """Cam angles, rad, between which no value is lower by as much as `NEAR`."""
+    ends = np.append(knots, knots[0] + 2 * pi)
+    counts = np.maximum(FEWEST, np.ceil(np.diff(ends) / WIDEST)).astype(int)
+    pairs = zip(ends + BESIDE, ends[1:] - BESIDE, counts, strict=False)
+    return np.concatenate([np.linspace(*one) for one in pairs])
+
+
+def _demands(cam: Cam) -> Iterator[Demand]:
+    if cam.rides == "flat":
+        yield Demand(
+            lambda one: 1 - STEEPEST - one.ride.turn_1,
+            lambda _, angle: Note(
+                "at cam angle {angle:.4g} deg the follower turns as fast as the cam, which no flat "
+                "face can do; give it less swing there, or more time",
+                angle=angle,
             ),
         )
-    check = _check_flat if fit.cam.rides == "flat" else _check_round
-    check(fit.cam, least, where)
-
-
-def _check_speed(least: Any, where: str) -> None:
-    slack, angle = least(lambda one: 1 - one.ride.turn_1)
-    if slack < STEEPEST:
-        told = Note(
-            "at cam angle {angle:.4g} deg the follower turns as fast as the cam, which no flat "
-            "face can do; give it less swing there, or more time",
-            angle=degrees(angle),
-        )
-        raise ModelError(where, told)
-
-
-def _check_flat(cam: Cam, least: Any, where: str) -> None:
-    radius, angle = least(lambda one: one.radius_of_curvature)
-    if radius <= 0:
-        raise ModelError(
-            where,
-            Note(
-                "the cam is undercut at cam angle {angle:.4g} deg, where its radius of curvature "
-                "would be {radius:.4g} mm; a flat face needs more than 0: give a larger "
-                "base_radius, or more time there",
-                angle=degrees(angle),
-                radius=radius * 1e3,
-            ),
-        )
-
-
-def _check_round(cam: Cam, least: Any, where: str) -> None:
-    """The curve of a roller's centre bends less than the roller, outward and in a groove inward."""
+    yield Demand(
+        lambda one: np.cos(one.pressure_angle) - STEEPEST,
+        lambda _, angle: Note(
+            "the follower jams at cam angle {angle:.4g} deg, where the pressure angle is 90 "
+            "deg; give a larger base_radius, or another place of the follower",
+            angle=angle,
+        ),
+    )
+    if cam.rides == "flat":
+        yield Demand(lambda one: one.radius_of_curvature, _undercut_flat, cam.base_radius)
+        return
+    # the curve of a roller's centre bends less than the roller, outward and in a groove inward
     for sign in (1.0, -1.0) if cam.closed_by == "groove" else (1.0,):
-        bend, angle = least(lambda one, sign=sign: -sign * one.curvature)
-        if -bend * cam.roller_radius >= 1:
-            raise ModelError(
-                where,
-                Note(
-                    "the cam is undercut at cam angle {angle:.4g} deg, where the curve of the "
-                    "roller's centre has a radius of {radius:.4g} mm, and the roller one of "
-                    "{roller:.4g} mm; give a larger base_radius, a smaller roller, or more time "
-                    "there",
-                    angle=degrees(angle % (2 * pi)),
-                    radius=-1e3 / bend,
-                    roller=cam.roller_radius * 1e3,
-                ),
-            )
+        yield Demand(
+            partial(_blunt, sign),
+            partial(_undercut_round, cam.roller_radius),
+        )
+
+
+def _blunt(sign: float, shape: Shape) -> Array:
+    return 1 - sign * shape.curvature * shape.radius
+
+
+def _undercut_flat(least: float, angle: float) -> Note:
+    return Note(
+        "the cam is undercut at cam angle {angle:.4g} deg, where its radius of curvature "
+        "would be {radius:.4g} mm; a flat face needs more than 0: give a larger "
+        "base_radius, or more time there",
+        angle=angle,
+        radius=least * 1e3,
+    )
+
+
+def _undercut_round(roller: float, least: float, angle: float) -> Note:
+    return Note(
+        "the cam is undercut at cam angle {angle:.4g} deg, where the curve of the "
+        "roller's centre has a radius of {radius:.4g} mm, and the roller one of "
+        "{roller:.4g} mm; give a larger base_radius, a smaller roller, or more time "
+        "there",
+        angle=angle,
+        radius=1e3 * roller / (1 - least),
+        roller=roller * 1e3,
+    )

@@ -43,7 +43,8 @@ class Displacement:
 def follower(builder: Builder, joints: Structure, cam: Cam) -> Group:
     """A follower whose cam and carrier are known; the steps of its motion and forces."""
     fit = fitted(builder.machine, joints, cam)
-    check_shape(fit, place_in_file(joints, cam))
+    if np.ndim(fit.rest) == 0:  # else `family` tells which designs can be made
+        check_shape(fit, place_in_file(joints, cam))
     motion: list[Step] = []
     for body in (cam.driver, cam.carrier):
         motion += builder.running_angle(body)
@@ -87,21 +88,25 @@ def _swung(builder: Builder, joints: Structure, fit: Fit, lift: tuple[str, ...])
 
 
 def _touch(fit: Fit) -> list[Step]:
-    """Where cam and follower touch, and the common normal."""
+    """Where cam and follower touch, the common normal, and how the follower moves there."""
     cam, name = fit.cam, fit.cam.name
-    place, rate = f"p({cam.point})", f"rate({name})"
+    place, contact, rate = f"p({cam.point})", f"p({_at(cam)})", f"rate({name})"
+    pressed, forth = contact if cam.rides == "flat" else place, (f"forth({name})",)
     if fit.guide is not None:
         along: Any = fit.guide.along
-        towards = Call(kernels.rate_lifted, (f"u({cam.carrier})", f"y1({name})"), (along,), (rate,))
+        carrier = f"u({cam.carrier})"
+        towards = Call(kernels.rate_lifted, (carrier, f"y1({name})"), (along,), (rate,))
+        rising = Call(kernels.forth_lifted, (carrier,), (along,), forth)
     else:
         inputs = (place, f"p({fit.pin})", f"y1({name})")
         towards = Call(kernels.rate_swung, inputs, (fit.sense,), (rate,))
-    ends, found = (place, f"p({fit.cam_pin})", rate), (f"p({_at(cam)})", f"normal({name})")
+        rising = Call(kernels.forth_swung, (pressed, f"p({fit.pin})"), (fit.sense,), forth)
+    ends, found = (place, f"p({fit.cam_pin})", rate), (contact, f"normal({name})")
     if fit.face is None:
-        return [towards, Call(kernels.touch_round, ends, (cam.roller_radius,), found)]
+        return [towards, Call(kernels.touch_round, ends, (cam.roller_radius,), found), rising]
     more = (*ends, f"u({cam.driven})", f"y1({name})")
     sense = fit.sense if fit.guide is None else 0.0
-    return [towards, Call(kernels.touch_flat, more, (fit.face, sense), found)]
+    return [towards, Call(kernels.touch_flat, more, (fit.face, sense), found), rising]
 
 
 def _at(cam: Cam) -> str:

@@ -84,6 +84,17 @@ def rate_swung(p, pivot, y1, sense):
     return (1j * sense * y1 * (p - pivot),)
 
 
+def forth_lifted(u, along):
+    """Unit vector along which a sliding follower's material moves as it rises."""
+    return (u * along,)
+
+
+def forth_swung(p, pivot, sense):
+    """The same of a pinned follower, at p."""
+    arm = p - pivot
+    return (1j * sense * arm * (1 / length(arm)),)
+
+
 def touch_round(p, axis, rate, radius):
     """Where a roller at p touches the cam, whose axis is at `axis`; the common normal."""
     at, normal = round_contact(p - axis, rate, radius)

@@ -10,7 +10,7 @@ face.  `docs/theory.md` derives the formulas.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
 from typing import Any, Protocol
@@ -158,7 +158,7 @@ class Shape:
         at, normal = self.contact
         forth = self.path.forth(at if self.flat else self.ride.place)
         slant = np.arctan2(cross(forth, normal), dot(forth, normal))
-        return np.broadcast_to(slant, self.angle.shape)
+        return np.broadcast_to(slant, np.broadcast_shapes(slant.shape, self.angle.shape))
 
     @property
     def curvature(self) -> Array:
@@ -180,7 +180,17 @@ class Shape:
 
     def at(self, angle: Array) -> Shape:
         """The same at other angles."""
-        return Shape(angle, self.path, self.law, self.radius)
+        return replace(self, angle=angle)
+
+    def of(self, which: Any) -> Shape:
+        """One design or some, by number, where those of this are columns."""
+        path = replace(self.path, **{k: design(v, which) for k, v in vars(self.path).items()})  # type: ignore[type-var]
+        return replace(self, path=path, radius=design(self.radius, which))
+
+
+def design(value: Any, which: Any) -> Any:
+    """What one design has, or some, of a number that may be a column (P, 1)."""
+    return value[which] if np.ndim(value) else value
 
 
 def lowest(shape: Shape, value: Callable[[Shape], Array], knots: Array) -> tuple[float, float]:

@@ -24,17 +24,20 @@ from equipoise.mechanism.laws import LengthLaw
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.pushing import Levels, lengths
+from equipoise.mechanism.pushing import ends_of
 from equipoise.mechanism.reach import reach
 from equipoise.mechanism.steps import Array
 from equipoise.quantities import angle, format_exact
 
 STEP = pi / 360
 """rad: between angles of the link at which the length is looked at."""
+Levels = tuple[Array, Array, Array]
 INSIDE = 1e-7
 """rad: how far from where a dyad is stretched out."""
 ITERATIONS, SETTLED = 60, 1e-15
 """Of Newton's method; the last change in the angle, rad."""
+SQUARED = 1e-9
+"""rad: a change of Newton's method after which only rounding is left, as errors square."""
 HALVINGS = 36
 """Of the step in which a dead point lies."""
 AGREES = 1e-9
@@ -47,12 +50,13 @@ DEAD = 1e-9
 class Shifted:
     """A crank that stands at another angle than 0 at crank angle 0."""
 
+    link: str
     by: float
 
-    def value(self, crank_angle: Any) -> tuple[Any, Any, Any]:
+    def moved(self, crank_angle: Any) -> dict[str, tuple[Any, Any, Any]]:
         """Angle of the link and its two derivatives."""
         theta = np.asarray(crank_angle)
-        return theta + self.by, np.ones(theta.shape), np.zeros(theta.shape)
+        return {self.link: (theta + self.by, np.ones(theta.shape), np.zeros(theta.shape))}
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +104,10 @@ class Commanded:
         found = at + self.shift, w, (second - bend * w * w) / slope
         return tuple(part.reshape(theta.shape) for part in found)  # type: ignore[return-value]
 
+    def moved(self, crank_angle: Any) -> dict[str, tuple[Array, Array, Array]]:
+        """The same by the link's name."""
+        return {self.drive.link: self.value(crank_angle)}
+
     @property
     def windings(self) -> int:
         """Whole turns of the link in a cycle."""
@@ -126,7 +134,7 @@ class Commanded:
                 new = at - (here - length) / slope
             new = np.where((new >= low) & (new <= high), new, 0.5 * (low + high))
             change, at = np.max(np.abs(new - at), initial=0.0), new
-            if change <= SETTLED * (1 + np.max(np.abs(at), initial=0.0)):
+            if change <= SQUARED:
                 break
         return np.asarray(at)
 
@@ -154,7 +162,7 @@ def _meshing(machine: Machine, near: float) -> float:
 
     def over(shift: float) -> float:
         linkage = assemble(_turned(machine, shift))
-        at = Followed.over(linkage, -STEP, STEP, STEP)
+        at = Followed.over(linkage, -STEP, STEP, STEP, ends_of(machine, drive))
         return float(_lengths(at, np.zeros(1), drive)[0][0]) - wanted
 
     old, new = near, near + STEP
@@ -202,7 +210,7 @@ def _commanded(machine: Machine, shift: float) -> Commanded:
     found = reach(linkage)
     low, high = (-pi, pi) if found is None else (found.low + INSIDE, found.high - INSIDE)
     far = high if found is not None else high + 2 * pi  # a turn may begin anywhere
-    followed = Followed.over(linkage, low, far, STEP)
+    followed = Followed.over(linkage, low, far, STEP, ends_of(bare, drive))
     branches = _branches(lambda at: _lengths(followed, at, drive), low, high, found is None)
     return Commanded(followed, drive, law, shift, _chosen(drive, law, branches, shift))
 
@@ -213,13 +221,13 @@ def _turned(machine: Machine, shift: float) -> Machine:
     position = machine.position and replace(machine.position, crank_angle=0.0)
     bare = replace(machine, drive=drive, position=position, loads=(), planting=None, balance=None,
                    support=None, rows=())  # fmt: skip
-    bare.__dict__["turning"] = Shifted(shift)
+    bare.__dict__["turning"] = Shifted(drive.link, shift)
     return bare
 
 
 def _lengths(bare: Followed, theta: Array, drive: Drive) -> Levels:
     with np.errstate(all="ignore"):  # other links may be infinitely fast, at ends of the way
-        return lengths(Motion(bare.linkage, theta, 1.0, 0.0, False, bare.solve(theta)), drive)
+        return Motion(bare.linkage, theta, 1.0, 0.0, False, bare.solve(theta)).lengths(drive)
 
 
 def _branches(

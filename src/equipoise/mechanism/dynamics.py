@@ -25,7 +25,6 @@ from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.planes import beside
-from equipoise.mechanism.pushing import lengths
 from equipoise.mechanism.reactions import (
     BeltForce,
     CamForce,
@@ -116,7 +115,7 @@ class Forces:
 
     @property
     def drives(self) -> Mapping[str, Array]:
-        """Torque of each drive on its link, N m, by the name of the link."""
+        """Torque of each drive on its link, N m, or its force, N, by the name of the link."""
         return self.solved.drives
 
     @property
@@ -138,10 +137,7 @@ class Forces:
     @cached_property
     def _work_by_angle(self) -> dict[str, Array]:
         """Work of each drive by crank angle (N,), N m, by the name of its link."""
-        motion, links = self.motion, self.motion.links
-        if motion.machine.drive.pushes:
-            return {motion.machine.drive.link: self.drive_force * lengths(motion)[1]}
-        return {link: torque * links[link].angle_1 for link, torque in self.drives.items()}
+        return {link: one * self.motion.way(link) for link, one in self.drives.items()}
 
     @cached_property
     def joints(self) -> Mapping[str, JointForce]:

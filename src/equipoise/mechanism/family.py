@@ -5,18 +5,16 @@ solves all machines at all their crank angles.
 
 Everything that puts a linkage together from numbers (`mechanism.linkage`) works on columns as well
 as on numbers.  So the steps of all designs are made in one go.  What a single machine is refused
-for is here a design of which `wrong` is true.
+for is here a design of which `refusing.wrong` is true.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from itertools import combinations
-from math import pi
 from typing import Any, TypeVar
 
 import numpy as np
@@ -26,12 +24,9 @@ from equipoise.keys import Frozen, changed, quantities_of
 from equipoise.mechanism import kernels
 from equipoise.mechanism.bodies import Body
 from equipoise.mechanism.body_checks import outlined_by_columns
-from equipoise.mechanism.gears import Gear
-from equipoise.mechanism.joints import coupling_pins
+from equipoise.mechanism.joints import Structure
 from equipoise.mechanism.linkage import Linkage, ordered
 from equipoise.mechanism.model import FRAME, Machine, Vector
-from equipoise.mechanism.planes import demands_across
-from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.rolling import beside
 from equipoise.mechanism.steps import (
     Array,
@@ -41,11 +36,9 @@ from equipoise.mechanism.steps import (
     State,
     Step,
     p,
-    planar,
     run,
     u,
 )
-from equipoise.quantities.units import HUGE, TINY
 
 Triple = tuple[Array, Array, Array]
 
@@ -70,7 +63,7 @@ class Family:
         """Steps that solve all machines at once; None where a running angle has to be counted on
         from a machine's own cycle.
         """
-        if any(one.machine.drive.pushes for one in self.linkages):
+        if any(one.machine.pushers for one in self.linkages):
             return None
         known = (FRAME, self.first.machine.drive.link)
         steps: list[Step] = []
@@ -200,6 +193,7 @@ HOLDERS = {
     r"(gears)\[([1-9]\d*)\]": {"start", "pressure_angle"},
     r"(belts)\[([1-9]\d*)\]": {"start", "tension"},
     r"(racks)\[([1-9]\d*)\]": {"angle", "travel", "pressure_angle"},
+    r"(cams)\[([1-9]\d*)\]": {"base_radius", "roller_radius", "normal"},
     r"(springs)\[([1-9]\d*)\]": {"stiffness", "free_length"},
 }
 """What has numbers that may be columns, by its path in the model file, and their keys; None where
@@ -292,11 +286,15 @@ def _with(value: Value, **changes: Any) -> Value:
 
 def linkage_of(machine: Machine, base: Linkage) -> Linkage:
     """The linkage of a machine with columns, in the order in which its base is solved."""
-    joints = replace(base.joints, sliders=machine.sliders, couplings=machine.couplings)
     needed = base.needed_references
     start = {f"reference({name})": base.cycle.reference(name, np.zeros(1)) for name in needed}
     with np.errstate(all="ignore"):
-        return ordered(machine, joints, start)
+        return ordered(machine, joints_of(machine, base), start)
+
+
+def joints_of(machine: Machine, base: Linkage) -> Structure:
+    """The joints of a machine with columns, those of its base but for their numbers."""
+    return replace(base.joints, sliders=machine.sliders, couplings=machine.couplings)
 
 
 def massive_link(path: str) -> str | None:
@@ -309,40 +307,3 @@ def massive_link(path: str) -> str | None:
             case ("links", link, "center_of_mass" | "bodies", *_):
                 return link
     return None
-
-
-def wrong(machine: Machine, base: Linkage, columns: Columns) -> Array:
-    """Which of the designs (P,) no machine can have: the checks of `Machine`, on columns."""
-    count = max((len(column) for column in columns.values()), default=1)
-    found = np.zeros((count, 1), dtype=bool)
-    with np.errstate(all="ignore"):
-        for column in columns.values():
-            size = np.abs(column)
-            found |= ~((size <= HUGE) & ((size >= TINY) | (size == 0)))
-        for right in _demands(machine, base):
-            found |= np.logical_not(right)
-    return found[:, 0]
-
-
-def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
-    """What has to be true of the numbers of a machine: flags, or columns of them."""
-    for body in (FRAME, *machine.links):
-        points = machine.points_of(body)
-        places = [planar(points[point]) for point in points if point in base.joints.pins]
-        yield from (one != other for one, other in combinations(places, 2))
-    for link in machine.links.values():
-        if link.mass is not None and link.inertia is not None:
-            yield (link.mass >= 0) & (link.inertia >= 0)
-            yield (link.mass > 0) | (np.asarray(link.inertia) == 0)
-        yield from link.demands()
-    for belt in machine.belts:
-        points = machine.points_of(belt.carrier)
-        driver, driven = (planar(points[pin]) for pin in coupling_pins(base.joints, belt))
-        yield abs(driver - driven) > sum(belt.pitch_radii)
-        yield belt.tension is None or belt.tension > 0
-    toothed: tuple[Gear | Rack, ...] = (*machine.gears, *machine.racks)
-    for gear in toothed:
-        yield (gear.pressure_angle >= 0) & (np.asarray(gear.pressure_angle) < pi / 2)
-    yield from demands_across(machine)
-    for spring in machine.springs:
-        yield (spring.stiffness > 0) & (np.asarray(spring.free_length) >= 0)

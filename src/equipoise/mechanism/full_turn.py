@@ -71,21 +71,21 @@ class FullTurn:
         ends = [0] if margin[0] <= margin[1] else []
         least = float(np.min(margin))
         lowest = sorted([*ends, *dips], key=lambda k: max(margin[k], least + EQUAL))[:MOST_DIPS]
-        found = [self.zoom(group, float(self.theta[k]), self.theta[1]) for k in lowest]
-        found.append((least, float(self.theta[highest_at(-margin)])))
-        angles, values = np.array(sorted((angle, value) for value, angle in found)).T
+        found = self.zoom(group, self.theta[lowest]) if lowest else []
+        found.append((float(self.theta[highest_at(-margin)]), least))
+        angles, values = np.array(sorted(found)).T
         k = highest_at(-values, smooth=False)
         return float(np.min(values)), float(angles[k])
 
-    def zoom(self, group: Group, angle: float, width: float) -> tuple[float, float]:
-        """Close in on a dip of a dyad's margin."""
-        value = np.inf
+    def zoom(self, group: Group, angles: Array) -> list[tuple[float, float]]:
+        """Close in on dips of a dyad's margin, near crank angles (D,): the angle and the value."""
+        values, width = angles, self.theta[1]
         for _ in range(4):
-            near = angle + np.linspace(-width, width, 41)
-            values = self.margin(group, near)
-            k = int(np.argmin(values))
-            angle, value, width = float(near[k]), float(values[k]), width / 18
-        return value, angle
+            near = angles[:, None] + np.linspace(-width, width, 41)
+            found = self.margin(group, near.ravel()).reshape(near.shape)
+            best = np.arange(len(near)), np.argmin(found, axis=1)
+            angles, values, width = near[best], found[best], width / 18
+        return [*zip(angles.tolist(), values.tolist(), strict=True)]
 
     def margin(self, group: Group, theta: Array) -> Array:
         """A dyad's margin at any crank angles."""

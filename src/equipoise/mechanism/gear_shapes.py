@@ -51,7 +51,7 @@ def _of_kind(kind: str) -> dict[str, Any]:
 
 @declared
 class GearShape(Frozen):
-    """Pitch curves of gears in external mesh whose ratio varies about that of the pair.
+    """Pitch curves of gears whose ratio varies about that of the pair.
 
     The driver's curve repeats `lobes` times a turn, and the driven gear's follows from it.  A
     circle, a limacon, a table or a series of the ratio has the driven curve that rolls on it.
@@ -79,8 +79,8 @@ class GearShape(Frozen):
     lobes: int = key(Whole(1), "how often the driver's curve repeats in its turn", default=1)
     phase: float = key(
         "angle",
-        "angle of the driver, seen from the carrier, at which 0 of its curve points to the driven "
-        "gear: of an ellipse, a circle and a limaçon the shortest radius",
+        "angle of the driver, seen from the carrier, at which 0 of its curve points to where they "
+        "mesh: of an ellipse, a circle and a limaçon the shortest radius",
         default=0.0,
     )
     angle: tuple[float, ...] = key(
@@ -204,14 +204,7 @@ def _wrong_table(shape: GearShape) -> Iterator[Told]:
 
 def _wrong_lobes(shape: GearShape, gears: Pair) -> Iterator[Told]:
     ratio, exact = gears.speed_ratio, gears.exact_ratio
-    if ratio >= 0:
-        told = Note(
-            "the ratio is {ratio:g}; gears with a shape mesh from outside, give them a negative "
-            "ratio, or teeth without an internal mesh",
-            ratio=ratio,
-        )
-        yield "", told
-    elif exact is None or (shape.lobes / exact).denominator != 1:
+    if exact is None or (shape.lobes / exact).denominator != 1:
         told = Note(
             "the pitch curves do not close: with {lobes} of the driver and a mean ratio of "
             "{ratio:.6g} the driven gear would have {count:.6g} lobes, which have to be whole",

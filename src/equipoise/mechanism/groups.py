@@ -7,6 +7,7 @@ which numbers.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -15,7 +16,7 @@ import numpy as np
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism import joint_kernels, kernels, parallels
-from equipoise.mechanism.builder import Builder, Group, Guide, Outer, guide_reaction
+from equipoise.mechanism.builder import Builder, Group, Guide, Outer, guide_reaction, outer_joints
 from equipoise.mechanism.cam_groups import follower
 from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.checks import MODES
@@ -222,6 +223,19 @@ def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Grou
         joint=slider.point,
         point=guide.point,
     )
+
+
+def hung(builder: Builder, joints: Structure, links: Iterable[str]) -> Group | None:
+    """The first of links, pushed to angles that are known, that is pinned to a known link."""
+    outers = (one for link in links for one in outer_joints(builder, joints, link))
+    pin = next((one for one in outers if one.guide is None), None)
+    if pin is None:
+        return None
+    ground = replace(pin.reaction(), force=demand_names(pin.link)[0])  # which is all that it needs
+    motion = tuple(builder.reach(pin.body, pin.point))
+    builder.add({pin.link: pin.point}, [pin.point])
+    builder.running.add(pin.link)
+    return Group("hung", (pin.link,), motion, (builder.hand_over(ground),), (ground,))
 
 
 def coupled(builder: Builder, joints: Structure, coupling: Coupling) -> Group:

@@ -10,27 +10,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import combinations
 from typing import Any
 
 import numpy as np
 
-from equipoise.errors import MobilityError, ModelError
+from equipoise.errors import ModelError
 from equipoise.i18n import Note
-from equipoise.mechanism import groups
-from equipoise.mechanism.builder import Builder, Group, Guide, Outer
+from equipoise.mechanism.builder import Builder, Group
 from equipoise.mechanism.checks import MODE, MODES, meant
 from equipoise.mechanism.cycle import Cycle, close
-from equipoise.mechanism.joints import (
-    Structure,
-    drive_pivot,
-    held_fast,
-    name_in_outputs,
-    structure,
-    subsets,
-)
+from equipoise.mechanism.groups import hung
+from equipoise.mechanism.joints import Structure, drive_pivot, name_in_outputs, structure
 from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.parallels import pointed, surplus_cranks
+from equipoise.mechanism.ordering import held, next_group
+from equipoise.mechanism.parallels import surplus_cranks
 from equipoise.mechanism.shared import Shared, shared
 from equipoise.mechanism.steps import (
     Reaction,
@@ -69,6 +62,12 @@ class Linkage:
     shared: Shared | None = None
 
     @cached_property
+    def grounded(self) -> tuple[str, ...]:
+        """Driven links that turn about points of the frame."""
+        hung = {link for group in self.groups if group.kind == "hung" for link in group.links}
+        return tuple(one.link for one in self.machine.driven if one.link not in hung)
+
+    @cached_property
     def motion(self) -> tuple[Step, ...]:
         """Steps from the drive's rotation to that of every link."""
         return tuple(step for group in self.groups for step in group.motion)
@@ -81,15 +80,17 @@ class Linkage:
     def forces(self) -> tuple[Step, ...]:
         """Steps from what each link needs to every joint force; the drive link comes last."""
         if self.shared is not None:
-            return (self.shared,)
+            decided = self.shared.decided
+            return (*(step for group in decided for step in group.forces), self.shared)
         return tuple(step for group in reversed(self.groups) for step in group.forces)
 
     @cached_property
     def reactions(self) -> tuple[Reaction, ...]:
         """Every joint, the pins of the drives first."""
         if self.shared is not None:
-            return self.shared.reactions
-        drives = (pin_reaction(self.anchors[d.link], d.link, FRAME) for d in self.machine.driven)
+            decided = self.shared.decided
+            return (*self.shared.reactions, *(one for group in decided for one in group.reactions))
+        drives = (pin_reaction(self.anchors[link], link, FRAME) for link in self.grounded)
         return (*drives, *(reaction for group in self.groups for reaction in group.reactions))
 
     @cached_property
@@ -161,9 +162,10 @@ def ordered(
     from equipoise.mechanism import sides
 
     builder, groups, choices = _grouped(machine, joints, start or {}, assumed)
-    pointed_at = {point for group in groups if group.kind == "pointed"
-                  for link in group.links for point in machine.links[link].points}  # fmt: skip
-    asked = builder.sides | pointed_at  # of links that two pins hold lengths decide the side
+    held_kinds = ("pointed", "loops") if joints.mobility < 1 else ("pointed",)
+    held_at = {point for group in groups if group.kind in held_kinds
+               for link in group.links for point in machine.links[link].points}  # fmt: skip
+    asked = builder.sides | held_at  # of links that more joints hold lengths decide the side
     idle = [joint for joint in machine.assembly if joint not in asked]
     if choices:
         if not assumed and (decided := sides.decided(machine, choices, _turns)):
@@ -213,8 +215,12 @@ def _grouped(
     if mode not in MODES:
         mode = MODES[0] if joints.mobility < 1 else None
     drives = {machine.drive.link: drive_pivot(joints, machine.drive.link)}
+    pushed = []
     for number, one in enumerate(machine.drives, 1):
-        drives[one.link] = drive_pivot(joints, one.link, f"drives[{number}].link")
+        if one.pushes and not joints.pins_between(FRAME, one.link):
+            pushed.append(one.link)
+        else:
+            drives[one.link] = drive_pivot(joints, one.link, f"drives[{number}].link")
     points, running = set(machine.frame), {FRAME, *drives}
     builder = Builder(machine, points=points, running=running, told=start, mode=mode)
     surplus: frozenset[str] = frozenset()
@@ -227,9 +233,12 @@ def _grouped(
     while unknown:
         try:
             ready = [
-                link for link in unknown if link not in surplus or _held(builder, joints, link)
+                link
+                for link in unknown
+                if link not in pushed and (link not in surplus or held(builder, joints, link))
             ]
-            group = next_group(builder, joints, ready)
+            waiting = [link for link in pushed if link in unknown]
+            group = hung(builder, joints, waiting) or next_group(builder, joints, ready)
         except ModelError:
             if choices:  # sides come first: on a wrong one what hangs on it cannot be right
                 raise sides.missing(machine, choices) from None
@@ -245,104 +254,3 @@ def _grouped(
 
 def _turns(machine: Machine) -> Cycle:
     return ordered(machine, structure(machine)).cycle
-
-
-def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group:
-    """The smallest group that the known bodies determine: coupled link, dyad, or loops."""
-    known = builder.rank
-    group = _coupled(builder, joints, unknown)
-    if group is not None:
-        return group
-    outers = {link: outer_joints(builder, joints, link) for link in unknown}
-    for held in outers.values() if joints.mobility < 1 else ():
-        pins = [outer for outer in held if outer.guide is None]
-        if len(pins) > 1 and (group := pointed(builder, pins)):
-            return group
-    hung = [link for link in unknown if len(outers[link]) == 1]
-    for pair in combinations(hung, 2):
-        if joints.freedom(pair, known) == 0:
-            dyad = _dyad(builder, joints, *(outers[link][0] for link in pair))
-            if dyad is not None:
-                return dyad
-    for links in subsets(joints, unknown):
-        freedom = joints.freedom(links, known)
-        if freedom < 0 and joints.mobility < 1:
-            raise held_fast(joints, [drive.link for drive in builder.machine.driven])
-        if freedom < 0:
-            raise MobilityError(
-                Note(
-                    "too many joints hold {names}, while other links are free to move; the "
-                    "linkage as a whole has one free motion, but no drive can command it",
-                    names=", ".join(links),
-                )
-            )
-        if freedom == 0:
-            from equipoise.mechanism.loopgroup import loop_group
-
-            return loop_group(builder, joints, links)
-    raise MobilityError(
-        Note(
-            "the drive does not determine {names}: no group of these links has as many "
-            "joint equations as unknowns",
-            names=", ".join(unknown),
-        )
-    )
-
-
-def _held(builder: Builder, joints: Structure, link: str) -> bool:
-    """Whether two pins of a link are on known bodies."""
-    return len(outer_joints(builder, joints, link)) > 1
-
-
-def _coupled(builder: Builder, joints: Structure, unknown: list[str]) -> Group | None:
-    """A link pinned to its coupling's carrier, with driver and carrier known, if there is one."""
-    known = builder.rank
-    for one in joints.couplings:
-        ready = one.driven in unknown and {one.driver, one.carrier} <= known.keys()
-        if ready and joints.freedom([one.driven], known) == 0:
-            return groups.coupled(builder, joints, one)
-    return None
-
-
-def _dyad(builder: Builder, joints: Structure, first: Outer, second: Outer) -> Group | None:
-    """Two links with one joint each to known bodies, if one joint is between them.
-
-    It is built by its sequence of joints, R (pin) or P (sliding): outer, inner, outer.
-    """
-    pair = (first.link, second.link)
-    shared = joints.pins_between(*pair)
-    pins = [pin for pin in shared if not any(body in builder.rank for body in joints.pins[pin])]
-    slides = [slider for slider in joints.sliders if {slider.link, slider.on} == set(pair)]
-    if len(pins) + len(slides) != 1:
-        return None
-    is_pin = (first.guide is None, bool(pins), second.guide is None)
-    kinds = "".join("R" if pinned else "P" for pinned in is_pin)
-    if kinds == "PPP":
-        raise MobilityError(
-            Note(
-                "three sliding joints in a row cannot position {pair!r} and {pair_2!r}; "
-                "replace one by a pin",
-                pair=pair[0],
-                pair_2=pair[1],
-            )
-        )
-    if kinds in ("PRR", "PPR") or (kinds == "RPR" and slides[0].link != first.link):
-        first, second, kinds = second, first, kinds[::-1]
-    build: Any = getattr(groups, kinds.lower())
-    group: Group = build(builder, first, second, pins[0] if pins else slides[0])
-    return group
-
-
-def outer_joints(builder: Builder, joints: Structure, link: str) -> list[Outer]:
-    """Joints of an unknown link to known bodies."""
-    result = []
-    for point in builder.machine.links[link].points:
-        known = [body for body in joints.pins.get(point, ()) if body in builder.rank]
-        if known:
-            result.append(Outer(link, builder.carrier_of(known), point))
-    for slider in joints.sliders:
-        other = slider.on if slider.link == link else slider.link
-        if link in (slider.link, slider.on) and other in builder.rank:
-            guide = Guide.seen_from(slider, other)
-            result.append(Outer(link, other, guide.base, guide))
-    return result

@@ -63,24 +63,33 @@ class LoopForces:
 
     def matrix(self, state: State, poses: Poses, senses: Sequence[Any]) -> Array:
         """What each unknown adds to force and moment on each link, (N, 3 n, m)."""
-        shape = np.shape(state["theta"])
         columns = [
-            [np.broadcast_to(entry, shape) for entry in column]
+            column
             for loop, sense in zip(self.loops, senses, strict=True)
             for column in self.columns(loop, poses, sense)
         ]
-        return np.moveaxis(np.array(columns), (0, 1, 2), (2, 1, 0))
+        rows = 3 * len(self.group.links)
+        matrix = np.zeros((len(columns), rows, *np.shape(state["theta"])))
+        for column, entries in zip(matrix, columns, strict=True):
+            for row, entry in entries.items():
+                column[row] = entry
+        return np.moveaxis(matrix, (0, 1, 2), (2, 1, 0))
 
-    def columns(self, loop: Loop, poses: Poses, sense: Any) -> list[list[Any]]:
-        """Force and moment about the anchor on each link, for a unit of each of its unknowns."""
+    def columns(self, loop: Loop, poses: Poses, sense: Any) -> list[dict[int, Any]]:
+        """Force and moment about the anchor on the links that it joins, by row, for a unit of each
+        of its unknowns.
+        """
         at = loop.place(poses)
         result = []
         for force, couple in loop.wrenches(poses, sense):
-            column: list[Any] = []
-            for link in self.group.links:
+            column: dict[int, Any] = {}
+            for number, link in enumerate(self.group.links):
                 sign = (link == loop.on.body) - (link == loop.by.body)
+                if not sign:
+                    continue
                 moment = kernels.cross(at - poses[link].place[0], force) + couple
-                column += [sign * np.real(force), sign * np.imag(force), sign * moment]
+                parts = np.real(force), np.imag(force), moment
+                column |= {3 * number + row: sign * part for row, part in enumerate(parts)}
             result.append(column)
         return result
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import ceil, degrees, pi
 
@@ -41,8 +41,13 @@ FAR = 0.25
 """Distance, in sizes of the machine, between a place in the file and the solution found from it."""
 
 
-def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Group:
-    """Make the group of these links, with `builder` knowing them afterwards."""
+def loop_group(
+    builder: Builder, joints: Structure, links: tuple[str, ...], near: Position | None = None
+) -> Group:
+    """Make the group of these links, with `builder` knowing them afterwards.
+
+    near : about where they are at crank angle 0, if not the file but others tell it.
+    """
     maker = Maker(builder, joints, links)
     before, loops = maker.prepare()
     touched = {FRAME, *(end.body for loop in loops for end in (loop.on, loop.by))}
@@ -61,7 +66,7 @@ def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> G
         solved = replace(unsolved, start=told[:, 0])
     else:
         run(before, builder.now)
-        solved, loops = _solve_start(builder, before, unsolved, loops)
+        solved, loops = _solve_start(builder, before, unsolved, loops, near)
     builder.add(maker.anchors, {maker.anchors[link] for link in links})
     builder.running.update(place.link for place in solved.tree if any(place.turning))
     reactions = tuple(maker.reaction(loop) for loop in loops)
@@ -219,10 +224,14 @@ class Maker:
 
 
 def _solve_start(
-    builder: Builder, before: tuple[Step, ...], group: LoopGroup, loops: tuple[Loop, ...]
+    builder: Builder,
+    before: tuple[Step, ...],
+    group: LoopGroup,
+    loops: tuple[Loop, ...],
+    near: Position | None,
 ) -> tuple[LoopGroup, tuple[Loop, ...]]:
     """The group with its solution at crank angle 0 and, from that, the offsets of its gears."""
-    position = builder.machine.position
+    position = near or builder.machine.position
     if position is None:
         raise ModelError(
             "position",
@@ -232,7 +241,6 @@ def _solve_start(
                 names=", ".join(group.links),
             ),
         )
-    starts = {one.name: one.start for one in builder.machine.couplings}
     meshes = {loop.name: loop for loop in loops if isinstance(loop, CouplingLoop)}
     if meshes and position.crank_angle != 0:
         raise ModelError(
@@ -243,13 +251,7 @@ def _solve_start(
                 crank_angle=degrees(position.crank_angle),
             ),
         )
-    # Its gears stand still at the angle at which they start.
-    standing = tuple(
-        replace(loop, carrier=FRAME, kernel=kernels.gear, numbers=(0.0,), offset=starts[loop.name])
-        if isinstance(loop, CouplingLoop)
-        else loop
-        for loop in loops
-    )
+    standing = _standing(loops, {one.name: one.start for one in builder.machine.couplings})
     rough = replace(group, tree=tuple(map(Free, group.links)), equations=standing)
     steps = max(2, ceil(abs(position.crank_angle) / (2 * pi) * STEPS_PER_TURN))
     path = np.linspace(0.0, position.crank_angle, steps)
@@ -277,6 +279,16 @@ def _solve_start(
         tuple(meshed.get(loop.name, loop) for loop in some) for some in (loops, group.equations)
     )
     return replace(group, start=start, equations=equations), loops
+
+
+def _standing(loops: Sequence[Loop], starts: Mapping[str, float]) -> tuple[Loop, ...]:
+    """The same with gears that stand still at the angles at which they start."""
+    return tuple(
+        replace(loop, carrier=FRAME, kernel=kernels.gear, numbers=(0.0,), offset=starts[loop.name])
+        if isinstance(loop, CouplingLoop)
+        else loop
+        for loop in loops
+    )
 
 
 def _check_near(builder: Builder, poses: Poses, position: Position, group: LoopGroup) -> None:

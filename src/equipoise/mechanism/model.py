@@ -278,6 +278,11 @@ class Machine(Driven, Frozen):
                 changed.__dict__["turning"] = self.__dict__["turning"]
         return changed
 
+    def forget(self) -> None:
+        """Let go of what was computed of it and is kept, such as its motion."""
+        for name in self.__dict__.keys() - self.__dataclass_fields__.keys():
+            self.__dict__.pop(name, None)
+
     def points_of(self, body: str) -> Mapping[str, Vector]:
         """Points of a link, or of the frame."""
         return self.frame if body == FRAME else self.links[body].points

@@ -16,10 +16,10 @@ import numpy as np
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.builder import Group
-from equipoise.mechanism.cam_fits import fits_of, pressure_angle
+from equipoise.mechanism.cam_fits import pressure_angle
 from equipoise.mechanism.checks import Named, Vector, bodies_at
 from equipoise.mechanism.linkage import Linkage, assemble
-from equipoise.mechanism.model import Drive, Machine, Slider
+from equipoise.mechanism.model import Drive, FurtherDrive, Machine, Slider
 from equipoise.mechanism.rates import LinkMotion, PointMotion, SliderMotion
 from equipoise.mechanism.steps import Array, State, p, plain_angle, running_angle, u
 from equipoise.mechanism.swinging import middle_angle, solve_swinging
@@ -61,6 +61,26 @@ class Motion:
         w, a = _rates(self, speed, acceleration)
         return replace(self, speed=w, acceleration=a)
 
+    def lengths(self, drive: Drive | FurtherDrive) -> tuple[Array, Array, Array]:
+        """Length between the points that a drive pushes apart, or travel of its sliding joint, m,
+        and both derivatives by crank angle, each (N,).
+        """
+        if drive.slider:
+            one = next(one for one in self.machine.sliders if one.name == drive.slider)
+            slid = self.slider(one)
+            return slid.travel, slid.travel_1, slid.travel_2
+        a, b = (self.point(name) for name in drive.between or ())
+        d, d1, d2 = b.place - a.place, b.place_1 - a.place_1, b.place_2 - a.place_2
+        length = np.abs(d)
+        first = kernels.dot(d, d1) / length
+        second = (np.abs(d1) ** 2 + kernels.dot(d, d2) - first**2) / length
+        return length, first, second
+
+    def way(self, link: str) -> Array:
+        """By crank angle (N,): what the drive of a link goes, m, or turns, rad."""
+        drive = next(one for one in self.machine.driven if one.link == link)
+        return self.lengths(drive)[1] if drive.pushes else self.links[link].angle_1
+
     @cached_property
     def links(self) -> Mapping[str, LinkMotion]:
         """Motion of each link, by name."""
@@ -70,7 +90,7 @@ class Motion:
     def points(self) -> Mapping[str, PointMotion]:
         """Motion of each point, by name; the frame's points stand still."""
         names = bodies_at(self.machine.bodies)
-        return Named("point", ((point, self._point(point)) for point in names))
+        return Named("point", ((point, self.point(point)) for point in names))
 
     @cached_property
     def mass_centers(self) -> Mapping[str, PointMotion]:
@@ -83,7 +103,7 @@ class Motion:
     def sliders(self) -> Mapping[str, SliderMotion]:
         """Motion along the guide of each sliding joint, by name."""
         sliders = self.machine.sliders
-        return Named("slider", ((slider.name, self._slider(slider)) for slider in sliders))
+        return Named("slider", ((slider.name, self.slider(slider)) for slider in sliders))
 
     @cached_property
     def transmission(self) -> Mapping[str, Array]:
@@ -99,12 +119,14 @@ class Motion:
     @cached_property
     def pressure_angles(self) -> Mapping[str, Array]:
         """Angle (N,) of each cam, rad, from the way in which its follower rises to the normal."""
-        fits = fits_of(self.machine, self.linkage.joints)
-        found = ((fit.cam.name, self._full(pressure_angle(fit, self.state))) for fit in fits)
-        return Named("cam", found)
+        cams = self.machine.cams
+        return Named(
+            "cam", ((cam.name, self._full(pressure_angle(cam, self.state))) for cam in cams)
+        )
 
-    def _slider(self, slider: Slider) -> SliderMotion:
-        point, base = self.points[slider.point], self.points[slider.through]
+    def slider(self, slider: Slider) -> SliderMotion:
+        """Motion of one of the sliding joints, likewise."""
+        point, base = self.point(slider.point), self.point(slider.through)
         rotation, w, a = (self.state[name] for name in u(slider.on))
         way = kernels.along_line(
             point.place - base.place,
@@ -159,12 +181,15 @@ class Motion:
             return plain_angle(self.state, link)
         return running_angle(self.state, link, cycle.reference(link, self.crank_angle))
 
-    def _point(self, point: str) -> PointMotion:
+    def point(self, point: str) -> PointMotion:
+        """Motion of one of the points; of a state that is not whole, of one that it tells of."""
         names = p(point)
         if names[0] in self.state:
             return self._moving(*(self.state[name] for name in names))
         links = self.machine.links
-        link = next(name for name in links if point in links[name].points)
+        link = next(
+            name for name in links if point in links[name].points and u(name)[0] in self.state
+        )
         return self._attached(link, links[link].points[point])
 
     def _attached(self, link: str, place: Vector) -> PointMotion:

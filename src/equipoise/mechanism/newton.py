@@ -33,6 +33,8 @@ STRIDES = (radians(30), radians(6))
 """Between crank angles at which a branch is followed first; the next where it cannot be so."""
 SAME = 1e-8
 """Difference of unknowns, in sizes of the machine and radians, at which solutions are the same."""
+LOOSE = 1e-6
+"""Smallest singular value of slopes with columns of length 1, up to which a link is free."""
 JUMP = 0.02
 """Step, in sizes of the linkage and radians, that the branch's slope does not explain."""
 QUINTIC = np.array([
@@ -50,7 +52,7 @@ Levels = tuple[Array, Array, Array]  # the unknowns, and their two derivatives
 
 @dataclass(frozen=True)
 class LoopGroup:
-    """A group of links with as many loop equations as unknowns.
+    """A group of links with as many loop equations as unknowns, or more that go together.
 
     links, anchors : the unknown links and their anchor points.
     known : other bodies that the loops touch -> their anchors.
@@ -150,6 +152,14 @@ class LoopGroup:
                 break
         self.check(sizes < SETTLED, theta)
         return q
+
+    def rigid(self, state: State) -> bool:
+        """Whether the equations leave no unknown free at the start, with the known bodies still."""
+        known = {body: pose.pick((..., 0)) for body, pose in poses_in(state, self.known).items()}
+        _, matrix = self.slopes(known, np.asarray(self.start))
+        matrix = matrix * np.where(self.turning, 1.0, self.size)
+        sizes = np.linalg.svd(matrix / np.linalg.norm(matrix, axis=0), compute_uv=False)
+        return bool(sizes[-1] > LOOSE)
 
     def check(self, good: Any, theta: Any) -> None:
         """Raise an error that names the first crank angle at which something failed."""
@@ -255,11 +265,17 @@ def poses_in(state: State, bodies: Iterable[tuple[str, str]]) -> Poses:
 
 
 def divide(matrix: Array, right: Array) -> Array:
-    """Solve matrices (..., n, n) for right-hand sides (n, ...); NaN where one is singular."""
+    """Solve matrices (..., m, n) for right-hand sides (m, ...), by least squares where they have
+    more rows than columns; NaN where one is singular.
+    """
+    column = np.moveaxis(right, 0, -1)[..., None]
     try:
-        solution = np.linalg.solve(matrix, np.moveaxis(right, 0, -1)[..., None])
+        if matrix.shape[-2] > matrix.shape[-1]:
+            square, matrix = np.linalg.qr(matrix)
+            column = np.swapaxes(square, -1, -2) @ column
+        solution = np.linalg.solve(matrix, column)
     except np.linalg.LinAlgError:
-        return np.full_like(right, np.nan)
+        return np.full((matrix.shape[-1], *right.shape[1:]), np.nan)
     return np.moveaxis(solution[..., 0], -1, 0)
 
 

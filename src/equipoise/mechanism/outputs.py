@@ -188,17 +188,36 @@ of_center(
 
 
 def _of_drive(name: str, found: Any, link: str) -> Any:
-    torque = found.forces.drives[link]
-    return torque * found.motion.links[link].angular_velocity if name == "power" else torque
+    effort, motion = found.forces.drives[link], found.motion
+    return effort * motion.way(link) * motion.speed if name == "power" else effort
 
 
-of_drive = alike("drives.{}.", _of_drive, members=lambda m: m.told_drives, linear=True)
-of_drive("torque", "torque", to_say("drive torque of {name}"), loop="{drive torque:name}")
+def _told(machine: Any, effort_in: str) -> list[str]:
+    """Links of drives that turn or push."""
+    kinds = {one.link: one.effort_in for one in machine.driven}
+    return [link for link in machine.told_drives if kinds[link] == effort_in]
+
+
+of_drive = alike("drives.{}.", _of_drive, linear=True)
+of_drive(
+    "torque",
+    "torque",
+    to_say("drive torque of {name}"),
+    loop="{drive torque:name}",
+    members=lambda machine: _told(machine, "torque"),
+)
+of_drive(
+    "force",
+    "force",
+    to_say("drive force of {name}"),
+    members=lambda machine: _told(machine, "force"),
+)
 of_drive(
     "power",
     "power",
     to_say("drive power of {name}"),
     loop="{drive torque:name} * {angular velocity:name}",
+    members=lambda machine: machine.told_drives,
 )
 
 # -- joints ----------------------------------------------------------------------------------------
@@ -298,9 +317,11 @@ of_cam = alike("cams.{}", lambda name, found, cam: _members(found.forces.cams, n
 of_cam("", "force", to_say("contact force {name}"), FORCES, linear=True,
        loop="{joint force:name}", summed=(True, False), compared=FORCE)  # fmt: skip
 READ = "{what} is only read; take the whole contact force instead"
-of_cam(".normal", "force", to_say("contact force along the normal {name}"), linear=READ)
+of_cam(".normal", "force", to_say("contact force along the normal {name}"), linear=READ,
+       loop="{cam push:name}")  # fmt: skip
 slant = alike("cams.{}.", lambda _, found, cam: found.motion.pressure_angles[cam], **CAMMED)
-slant("pressure_angle", "angle", to_say("pressure angle {name}"), needs="motion")
+slant("pressure_angle", "angle", to_say("pressure angle {name}"), needs="motion",
+      loop="angle_of({cam forth:name}.conjugate() * {cam normal:name})")  # fmt: skip
 
 # -- rows and support ------------------------------------------------------------------------------
 

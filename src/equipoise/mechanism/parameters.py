@@ -79,9 +79,11 @@ class BaseParameters:
         return "\n".join(" ".join(f"{x:+.6g} {n}" for x, n in r if x) for r in rows)
 
 
-def parameter_names(machine: Machine) -> tuple[tuple[str, str], ...]:
+def parameter_names(
+    machine: Machine, quantities: Sequence[str] = QUANTITIES
+) -> tuple[tuple[str, str], ...]:
     """Pairs of link and quantity, in file order."""
-    return tuple((link, quantity) for link in machine.links for quantity in QUANTITIES)
+    return tuple((link, quantity) for link in machine.links for quantity in quantities)
 
 
 def parameter_values(machine: Machine) -> Array:
@@ -205,7 +207,8 @@ def base_parameters(
 
     Parameters
     ----------
-    outputs : names of outputs of `Regressor`; by default what frame and drive feel.
+    outputs : names of outputs of `Regressor`; by default what frame and drive feel.  With rocking
+        moments the sums of `ACROSS` are parameters too, behind all others.
     angles : crank angles a turn at which the outputs are compared.
 
     Notes
@@ -224,14 +227,20 @@ def base_parameters(
     for name, link in machine.links.items():
         if not link.has_mass:  # which combinations count does not depend on masses
             known = known.with_link(name, mass=1.0, center_of_mass=(0.0, 0.0), inertia=1.0)
-    motion = move(known, angles)
-    matrix = np.concatenate([_rows(motion, output, size) for output in outputs])
-    scale = np.tile([1.0, size, size, size**2], len(machine.links))
+    motion, count = move(known, angles), len(machine.links)
+    rows = [_rows(motion, output, size) for output in outputs]
+    width = max(part.shape[1] for part in rows)
+    matrix = np.concatenate([np.pad(part, ((0, 0), (0, width - part.shape[1]))) for part in rows])
+    scale, beside = np.tile([1.0, size, size, size**2], count), width > len(names)
+    if beside:
+        names += parameter_names(machine, ACROSS)
+        scale = np.append(scale, np.tile([size, size**2, size**2], count))
     kept, grouping = independent_columns(matrix * scale)
     combinations = grouping * scale[kept][:, None] / scale
-    complete = all(link.has_mass for link in machine.links.values())
-    values = combinations @ parameter_values(machine) if complete else None
-    return BaseParameters(names, combinations, values)
+    if not all(link.has_mass for link in machine.links.values()):
+        return BaseParameters(names, combinations, None)
+    own = values_across(machine) if beside else parameter_values(machine)
+    return BaseParameters(names, combinations, combinations @ own)
 
 
 def _rows(motion: Motion, output: str, size: float) -> Array:
@@ -242,8 +251,8 @@ def _rows(motion: Motion, output: str, size: float) -> Array:
         found = regressor(case).of_machine
         if output not in found:
             raise UsageError(unknown(output, found, "output"))
-        array = found[output]
-        parts += [array.real.T, array.imag.T] if np.iscomplexobj(array) else [array.T / size]
+        array = found[output] / (1.0 if output.endswith("force") else size)
+        parts += [array.real.T, array.imag.T] if np.iscomplexobj(array) else [array.T]
     return np.concatenate(parts)
 
 

@@ -16,7 +16,7 @@ from equipoise.mechanism.checks import (
     unknown_link,
     unknown_point,
 )
-from equipoise.mechanism.drives import Drive
+from equipoise.mechanism.drives import Drive, FurtherDrive
 from equipoise.mechanism.gears import Gear
 from equipoise.mechanism.links import Link
 from equipoise.mechanism.support import Row, Support
@@ -80,6 +80,8 @@ class Mechanism(Protocol):
 
     @property
     def drive(self) -> Drive: ...
+    @property
+    def pushers(self) -> Sequence[Drive | FurtherDrive]: ...
     @property
     def frame(self) -> Mapping[str, Vector]: ...
     @property

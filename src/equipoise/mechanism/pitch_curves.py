@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
-from math import degrees
+from math import degrees, pi
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +27,8 @@ from equipoise.mechanism.rolling import (
 
 MISFIT = 1e-4
 """Share by which a table may miss that its curves close; it is spread over all of it."""
+CUT = 1e-3
+"""Of the distance of the axes: more than what a drawing of curves by corners may miss."""
 PIECES = 128
 """Pieces of a lobe over which a ratio is summed up, for each of its waves."""
 
@@ -82,7 +85,8 @@ def ratios_of(shape: GearShape, mean: float) -> tuple[float, float]:
 def _extent(shape: GearShape, mean: float) -> tuple[float, float, float]:
     """Lowest and highest ratio, and the tangent by which the pitch curves lean at most."""
     _, first, second = law_of(shape, mean)(shape.phase + _fine(shape))
-    leaning = np.abs(kernels.pitch_slope(first, second))
+    with np.errstate(all="ignore"):  # a ratio of 1 is told of
+        leaning = np.abs(kernels.pitch_slope(first, second))
     return float(np.min(first)), float(np.max(first)), float(np.max(leaning))
 
 
@@ -97,8 +101,10 @@ def closed_table(shape: GearShape, mean: float, distance: float | None) -> GearS
     if not shape.angle or not isinstance(law, RatioTable | PitchCurve):
         return shape
     factor = abs(law.factor) * (1.0 if shape.kind == "ratio" else distance or 0.0)
-    values = tuple(factor * one for one in shape.ratio or shape.radius)
-    return replace(shape, **{shape.kind: values}) if factor else shape
+    values: dict[str, Any] = {
+        shape.kind: tuple(factor * one for one in shape.ratio or shape.radius)
+    }
+    return replace(shape, **values) if factor else shape
 
 
 def wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterator[Told]:
@@ -113,7 +119,16 @@ def wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterat
     ratio = gears.speed_ratio
     law = law_of(shape, ratio)
     yield from _misfits(shape, law, ratio, distance)
-    _, _, steepest = _extent(shape, ratio)
+    low, high, steepest = _extent(shape, ratio)
+    if low <= 1 <= high:
+        told = Note(
+            "the ratio would go from {low:.4g} to {high:.4g}; of a ring and the gear in it it "
+            "stays on one side of 1: give a smaller eccentricity, or a flatter curve",
+            low=low,
+            high=high,
+        )
+        yield "", told
+        return
     most = degrees(np.arctan(steepest) + gears.pressure_angle)
     if not most < 90:
         told = Note(
@@ -122,6 +137,36 @@ def wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterat
             most=most,
         )
         yield "", told
+    if ratio > 0 and (deepest := _overlap(shape, ratio)) > CUT:
+        told = Note(
+            "the gear would cut its ring where they do not mesh, by {deepest:.2g} of the distance "
+            "of the axes; give a smaller eccentricity, a flatter curve or a larger ring",
+            deepest=deepest,
+        )
+        yield "", told
+
+
+@lru_cache(maxsize=64)
+def _overlap(shape: GearShape, mean: float) -> float:
+    """How far a gear reaches out of the ring in which it turns, over the distance of the axes.
+
+    Where they mesh it does so nowhere: of curves that roll, the difference of their curvatures
+    vanishes nowhere.
+    """
+    law = law_of(shape, mean)
+    sides = []
+    for share, turns in ((1.0, 1.0), (0.0, 1 / mean)):  # driver at 1, driven gear at 0
+        x = np.linspace(0.0, 2 * pi * turns, 721)
+        y, ratio, _ = law(x)
+        radius = (ratio if share else 1.0) / (1 - ratio)
+        sides.append((share, radius * np.exp(-1j * (x if share else y))))
+    (inner_at, inner), (outer_at, outer) = sides if mean < 1 else sides[::-1]
+    at = np.linspace(0.0, shape.period, 90)
+    turned = np.exp(1j * np.array([at, law(at)[0]])[..., None])
+    of_inner, of_outer = turned if mean < 1 else turned[::-1]
+    seen = (inner_at + inner * of_inner - outer_at) / of_outer
+    room = np.interp(np.angle(seen), np.angle(outer), np.abs(outer), period=2 * pi)
+    return float(np.max(np.abs(seen) - room))
 
 
 def _misfits(

@@ -61,7 +61,7 @@ def _told_of_pins(machine: Mechanism) -> Iterator[tuple[str, list[tuple[str, flo
 
 def wrong_planes(machine: Mechanism) -> Iterator[ModelError]:
     """Everything that is wrong with planes of pins and with bearings."""
-    if machine.drive.pushes and beside(machine):
+    if machine.pushers and beside(machine):
         yield ModelError(
             "drive",
             Note(

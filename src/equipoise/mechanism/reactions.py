@@ -25,7 +25,7 @@ from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, demand_names, run
 from equipoise.mechanism.undecided import hidden
 
-PUSH = "D"
+PUSH, TORQUE = "push({})", "M({})"  # what drives exert on their links
 """Name of the force of a drive that pushes, among the values of a pass."""
 Demand = tuple[Any, Any]
 """Force (complex) and moment about a link's anchor, each (..., N) or the same at all angles."""
@@ -127,30 +127,37 @@ class Pass:
 
     @cached_property
     def drives(self) -> dict[str, Array]:
-        """Torque of each drive on its link, N m, by the name of the link."""
-        links = (drive.link for drive in self.motion.machine.driven)
-        return {link: full(self.motion, self.state[f"M({link})"], float) for link in links}
-
-    @property
-    def drive_torque(self) -> Array:
-        """Torque of the first drive on its link, N m."""
-        return self.drives[self.motion.machine.drive.link]
+        """What each drive exerts, by the name of its link: a torque on that, N m, or the force
+        with which it pushes its ends apart, or its sliding link ahead, N.
+        """
+        named = {one.link: PUSH if one.pushes else TORQUE for one in self.motion.machine.driven}
+        return {
+            link: full(self.motion, self.state[name.format(link)], float)
+            for link, name in named.items()
+        }
 
     @cached_property
+    def drive_torque(self) -> Array:
+        """Torque of the first drive on its link, N m; none where that pushes."""
+        first = self.motion.machine.drive
+        return 0.0 * self.drives[first.link] if first.pushes else self.drives[first.link]
+
+    @property
     def drive_force(self) -> Array:
-        """Force with which the drive pushes its ends apart, or its sliding link ahead, N."""
-        return full(self.motion, self.state[PUSH], float)
+        """Force of the first drive, which pushes."""
+        return self.drives[self.motion.machine.drive.link]
 
     @cached_property
     def frame_force(self) -> Array:
         """Sum of the forces of all joints on the frame, N, complex."""
-        total = sum(self.state[f"F({body})"] for body in (FRAME, *self.drives))
+        grounded = self.motion.linkage.grounded
+        total = sum(self.state[f"F({body})"] for body in (FRAME, *grounded))
         return full(self.motion, -total, complex)
 
     def frame_moment(self, about: complex) -> Array:
         """Moment of all joints and of the drives on the frame about a point, N m."""
         anchors, total = self.motion.linkage.anchors, np.zeros(())
-        for body in (FRAME, *self.drives):
+        for body in (FRAME, *self.motion.linkage.grounded):
             force, moment = (self.state[name] for name in demand_names(body))
             arm = self.state[f"p({anchors[body]})"] - about
             total = total - moment - kernels.cross(arm, force)
@@ -257,24 +264,35 @@ def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None =
     demands : link -> force and moment about its anchor, of shapes (..., N).
     like : a pass whose gears are in contact on the same flanks; without it the demands tell.
     """
-    if motion.machine.drive.pushes:
+    if motion.machine.pushers:
         return _pushed(motion, demands, like)
     return _passed(motion, demands, like)
 
 
 def _pushed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) -> Pass:
-    """The same where a force drives: as large as it takes for the link to need no torque."""
-    drive = f"M({motion.machine.drive.link})"
-    acting = ((body, at, way, 0.0) for body, at, way in pushes(motion))
-    units = demands_of(motion, acting)
-    still = dict.fromkeys(motion.machine.links, (0j, 0.0)) | units
-    force = -_passed(motion, demands, like).state[drive] / _passed(motion, still, like).state[drive]
+    """The same where forces drive: as large as it takes for their links to need no torque."""
+    pushers = motion.machine.pushers
+    torques = [TORQUE.format(one.link) for one in pushers]
+
+    def needed(by: Mapping[str, Demand]) -> Array:
+        """Torques (..., N, P) that the links need."""
+        state = _passed(motion, by, like).state
+        return np.stack([full(motion, state[name], float) for name in torques], -1)
+
+    acting = [((body, at, way, 0.0) for body, at, way in pushes(motion, one)) for one in pushers]
+    units = [demands_of(motion, one) for one in acting]
+    none = dict.fromkeys(motion.machine.links, (0j, 0.0))
+    levers = np.stack([needed(none | unit) for unit in units], -1)
+    forces = np.linalg.solve(levers, -needed(demands)[..., None])[..., 0]
     total = dict(demands)
-    for body, (unit, turning) in units.items():
-        own = demands.get(body, (0j, 0.0))
-        total[body] = own[0] + force * unit, own[1] + force * turning
+    for k, unit in enumerate(units):
+        for body, (push, turning) in unit.items():
+            own = total.get(body, (0j, 0.0))
+            total[body] = own[0] + forces[..., k] * push, own[1] + forces[..., k] * turning
     found = _passed(motion, total, like)
-    found.state.update({drive: 0.0 * force, PUSH: force})
+    for k, one in enumerate(pushers):
+        found.state[torques[k]] = 0.0 * forces[..., k]
+        found.state[PUSH.format(one.link)] = forces[..., k]
     return found
 
 

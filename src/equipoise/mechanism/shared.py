@@ -3,7 +3,8 @@
 Where joints hold links more often than they need be held, the free bodies have fewer equations than
 unknowns.  Of all joint forces that hold the machine in balance, those are taken whose squares sum
 up to the least, or, where the file gives joints a stiffness, that store the least energy in them.
-The same free bodies serve a linkage that goes on through change points.
+The same free bodies serve a linkage that goes on through change points.  Links that hang on those,
+and that statics decides, are left to their own steps, which hand on what their joints ask for.
 
 Drive torque, and force and moment on the frame as a whole, follow from the demands alone.
 """
@@ -12,31 +13,31 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import degrees
 from typing import Any
 
 import numpy as np
 
 from equipoise.errors import MobilityError, ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note
 from equipoise.mechanism import kernels
 from equipoise.mechanism.builder import Builder, Group
 from equipoise.mechanism.checks import numbered, unknown
 from equipoise.mechanism.joints import Structure, name_in_outputs, no_motion
 from equipoise.mechanism.loop_forces import LoopForces
 from equipoise.mechanism.loopgroup import Maker
-from equipoise.mechanism.loops import CouplingLoop, Loop, Poses, SlideLoop
+from equipoise.mechanism.loops import Poses, SlideLoop
+from equipoise.mechanism.misfits import AGREES, Fit
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.newton import LoopGroup, poses_in
 from equipoise.mechanism.parts import OF_JOINT
 from equipoise.mechanism.steps import Array, State, planar
 
-AGREES = 1e-9
-"""Misfit, in sizes of the machine, that rounding of lengths explains."""
 OPEN = 1e-9
 """Share of a joint in forces that hold each other, up to which it has none."""
 ROUNDING = 1e-11
 """Share of a singular value in the largest that rounding explains."""
+CLEAR = 1e-8
+"""The same of rows that clearly do not depend on each other."""
 WEAK = 1e-6
 """Smallest over largest stiffness against motion, up to which joints do not hold the machine."""
 BESIDE = 1e-3
@@ -45,18 +46,19 @@ BESIDE = 1e-3
 
 @dataclass(frozen=True)
 class Shared(LoopForces):
-    """The free bodies of all links, whose joints share what statics leaves open.
+    """The free bodies of links whose joints share what statics leaves open.
 
-    group : all links and joints.  pivot : the drive's.
+    group : these links and their joints.  pivot : the drive's.
     count : says that the joints hold too much; empty where they do not.
     compliance : of each joint, m/N, by name of its force; empty where none is given.
-    groups : how the motion is solved.
+    fit : what has to fit.  decided : groups whose forces are found before, by their own steps.
     """
 
     pivot: str
     count: Note | str
     compliance: Mapping[str, float]
-    groups: tuple[Group, ...]
+    fit: Fit
+    decided: tuple[Group, ...]
 
     def run(self, state: State) -> None:
         drive = self.group.links[0]
@@ -70,14 +72,14 @@ class Shared(LoopForces):
         turns_evenly = np.ndim(state[f"w({drive})"]) == 0  # else it may stand still, doing no work
         torque = by_work if turns_evenly else state["drive torque"]
         state[f"F({drive})"], state[f"M({drive})"] = state[self.reactions[0].force], torque
-        state[f"F({FRAME})"] = force - state[f"F({drive})"]
-        state[f"M({FRAME})"] = moment - torque
+        state[f"F({FRAME})"] = state[f"F({FRAME})"] + force - state[f"F({drive})"]
+        state[f"M({FRAME})"] = state[f"M({FRAME})"] + moment - torque
         poses = self.poses(state)
         for loop, reaction in zip(self.loops, self.reactions, strict=True):
             state.setdefault(f"p({reaction.at})", loop.place(poses))
 
     def demanded(self, state: State) -> tuple[Any, Any]:
-        """Force and moment about the pivot that all links together need."""
+        """Force and moment about the pivot that these links together need."""
         force, moment, pivot = 0j, 0.0, state[f"p({self.pivot})"]
         for link, anchor in zip(self.group.links, self.group.anchors, strict=True):
             force = force + state[f"F({link})"]
@@ -91,11 +93,14 @@ class Shared(LoopForces):
 
     def solve(self, state: State, poses: Poses, senses: Sequence[Any]) -> list[list[Array]]:
         matrix, rows, units = self.balance(state, poses, senses)
-        inverse, loose = _parts(matrix)
+        demand = self.demand(state) / rows
+        right = np.moveaxis(demand.reshape(-1, *demand.shape[-2:]), 0, -1)
         if self.compliance:
-            inverse = self.by_stiffness(inverse, loose)
-        right = (self.demand(state) / rows)[..., None]
-        found = np.moveaxis((inverse @ right)[..., 0] * units, -1, 0)
+            told = self.by_stiffness(*_parts(matrix)) @ right
+        else:
+            told = _least(matrix, right)
+        found = np.moveaxis(told, (-1, 1), (1, 0)).reshape(len(units), *demand.shape[:-1])
+        found = found * units.reshape(-1, *np.ones(demand.ndim - 1, int))
         state["drive torque"], strengths = found[-1], iter(found)
         return [[next(strengths) for _ in range(loop.unknowns)] for loop in self.loops]
 
@@ -120,6 +125,28 @@ class Shared(LoopForces):
         torque = np.zeros((*matrix.shape[:2], 1))
         torque[:, 2] = 1.0
         return np.concatenate([matrix, torque], axis=-1) / rows[:, None] * units, rows, units
+
+    def check(self, state: State) -> None:
+        """Raise an error where a joint that is not needed for the motion does not fit, or where
+        stiffness leaves forces open.
+        """
+        if not self.count:
+            return
+        if told := self.fit.misfit(state, self.poses(state)):
+            raise MobilityError(Note("{count}: {told}", count=self.count, told=told))
+        if self.compliance:
+            self.check_stiffness(state)
+
+    def check_stiffness(self, state: State) -> None:
+        """Raise a `ModelError` where the stiffness of joints leaves forces open."""
+        _, loose = _parts(self.unsensed(state))
+        _, energy = self.energy(loose)
+        if np.any(np.linalg.eigvalsh(energy)[..., 0] < AGREES * max(self.compliance.values())):
+            raise ModelError(
+                "joints",
+                "the stiffness given does not decide the forces that statics leaves open; give "
+                "that of further joints, or of none",
+            )
 
     def by_stiffness(self, inverse: Array, loose: Array) -> Array:
         """Of solutions that differ by `loose` forces (N, m, k), the one of least energy."""
@@ -169,90 +196,19 @@ class Shared(LoopForces):
         ]
         return frozenset(force for force, some in owners if any(some))
 
-    # -- whether lengths agree ---------------------------------------------------------------------
 
-    def check(self, state: State) -> None:
-        """Raise an error where a joint that is not needed for the motion does not fit, or where
-        stiffness leaves forces open.
-        """
-        if not self.count:
-            return
-        self.check_fit(state)
-        if self.compliance:
-            self.check_stiffness(state)
-
-    def check_fit(self, state: State) -> None:
-        theta, poses = state["theta"], self.poses(state)
-        gaps = [self.gap(loop, poses) for loop in self.loops]
-        misfits = np.array([np.broadcast_to(gap, np.shape(theta)) for gap in gaps])
-        worst, at = np.unravel_index(np.argmax(misfits), misfits.shape)
-        if misfits[worst, at] <= AGREES * self.group.size:
-            return
-        told = self.too_short(state) or Note(
-            "{name!r} of {link!r} is {misfit:.4g} mm beside where it should be at crank angle "
-            "{angle:.4g} deg; give lengths that agree, or leave it out",
-            name=self.loops[worst].name,
-            link=self.loops[worst].on.body,
-            misfit=misfits[worst, at] * 1e3,
-            angle=degrees(theta[at]),
-        )
-        raise MobilityError(Note("{count}: {told}", count=self.count, told=told))
-
-    def check_stiffness(self, state: State) -> None:
-        """Raise a `ModelError` where the stiffness of joints leaves forces open."""
-        _, loose = _parts(self.unsensed(state))
-        _, energy = self.energy(loose)
-        if np.any(np.linalg.eigvalsh(energy)[..., 0] < AGREES * max(self.compliance.values())):
-            raise ModelError(
-                "joints",
-                "the stiffness given does not decide the forces that statics leaves open; give "
-                "that of further joints, or of none",
-            )
-
-    def gap(self, loop: Loop, poses: Poses) -> Any:
-        """By how much a joint does not fit, m."""
-        if isinstance(loop, CouplingLoop):
-            return 0.0
-        first, second = loop.gaps(poses, 0)
-        if isinstance(loop, SlideLoop):
-            first = first * self.group.size
-        return np.hypot(first, second)
-
-    def too_short(self, state: State) -> Note | str:
-        """Say of the link that two pins hold which distance of them is needed."""
-        found = []
-        for group in self.groups:
-            if group.kind != "pointed":
-                continue
-            call: Any = group.motion[-1]
-            first, second = call.inputs[0], call.inputs[3]
-            needed = np.abs(state[second] - state[first]) + 0 * state["theta"]
-            off = np.abs(needed - abs(call.parameters[0]))
-            at = int(np.argmax(off))
-            found.append((off[at], at, group.links[0], first[2:-1], second[2:-1], needed, call))
-        if (
-            not found
-            or (worst := max(found, key=lambda one: one[0]))[0] <= AGREES * self.group.size
-        ):
-            return ""
-        off, at, link, first, second, needed, call = worst
-        low, high = float(np.min(needed)), float(np.max(needed))
-        same = high - low <= AGREES * self.group.size
-        template = FIXED if same else MOVING
-        return Note(template, link=link, first=first, second=second,
-                    misfit=off * 1e3, angle=degrees(state["theta"][at]), low=low * 1e3,
-                    high=high * 1e3, given=abs(call.parameters[0]) * 1e3)  # fmt: skip
-
-
-FIXED = to_say(
-    "{second} of {link!r} comes {misfit:.4g} mm beside its pin, at crank angle {angle:.4g} deg; "
-    "its points {first} and {second} are {given:.7g} mm apart, and {low:.7g} mm would fit"
-)
-MOVING = to_say(
-    "{second} of {link!r} comes {misfit:.4g} mm beside its pin, at crank angle {angle:.4g} deg; "
-    "its points {first} and {second} are {given:.7g} mm apart, and the others bring the pins "
-    "{low:.7g} to {high:.7g} mm apart as the crank turns"
-)
+def _least(matrix: Array, right: Array) -> Array:
+    """Least solutions (N, m, k) of equations (N, n, m) with right sides (N, n, k): by QR, and by
+    singular values where rows nearly depend on each other.
+    """
+    across, triangle = np.linalg.qr(np.swapaxes(matrix, -1, -2))
+    sizes = np.abs(np.diagonal(triangle, axis1=-2, axis2=-1))
+    clear = np.min(sizes, axis=-1) > CLEAR * np.max(sizes, axis=-1)
+    triangle[~clear] = np.eye(triangle.shape[-1])
+    found = across @ np.linalg.solve(np.swapaxes(triangle, -1, -2), right)
+    if not np.all(clear):
+        found[~clear] = _parts(matrix[~clear])[0] @ right[~clear]
+    return np.asarray(found)
 
 
 def _parts(matrix: Array) -> tuple[Array, Array]:
@@ -287,18 +243,37 @@ def shared(
     if builder.machine.drives:
         told = Note("parallel linkages go on through their change points with one drive only")
         raise ModelError("drives", told)
-    links = tuple(body for body in builder.rank if body != FRAME)
+    decided = _decided(builder, joints, groups)
+    apart = {link for group in decided for link in group.links}
+    links = tuple(body for body in builder.rank if body not in (FRAME, *apart))
     maker = Maker(builder, joints, links)
     maker.anchors = {link: builder.anchors[link] for link in links}
-    loops = [*maker.pinned_and_sliding(), *map(maker.coupling, joints.couplings)]
+    loops = [loop for loop in maker.pinned_and_sliding()
+             if apart.isdisjoint((loop.on.body, loop.by.body))]  # fmt: skip
+    loops += [maker.coupling(one) for one in joints.couplings if one.driven in links]
     loops.sort(key=lambda loop: (loop.name, loop.on.body) != (pivot, links[0]))
     anchors = tuple(maker.anchors.values())
     size = _largest_distance(builder.machine)
     whole = LoopGroup(links, anchors, ((FRAME, pivot),), (), tuple(loops), (), size)
     reactions = tuple(map(maker.reaction, loops))
-    named = {OF_JOINT + name_in_outputs(joints, one): one.force for one in reactions}
+    every = (*reactions, *(one for group in decided for one in group.reactions))
+    named = {OF_JOINT + name_in_outputs(joints, one): one.force for one in every}
     compliance = dict(_compliances(builder.machine, named))
-    return Shared(whole, tuple(loops), reactions, pivot, count, compliance, groups)
+    starts = {one.name: one.start for one in joints.couplings}
+    fit = Fit(whole.equations, groups, size, starts)
+    return Shared(whole, whole.equations, reactions, pivot, count, compliance, fit, decided)
+
+
+def _decided(builder: Builder, joints: Structure, groups: tuple[Group, ...]) -> tuple[Group, ...]:
+    """Groups on which none of the others hangs, and which no joint more holds than they need."""
+    left, found = set(builder.rank), []
+    for group in reversed(groups):
+        others = left.difference(group.links)
+        own = group.kind != "pointed" and not group.through
+        if own and joints.freedom(group.links, others) == 0:
+            found.append(group)
+            left = others
+    return tuple(found)
 
 
 def _compliances(machine: Machine, named: Mapping[str, str]) -> Iterator[tuple[str, float]]:

@@ -47,6 +47,8 @@ class Shares:
     def of_machine(self) -> dict[str, Array]:
         """All but the forces in joints and couplings, by name."""
         known = {one.name: getattr(self, one.name) for one in fields(Shares)}
+        if self.across is not None:
+            known |= {name: getattr(self.across, name).value for name in OF_FRAME}
         return {name: value for name, value in known.items() if isinstance(value, np.ndarray)}
 
 
@@ -74,14 +76,14 @@ class Split(Shares):
             found[f"joints.{name}"] = joint.value
             if isinstance(joint, SliderForce):
                 found[f"joints.{name}.moment"] = joint.moment
-        found |= {f"drives.{name}.torque": torque for name, torque in self.drives.items()}
+        for name, effort in self.drives.items():
+            found |= {f"drives.{name}.{what}": effort for what in ("torque", "force")}
         found |= {f"gears.{name}": mesh.value for name, mesh in self.gears.items()}
         found |= {f"racks.{name}": mesh.value for name, mesh in self.racks.items()}
         for name, belt in self.belts.items():
             found |= {f"belts.{name}.{k}": getattr(belt, k) for k in ("pull", "left", "right")}
         found |= {f"cams.{name}": pressed.value for name, pressed in self.cams.items()}
         if self.across is not None:
-            found |= {name: getattr(self.across, name).value for name in OF_FRAME}
             found |= {f"bearings.{name}": one.value for name, one in self.across.bearings.items()}
         if output not in found:
             raise UsageError(unknown(output, found, "output"))

@@ -10,7 +10,7 @@ from equipoise.keys import wrong_values
 from equipoise.mechanism.belts import wrong_belt
 from equipoise.mechanism.cams import wrong_cam
 from equipoise.mechanism.checks import Bodies, numbered, too_many, unknown_link, wrong_text
-from equipoise.mechanism.drives import wrong_drive, wrong_further, wrong_together
+from equipoise.mechanism.drive_checks import wrong_drive, wrong_further, wrong_together
 from equipoise.mechanism.field import wrong_planting
 from equipoise.mechanism.force_elements import wrong_load
 from equipoise.mechanism.gears import wrong_gear
@@ -31,7 +31,6 @@ LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
     "belts": wrong_belt,
     "racks": wrong_rack,
     "cams": wrong_cam,
-    "drives": wrong_further,
     "loads": wrong_load,
     "springs": wrong_ends,
     "joints": wrong_joint,
@@ -54,9 +53,12 @@ def problems_of(machine: Any) -> Iterator[ModelError]:
     for name, wrong in LISTS.items():
         for where, item in numbered(name, getattr(machine, name)):
             yield from wrong(where, item, bodies)
+    sliders = [one.name for one in machine.sliders]
+    for where, item in numbered("drives", machine.drives):
+        yield from wrong_further(where, item, bodies, sliders)
     yield from wrong_position(machine.position, bodies)
     yield from wrong_planting(machine.planting, bodies)
-    yield from wrong_drive(machine.drive, bodies, [one.name for one in machine.sliders])
+    yield from wrong_drive(machine.drive, bodies, sliders)
     yield from wrong_planes(machine)
     yield from wrong_support(machine.support, machine.rows)
     if machine.balance is not None:
@@ -67,7 +69,7 @@ def _too_much(machine: Any) -> Iterator[ModelError]:
     points = [(body, point) for body, points in machine.bodies.items() for point in points]
     yield from too_many("links", machine.links, MOST["links"])
     yield from too_many("points", points, MOST["points"])
-    for what in LISTS:
+    for what in (*LISTS, "drives"):
         yield from too_many(what, getattr(machine, what), MOST[what])
     yield from wrong_text("title", machine.title)
     for body, names in machine.bodies.items():

@@ -24,6 +24,7 @@ from equipoise.planting.figures import tip_figures
 from equipoise.planting.ground import GroundPath, Loop
 from equipoise.planting.shaking import shaking
 from equipoise.planting.stroke import Visit, finger_base, tray_crossings, visits, wrapped
+from equipoise.planting.twins import nearly_alike
 from equipoise.results.result import Result
 from equipoise.signals import Array, Figures, figures
 
@@ -242,10 +243,8 @@ def _of_drive(curve: TipCurve) -> dict[str, float]:
 
 def _collisions(known: Mapping[str, float]) -> Iterator[Note]:
     """Links that go where they should not."""
-    for name, value in known.items():
-        body = name.rpartition(".")[0]
-        if not name.endswith(".value"):
-            continue
+    values = {name.removesuffix(".value"): known[name] for name in known if name.endswith(".value")}
+    for body, value in values.items():
         if body.startswith("clearance.soil.") and value < 0:
             link, depth = body.removeprefix("clearance.soil."), f"{-1e3 * value:.4g} mm"
             yield Note("{link} goes {depth} into the soil", link=link, depth=depth)
@@ -258,16 +257,16 @@ def _machine_notes(curve: TipCurve, known: Mapping[str, float]) -> Iterator[Note
     """What is of no arm alone."""
     if curve.forward[0, 0] == 0:
         yield Note(
-            "forward_speed is 0: there is no path over ground, and the figures of"
-            " that path are left out"
+            "forward_speed is 0: there is no path over ground, and the figures of that path are "
+            "left out"
         )
     if curve.planting.units_per_turn > 1:
         yield Note(
-            "units_per_turn is {units_per_turn}: soil loads, and clearances "
-            "without the tip, are those of the tips named, not of the other "
-            "units",
+            "units_per_turn is {units_per_turn}: soil loads, and clearances without the tip, are "
+            "those of the tips named, not of the other units",
             units_per_turn=curve.planting.units_per_turn,
         )
+    yield from nearly_alike(curve.machines[0])
     yield from _collisions(known)
 
 

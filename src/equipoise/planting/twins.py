@@ -8,14 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from math import degrees
 
 import numpy as np
 
+from equipoise.i18n import Note
 from equipoise.mechanism.family import Family
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.tip import planting_of, tip_link
 from equipoise.signals import Array
+
+ALIKE, NEARLY = 1e-5, 0.35
+"""Gears of arms that are this far, rad, from doing the same do it to the digits of a file, or are
+meant to."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +64,22 @@ def kept_alike(machine: Machine, twins: Sequence[Twin]) -> Machine:
     return replace(machine, gears=tuple(gears))
 
 
+def nearly_alike(machine: Machine) -> Iterator[Note]:
+    """Gears of further arms that would be like those of the first at another start."""
+    for twin in twins_of(machine):
+        off = float(np.angle(np.exp(1j * twin.offset)))
+        if ALIKE < abs(off) < NEARLY:
+            gear, mate = machine.gears[twin.gear], machine.gears[twin.mate]
+            yield Note(
+                "{link} does not do what {mate} does: for that gears[{number}] would start at "
+                "{start:.7g} deg",
+                link=gear.driven,
+                mate=mate.driven,
+                number=twin.gear + 1,
+                start=degrees(gear.start - off),
+            )
+
+
 def _chain(machine: Machine, link: str) -> Iterator[int]:
     """Gears from that of an arm back to one that stands still."""
     for _ in machine.gears:
@@ -75,7 +97,7 @@ def _paired(
     arms that are not alike.
     """
     carrier = machine.links[machine.drive.link].points
-    if len(first) != len(other) or machine.drive.pushes:
+    if len(first) != len(other) or machine.pushers:
         return
     pivot = complex(*carrier[assemble(machine).pivot])
     for mate, number in zip(first, other, strict=True):

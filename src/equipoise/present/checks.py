@@ -84,6 +84,7 @@ def _uncarried(machine: Machine) -> Iterator[str]:
 HOW = {
     "loops": "by Newton's method on the loop equations",
     "pointed": "where its pins are brought",
+    "hung": "pushed",
 }
 """How a group of links is solved, where that is not its kind."""
 

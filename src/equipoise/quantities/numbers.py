@@ -272,6 +272,8 @@ def display(dimension: Dimension | None, values: Any = (), unit: str | None = No
     if chosen is not None:
         return in_unit(chosen)
     first = in_unit(unit or _SHOWN.get(dimension, SI[dimension]))
+    if isinstance(values, tuple) and not values:
+        return first
     import numpy as np  # here: who reads a quantity or asks for help does not wait for it
 
     sizes = np.abs(np.asarray(values, float))

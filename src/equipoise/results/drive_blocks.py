@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from equipoise.i18n import say
 from equipoise.mechanism.drives import Drive, FurtherDrive
+from equipoise.mechanism.laws import Law
 from equipoise.mechanism.spoken import joint_named
 from equipoise.quantities import PER_RPM, angle, display, number
 from equipoise.results.blocks import Column, Table, Value
@@ -28,13 +29,10 @@ def driven(machine: Machine, speed: float) -> str:
             drives=say(", ").join(map(drive_told, machine.driven)),
         )
     if law is not None:
-        low, high = law.extremes
-        unit = display(law.dimension, [low, high])
         return say(
             "{what} from {low} to {high} and back, {rate} cycles a minute",
             what=pushed_named(drive) if drive.pushes else drive.link,
-            low=unit.text(low),
-            high=unit.with_unit(unit.text(high)),
+            **told_between(law),
             rate=number(abs(speed) * 60 / law.period),
         )
     return say(
@@ -55,6 +53,9 @@ def drives_table(analysis: Analysis) -> Iterator[Table]:
 
 def drive_told(drive: Drive | FurtherDrive) -> str:
     """How a driven link goes with the crank angle."""
+    if drive.stroke is not None:
+        ends = told_between(drive.stroke)
+        return say("{what} goes from {low} to {high} and back", what=pushed_named(drive), **ends)
     if drive.motion is None:
         ratio = number(getattr(drive, "ratio", 1.0))
         return say("{link} turns {ratio} times as fast", link=drive.link, ratio=ratio)
@@ -64,7 +65,14 @@ def drive_told(drive: Drive | FurtherDrive) -> str:
     return say("{link} moves from {low} to {high} by a law", link=drive.link, low=low, high=high)
 
 
-def pushed_named(drive: Drive) -> str:
+def told_between(law: Law) -> dict[str, str]:
+    """The ends of a law's range, the unit behind the second."""
+    low, high = law.extremes
+    unit = display(law.dimension, [low, high])
+    return {"low": unit.text(low), "high": unit.with_unit(unit.text(high))}
+
+
+def pushed_named(drive: Drive | FurtherDrive) -> str:
     """What pushes, in words."""
     if drive.between is None:
         return joint_named(drive.slider)

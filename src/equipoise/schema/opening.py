@@ -7,6 +7,7 @@ import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -132,12 +133,18 @@ def examples(kind: FileKind | None = None) -> dict[str, str]:
 
     kind : ``linkage``, ``tool`` or ``study``, for those of one kind only.
     """
-    titles: dict[str, str] = {}
-    for name, file in bundled().items():
-        content = tomllib.loads(file.read_text(encoding="utf-8"))
-        if kind in {None, kind_of(content)}:
-            titles[name] = Wording().check(content["title"])
-    return titles
+    return {
+        name: Wording().check(title)
+        for name, (own, title) in _labelled().items()
+        if kind in {None, own}
+    }
+
+
+@cache
+def _labelled() -> dict[str, tuple[FileKind | None, Any]]:
+    """Kind of each bundled file and its title as written, read once: they are dozens."""
+    contents = {name: tomllib.loads(file.read_text("utf-8")) for name, file in bundled().items()}
+    return {name: (kind_of(content), content["title"]) for name, content in contents.items()}
 
 
 def document_of(kind: FileKind) -> type[Frozen]:

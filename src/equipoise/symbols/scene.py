@@ -80,6 +80,8 @@ class Field:
 
 GROWN = 2.0
 """How much larger than the linkage a picture may get that shows what its support is held by."""
+WAYS = np.exp(2j * np.pi * np.arange(64) / 64)
+"""In which it is looked for what lies farthest out: a circle's box comes out 0.1 % too small."""
 HANGING = 0.7
 """How far down a link hangs in the mean, over its length, that is held from above."""
 WIDE = 560
@@ -195,7 +197,7 @@ class Scene:
         for wheel in self.wheels:
             reach = wheel.radius * (1 + 1j)
             every += [self.places[wheel.center] + way for way in (reach, -reach)]
-        every += [corner for mark in self.marks for corner in self.spots(mark)]
+        every += [corner for mark in self.marks for corner in self.spots(mark, outermost=True)]
         for body in self.bodies:
             turned = np.exp(1j * self.angles[body.name])
             every += [self.places[body.points[0]] + arm * turned for arm in body.extent]
@@ -258,10 +260,15 @@ class Scene:
         marks = [corner[k] for mark in self.marks for corner in self.spots(mark)]
         return np.array([*(place[k] for place in self.places.values()), *wheels, *solids, *marks])
 
-    def spots(self, mark: Mark) -> Array:
-        """Where corners of a mark are, or of the box around a circle, (n, N) complex, m."""
+    def spots(self, mark: Mark, outermost: bool = False) -> Array:
+        """Where corners of a mark are, or of the box around a circle, (n, N) complex, m.
+
+        outermost : whether those farthest out are enough, as many as a picture tells apart.
+        """
         reach = mark.shape.radius * np.array([1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j])
         corners = mark.shape.places + (reach if mark.shape.radius else 0.0)
+        if outermost:
+            corners = corners[np.unique(np.argmax((corners * WAYS[:, None]).real, axis=1))]
         turned = np.exp(1j * self.angles.get(mark.body, 0 * self.crank_angle))
         return np.asarray(self.places[mark.point] + corners[:, None] * turned)
 

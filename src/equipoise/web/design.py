@@ -75,6 +75,11 @@ class Design:
                 machine = machine.with_link(name, **values)
         return machine
 
+    def forget(self) -> None:
+        """Let go of what is kept with the machine, as there are many designs in a history."""
+        self.machine.forget()
+        self.own.forget()
+
     def weight_on(self, link: str) -> Counterweight:
         """The counterweight on a link; at first without mass, but where it would do some good."""
         return self.counterweights.get(link) or _opposite(self.own, link)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,7 @@ def stage_of(scene: Scene, handles: Sequence[str]) -> Values:
     """
     low, high = scene.box
     drawn = pieces(scene)
+    shapes = iter(shapes_of([shape for piece in drawn for shape in piece.shapes]))
     roles = sorted({shape.role for piece in drawn for shape in piece.shapes})
     return {
         "frame": list(scene.frame),
@@ -42,7 +44,10 @@ def stage_of(scene: Scene, handles: Sequence[str]) -> Values:
         "mass_centers": list(scene.mass_centers),
         "box": [low.real, low.imag, high.real, high.imag],
         "movable": list(handles),
-        "signs": [_sign(scene, piece) for piece in drawn],
+        "signs": [
+            {**_sign(scene, piece), "shapes": [next(shapes) for _ in piece.shapes]}
+            for piece in drawn
+        ],
         "looks": {role: LOOKS[role].css(UNIT) for role in roles},
         "reference": _reference(scene),
     }
@@ -54,14 +59,12 @@ def _sign(scene: Scene, piece: Piece) -> Values:
         hold["length"] = float(np.max(piece.shapes[0].places.real))
     if hold is not None and "mount" in hold:
         hold |= _strut(scene, hold["mount"])
-    shapes = [shape_of(shape) for shape in piece.shapes]
     return {
         "layer": piece.layer,
         "link": piece.link,
         "hold": hold,
         "part": piece.part,
         "still": piece.still,
-        "shapes": shapes,
     }
 
 
@@ -81,15 +84,20 @@ def _reference(scene: Scene) -> list[float] | None:
     return [scene.carrier.reference.real, scene.carrier.reference.imag]
 
 
-def shape_of(shape: Shape) -> list[Any]:
-    """A shape as a page is told it, see `stage_of`."""
-    offsets = UNIT * shape.offsets
+def shapes_of(shapes: Sequence[Shape]) -> list[list[Any]]:
+    """Shapes as a page is told them, see `stage_of`."""
+    if not shapes:
+        return []
+    places = np.concatenate([shape.places for shape in shapes])
+    offsets = UNIT * np.concatenate([shape.offsets for shape in shapes])
     corners = np.column_stack([
-        shape.places.real.round(7), shape.places.imag.round(7),
-        offsets.real.round(2), offsets.imag.round(2),
-    ])  # fmt: skip
-    sizes = shape.radius, round(UNIT * shape.grown, 2)
-    return [shape.role, shape.closed, *sizes, corners.ravel().tolist()]
+        places.real.round(7), places.imag.round(7), offsets.real.round(2), offsets.imag.round(2)
+    ]).ravel().tolist()  # fmt: skip
+    ends = 4 * np.cumsum([0, *(len(shape.places) for shape in shapes)])
+    return [
+        [shape.role, shape.closed, shape.radius, round(UNIT * shape.grown, 2), corners[low:high]]
+        for shape, (low, high) in zip(shapes, pairwise(ends), strict=True)
+    ]
 
 
 def moves_of(scene: Scene, block: Block) -> None:

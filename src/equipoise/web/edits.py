@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from equipoise.errors import EquipoiseError, MotionError, UsageError
+from equipoise.errors import EquipoiseError, MobilityError, ModelError, MotionError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.checks import ALTERNATIVES, unknown
 from equipoise.mechanism.linkage import assemble
@@ -24,6 +24,7 @@ from equipoise.results.analysis import LEAST_ANGLES, Analysis, analyze
 from equipoise.symbols.scene import Scene
 from equipoise.web.design import DRAGGED, Design
 from equipoise.web.fields import fields_of
+from equipoise.web.following import Goals, extent_of, following
 from equipoise.web.measures import held
 from equipoise.web.messages import Change, Drag, Setting
 
@@ -33,9 +34,6 @@ OTHER_SIDE = {one: other for pair in ALTERNATIVES for one, other in (pair, pair[
 THERE = 1e-5
 """Of the size of the machine: how near a dragged point has to come to where it was put."""
 
-Goals = dict[str, tuple[int, complex]]
-"""Points that are dragged: the sample at which each is to be at a place, m."""
-
 
 @dataclass(frozen=True, eq=False)
 class Solved:
@@ -43,12 +41,14 @@ class Solved:
 
     stand : crank angle at which it was drawn, rad; None where it has not just been made.
     swings : that its crank cannot turn, and how far it is let swing; None where it can.
+    along : which points went along with what was changed, so that joints agree, if any did.
     """
 
     design: Design
     analysis: Analysis
     stand: float | None = None
     swings: Note | None = None
+    along: Note | None = None
 
     @property
     def motion(self) -> Motion:
@@ -114,7 +114,17 @@ def edited(base: Solved, changes: Iterable[Change], near: Solved | None = None) 
         else:
             design, place = _moved(base, design, change)
             goals[change.name] = (change.at, place)
-    return _assembled(design, goals, near or base, base.swings is not None)
+    stuck = base.swings is not None
+    try:
+        return _assembled(design, goals, near or base, stuck)
+    except (MobilityError, ModelError):
+        found = None
+        if base.motion.linkage.shared is not None:
+            found = following(base.motion, design.own, goals)
+        if found is None:
+            raise
+        fitting = solved(design.with_machine(found.machine), near or base, stuck)
+        return replace(fitting, along=found.note)
 
 
 def _set(design: Design, change: Setting) -> Design:
@@ -229,6 +239,8 @@ def _assembled(design: Design, goals: Goals, near: Solved, stuck: bool) -> Solve
 def _turned_over(design: Design, goals: Goals, stuck: bool) -> Solved | None:
     """The design with one dyad on its other side, if the points then come where they were put."""
     for joint, side in design.own.assembly.items() if goals else ():
+        if not _moves(design.own, joint, goals):
+            continue
         assembly = {**design.own.assembly, joint: OTHER_SIDE[side]}
         try:
             other = design.with_machine(replace(design.own, assembly=assembly))
@@ -240,6 +252,18 @@ def _turned_over(design: Design, goals: Goals, stuck: bool) -> Solved | None:
     return None
 
 
+def _moves(machine: Machine, joint: str, points: Iterable[str]) -> bool:
+    """Whether the side of a dyad decides where any of these points is."""
+    try:
+        groups = [*assemble(machine).groups]
+    except EquipoiseError:
+        return True
+    while groups and groups[0].joint != joint:
+        del groups[0]
+    links = [machine.links[link] for group in groups for link in group.links]
+    return any(point in link.points for link in links for point in points)
+
+
 def _reaches(found: Solved, goals: Goals) -> bool:
     points = found.motion.points
     return all(
@@ -247,10 +271,3 @@ def _reaches(found: Solved, goals: Goals) -> bool:
         and abs(points[name].place[at] - to) <= THERE * extent_of(found.design.own)
         for name, (at, to) in goals.items()
     )
-
-
-def extent_of(machine: Machine) -> float:
-    """Size of the machine as a whole, m."""
-    bodies = (machine.frame, *(link.points for link in machine.links.values()))
-    places = [abs(complex(*place)) for points in bodies for place in points.values()]
-    return max(places) or 1.0

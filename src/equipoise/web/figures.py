@@ -18,7 +18,7 @@ from equipoise.mechanism.outputs import DECLARED, Declared
 from equipoise.quantities import Display, change, display, number, typeset
 from equipoise.quantities.numbers import SAME
 from equipoise.results.analysis import Analysis
-from equipoise.web.edits import extent_of
+from equipoise.web.following import extent_of
 
 Array = np.ndarray[Any, Any]
 Signals = dict[str, Array]

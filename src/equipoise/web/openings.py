@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from functools import cache
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
@@ -15,13 +14,11 @@ from equipoise.web.design import Design
 TOOLS = "this is the file of a hand-held tool; give that of a linkage, or `equipoise serve` it"
 
 
-@cache
 def titles() -> dict[str, str]:
     """Titles of the bundled machines by name."""
     return examples("linkage")
 
 
-@cache
 def tool_titles() -> dict[str, str]:
     """Titles of the bundled tools by name."""
     return examples("tool")

@@ -272,7 +272,9 @@ class Session:
     def _go(self, history: History, found: Solved | Drawn | None = None) -> None:
         """Show where a history has come to; nothing has changed where that cannot be computed."""
         found = found or computed(history.now.design)
-        self.seen.last = self.found if isinstance(self.found, Solved) else None
+        self.seen.last = last = self.found if isinstance(self.found, Solved) else None
+        if last is not None and last.design is not found.design:
+            last.design.forget()
         self.found = found
         self.history, self.preview = history, None
         if self.before is not None and self.before.design is history.now.design:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from math import isfinite
 from typing import Any
 
@@ -41,10 +40,12 @@ def can_be_shaken(machine: Machine) -> bool:
     return machine.support is not None and not massless(machine)
 
 
-@lru_cache(16)
 def responded(shown: Solved) -> Response:
-    """The response of a design at its own speed, with the errors of `respond`."""
-    return respond(shown.analysis.machine)
+    """The response of a design at its own speed, with the errors of `respond`; kept with it."""
+    found: Response | None = shown.__dict__.get("_response")
+    if found is None:
+        found = shown.__dict__["_response"] = respond(shown.analysis.machine)
+    return found
 
 
 def response_of(shown: Solved) -> tuple[Values, bytes] | None:
@@ -241,10 +242,12 @@ def _plants(found: Solved) -> bool:
     return machine.planting is not None and machine.drive.speed != 0
 
 
-@lru_cache(8)
-def planted(found: Solved) -> PlantingFigures:
-    """What a design plants, with the errors of `plant`."""
-    return plant(found.analysis.machine)
+def planted(shown: Solved) -> PlantingFigures:
+    """What a design plants, with the errors of `plant`; kept with it."""
+    found: PlantingFigures | None = shown.__dict__.get("_planted")
+    if found is None:
+        found = shown.__dict__["_planted"] = plant(shown.analysis.machine)
+    return found
 
 
 def _planted(found: Solved) -> _Figures:

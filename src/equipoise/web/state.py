@@ -19,8 +19,9 @@ from equipoise.signals import Periodic
 from equipoise.web.arrows import arrows_of, points_of
 from equipoise.web.block import Array, Block, Values
 from equipoise.web.drawing import ground_of, moves_of, stage_of
-from equipoise.web.edits import Solved, extent_of, movable
+from equipoise.web.edits import Solved, movable
 from equipoise.web.figures import charts_of, figures_of, least_of, signals_of
+from equipoise.web.following import extent_of
 from equipoise.web.measured import measured_told
 from equipoise.web.recorded import Record
 
@@ -78,7 +79,7 @@ def state_of(
         "least": least_of(signals),
         "orders": _orders(analysis),
         "notes": [
-            *([said(found.swings)] if found.swings else []),
+            *(said(note) for note in (found.along, found.swings) if note),
             *([massless(machine)] if analysis.solved is None else []),
         ],
         "before": before is not None,

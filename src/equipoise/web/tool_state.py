@@ -23,7 +23,7 @@ from equipoise.quantities import Dimension, display, told
 from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.tool import ToolScene
 from equipoise.web.block import Array, Block, Values
-from equipoise.web.drawing import UNIT, shape_of
+from equipoise.web.drawing import UNIT, shapes_of
 from equipoise.web.figures import chart, compared
 
 MODES, SPEEDS, POINTS = 6, 81, 61
@@ -125,7 +125,7 @@ def _scene(scene: ToolScene) -> Values:
                 "layer": layer,
                 "place": seat.place,
                 "turns": turns,
-                "shapes": [shape_of(one) for one in shapes],
+                "shapes": shapes_of(shapes),
             }
             for layer, seat, turns, shapes in found
         ],

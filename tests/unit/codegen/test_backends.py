@@ -96,16 +96,26 @@ def test_angles_and_rotations_without_calls() -> None:
     known = backends.compiled_functions()
     angle_of, rotation = known["angle_of"], known["rotation"]
 
+    picked, floored, chosen = (known[name] for name in ("picked", "floored", "chosen"))
+    table = np.arange(7.0) ** 2
+
     @numba.njit
-    def both(u: Array, angles: Array, turned: Array) -> None:
+    def both(u: Array, angles: Array, turned: Array, parts: Array) -> None:
         for k in range(len(u)):
             turned[k] = rotation(angles[k])
+            parts[k] = picked(table, chosen(angles[k] >= 5.0, floored(angles[k]), angles[k]))
             angles[k] = angle_of(u[k])
 
     rng = np.random.default_rng(1)
     near, any_angle = rng.uniform(-2 * pi / 3, 2 * pi / 3, 5000), rng.uniform(-100, 100, 5000)
     angles, turned = any_angle.copy(), np.empty(5000, complex)
-    both(np.exp(1j * near), angles, turned)
+    any_angle[:4], parts = (np.nan, np.inf, -np.inf, 6.999), np.empty(5000)
+    angles = any_angle.copy()
+    both(np.exp(1j * near), angles, turned, parts)
+    with np.errstate(invalid="ignore"):
+        told = backends.NUMPY_FUNCTIONS["picked"](table, any_angle)
+    assert np.array_equal(parts, told)
+    any_angle, turned = any_angle[4:], turned[4:]
     assert np.max(np.abs(angles - near)) < 2e-15
     assert np.max(np.abs(turned - np.exp(1j * any_angle))) < 3e-14  # of the angle's own digits
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import equipoise as eq
-from equipoise.exchange.formats import FORMATS
+from equipoise.exchange.formats import CAM, FORMATS, RACK, VARYING
 
 PAGE = Path(__file__).parents[3] / "docs" / "exchange.md"
 BEGIN, END = "<!-- formats -->\n", "<!-- /formats -->"
@@ -20,12 +20,19 @@ OWN = [one for one in FORMATS.values() if not one.of_store]
 def table() -> str:
     """Every format, a row each."""
     rows = [
-        "| ending | `--format` | program | what the file holds | needs |",
-        "|---|---|---|---|---|",
+        "| ending | `--format` | program | what the file holds | has no | needs |",
+        "|---|---|---|---|---|---|",
     ]
     for one in FORMATS.values():
         needs = "the extra `exchange`" if one.needs else "the extra `studies`" * one.of_store
-        cells = (f"`{one.ending}`", f"`{one.name}`", one.title, one.holds, needs)
+        cells = (
+            f"`{one.ending}`",
+            f"`{one.name}`",
+            one.title,
+            one.holds,
+            ", ".join(one.lacks),
+            needs,
+        )
         rows.append(f"| {' | '.join(cells)} |")
     return "\n".join(rows) + "\n"
 
@@ -50,6 +57,22 @@ def test_a_library_that_is_not_installed(
 @pytest.mark.parametrize("name", [one.name for one in OWN])
 def test_each_has_its_module(name: str) -> None:
     assert callable(import_module(f"equipoise.exchange.{name}").made)
+
+
+@pytest.mark.parametrize("name", [one.name for one in OWN if one.lacks])
+def test_joints_that_a_format_lacks(name: str, tmp_path: Path) -> None:
+    for joint, where, example in (
+        (CAM, "cams[1]", "cam-pusher"),
+        (RACK, "racks[1]", "knife-drive"),
+        (VARYING, "gears[1].shape", "elliptic-quick-return"),
+    ):
+        if joint not in FORMATS[name].lacks:
+            assert (name, joint) == ("fmu", RACK)
+            continue
+        with pytest.raises(eq.EquipoiseError) as caught:
+            eq.export(eq.load(example), tmp_path / "x", name)
+        said = f"{where}: a file of {FORMATS[name].title} has no {joint}; give another format"
+        assert str(caught.value) == said
 
 
 def test_what_is_no_format(tmp_path: Path) -> None:

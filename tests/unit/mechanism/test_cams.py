@@ -268,8 +268,3 @@ def test_a_groove_has_a_second_flank() -> None:
     assemble(tappet(ribs))
     with pytest.raises(ModelError, match=r"undercut at cam angle 150 deg.*radius of 17.57 mm"):
         assemble(tappet(replace(ribs, closed_by="groove")))
-
-
-def test_a_format_without_cams_says_so(tmp_path: Any) -> None:
-    with pytest.raises(eq.EquipoiseError, match=r"cams\[1\]: a file of MuJoCo .* has no cam"):
-        eq.export(tappet(), tmp_path / "tappet.xml")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from math import hypot
 from typing import Any
@@ -14,8 +15,8 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.exchange.export import made
 from equipoise.exchange.formats import FORMATS
 from equipoise.figures import render
-from equipoise.mechanism.drives import Drive
-from equipoise.mechanism.laws import LengthLaw
+from equipoise.mechanism.drives import Drive, FurtherDrive
+from equipoise.mechanism.laws import AngleLaw, LengthLaw
 from equipoise.mechanism.parameters import parameter_values, regressor
 from equipoise.present.findings import Findings
 from equipoise.present.pictures import each
@@ -65,6 +66,51 @@ def test_the_regressor_and_the_parts_add_up_to_the_force() -> None:
     columns = regressor(found.motion).drive_force
     np.testing.assert_allclose(parameter_values(boom()) @ columns, whole, rtol=1e-12)
     np.testing.assert_allclose(sum(found.forces.split.by_cause("drive_force").values()), whole)
+
+
+def arm(
+    start: float = -1.2, between: tuple[float, float] = (0.9, 1.0), **changes: Any
+) -> eq.Machine:
+    """The boom with a stick that hangs on it, pushed by a cylinder from the boom."""
+    stick = heavy(C=ORIGIN, F=(-0.3, 0.2), T=(1.0, 0.0))
+    given: dict[str, Any] = {"between": ("E", "F"), "stroke": LengthLaw(between=between, phase=1.0)}
+    own = boom()
+    body = own.links["boom"]
+    links = {"boom": body.altered(points={**body.points, "E": (1.0, 0.3)}), "stick": stick}
+    further = FurtherDrive("stick", start=start, **given | changes)
+    return replace(own, links=links, drives=(further,))
+
+
+def test_several_cylinders_have_a_force_each() -> None:
+    """Whose parts add up, and whose powers are all that is fed in."""
+    found = eq.analyze(arm(), 24)
+    forces, outputs = found.forces, found.outputs
+    columns, values = regressor(found.motion), parameter_values(found.machine)
+    for link in ("boom", "stick"):
+        name = f"drives.{link}.force"
+        assert outputs[name].values is forces.drives[link]
+        np.testing.assert_allclose(values @ columns.drives[link], forces.drives[link], rtol=1e-9)
+        np.testing.assert_allclose(sum(forces.split.by_cause(name).values()), forces.drives[link])
+    power = sum(outputs[f"drives.{link}.power"].values for link in ("boom", "stick"))
+    np.testing.assert_allclose(power, forces.power, rtol=1e-12)
+    assert eq.loads(eq.dumps(found.machine)) == found.machine
+
+
+@pytest.mark.parametrize(
+    ("told", "changes"),
+    [
+        ("drives: no angles were found at which strokes can begin: with 'boom' at", {"start": 2.5}),
+        ("drives: the strokes lead 'boom' and 'stick' to where", {"between": (0.9, 1.5)}),
+        ("drives[1]: give either stroke, or ratio", {"ratio": 2.0}),
+        ("drives[1].between: is given, but no stroke; say how long it is in [drives.stroke]",
+         {"stroke": None}),
+        ("drives[1].motion: a stroke moves the link already; leave it out",
+         {"motion": AngleLaw(between=(0.0, 1.0))}),
+    ],
+)  # fmt: skip
+def test_strokes_beside_each_other_that_cannot_be_had(told: str, changes: dict[str, Any]) -> None:
+    with pytest.raises(ModelError, match=re.escape(told)):
+        eq.move(arm(**changes), 4)
 
 
 def test_the_other_side_of_the_dead_point() -> None:

@@ -31,8 +31,12 @@ REFUSED = [
         "the driven gear would have 1.5 lobes...", {**ELLIPSE, "teeth": (20, 30)},
     ),
     (
-        "", "the ratio is 0.666667; gears with a shape mesh from outside...",
-        {**ELLIPSE, "teeth": (20, 30), "mesh": "internal"},
+        "", "the ratio would go from 0.3333 to 1; of a ring...",
+        {"kind": "ratio", "cosines": (0.5,), "lobes": 2, "teeth": (20, 30), "mesh": "internal"},
+    ),
+    (
+        "", "the gear would cut its ring where they do not mesh, by 0.37...",
+        {"kind": "elliptic", "eccentricity": 0.7, "teeth": (20, 40), "mesh": "internal"},
     ),
     ("", "the teeth would push at 91.8...", {"kind": "elliptic", "eccentricity": 0.95}),
     (

@@ -31,7 +31,7 @@ def only_loops() -> Iterator[None]:
     """Let Newton's method solve every group."""
     with pytest.MonkeyPatch.context() as patch:
         for solver in ("_dyad", "_coupled"):
-            patch.setattr(f"equipoise.mechanism.linkage.{solver}", lambda *_: None)
+            patch.setattr(f"equipoise.mechanism.ordering.{solver}", lambda *_: None)
         yield
 
 

@@ -90,6 +90,8 @@ def test_unknown_masses() -> None:
         ("scotch-yoke", ["shaking_force"], 3),
         ("geared-counterweight", ["shaking_force"], 6),
         ("watt-six-bar", ["shaking_force"], 6),
+        ("twin-engine", ["rocking_moment"], 6),
+        ("twin-engine", ["shaking_force", "rocking_moment"], 12),
     ],
 )
 def test_counts(name: str, outputs: list[str], count: int) -> None:
@@ -204,6 +206,10 @@ def test_combinations_can_be_read() -> None:
     assert lines[0] == "+1 crank.moment_x +0.025 rod.mass +0.025 piston.mass"
     assert lines[1] == "+1 crank.moment_y"
     assert lines[-1] == "+1 piston.moment_y"
+    twin = eq.mechanism.base_parameters(eq.load("twin-engine"), ["rocking_moment"])
+    assert str(twin).splitlines()[2] == "+1 rod-1.product_zx +0.09 piston-1.moment_z"
+    assert twin.values is not None
+    assert twin.values[2] == pytest.approx(-0.04 * (0.13 * 0.028 + 0.09 * 0.14))
 
 
 def test_unknown_outputs() -> None:

@@ -135,6 +135,85 @@ def test_two_guides_need_two_names() -> None:
     assert "two joints would be called 'block on frame'" in told(same)
 
 
+def planets(last: int = 40, start: float = 0.0, count: int = 3) -> eq.Machine:
+    """An arm that turns planets in a ring, which turn a sun; the last pair may not fit."""
+    ways = [2 * np.pi * k / count for k in range(count)]
+    places = {f"P{k}": (float(np.cos(w)), float(np.sin(w))) for k, w in enumerate(ways)}
+    links = {"arm": heavy(A=ORIGIN, **places), "sun": heavy(A=ORIGIN, S=(0.4, 0.0))}
+    gears = []
+    for k in range(count):
+        links[f"planet{k}"] = heavy(**{f"P{k}": ORIGIN})
+        gears += [eq.Gear(FRAME, f"planet{k}", teeth=(80, 20), mesh="internal", carrier="arm"),
+                  eq.Gear(f"planet{k}", "sun", teeth=(20, 40), carrier="arm")]  # fmt: skip
+    gears[-1] = replace(gears[-1], teeth=(20, last), start=start)
+    return machine({"A": ORIGIN}, links, drive=eq.Drive("arm", 10.0), gears=tuple(gears))
+
+
+def test_several_planets_turn_one_sun() -> None:
+    """Willis: the sun of a fixed ring turns 1 + z_ring / z_sun times as fast as the arm."""
+    found = eq.analyze(planets())
+    np.testing.assert_allclose(found.motion.links["sun"].angle_1, 3.0, rtol=1e-14)
+
+
+def test_planets_alike_push_alike() -> None:
+    """By least squares each bears a third of what turns the sun, here by inertia alone."""
+    given = planets()
+    still = {name: replace(link, center_of_mass=ORIGIN) for name, link in given.links.items()}
+    forces = eq.analyze(replace(given, links=still, gravity=ORIGIN)).forces.at(acceleration=50.0)
+    inertia = still["sun"].inertia
+    assert inertia is not None
+    for k in range(3):
+        push = forces.gears[f"planet{k} to sun"].tangential
+        np.testing.assert_allclose(push, inertia * 3 * 50.0 / (3 * 40 / 60), rtol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("last", "start", "words"),
+    [
+        (41, 0.0, "'planet2 to sun' turns 'sun' 17.56 deg beside where other joints turn it"),
+        (40, 0.1, "'planet2 to sun' starts 'sun' at 5.72958 deg, where other joints have it at 0"),
+    ],
+)
+def test_planets_that_do_not_agree(last: int, start: float, words: str) -> None:
+    assert words in told(planets(last, start))
+
+
+def yokes(lean: float = 0.0) -> eq.Machine:
+    """A block on a crank pin that runs in two yokes, of which both decide its angle."""
+    along, up = 0.0, np.pi / 2
+    return machine(
+        {"A": ORIGIN, "G": (1.0, 0.0), "H": (0.0, 1.0)},
+        {
+            "crank": heavy(A=ORIGIN, B=(CRANK, 0.0)),
+            "block": heavy(B=ORIGIN),
+            "across": heavy(X=ORIGIN, Y=(0.8, 0.0)),
+            "up": heavy(U=ORIGIN, V=(0.0, 0.8)),
+        },
+        sliders=(
+            Slider("across", "Y", FRAME, "G", along),
+            Slider("up", "V", FRAME, "H", up, -up),
+            Slider("block", "B", "across", "X", up, -up),
+            Slider("block", "B", "up", "U", along, lean),
+        ),
+    )
+
+
+def test_two_yokes_on_one_pin_show_sine_and_cosine() -> None:
+    motion = eq.move(yokes())
+    assert [group.kind for group in motion.linkage.groups] == ["dyad", "loops"]
+    theta = motion.crank_angle
+    np.testing.assert_allclose(motion.points["X"].x, CRANK * np.cos(theta), atol=1e-15)
+    np.testing.assert_allclose(motion.points["U"].y, CRANK * np.sin(theta), atol=1e-15)
+    assert "count 0: 4 moving links" in told(yokes(0.01))
+
+
+def test_what_hangs_on_shared_links_is_left_to_its_own_steps() -> None:
+    linkage = eq.move(with_rocker(cranks())).linkage
+    assert linkage.shared is not None
+    assert linkage.shared.group.links == ("crank0", "crank1", "body", "crank2")
+    assert [group.links for group in linkage.shared.decided] == [("rod", "rocker")]
+
+
 # -- change points ---------------------------------------------------------------------------------
 
 

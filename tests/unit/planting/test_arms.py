@@ -99,6 +99,23 @@ def test_soil_acts_on_every_tip() -> None:
     np.testing.assert_allclose(both - dry, one + np.roll(one, 180), atol=1e-12 * np.max(abs(both)))
 
 
+def test_an_arm_that_is_nearly_like_the_first_is_told_its_start() -> None:
+    rotary = eq.load("rotary-transplanter")
+    shapes = [replace(gear.shape, eccentricity=0.15) for gear in rotary.gears if gear.shape]
+    machine = replace(
+        rotary,
+        gears=tuple(replace(g, shape=s) for g, s in zip(rotary.gears, shapes, strict=True)),
+    )
+    (told,) = (str(note) for note in plant(machine).notes if "does not do" in str(note))
+    start = told.removeprefix(
+        "arm 2 does not do what arm 1 does: for that gears[4] would start at "
+    ).removesuffix(" deg")
+    gears = (*machine.gears[:3], replace(machine.gears[3], start=np.radians(float(start))))
+    alike = plant(replace(machine, gears=gears))
+    assert not any("does not do" in str(note) for note in alike.notes)
+    assert alike["arms.Q.curve.height"] == pytest.approx(alike["curve.height"], abs=1e-7)
+
+
 def test_the_deepest_tip_tells_where_the_surface_is() -> None:
     machine = two_arms()
     longer = machine.with_point("planet 2", "Q", (0.06, 0.0))

@@ -176,3 +176,39 @@ def test_newton_begins_where_the_machine_is() -> None:
     assert again == session.shown.design.machine
     places = eq.move(again, 720).points[point].place
     np.testing.assert_allclose(places, session.shown.motion.points[point].place, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("point", "wanted"),
+    [
+        ("F1", {"front": "F1", "rear": "R1"}),
+        ("R3", {"front": "F3", "rear": "R3"}),
+        ("D", {"frame": "D", **{f"walker-{k}": f"R{k}" for k in range(1, 5)}}),
+    ],
+)
+def test_what_joints_need_goes_along(point: str, wanted: dict[str, str]) -> None:
+    """Parallel cranks stay alike, and what they carry as long as they are apart."""
+    session, before = opened("straw-walker")
+    old, at = session.shown.design.own.bodies, 100
+    to = before.place(point)[at] + 0.013 + 0.007j
+    after = edit(session, move(point, to, at))
+    assert abs(after.place(point)[at] - to) < 2e-6
+    new = session.shown.design.own.bodies
+    changed = {(body, one) for body in new for one in new[body] if new[body][one] != old[body][one]}
+    assert changed == set(wanted.items())
+    (note,) = after.content["notes"]
+    assert note.endswith("went along, so that all joints still fit")
+    assert all(one == point or f"{one} of {body!r}" in note for body, one in wanted.items())
+    (undone,) = ask(session, "undo", seq=2)
+    assert undone.content["notes"] == []
+    assert session.shown.design.own.bodies == old
+
+
+def test_lengths_that_are_typed_take_along_what_joints_need() -> None:
+    session, _ = opened("straw-walker")
+    after = edit(session, {"set": "links.walker-2.lengths.F2-R2", "text": "1500 mm"})
+    assert after.field("links.walker-2.lengths.F2-R2")["value"] == pytest.approx(1.5)
+    assert after.content["notes"] == [
+        "D of the frame, R1 of 'walker-1', R3 of 'walker-3' and R4 of 'walker-4' went along, so "
+        "that all joints still fit"
+    ]

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import csv
+import gc
+import weakref
 from math import pi
 
 import pytest
 
 import equipoise as eq
 from equipoise.web.design import Design
+from equipoise.web.edits import Solved
 from equipoise.web.messages import message_of
 from equipoise.web.session import Session
 from unit.web.pages import ask, counterweight, edit, opened, refusal, state
@@ -48,12 +51,13 @@ def test_a_drag_is_one_step_from_where_it_began() -> None:
 
 
 def test_parallel_cranks_are_opened_and_edited() -> None:
-    """A throw of another length does not fit, and says so; a mass may be any."""
+    """Throws that cannot be alike, as two were typed, do not fit; a mass may be any."""
     session, _ = opened("straw-walker")
     after = edit(session, {"set": "links.walker-2.mass", "text": "20 kg"}, label="mass")
     assert after.content["status"]["finished"]
-    wrong = {"set": "links.rear.points.R3.x", "text": "-51 mm"}
-    replies = ask(session, "edit", seq=9, commit=True, label="throw", edits=[wrong])
+    typed = {"links.rear.points.R3.x": "-51 mm", "links.front.points.F3.x": "-52 mm"}
+    wrong = [{"set": path, "text": text} for path, text in typed.items()]
+    replies = ask(session, "edit", seq=9, commit=True, label="throw", edits=wrong)
     assert "R3 of 'walker-3' comes 1 mm beside its pin" in refusal(replies)
 
 
@@ -260,3 +264,17 @@ def test_a_file_with_a_byte_order_mark_is_opened() -> None:
     session = Session()
     text = "\ufeff" + eq.dumps(eq.load("yamashita-1"))
     assert state(ask(session, "open", name="m.toml", text=text)[0]).content["name"] == "m.toml"
+
+
+def test_steps_of_undo_keep_no_motion() -> None:
+    """Hundreds of designs would keep hundreds of motions, and the answers of large machines."""
+    session, _ = opened("yamashita-rig")
+    before = edit(session, MASS)
+    assert isinstance(session.found, Solved)
+    kept = [weakref.ref(one) for one in (session.found, session.found.motion.linkage)]
+    for mass in ("31 g", "32 g"):
+        edit(session, {"set": "links.crank.mass", "text": mass})
+    gc.collect()
+    assert [one() for one in kept] == [None, None]
+    ask(session, "undo")
+    assert state(ask(session, "undo")[0]).block.tobytes() == before.block.tobytes()
