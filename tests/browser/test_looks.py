@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable
+from itertools import product
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
-import pytest
 from PIL import Image
 from playwright.sync_api import Page, expect
 
@@ -35,13 +35,12 @@ def brightness(page: Page) -> float:
     return float(np.mean(Image.open(io.BytesIO(page.screenshot())).convert("L")))
 
 
-@pytest.mark.parametrize("width", WIDTHS)
-def test_the_page(new_page: Callable[..., Page], address: str, width: int) -> None:
-    live = Live.open(new_page(viewport={"width": width, "height": 900}), address)
+def test_the_page(live: Live) -> None:
     live.button("Balance").click()
     expect(live.button("Take back")).to_be_visible()
-    live.settled()
-    for scheme in SCHEMES:
+    for width, scheme in product(WIDTHS, SCHEMES):
+        live.page.set_viewport_size({"width": width, "height": 900})
+        live.settled()
         live.page.emulate_media(color_scheme=scheme)
         live.page.screenshot(path=SCREENSHOTS / f"page-{width}-{scheme}.png", full_page=True)
         assert live.page.evaluate(FITS)

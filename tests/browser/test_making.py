@@ -32,11 +32,18 @@ class Sheet:
         expect(self.live.page.locator(".making .status")).to_contain_text(text)
 
     @property
-    def crosshair(self) -> tuple[float, float, float, float]:
-        """Where the crosshair is, mm and pixels of the page."""
+    def told(self) -> tuple[float, float]:
+        """Where the crosshair is, mm."""
         cross = self.live.page.get_by_role("slider", name="Crosshair")
         told = (cross.get_attribute("aria-valuetext") or "").replace("−", "-")
         x, y = map(float, NUMBER.findall(told))
+        return x, y
+
+    @property
+    def crosshair(self) -> tuple[float, float, float, float]:
+        """The same, and the pixels of the page."""
+        x, y = self.told
+        cross = self.live.page.get_by_role("slider", name="Crosshair")
         px, py = map(float, NUMBER.findall(cross.get_attribute("transform") or ""))
         box = self.live.page.get_by_role("group", name="Linkage", exact=True).bounding_box()
         assert box is not None
@@ -63,13 +70,15 @@ class Sheet:
         """Bring the crosshair to a place (mm) by arrow keys, and press Enter there."""
         cross = self.live.page.get_by_role("slider", name="Crosshair")
         for axis, (more, less) in enumerate((("Right", "Left"), ("Up", "Down"))):
-            for _ in range(300):
-                now = self.crosshair[axis]
-                off = (x, y)[axis] - now
+            for size in ("Shift+", "", "Alt+", "Alt+"):
+                off = (x, y)[axis] - self.told[axis]
                 if abs(off) < 0.5:
                     break
-                size = "" if abs(off) >= 10 else "Alt+"
-                cross.press(f"{size}Arrow{more if off > 0 else less}")
+                key = f"{size}Arrow{more if off > 0 else less}"
+                cross.press(key)
+                left = (x, y)[axis] - self.told[axis]
+                for _ in range(int(left / (off - left))):
+                    cross.press(key)
         cross.press("Enter")
 
     def type(self, **texts: str) -> None:

@@ -276,7 +276,7 @@ class Memory:
         return [float(np.polyfit(range(len(late)), one, 1)[0] * len(late)) for one in late.T]
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", range(2 if MINUTES else 1))
 def test_a_monkey(new_page: Callable[..., Page], server: tuple[str, int], seed: int) -> None:
     page = new_page(accept_downloads=True)
     monkey = Monkey(Live(page), random.Random(seed))

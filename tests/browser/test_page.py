@@ -13,9 +13,15 @@ import equipoise as eq
 from browser.live import Live
 
 
-def test_the_linkage_moves_as_computed(new_page: Callable[..., Page], address: str) -> None:
-    live = Live.open(new_page(reduced_motion="no-preference"), address)
-    page, start = live.page, live.spot(live.joint("B"))
+def test_the_page_is_small_and_moves_as_computed(
+    new_page: Callable[..., Page], address: str
+) -> None:
+    page, sizes = new_page(reduced_motion="no-preference"), []
+    page.on("response", lambda answer: sizes.append(len(answer.body())))
+    live = Live.open(page, address)
+    assert len(sizes) == 3  # page, script, style
+    assert sum(sizes) < 400_000
+    start = live.spot(live.joint("B"))
     page.wait_for_function(
         "y => y !== document.querySelector('[data-name=B]').getBoundingClientRect().y",
         arg=start[1] - 0.5,
@@ -31,14 +37,6 @@ def test_the_linkage_moves_as_computed(new_page: Callable[..., Page], address: s
         for name in "BCP":
             seen = (shown[name] - shown["A"]).conjugate() / scale
             assert seen == pytest.approx(motion.points[name].place[sample], abs=1 / scale)
-
-
-def test_all_that_the_page_loads_is_small(new_page: Callable[..., Page], address: str) -> None:
-    page, sizes = new_page(), []
-    page.on("response", lambda answer: sizes.append(len(answer.body())))
-    Live.open(page, address)
-    assert len(sizes) == 3  # page, script, style
-    assert sum(sizes) < 400_000
 
 
 def test_balancing_and_taking_it_back(live: Live) -> None:
@@ -74,31 +72,33 @@ def test_name_title_and_drawing_are_of_one_machine(live: Live) -> None:
     assert [one[:2] for one in seen] == [[name, eq.load(name).title] for name in names]
 
 
-@pytest.mark.parametrize(
-    ("name", "path", "first"),
-    [
-        ("yamashita-rig", "Path of P", "Response of"),
-        ("transplanter", "P over ground", "Path of"),
-        ("stephenson-six-bar", "Path of E", "Any output over crank angle"),
-        ("slider-crank-engine", "Path of C", "Path of"),
-    ],
-)
-def test_what_a_machine_is_for_comes_first(live: Live, name: str, path: str, first: str) -> None:
+FOR = {
+    "yamashita-rig": ("Path of P", "Response of"),
+    "transplanter": ("P over ground", "Path of"),
+    "stephenson-six-bar": ("Path of E", "Any output over crank angle"),
+    "slider-crank-engine": ("Path of C", "Path of"),
+}
+"""Machines, the path that is drawn of each, and its first chart."""
+
+
+def test_what_a_machine_is_for_comes_first(live: Live) -> None:
     """The chart that tells it stands at the top, and of the paths none is the crank's circle."""
-    live.page.get_by_role("combobox", name="Example").select_option(name)
-    expect(live.page.get_by_role("heading", name=eq.load(name).title)).to_be_visible()
-    drawn = live.page.get_by_role("combobox", name="Path of")
-    expect(drawn.locator("option:checked")).to_have_text(path)
-    heading = live.page.get_by_role("combobox", name=first)
-    expect(heading).to_be_visible()
-    spectrum = live.page.get_by_role("combobox", name="Spectrum of").bounding_box()
-    top = heading.bounding_box()
-    assert top and spectrum and top["y"] < spectrum["y"]
-    others = live.page.locator(".charts .heading, .charts .finder").all()
-    boxes = [box for box in (one.bounding_box() for one in others) if box]
-    assert top["y"] <= min(box["y"] for box in boxes) + 1
-    shown = live.page.get_by_role("figure", name="Angle of output")
-    expect(shown).to_have_count(int(first == "Any output over crank angle"))
+    for name, (path, first) in FOR.items():
+        live.page.get_by_role("combobox", name="Example").select_option(name)
+        expect(live.page.get_by_role("heading", name=eq.load(name).title)).to_be_visible()
+        live.settled()
+        drawn = live.page.get_by_role("combobox", name="Path of")
+        expect(drawn.locator("option:checked")).to_have_text(path)
+        heading = live.page.get_by_role("combobox", name=first)
+        expect(heading).to_be_visible()
+        spectrum = live.page.get_by_role("combobox", name="Spectrum of").bounding_box()
+        top = heading.bounding_box()
+        assert top and spectrum and top["y"] < spectrum["y"], name
+        others = live.page.locator(".charts .heading, .charts .finder").all()
+        boxes = [box for box in (one.bounding_box() for one in others) if box]
+        assert top["y"] <= min(box["y"] for box in boxes) + 1, name
+        shown = live.page.get_by_role("figure", name="Angle of output")
+        expect(shown).to_have_count(int(first == "Any output over crank angle"))
 
 
 def test_pages_do_not_disturb_each_other(new_page: Callable[..., Page], address: str) -> None:

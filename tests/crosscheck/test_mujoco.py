@@ -124,7 +124,8 @@ def carried(subject: Subject) -> float:
     """Compare what each link gets; tell how far it is off."""
     apart = [same_totals(subject, mujoco_engine.totals)]
     machine, poses = subject.machine, subject.poses
-    asked = mujoco_engine.demands(machine, poses, machine.gravity).links
+    model = mujoco_engine.model_of(machine)
+    asked = mujoco_engine.demands(model, machine, poses, machine.gravity).links
     force, moment = force_size(machine, poses), moment_size(machine, poses)
     for link, got in acting_on_links(subject).items():
         want = asked.get(link, np.zeros_like(got))

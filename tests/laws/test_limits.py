@@ -134,6 +134,13 @@ def test_gas_force_on_the_crank() -> None:
     near(found.drive_torque, -gas * slope, 15.0)
     near(found.joints["piston on frame"].normal, -gas * sine / cosine, 500.0)
     near(found.frame_force.value, gas, 500.0)
+    near(found.split.frame_force.sum(axis=(0, 1)), gas, 500.0)
+    inner = forces(replace(slider_crank(rod, 0.0), loads=(replace(load, reaction="frame"),)))
+    near(inner.drive_torque, found.drive_torque, 15.0)
+    near(inner.joints["piston on frame"].value, found.joints["piston on frame"].value, 500.0)
+    near(inner.frame_force.value, 0.0, 500.0)
+    near(inner.split.frame_force.sum(axis=(0, 1)), 0.0, 500.0)
+    near(inner.frame_moment, 0.0, 15.0)
 
 
 # -- sines and straight lines ----------------------------------------------------------------------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import chain, compress, repeat
 from typing import Any
 
 import numpy as np
@@ -77,10 +78,11 @@ def test_moment_on_the_frame_closes(name: str, about: Any) -> None:
 
 
 def load_resultant(found: eq.mechanism.Forces) -> tuple[Any, Any]:
-    """Force and moment about the pole of all loads."""
+    """Force and moment about the pole of all loads whose opposite the frame does not bear."""
     motion = found.motion
     total, turning = np.zeros(len(ANGLES), complex), np.zeros(len(ANGLES))
-    for _, point, force, torque in acting(found):
+    outer = chain((load.reaction is None for load in motion.machine.loads), repeat(True))
+    for _, point, force, torque in compress(acting(found), outer):
         arm = 0.0 if point is None else motion.points[point].place - found.about
         total, turning = total + force, turning + torque + along(1j * arm, force)
     return total, turning

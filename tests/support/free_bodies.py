@@ -428,6 +428,8 @@ def gathered(
         both[belt.name] = replace(pulled[-1], force=force)
     drives = {drive.link: unknowns[drive][:, 0] for drive in machine.driven}
     pulls = [pull_on_frame(*acting) for acting in springs_on_links(machine, poses)]
+    loads = zip(machine.loads, on_links(machine, poses), strict=False)  # the soil comes behind
+    pulls += [pull_on_frame(*acting) for load, acting in loads if load.reaction]
     pushing = [drive for drive in machine.driven if drive.stroke is not None]
     pulls += [reaction(cylinder(machine, one, poses), unknowns[one]) for one in pushing]
     torque = sum(drives[one.link] for one in machine.driven if one not in pushing)
@@ -447,7 +449,7 @@ def reaction(contact: Contact, unknowns: Array, more: Array | float = 0.0) -> Re
 
 
 def pull_on_frame(link: str, at: Array, force: Array, couple: Array) -> Reaction:
-    """Return what a spring does to the frame, of which every point of its line is as good."""
+    """Return what a spring or a load does to the frame, of whose line every point is as good."""
     return Reaction(FRAME, link, at, -force, -couple)
 
 

@@ -170,9 +170,9 @@ class Draft:
                 start, stop = map(float, rng.uniform(0, 6, 2))
             what = rng.integers(0, 3)
             if what == 0:
-                yield Load(
-                    name, point, force=_pair(rng.normal(size=2) * 100), start=start, stop=stop
-                )
+                force = _pair(rng.normal(size=2) * 100)
+                reaction: Literal["frame"] | None = "frame" if start is None else None
+                yield Load(name, point, force, start=start, stop=stop, reaction=reaction)
             elif what == 1:
                 yield Load(
                     name, torque=float(rng.normal()) * 100 * self.size, start=start, stop=stop

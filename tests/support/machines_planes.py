@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import chain
+from itertools import chain, repeat
 
 import numpy as np
 
@@ -97,8 +97,9 @@ def solve(machine: Machine, poses: Poses, flat: FreeBodies) -> Spatial:
         asked[name] = asked[name] - shaken - carried
     loads = zip(_of_loads(machine), on_links(machine, poses), strict=True)
     springs = zip(_of_springs(machine), springs_on_links(machine, poses), strict=True)
-    for acting, whole in ((loads, 1.0), (springs, 0.0)):
-        for plane, (body, _, force, _) in acting:
+    outer = chain((load.reaction is None for load in machine.loads), repeat(True))
+    for acting, wholes in ((loads, outer), (springs, repeat(False))):
+        for (plane, (body, _, force, _)), whole in zip(acting, wholes, strict=False):
             moment = about_axes(plane, force)
             asked[body] = asked[body] - moment
             on_frame = on_frame + whole * moment

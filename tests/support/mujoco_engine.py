@@ -50,21 +50,19 @@ class Totals:
 
 def totals(machine: Machine, poses: Poses) -> Totals:
     """Return what MuJoCo finds for shaking force, shaking moment and drive torque."""
-    bare = demands(machine, poses, (0.0, 0.0))
-    work = demands(machine, poses, machine.gravity, machine.springs).work
+    model = model_of(machine, machine.springs)
+    bare = demands(model if not machine.springs else model_of(machine), machine, poses, (0.0, 0.0))
+    work = demands(model, machine, poses, machine.gravity).work
     loads = work_per_crank_angle(machine.with_springs(()), poses)
     return Totals(-bare.base[:, :2], -bare.base[:, 2], work - loads, -bare.across)
 
 
-def demands(
-    machine: Machine, poses: Poses, gravity: Vector, springs: Sequence[Spring] = ()
-) -> Demands:
-    """Return what MuJoCo's inverse dynamics asks for at every crank angle beside some springs."""
+def model_of(machine: Machine, springs: Sequence[Spring] = ()) -> mujoco.MjModel:
+    """Return a machine with some springs as it is exported, in MuJoCo."""
     even = tuple(replace(gear, shape=None) for gear in machine.gears)  # the file has no other
     alone = replace(
-        machine, gravity=gravity, support=None, rows=(), balance=None, springs=tuple(springs),
-        gears=even,
-    )  # fmt: skip
+        machine, support=None, rows=(), balance=None, springs=tuple(springs), gears=even
+    )
     model = mujoco.MjModel.from_xml_string(made(Job(alone)))
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     for name, link in machine.links.items():  # what the file makes a little heavier than it is
@@ -72,20 +70,27 @@ def demands(
             continue
         model.body(name).mass[:] = max(link.mass or 0.0, LEAST)
         model.body(name).inertia[:] = max(link.inertia or 0.0, LEAST)
+    return model
+
+
+def demands(model: mujoco.MjModel, machine: Machine, poses: Poses, gravity: Vector) -> Demands:
+    """Return what MuJoCo's inverse dynamics asks for at every crank angle."""
+    model.opt.gravity[:2] = gravity
     data = mujoco.MjData(model)
     states = np.stack([coordinate(model, poses, joint) for joint in range(model.njnt)], -1)
-    links, work = {name: np.empty((len(states[0]), 5)) for name in machine.links}, []
-    for number, (data.qpos[:], data.qvel[:], data.qacc[:]) in enumerate(zip(*states, strict=True)):
+    told: list[list[Array]] = []
+    for data.qpos[:], data.qvel[:], data.qacc[:] in zip(*states, strict=True):
         mujoco.mj_inverse(model, data)
         mujoco.mj_rnePostConstraint(model, data)
-        work.append(data.qfrc_inverse @ data.qvel / machine.drive.speed)
-        for name, demand in links.items():
-            demand[number] = asked(model, data, name)
+        work = data.qfrc_inverse @ data.qvel / machine.drive.speed
+        told.append([data.cfrc_int.copy(), data.subtree_com.copy(), data.xpos.copy(), work])
+    *bodies, work = map(np.array, zip(*told, strict=True))
+    links = {name: asked(model, name, *bodies) for name in machine.links}
     arms = {name: poses.origin[name] - machine.frame[drive_pivot(machine)] for name in links}
     base = sum(one[:, :3] + about(cross(arms[name], one[:, :2])) for name, one in links.items())
     across = sum(one[:, 3:] for one in links.values())
     flat = {name: one[:, :3] for name, one in links.items()}
-    return Demands(np.asarray(base), np.asarray(across), flat, np.array(work))
+    return Demands(np.asarray(base), np.asarray(across), flat, work)
 
 
 def about(moment: Array) -> Array:
@@ -93,17 +98,21 @@ def about(moment: Array) -> Array:
     return np.stack([0.0 * moment, 0.0 * moment, moment], -1)
 
 
-def asked(model: mujoco.MjModel, data: mujoco.MjData, link: str) -> list[float]:
+def asked(
+    model: mujoco.MjModel, link: str, through_joints: Array, middles: Array, places: Array
+) -> Array:
     """Return force, moment about its origin, and moments about x and y in the plane 0, that move
-    one link.
+    one link, (N, 5).
 
-    MuJoCo tells what goes through each joint, about the centre of mass of the whole tree.
+    MuJoCo tells what goes through each joint (N, bodies, 6), about the centre of mass of the whole
+    tree.
     """
     body = model.body(link).id
-    through = data.cfrc_int[body] - data.cfrc_int[model.body_parentid == body].sum(0)
-    arm = data.subtree_com[model.body_rootid[body]] - data.xpos[body] * [1.0, 1.0, 0.0]
-    force, moment = through[3:], through[:3] + np.cross(arm, through[3:])
-    return [force[0], force[1], moment[2], moment[0], moment[1]]
+    through = through_joints[:, body] - through_joints[:, model.body_parentid == body].sum(1)
+    arm = middles[:, model.body_rootid[body]] - places[:, body] * [1.0, 1.0, 0.0]
+    force = through[:, 3:]
+    moment = through[:, :3] + np.cross(arm, force)
+    return np.column_stack([force[:, :2], moment[:, 2], moment[:, :2]])
 
 
 def coordinate(model: mujoco.MjModel, poses: Poses, number: int) -> Array:

@@ -102,7 +102,7 @@ def test_attributes_that_do_not_fit(change: Callable[[Any], Any], words: str) ->
 
 
 @given(st.data(), st.sampled_from(COMMANDS))
-@fuzz(60)
+@fuzz(20)
 def test_damage_at_random(made: Path, data: Any, words: tuple[str, ...]) -> None:
     shutil.rmtree(STORE, ignore_errors=True)
     shutil.copytree(made, STORE)

@@ -159,7 +159,7 @@ def mutated(draw: Draw) -> Document:
 
 
 @given(mutated(), commands)
-@fuzz(300)
+@fuzz(120)
 def test_mutated_documents(document: Document, words: tuple[str, ...]) -> None:
     try_bytes(tomli_w.dumps(document).encode(), words)
 
@@ -184,7 +184,7 @@ def garbled(draw: Draw, bundled: tuple[str, ...] = EXAMPLES) -> bytes:
 
 
 @given(garbled(), commands)
-@fuzz(150)
+@fuzz(60)
 def test_garbled_text(content: bytes, words: tuple[str, ...]) -> None:
     try_bytes(content, words)
 
@@ -330,7 +330,7 @@ def linkages(draw: Draw) -> Document:
 
 
 @given(linkages(), commands)
-@fuzz(500)
+@fuzz(200)
 def test_random_linkages(document: Document, words: tuple[str, ...]) -> None:
     try_bytes(tomli_w.dumps(document).encode(), words)
 
@@ -355,7 +355,7 @@ vectors = st.tuples(
 
 
 @given(vectors)
-@fuzz(300)
+@fuzz(120)
 def test_random_arguments(arguments: list[str]) -> None:
     checked(equipoise(*arguments))
 
@@ -382,7 +382,7 @@ EXTREME = {
     some_of(EXTREME),
     st.sampled_from(((), ("--json",), ("--json", "--split"))),
 )
-@fuzz(100)
+@fuzz(40)
 def test_extreme_arguments(name: str, words: list[str], output: tuple[str, ...]) -> None:
     checked(equipoise("analyze", name, *words, *output), bool(output))
 
@@ -435,7 +435,7 @@ def resized(value: Any, factors: dict[str, float]) -> Any:
     st.fixed_dictionaries({key: st.sampled_from(values) for key, values in FACTORS.items()}),
     commands,
 )
-@fuzz(100)
+@fuzz(40)
 def test_machines_of_every_size(
     name: str, factors: dict[str, float], words: tuple[str, ...]
 ) -> None:

@@ -37,7 +37,7 @@ from surface.running import (
 from surface.test_fuzz import NUMBERS, OF_UNIT, UNITS, WORDS, places
 
 SEARCH = int(os.environ.get("EQUIPOISE_FUZZ", "0"))
-FILES = SEARCH or 120
+FILES = SEARCH or 48
 PROCESS = Path("/proc/self")
 SECONDS, BYTES = 30, 2 * 2**30
 

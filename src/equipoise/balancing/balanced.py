@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.compared import WORSE, Pair, Worse, figures_of, merged, worse_of, worth
+from equipoise.balancing import compared
 from equipoise.balancing.design_variables import Bound
 from equipoise.balancing.effects import ANGLES
 from equipoise.balancing.geared import geared_range
@@ -106,29 +106,34 @@ class Balanced(Result):
     @property
     def added_mass(self) -> float:
         """kg."""
-        return self.after["mass"] - self.before["mass"]
+        return self.machine.mass - self.original.mass
 
     @cached_property
     def before(self) -> dict[str, float]:
         """Figures of the machine as it was, by name; SI units."""
-        return figures_of(self.original)
+        return self._shaking[0] | compared.planting_of(self.original)
 
     @cached_property
     def after(self) -> dict[str, float]:
         """The same of the balanced machine."""
-        return figures_of(self.machine)
+        return self._shaking[1] | compared.planting_of(self.machine)
 
     @cached_property
-    def aims(self) -> dict[Objective, Pair]:
+    def _shaking(self) -> tuple[dict[str, float], dict[str, float]]:
+        """Before and after without planting, which every remedy that is tried would compute."""
+        return compared.figures_of(self.original), compared.figures_of(self.machine)
+
+    @cached_property
+    def aims(self) -> dict[Objective, compared.Pair]:
         """What was made small, before and after; of an output at several speeds the loudest."""
-        return merged(self.plan, self.objectives)
+        return compared.merged(self.plan, self.objectives)
 
     @cached_property
-    def worse(self) -> tuple[Worse, ...]:
+    def worse(self) -> tuple[compared.Worse, ...]:
         """Every figure that got larger by more than 1 %, the important ones first."""
         each = {one: self.objectives[one.name] for one in self.plan.objectives}
         own = (one for one in each if one.speeds or one.about or one.orders)
-        return worse_of(self.before, self.after, {one: each[one] for one in own})
+        return compared.worse_of(*self._shaking, {one: each[one] for one in own})
 
     @property
     def gain(self) -> float:
@@ -141,9 +146,8 @@ class Balanced(Result):
     def helps(self) -> bool:
         """Whether it is worth a change; of what nobody asked for more is wanted."""
         if self.tried:
-            return worth(self.worse, self.gain)
-        pairs = self.objectives.values()
-        moved = (abs(after - before) > WORSE * before for before, after in pairs)
+            return compared.worth(self.worse, self.gain)
+        moved = (abs(b - a) > compared.WORSE * a for a, b in self.objectives.values())
         return bool(self.plan.limits) or any(moved)
 
     @property
@@ -204,7 +208,7 @@ class Balanced(Result):
         Shaking forces and moments grow with the square of the speed (Lee and Kim, conclusions).
         What is gone but for rounding has no such speed.
         """
-        old, new = self.before, self.after
+        old, new = self._shaking
         return {
             name: self.original.drive.speed * sqrt(old[name] / new[name])
             for name in old

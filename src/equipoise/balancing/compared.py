@@ -71,7 +71,7 @@ def worse_of(
     pairs = dict(aims)
     for name, old in before.items():
         output, _, measure = name.rpartition(".")
-        if output and not output.startswith("planting"):
+        if output:
             pairs[Objective(output, measure)] = (old, after.get(name, 0.0))  # type: ignore[arg-type]
     largest: dict[str, float] = {}
     usual: dict[str, float] = {}
@@ -150,7 +150,7 @@ def merged(plan: Balance, values: Mapping[str, Pair]) -> dict[Objective, Pair]:
 
 
 def figures_of(machine: Machine) -> dict[str, float]:
-    """Figures by name, such as ``shaking_force.rms``; SI units.
+    """Figures by name, such as ``shaking_force.rms``, but for those of planting; SI units.
 
     Moments are about the drive's pivot; areas are those under the absolute value over a turn, in J.
     """
@@ -159,7 +159,7 @@ def figures_of(machine: Machine) -> dict[str, float]:
     for one in Outputs(Analysis(motion, forces(motion))):
         for measure in one.declared.compared if one.declared.is_of_row else ():
             figures[f"{one.name}.{measure}"] = measured(one.component, measure)
-    return figures | _of_rows(machine) | _of_support(machine) | _of_planting(machine)
+    return figures | _of_rows(machine) | _of_support(machine)
 
 
 def _of_rows(machine: Machine) -> dict[str, float]:
@@ -187,8 +187,11 @@ def _of_support(machine: Machine) -> dict[str, float]:
     return figures
 
 
-def _of_planting(machine: Machine) -> dict[str, float]:
-    """Figures of the tip's path, which balancing must not change."""
+def planting_of(machine: Machine) -> dict[str, float]:
+    """Figures of the tip's path by name, such as ``planting.curve.height``; SI units.
+
+    Balancing must not change them, and they take far longer than all others.
+    """
     if machine.planting is None:
         return {}
     try:

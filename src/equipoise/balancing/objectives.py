@@ -212,9 +212,9 @@ def _moments(effects: Effects, linear: Linear) -> Array:
     if step == "linear":
         return np.zeros((1 + effects.count, len(effects.motion.crank_angle)))
     signal = effects.signal("drive_torque" if step == "torque" else "frame_moment")
-    both = np.vstack([signal.start, signal.columns])
     if step == "torque":
-        return -both
+        return -np.vstack([effects.start.outer.drive_torque, signal.columns])
+    both = np.vstack([signal.start, signal.columns])
     weight = effects.weight_moment(linear.excitation.pivot)
     means = np.mean(np.vstack([weight.start, weight.columns]), axis=1, keepdims=True)
     return np.asarray(both - means)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from itertools import chain
 
 from equipoise.codegen.source import Read, Sheet
 from equipoise.mechanism.linkage import Linkage
@@ -43,9 +44,14 @@ def write_across(
             sheet.call(kernel, arguments, (force, f"{force}, moment"))
             terms.append(sheet.name(force))
     sheet.put("rocking moment", _about(terms[0] for terms in needed.values()))
-    for force, load in zip(loads, machine.loads, strict=True):
-        needed[load.link].append(f"{_plane(sheet, load.link, load.point)} * {force}")
-    sheet.put("frame rocking moment", _about(term for terms in needed.values() for term in terms))
+    acting = [
+        (load, f"{_plane(sheet, load.link, load.point)} * {force}")
+        for force, load in zip(loads, machine.loads, strict=True)
+    ]
+    outer = (term for load, term in acting if load.reaction is None)
+    sheet.put("frame rocking moment", _about((*chain(*needed.values()), *outer)))
+    for load, term in acting:
+        needed[load.link].append(term)
     ends: list[tuple[str, str, str | None]]
     ends = [(link, link, point) for spring in machine.springs for link, point in spring.ends]
     strained = [belt for belt in machine.belts if belt.tension is not None]

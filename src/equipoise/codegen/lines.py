@@ -153,7 +153,9 @@ def write_demands(writer: Writer) -> None:
         held = [[force for _, force, _ in each] for each in (loads, springs)]
         write_across(writer.sheet, writer.linkage, writer.body, *held)
     _write_frame(writer, "shaking", moving)
-    _write_frame(writer, "frame", [*moving, *weights, *loads])
+    each = zip(machine.loads, loads, strict=True)
+    outer = [held for load, held in each if load.reaction is None]
+    _write_frame(writer, "frame", [*moving, *weights, *outer])
     for link in links:
         parts = [held for held in (*moving, *weights, *loads, *springs) if held[0] == link]
         force, moment = demand_names(link)

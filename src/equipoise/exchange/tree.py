@@ -204,8 +204,10 @@ def constant_loads(job: Job) -> Iterator[tuple[int, Load]]:
     for number, load in enumerate(job.machine.loads, 1):
         if load.jumps or load.table is not None:
             job.leave_out(f"load {number}, which is not the same all the time")
-        else:
-            yield number, load
+            continue
+        if load.reaction is not None and job.machine.support is not None:
+            job.leave_out(f"what load {number} exerts back on the frame")
+        yield number, load
 
 
 def _tree(machine: Machine, crank_angle: float, row: Row, suffix: str) -> Tree:

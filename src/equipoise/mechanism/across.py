@@ -7,9 +7,11 @@ are.  Everything here is linear in the demands, as the forces in the plane are.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
+
+import numpy as np
 
 from equipoise.mechanism import kernels
 from equipoise.mechanism.acting import acting_strands
@@ -33,6 +35,7 @@ class Across:
 
     inertia, weights, loads, springs : what each link needs, by what makes it.
     exerted : name -> force in each joint and mesh.
+    outer : those of the loads that come from outside.
     """
 
     motion: Motion
@@ -41,6 +44,7 @@ class Across:
     loads: Needed
     springs: Needed
     exerted: Mapping[str, JointForce]
+    outer: Needed = field(default_factory=dict)
 
     @cached_property
     def statics(self) -> Statics:
@@ -55,7 +59,7 @@ class Across:
     @cached_property
     def frame_rocking_moment(self) -> VectorSignal:
         """Moment of all joints and springs on the frame about x and y, in the plane 0, N m."""
-        return self._on_frame(self.inertia, self.weights, self.loads)
+        return self._on_frame(self.inertia, self.weights, self.outer)
 
     def _on_frame(self, *needed: Needed) -> VectorSignal:
         whole: Any = sum(value for one in needed for value in one.values())
@@ -136,3 +140,18 @@ def _held(pushes: Iterable[tuple[str, float, Any]]) -> dict[str, Any]:
     for link, plane, force in pushes:
         found[link] = found.get(link, 0.0) - plane * force
     return found
+
+
+def apart(whole: Across, exerted: Mapping[str, JointForce], shape: tuple[int, ...]) -> Across:
+    """What links do across the plane, by cause and link: arrays of a shape (5, L, N)."""
+
+    def by(cause: int, needed: Needed) -> Needed:
+        found = {}
+        for k, link in enumerate(whole.motion.machine.links):
+            found[link] = np.zeros(shape, complex)
+            found[link][cause, k] = needed.get(link, 0.0)
+        return found
+
+    parts = (whole.inertia, whole.weights, whole.loads, whole.springs, whole.outer)
+    inertia, weights, loads, springs, outer = map(by, (0, 2, 3, 4, 3), parts)
+    return Across(whole.motion, inertia, weights, loads, springs, exerted, outer)

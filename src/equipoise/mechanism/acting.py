@@ -66,14 +66,29 @@ def acting_strands(motion: Motion) -> Iterator[tuple[Belt, list[Acting]]]:
             yield belt, [(*end, 0.0) for end in ends if end[0] != FRAME]
 
 
+def inner_demands(motion: Motion) -> dict[str, Demand]:
+    """What holds those of the loads whose opposite the frame bears."""
+    return demands_of(motion, _acting(motion, "frame"))
+
+
 def acting_loads(motion: Motion) -> Iterator[Acting]:
     """Link, point, force and torque of each load."""
+    yield from _acting(motion, "frame")
+    yield from outer_loads(motion)
+
+
+def outer_loads(motion: Motion) -> Iterator[Acting]:
+    """The same of loads from outside, and of the soil."""
+    yield from _acting(motion, None)
     machine = motion.machine
-    for load in machine.loads:
-        yield load.link, load.point, *load_at(load, motion.crank_angle)
     if machine.planting is not None and machine.planting.soil is not None:
         for arm in machine.planting.every_arm:
             yield tip_link(machine, arm.tip), arm.tip, soil_force(motion, arm.tip), 0.0
+
+
+def _acting(motion: Motion, reaction: str | None) -> Iterator[Acting]:
+    for load in (one for one in motion.machine.loads if one.reaction == reaction):
+        yield load.link, load.point, *load_at(load, motion.crank_angle)
 
 
 def soil_force(motion: Motion, tip: str | None = None) -> Array:

@@ -9,7 +9,7 @@ stack of them.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import hypot
 from typing import Any
@@ -18,9 +18,8 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism import kernels
-from equipoise.mechanism.across import Across, masses_across, pushes_across, strands_across
-from equipoise.mechanism.acting import acting_loads, acting_springs, load_demands, spring_demands
+from equipoise.mechanism import acting, kernels
+from equipoise.mechanism.across import Across, apart, masses_across, pushes_across, strands_across
 from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
@@ -33,6 +32,7 @@ from equipoise.mechanism.reactions import (
     MeshForce,
     Pass,
     VectorSignal,
+    demands_of,
     full,
     pushed,
     reactions,
@@ -49,6 +49,7 @@ class Forces:
     about : point of the frame's plane (m, complex) about which moments are taken.
     inertia, weights, loads, springs : link -> its demand, by what makes it; loads and springs
         only where there are.
+    inner : those of the loads whose opposite the frame bears.
     """
 
     motion: Motion
@@ -57,6 +58,7 @@ class Forces:
     weights: Mapping[str, Demand]
     loads: Mapping[str, Demand]
     springs: Mapping[str, Demand] = field(default_factory=dict)
+    inner: Mapping[str, Demand] = field(default_factory=dict)
 
     @cached_property
     def shaking_force(self) -> VectorSignal:
@@ -98,15 +100,25 @@ class Forces:
 
     @property
     def frame_force(self) -> VectorSignal:
-        """Of all joints and springs, N: the sum of shaking force, weight and loads."""
-        of_springs = sum(force for force, _ in self.springs.values())
-        return VectorSignal(self.solved.frame_force + of_springs)
+        """Of all joints, springs and reactions of loads, N: the sum of shaking force, weight and
+        loads from outside.
+        """
+        parts = (*self.springs.values(), *self.inner.values())
+        return VectorSignal(self.solved.frame_force + sum(force for force, _ in parts))
 
     @property
     def frame_moment(self) -> Array:
-        """Moment of all joints, springs and of the drive on the frame about `about`, N m."""
-        of_springs = self._moment(self.springs, self.about)
-        return np.asarray(self.solved.frame_moment(self.about) + of_springs)
+        """Moment of all joints, springs, reactions of loads and of the drive on the frame about
+        `about`, N m.
+        """
+        parts = self._moment(self.springs, self.about) + self._moment(self.inner, self.about)
+        return np.asarray(self.solved.frame_moment(self.about) + parts)
+
+    @property
+    def outer(self) -> Forces:
+        """The same without what links and frame exert on each other: springs, and loads between."""
+        outside = demands_of(self.motion, acting.outer_loads(self.motion))
+        return replace(self, loads=outside, springs={}, inner={})
 
     @property
     def drive_torque(self) -> Array:
@@ -168,11 +180,12 @@ class Forces:
     def across(self) -> Across:
         """What links beside each other do across the plane."""
         motion = self.motion
-        loads = pushes_across(motion, acting_loads(motion))
-        springs = pushes_across(motion, acting_springs(motion))
+        loads = pushes_across(motion, acting.acting_loads(motion))
+        springs = pushes_across(motion, acting.acting_springs(motion))
         for link, held in strands_across(motion).items():
             springs[link] = springs.get(link, 0.0) + held
-        return Across(motion, *masses_across(motion), loads, springs, self.solved.exerted)
+        outer = pushes_across(motion, acting.outer_loads(motion))
+        return Across(motion, *masses_across(motion), loads, springs, self.solved.exerted, outer)
 
     @cached_property
     def split(self) -> Split:
@@ -221,7 +234,7 @@ def forces(motion: Motion, about: str | Vector | complex | None = None) -> Force
         mass, moment, turning = inertia_about(machine.links[link], motion.linkage.anchors[link])
         inertia[link] = demand_of_inertia(motion, link, speed2, mass, moment, turning)
         weights[link] = kernels.weight_demand(motion.state[f"u({link})"], mass, moment, gravity)
-    held = load_demands(motion), spring_demands(motion)
+    held = acting.load_demands(motion), acting.spring_demands(motion), acting.inner_demands(motion)
     return Forces(motion, pole, inertia, weights, *held)
 
 
@@ -281,11 +294,17 @@ def split(whole: Forces) -> Split:
     inertial = np.array([1, 1, 0, 0, 0])[:, None, None]
     # A spring's pull on the frame and what it makes the joints bear there cancel.
     on_frame = np.array([1, 1, 1, 1, 0])[:, None, None]
+    frame_force = np.broadcast_to(on_frame * solved.frame_force, shape).copy()
+    frame_moment = np.broadcast_to(on_frame * solved.frame_moment(whole.about), shape).copy()
+    for link, demand in whole.inner.items():
+        at = CAUSES.index("load"), links.index(link)
+        frame_force[at] += demand[0]
+        frame_moment[at] += whole._moment({link: demand}, whole.about)
     return Split(
         inertial * -sum(force for force, _ in demands.values()),
         inertial * -whole._moment(demands, whole.about),
-        np.broadcast_to(on_frame * solved.frame_force, shape),
-        np.broadcast_to(on_frame * solved.frame_moment(whole.about), shape),
+        frame_force,
+        frame_moment,
         solved.drive_torque,
         solved.drives,
         solved.joints,
@@ -293,26 +312,10 @@ def split(whole: Forces) -> Split:
         solved.racks,
         solved.belts(tension_told),
         solved.cams,
-        _across_apart(whole, solved, shape) if beside(motion.machine) else None,
+        apart(whole.across, solved.exerted, shape) if beside(motion.machine) else None,
         links,
         drive_force=pushed(solved),
     )
-
-
-def _across_apart(whole: Forces, solved: Pass, shape: tuple[int, ...]) -> Across:
-    """What links do across the plane, by cause and link."""
-    one = whole.across
-    parts = (one.inertia, one.weights, one.loads, one.springs)
-
-    def apart(cause: int, needed: Mapping[str, Any]) -> dict[str, Array]:
-        found = {}
-        for k, link in enumerate(whole.inertia):
-            found[link] = np.zeros(shape, complex)
-            found[link][cause, k] = needed.get(link, 0.0)
-        return found
-
-    inertia, weights, loads, springs = map(apart, (0, 2, 3, 4), parts)
-    return Across(whole.motion, inertia, weights, loads, springs, solved.exerted)
 
 
 def _causes(whole: Forces, link: str) -> list[Demand]:

@@ -73,13 +73,14 @@ class LoadTable(Frozen):
 
 @declared
 class Load(Frozen):
-    """A force at a point of a link, or a torque on a link, from outside the machine.
+    """A force at a point of a link, or a torque on a link: from outside the machine, or between the
+    link and the frame.
 
     Exactly one of force, torque and table.  Without `start` and `stop` it acts always.
     """
 
     called = to_say("{what} of load {number}")
-    file_order = ("link", "point", "force", "torque", "table", "outside", "from", "to")
+    file_order = ("link", "point", "force", "torque", "table", "outside", "from", "to", "reaction")
     conditions: ClassVar[Conditions] = {
         "oneOf": [{"required": [one]} for one in ("force", "torque", "table")],
         "dependentRequired": {
@@ -114,6 +115,13 @@ class Load(Frozen):
         "what acts between the last row of a table and its first one in the next turn, where the "
         "rows do not cover a whole turn: nothing, what the last row has, or a straight line "
         "between both",
+        default=None,
+    )
+    reaction: Literal["frame"] | None = key(
+        Text(("frame",)),
+        "what bears its opposite, in the same line: the frame, as of gas between a piston and the "
+        "cylinder's head, so that it does not shake the machine as a whole; nothing of the machine "
+        "where left out",
         default=None,
     )
 

@@ -116,6 +116,7 @@ def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
             if load.start is None:
                 ends = (table.crank_angle[0], table.crank_angle[-1])
                 beyond = "" if table.covers else load.outside or ""
+        what += ", borne by the frame" if load.reaction else ""
         shown = [Value(end, after=1) for end in ends if end is not None]
         where: tuple[Cell, ...] = (*shown, beyond) if shown else ("always", None, None)
         yield place, what, *where, Value(work.largest, dimension=kind), Value(work.net, work.both)

@@ -10,7 +10,7 @@ mass rides at the drive's pivot, in the third it is spread as it is in the mean 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, reduce
 from operator import add
 from typing import Literal
@@ -182,7 +182,7 @@ class Excitation:
     def _signals(self, motion: Motion) -> Array:
         """The same at the crank angles of a motion, (5, N)."""
         # Springs pull frame and links alike; left in, (57) would count their torque on the drive.
-        found = replace(forces(motion, self.pivot), springs={})
+        found = forces(motion, self.pivot).outer
         force = found.frame_force.value - found.weight.value
         rocking = np.zeros(len(force), complex)
         if self.step == "moment" and beside(self.machine):

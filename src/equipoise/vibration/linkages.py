@@ -24,13 +24,13 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import MassError
-from equipoise.mechanism.acting import load_demands, spring_demands
+from equipoise.mechanism.acting import inner_demands, load_demands, outer_loads, spring_demands
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.kernels import cross, dot
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.planes import beside, masses_of, moments_across
-from equipoise.mechanism.reactions import Demand, Pass, reactions
+from equipoise.mechanism.reactions import Demand, Pass, demands_of, reactions
 from equipoise.mechanism.steps import p, u
 from equipoise.mechanism.support import Row
 from equipoise.signals import Array
@@ -136,16 +136,17 @@ def _bodies(motion: Motion, shift: complex) -> Iterator[tuple[Any, ...]]:
 def _loads(motion: Motion, shift: complex) -> tuple[Array, Array, Array]:
     """Force and moment on the support, and torque on the crank, of loads from outside.
 
-    Springs between links and support turn the crank only: what they do to both cancels.
+    Springs and loads between links and support turn the crank only: what they do to both cancels.
     """
     about = np.zeros(len(motion.crank_angle))
     total = about + 0j
-    loads = load_demands(motion)
+    loads = demands_of(motion, outer_loads(motion))
     for link, (held, moment) in loads.items():
         anchor = motion.state[p(motion.linkage.anchors[link])[0]]
         total = total - held
         about = about - moment - cross(anchor + shift, held)
-    return total, about, -_power(motion, loads) - _power(motion, spring_demands(motion))
+    turning = [_power(motion, one) for one in (inner_demands(motion), spring_demands(motion))]
+    return total, about, -sum(turning, _power(motion, loads))
 
 
 def _power(motion: Motion, demands: Mapping[str, Demand]) -> Array:

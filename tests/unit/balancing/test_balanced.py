@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.balanced import Balanced, figures_of
-from equipoise.balancing.compared import worse_of
+from equipoise.balancing.balanced import Balanced
+from equipoise.balancing.compared import figures_of, worse_of
 from equipoise.mechanism.balance import AddedMass, Balance, Limit, Objective, Weight
 from equipoise.mechanism.outputs import DECLARED
 

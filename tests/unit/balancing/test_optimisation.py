@@ -108,10 +108,10 @@ def test_the_least_mass_of_a_moment(shape: str) -> None:
 
 def test_teeth_with_a_range_of_directions() -> None:
     weight = Weight("any", 0.05, at_most=0.4)
-    geared = GearedWeight("rocker", weight, teeth=(38, 40), module=0.0025, direction=(0.0, 1.0))
-    force = Objective("joints.O4", "peak")
+    geared = GearedWeight("rocker", weight, teeth=(39, 40), module=0.0025, direction=(0.0, 1.0))
+    force = Objective("joints.O4")
     found = eq.balance(eq.load("lee-kim-b"), Balance(geared=(geared,), objectives=(force,)))
-    assert found.changes[0].values["teeth"][0] in range(38, 41)
+    assert found.changes[0].values["teeth"][0] in range(39, 41)
     assert str(found.scope[-1]) == "for each of the gears tried"
     assert found.cost < 1
 

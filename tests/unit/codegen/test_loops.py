@@ -109,14 +109,15 @@ def test_a_study_tells_of_every_design_what_its_machine_does() -> None:
 
 
 @pytest.mark.parametrize("angle", [0.3, -2.0, 7.0])
-def test_the_march_begins_where_the_file_tells_the_pose(angle: float) -> None:
+def test_the_march_begins_where_the_file_tells_the_pose(angle: float, tmp_path: Path) -> None:
     points = places_of(eq.move(TRIAD, [angle]), "BCPQ")
     moved = replace(TRIAD, position=eq.mechanism.Position(angle, points))
     values = np.array([[0.105], [0.106]])
     paths = ["links.rod.points.C.x"]
-    (right, _), (found, reasons) = (
-        Batch(machine, paths, WANTED, ANGLES, threads=1)(values) for machine in (TRIAD, moved)
-    )
+    with by_numpy(tmp_path):
+        (right, _), (found, reasons) = (
+            Batch(machine, paths, WANTED, ANGLES, threads=1)(values) for machine in (TRIAD, moved)
+        )
     assert not reasons.any()
     np.testing.assert_allclose(found, right, rtol=1e-9, atol=1e-9)
 

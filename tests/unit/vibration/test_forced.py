@@ -250,6 +250,30 @@ def amplified(machine: eq.Machine, speed: float) -> float:
     return float(force / (2 * np.abs(np.fft.fft(shaking))[1] / 720 * 1.34 / 1.35))
 
 
+@pytest.mark.parametrize("model", ["linear", "torque", "moment", "coupled", "exact"])
+def test_what_the_frame_bears_itself_shakes_no_mount(model: Model) -> None:
+    """Nor do rocking moments where the support moves in the plane alone."""
+    machine = eq.load("yamashita-rig")
+    load = eq.Load(
+        "rocker", next(iter(machine.links["rocker"].points)), (30.0, -20.0), start=1.0, stop=3.0
+    )
+    bare, inner, outer = (
+        respond(replace(machine, loads=loads), None, model).gauges
+        for loads in ((), (replace(load, reaction="frame"),), (load,))
+    )
+    for name, gauge in bare.items():
+        want, size = gauge.displacement.sizes[1:6], gauge.displacement.sizes[1]
+        assert inner[name].displacement.sizes[1:6] == pytest.approx(want, abs=1e-7 * size)
+        assert outer[name].displacement.sizes[1] != pytest.approx(size, rel=1e-3)
+
+
+def test_rocking_moments_need_a_support_that_rolls() -> None:
+    apart = eq.load("yamashita-rig").with_link("rocker", plane=0.05)
+    assert (
+        "rocking moments do nothing: the support can neither roll nor yaw" in respond(apart).notes
+    )
+
+
 @pytest.mark.parametrize("rpm", [80, 95, 98, 118.5, 135, 139, 193])
 def test_a_speed_within_a_resonance_says_so(rpm: float) -> None:
     """As the report does: where the swing is more than three times that under a standing force."""
