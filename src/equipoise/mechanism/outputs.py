@@ -305,9 +305,12 @@ for of_teeth in (_coupled("gears"), _coupled("racks")):
     of_teeth(".tangential", "force", to_say("tangential tooth force {name}"), **PART_OF_TOOTH)
     of_teeth(".radial", "force", to_say("radial tooth force {name}"), **PART_OF_TOOTH)
 of_belt = _coupled("belts")
-of_belt(".pull", "force", to_say("effective pull {name}"), compared=FORCE)
-of_belt(".left", "force", to_say("tension of the left strand {name}"), compared=FORCE)
-of_belt(".right", "force", to_say("tension of the right strand {name}"), compared=FORCE)
+of_belt(".pull", "force", to_say("effective pull {name}"), compared=FORCE,
+        loop="{belt pull:name}")  # fmt: skip
+of_belt(".left", "force", to_say("tension of the left strand {name}"), compared=FORCE,
+        loop="{belt left:name}")  # fmt: skip
+of_belt(".right", "force", to_say("tension of the right strand {name}"), compared=FORCE,
+        loop="{belt right:name}")  # fmt: skip
 
 CAMMED: dict[str, Any] = {
     "members": lambda machine: [cam.name for cam in machine.cams],
