@@ -60,7 +60,7 @@ export class App {
     () => this.hello?.version ?? "",
     () => this.tour.begin(),
   );
-  private readonly picker = picker((file) => void this.read(file));
+  private readonly picker = picker((files) => void this.read(files));
   private readonly gallery = new Gallery({
     wanted: () => this.talk.ask({ type: "gallery" }),
     stores: () => this.talk.ask({ type: "stores" }),
@@ -256,7 +256,7 @@ export class App {
       ...this.views.roots,
     );
     this.root.append(
-      dropZone(this.root, (file) => void this.read(file)),
+      dropZone(this.root, (files) => void this.read(files)),
       this.help,
       this.gallery.root,
       this.picker,
@@ -475,13 +475,21 @@ export class App {
     void this.open({ type: "open", new: true }, say("a new machine"));
   }
 
-  private async read(file: File): Promise<void> {
-    if (this.bench.take(file)) return;
-    const problem = tooLarge(file, this.hello?.largest ?? Infinity);
-    if (problem) return this.board.say(problem, true);
+  /** Open a model with the tables that come with it, or take a record or what is traced over. */
+  private async read(given: File[]): Promise<void> {
+    const isTable = ({ name }: File) => /\.csv$/i.test(name);
+    const file = given.find((one) => !isTable(one)) ?? given[0];
+    if (!file || this.bench.take(file)) return;
+    const tables = given.filter((one) => one !== file && isTable(one));
+    for (const one of [file, ...tables]) {
+      const problem = tooLarge(one, this.hello?.largest ?? Infinity);
+      if (problem) return this.board.say(problem, true);
+    }
     const [{ name }, text] = [file, await file.text()];
-    if (/\.csv$/i.test(name)) this.command({ type: "record", name, text });
-    else void this.open({ type: "open", name, text }, name);
+    if (isTable(file)) return this.command({ type: "record", name, text });
+    const texts = tables.map(async (one) => [one.name, await one.text()] as const);
+    const files = Object.fromEntries(await Promise.all(texts));
+    void this.open({ type: "open", name, text, files }, name);
   }
 
   private command(asked: Asked): void {

@@ -4,11 +4,11 @@ import { h } from "./dom";
 import { say } from "./words";
 
 /** Let files be dropped on an element; returns the veil that is over it meanwhile. */
-export function dropZone(root: HTMLElement, dropped: (file: File) => void): HTMLElement {
+export function dropZone(root: HTMLElement, dropped: (files: File[]) => void): HTMLElement {
   const veil = h(
     "div",
     { class: "veil", hidden: true },
-    h("span", {}, say("Drop a model file (.toml), a record (.csv), or a picture or DXF drawing to trace over")),
+    h("span", {}, say("Drop a model file (.toml) with its tables (.csv), a record (.csv), or a picture or DXF drawing to trace over")),
   );
   for (const name of ["dragenter", "dragover", "dragleave", "drop"] as const) {
     root.addEventListener(name, (event) => {
@@ -16,26 +16,27 @@ export function dropZone(root: HTMLElement, dropped: (file: File) => void): HTML
       event.preventDefault();
       const leaves = name === "dragleave" && !root.contains(event.relatedTarget as Node | null);
       veil.hidden = name === "drop" || leaves;
-      const [file] = event.dataTransfer.files;
-      if (name === "drop" && file) dropped(file);
+      const { files } = event.dataTransfer;
+      if (name === "drop" && files.length) dropped([...files]);
     });
   }
   return veil;
 }
 
 /** Let a file be picked; gives the element that has to be on the page. */
-export function picker(picked: (file: File) => void): HTMLInputElement {
+export function picker(picked: (files: File[]) => void): HTMLInputElement {
   const input = h("input", {
     type: "file",
     hidden: true,
+    multiple: true,
     accept: ".toml,.csv",
     "aria-label": say("Model file"),
     tabindex: -1,
   });
   input.addEventListener("change", () => {
-    const [chosen] = input.files ?? [];
+    const chosen = [...(input.files ?? [])];
     input.value = "";
-    if (chosen) picked(chosen);
+    if (chosen.length) picked(chosen);
   });
   return input;
 }

@@ -31,6 +31,8 @@ const TOGETHER = 5;
 const APART = [34, 28, 22];
 /** Of a number below, pixels. */
 const WIDE = 36;
+/** Pixels. */
+const UNSEEN = 1e-3;
 /** Steps of the crank from mark to mark in the polar diagram, degrees. */
 const TWELFTH = 30;
 
@@ -99,8 +101,10 @@ export class Plane {
       set(this.arrow, {
         d: `M${ox.toFixed(1)} ${oy.toFixed(1)}L${px.toFixed(1)} ${py.toFixed(1)}`,
       });
-      const turn = Math.round(degrees(Math.atan2(y, x)));
-      write(this.reading, `${shown(Math.hypot(x, y) * factor, 3)} ${unit} ∠ ${plain(turn)}°`);
+      const [size, turn] = [Math.hypot(x, y), Math.round(degrees(Math.atan2(y, x)))];
+      // What nobody sees is rounding, and points nowhere.
+      const told = `${shown(size * factor, 3)} ${unit} ∠ ${plain(turn)}°`;
+      write(this.reading, size * this.scale < UNSEEN ? `0 ${unit}` : told);
     } else {
       const places = (this.size[0] / this.scale) * factor > 60 ? 0 : 1;
       const [across, up] = [x, y].map((value) => signed((value * factor).toFixed(places)));

@@ -35,8 +35,8 @@ export type Asked =
   | { type: "speak"; languages: string[] }
   | { type: "open"; example: string }
   | { type: "open"; new: true }
-  /** `file`: it is what the file held that the server was started with. */
-  | { type: "open"; name: string; text: string; file?: true }
+  /** `file`: it is what the file held that the server was started with. `files`: its tables. */
+  | { type: "open"; name: string; text: string; file?: true; files?: Record<string, string> }
   | { type: "edit"; commit: boolean; label: string; edits: Edit[] }
   | ({ type: "make"; at: number } & Made)
   | { type: "undo" | "redo" | "save" | "gallery" }

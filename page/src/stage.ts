@@ -16,6 +16,8 @@ const LAYERS = ["far", "paths", "signs", "ghost", "grips", "labels"] as const;
 const SWUNG = ["paths", "ghost", "grips", "labels"] as const;
 /** Pixels from a point to the middle of its name. */
 const AWAY = 20;
+/** Of a name, pixels: others stand no closer. */
+const [WIDE, HIGH] = [16, 8];
 
 interface Named {
   name: string;
@@ -211,12 +213,19 @@ export class Stage {
     }
   }
 
-  /** Names stand outside of the links that meet at the point. */
+  /** Names stand outside of the links that meet at the point, or where other names let them. */
   private poseLabels(spot: (name: string) => Pair): void {
+    const taken: Pair[] = [];
     for (const { name, element, near, footed } of this.labels) {
       const [x, y] = spot(name);
       const [dx, dy] = outside([x, y], near.map(spot), footed);
-      move(element, [x + dx * AWAY, y + dy * AWAY + 4]);
+      const ways = [[dx, dy], [dx, -dy], [dy, dx], [-dy, -dx], [-dx, dy]] as const;
+      const places = ways.map(([across, up]): Pair => [x + across * AWAY, y + up * AWAY + 4]);
+      const free = ([px, py]: Pair) =>
+        taken.every(([ox, oy]) => Math.abs(px - ox) > WIDE || Math.abs(py - oy) > HIGH);
+      const place = places.find(free) ?? (places[0] as Pair);
+      taken.push(place);
+      move(element, place);
     }
   }
 

@@ -125,13 +125,16 @@ class Live:
         mouse.up()
         self.settled()
 
-    def drop(self, name: str, text: str, times: int = 1) -> None:
-        """Drop a file on the page, of a text that is repeated."""
-        make = """([name, text, times]) => {
+    def drop(
+        self, name: str, text: str, times: int = 1, beside: tuple[str, str] = ("", "")
+    ) -> None:
+        """Drop a file on the page, of a text that is repeated, and another one beside it."""
+        make = """([name, text, times, [other, more]]) => {
             const files = new DataTransfer();
+            if (other) files.items.add(new File([more], other, { type: "text/csv" }));
             files.items.add(new File([text.repeat(times)], name, { type: "application/toml" }));
             return files;
         }"""
-        files = self.page.evaluate_handle(make, [name, text, times])
+        files = self.page.evaluate_handle(make, [name, text, times, beside])
         for event in ("dragenter", "dragover", "drop"):
             self.page.locator(".equipoise").dispatch_event(event, {"dataTransfer": files})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from importlib.resources import files
 
 import numpy as np
 from playwright.sync_api import expect
@@ -12,6 +13,12 @@ import equipoise as eq
 from browser.live import Live
 from surface.running import example_text
 
+PICKED = {
+    "straw-walker": "F2",
+    "rotary-transplanter": "P",
+    "hydraulic-loader": "C",
+    "cam-pusher": "C",
+}
 BAD = (
     ("notes.toml", "this is no model", "notes.toml"),
     ("unit.toml", example_text("yamashita-1").replace('"199 g"', '"199 mm"'), "links.crank.mass"),
@@ -20,13 +27,33 @@ BAD = (
 """Names and texts of files, and what is told of them."""
 
 
-def test_an_example_is_picked_and_a_file_dropped(live: Live) -> None:
-    live.page.get_by_role("combobox", name="Example").select_option("quick-return")
-    expect(live.page.get_by_role("heading", name=eq.load("quick-return").title)).to_be_visible()
-    assert live.machine() == eq.load("quick-return")
+def test_examples_are_picked_changed_and_restored(live: Live) -> None:
+    """Joints too many, gears of varying ratio, a cylinder, a cam."""
+    readings = live.page.locator(".readings .value:visible")
+    for name, point in PICKED.items():
+        live.page.get_by_role("combobox", name="Example").select_option(name)
+        title = eq.load(name).title
+        expect(live.page.get_by_role("heading", name=str(title), exact=True)).to_be_visible()
+        live.settled()
+        before = readings.all_inner_texts()
+        live.joint(point).press("ArrowRight")
+        expect(readings).not_to_have_text(before)
+        live.button("Undo").click()
+        expect(readings).to_have_text(before)
+
+
+def test_a_file_is_dropped_and_one_with_its_table(live: Live) -> None:
     live.drop("mine.toml", example_text("watt-six-bar"))
     expect(live.page.get_by_role("combobox", name="Example")).to_have_value("mine.toml")
     assert live.machine() == eq.load("watt-six-bar")
+    model, table = "four-stroke-engine.toml", "four-stroke-gas.csv"
+    live.drop(model, example_text("four-stroke-engine"))
+    expect(live.told(f"got '{table}', which is not known here")).to_be_visible()
+    text = (files(eq) / "examples" / table).read_text("utf-8")
+    live.drop(model, example_text("four-stroke-engine"), beside=(table, text))
+    expect(live.page.get_by_role("combobox", name="Example")).to_have_value(model)
+    live.settled()
+    assert live.told("not known here").count() == 0
 
 
 def test_what_is_no_machine_is_refused_with_a_sentence(live: Live) -> None:

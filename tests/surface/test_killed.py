@@ -1,6 +1,6 @@
 """Studies that are killed at random moments: in the end the same bytes, and nothing left behind.
 
-Set EQUIPOISE_KILLS to kill more often than twenty times.
+Set EQUIPOISE_KILLS to kill more often than eight times.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from support.studies import contents
 from surface.running import equipoise, forked, succeeded
 from surface.studies import LENGTHS
 
-KILLS = int(os.environ.get("EQUIPOISE_KILLS", "20"))
+KILLS = int(os.environ.get("EQUIPOISE_KILLS", "8"))
 STORE, STUDY = Path("study.zarr"), Path("study.toml")
-DESIGNS = 40_000
+DESIGNS = 25_000
 
 
 @pytest.fixture(scope="module")

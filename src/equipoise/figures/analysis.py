@@ -153,7 +153,7 @@ class Joint:
 
 
 def joints_of(analysis: Analysis) -> dict[str, Joint]:
-    """Every joint and pair of gears; of a sliding joint its couple too; rounding as zeros."""
+    """Every joint, pair of gears and bearing; of a slider its couple too; rounding as zeros."""
     found, forces = {}, analysis.forces
     every = forces.solved.contacts
     largest = max((float(np.max(joint.size)) for joint in every.values()), default=0.0)
@@ -163,6 +163,9 @@ def joints_of(analysis: Analysis) -> dict[str, Joint]:
         if isinstance(joint, SliderForce):
             told = say("{name}: couple on {on}", name=short(name), on=short(joint.on))
             found[f"{name}.moment"] = Joint(told, settled(joint.moment, moment))
+    for name in analysis.machine.bearings:
+        value = forces.across.bearings[name].value
+        found[f"bearings.{name}"] = Joint(say("bearing {name}", name=short(name)), value)
     return found
 
 

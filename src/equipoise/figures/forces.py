@@ -15,7 +15,9 @@ from equipoise.figures.analysis import (
     angle_axis,
     each,
     over,
+    rounding,
     row_keys,
+    settled,
     title,
 )
 from equipoise.figures.shared import (
@@ -28,6 +30,7 @@ from equipoise.figures.shared import (
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
+from equipoise.mechanism.planes import beside
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Arrow, Axis, Bars, Chart, Curve, Line, Mark, Panel
 from equipoise.results.outputs import CAUSES, output_named
@@ -95,10 +98,19 @@ def force(analysis: Analysis) -> Chart:
 
 
 def moment(analysis: Analysis) -> Chart:
-    """Shaking moment over crank angle."""
+    """Shaking moment over crank angle, and of links beside each other rocking moments."""
     what = title(analysis, say("Shaking moment about {point}", point=about(analysis)))
     signals = each(analysis, "shaking_moment")
-    return over_crank(analysis, "moment", what, [(say("shaking moment"), "torque", signals)])
+    panels: list[Signals] = [(say("shaking moment"), "torque", signals)]
+    if beside(analysis.machine):
+        rocking, role = analysis.forces.across.rocking_moment, ONE if analysis.together else ALL
+        parts = {f"rocking_moment.{axis}": getattr(rocking, axis) for axis in "xy"}
+        least = rounding(analysis)[1]
+        panels += [
+            (output_named(name), "torque", {role: settled(values, least)})
+            for name, values in parts.items()
+        ]
+    return over_crank(analysis, "moment", what, panels)
 
 
 def torque(analysis: Analysis) -> Chart:

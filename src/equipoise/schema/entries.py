@@ -45,7 +45,9 @@ class Held(Beside):
             raise ModelError(
                 "",
                 Note(
-                    "got {file!r}, which is not known here; choose that file", file=printable(file)
+                    "got {file!r}, which is not known here; choose that file, or drop it together "
+                    "with the model",
+                    file=printable(file),
                 ),
             )
         return self.tables[sort, file]

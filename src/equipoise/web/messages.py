@@ -187,16 +187,22 @@ class Message:
         UsageError : something of it is not as it should be.
         """
         place, values = self.values.get("place"), self.values.get("values")
-        name, files = self.values.get("name"), self.values.get("files", {})
+        name = self.values.get("name")
         if not isinstance(place, list) or not all(map(_is_step, place)) or len(place) > DEEPEST:
             _wrong("entry: place", place, 'a list of keys and numbers such as ["springs", 0]')
         if values is not None and not (isinstance(values, dict) and _is_plain(values, DEEPEST)):
             _wrong("entry: values", values, "a table of values as in a file")
         if name is not None and not isinstance(name, str):
             _wrong("entry: name", name, "a text")
+        return Entry(tuple(place), values, name, self.files)
+
+    @property
+    def files(self) -> Mapping[str, str]:
+        """Texts of CSV files by their names."""
+        files = self.values.get("files", {})
         if not isinstance(files, dict) or not all(isinstance(one, str) for one in files.values()):
-            _wrong("entry: files", files, "texts of files by their names")
-        return Entry(tuple(place), values, name, files)
+            _wrong(f"{self.kind}: files", files, "texts of files by their names")
+        return files
 
     @property
     def preview(self) -> bool:

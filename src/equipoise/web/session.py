@@ -100,7 +100,9 @@ class Session:
         elif "example" in message.values:
             design = opened_example(message.text("example"))
         else:
-            design = opened_text(message.text("name", "machine.toml"), message.text("text"))
+            design = opened_text(
+                message.text("name", "machine.toml"), message.text("text"), message.files
+            )
         disk = self.disk if message.flag("file", False) else None
         try:
             self.open(design)

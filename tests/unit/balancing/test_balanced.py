@@ -32,7 +32,7 @@ FOUND = eq.balance(MACHINE, PLAN)
 def with_figures(found: Balanced, before: dict[str, float], after: dict[str, float]) -> Balanced:
     """The result as if it had these figures."""
     found = replace(found)
-    found.__dict__.update(before=before, after=after)
+    found.__dict__.update(before=before, after=after, _shaking=(before, after))
     return found
 
 

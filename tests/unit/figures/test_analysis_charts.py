@@ -98,6 +98,17 @@ def test_planes_from_the_side() -> None:
     assert [s.places[0] for s in loose.panels[0].signs if s.role == "stand"] == [0j]
 
 
+def test_what_links_beside_each_other_bear_is_drawn() -> None:
+    charts, across = charts_of("twin-engine"), analysis_of("twin-engine").forces.across
+    drawn = [values for panel in charts["moment"].panels[1:] for values in signals(panel)]
+    assert has(drawn, across.rocking_moment.x)
+    assert has(drawn, across.rocking_moment.y)
+    panels = [*charts["joints"].panels, *charts["joints-2"].panels]
+    assert [panel.title for panel in panels[-2:]] == ["bearing front", "bearing rear"]
+    every = [values for panel in panels for values in signals(panel)]
+    assert all(has(every, bearing.size) for bearing in across.bearings.values())
+
+
 def test_curves_are_the_forces() -> None:
     found, charts = analysis_of("yamashita-1").forces, charts_of("yamashita-1")
     force = found.shaking_force

@@ -14,7 +14,7 @@ from equipoise.web.design import Design
 from equipoise.web.edits import Solved
 from equipoise.web.messages import message_of
 from equipoise.web.session import Session
-from unit.web.pages import ask, counterweight, edit, opened, refusal, state
+from unit.web.pages import ask, counterweight, edit, move, opened, refusal, state
 
 MASS = {"set": "links.crank.mass", "text": "250 g"}
 STUCK = eq.dumps(eq.load("yamashita-1")).replace('"33.5 mm"', '"200 mm"')
@@ -59,6 +59,22 @@ def test_parallel_cranks_are_opened_and_edited() -> None:
     wrong = [{"set": path, "text": text} for path, text in typed.items()]
     replies = ask(session, "edit", seq=9, commit=True, label="throw", edits=wrong)
     assert "R3 of 'walker-3' comes 1 mm beside its pin" in refusal(replies)
+
+
+@pytest.mark.parametrize(
+    ("name", "point"),
+    [
+        ("elliptic-quick-return", "B"),
+        ("four-stroke-engine", "B"),
+        ("pick-and-place", "C"),
+        ("twin-engine", "B1"),
+    ],
+)
+def test_a_drag_changes_figures_and_is_taken_back(name: str, point: str) -> None:
+    session, before = opened(name)
+    after = edit(session, move(point, before.place(point)[0] * 1.01, 0))
+    assert after.figure("shaking_force.rms")["text"] != before.figure("shaking_force.rms")["text"]
+    assert state(ask(session, "undo")[0]).block.tobytes() == before.block.tobytes()
 
 
 def test_a_drag_that_ends_where_nothing_can_be_keeps_its_last_good_place() -> None:
