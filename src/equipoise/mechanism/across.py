@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism import kernels
-from equipoise.mechanism.acting import acting_strands
+from equipoise.mechanism.acting import acting_springs, acting_strands
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.planes import moments_across
@@ -121,24 +121,19 @@ def masses_across(motion: Motion) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def pushes_across(motion: Motion, acting: Iterable[Acting]) -> dict[str, Any]:
     """What holds forces at points of links."""
-    links = motion.machine.links
-    return _held((link, links[link].plane_of(point), force) for link, point, force, _ in acting)
+    links, found = motion.machine.links, dict[str, Any]()
+    for link, point, force, _ in acting:
+        found[link] = found.get(link, 0.0) - links[link].plane_of(point) * force
+    return found
 
 
-def strands_across(motion: Motion) -> dict[str, Any]:
-    """What holds the tension of belts, which run in the plane of their driven link."""
-    links = motion.machine.links
-    return _held(
-        (link, links[belt.driven].plane, force)
-        for belt, ends in acting_strands(motion)
-        for link, _, force, _ in ends
-    )
-
-
-def _held(pushes: Iterable[tuple[str, float, Any]]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for link, plane, force in pushes:
-        found[link] = found.get(link, 0.0) - plane * force
+def springs_across(motion: Motion) -> dict[str, Any]:
+    """What holds springs, and the tension of belts, which run in the plane of their driven link."""
+    found = pushes_across(motion, acting_springs(motion))
+    for belt, ends in acting_strands(motion):
+        plane = motion.machine.links[belt.driven].plane
+        for link, _, force, _ in ends:
+            found[link] = found.get(link, 0.0) - plane * force
     return found
 
 

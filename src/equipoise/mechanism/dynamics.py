@@ -19,7 +19,7 @@ import numpy as np
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism import acting, kernels
-from equipoise.mechanism.across import Across, apart, masses_across, pushes_across, strands_across
+from equipoise.mechanism.across import Across, apart, masses_across, pushes_across, springs_across
 from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
@@ -181,9 +181,7 @@ class Forces:
         """What links beside each other do across the plane."""
         motion = self.motion
         loads = pushes_across(motion, acting.acting_loads(motion))
-        springs = pushes_across(motion, acting.acting_springs(motion))
-        for link, held in strands_across(motion).items():
-            springs[link] = springs.get(link, 0.0) + held
+        springs = springs_across(motion)
         outer = pushes_across(motion, acting.outer_loads(motion))
         return Across(motion, *masses_across(motion), loads, springs, self.solved.exerted, outer)
 
