@@ -51,6 +51,11 @@ export class App {
   private readonly readings = new Readings();
   private readonly planted = new FigureTable(say("Figures of the planting finger"));
   private readonly strokes = new FigureTable(say("Figures of sliders and rockers"));
+  private readonly across = h("img", {
+    class: "across",
+    alt: say("The planes of links, masses and bearings, from the side and to scale."),
+    hidden: true,
+  });
   private readonly balance: BalancePanel;
   private readonly toolbar: Toolbar;
   private readonly tools: Tools;
@@ -107,6 +112,8 @@ export class App {
         this.add("response", message.notes);
       },
       planting: (message) => this.plant(message),
+      side: ({ svg }) =>
+        set(this.across, { src: `data:image/svg+xml,${encodeURIComponent(svg)}`, hidden: false }),
       ghost: (message, numbers) => {
         this.seeing.pale(message.scene, numbers);
         this.charts.pale(numbers);
@@ -236,7 +243,7 @@ export class App {
     stage.append(this.heading.about, this.tools.palette.root, this.board.root);
     stage.append(this.transport.root, this.seeing.root, this.heading.notes, this.readings.root);
     stage.append(this.seeing.variants.root);
-    stage.append(this.strokes.root, this.planted.root);
+    stage.append(this.across, this.strokes.root, this.planted.root);
     const empty = say(
       "Forces, torque and paths stand here as soon as the machine moves. What is missing is told above the drawing.",
     );
@@ -338,6 +345,7 @@ export class App {
     if (other) this.tools.anew();
     if (other || !state.planting) this.planted.hide();
     if (other) this.strokes.hide();
+    if (other || !state.beside) this.across.hidden = true;
     if (!state.before) this.balance.hide();
     this.board.clear(this.held || other);
     this.show(state, other);

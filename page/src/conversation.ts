@@ -2,7 +2,7 @@
 
 import type { Asked, Edit, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
-import { Numbers, type Pictured, type Planted, type ResponseMessage, type State } from "./protocol";
+import { Numbers, type Pictured, type Planted, type ResponseMessage, type Side, type State } from "./protocol";
 import type { GhostMessage, Stores, StudyMessage, ToolMessage, VariantsMessage } from "./protocol";
 import { OPENS, type Shelf, type Shown, Story, type Told as Kept } from "./story";
 import { language } from "./words";
@@ -12,6 +12,7 @@ export interface Events {
   state(state: State): void;
   response(message: ResponseMessage, numbers: Numbers): void;
   planting(message: Planted): void;
+  side(message: Side): void;
   ghost(message: GhostMessage, numbers: Numbers): void;
   variants(message: VariantsMessage): void;
   tool(message: ToolMessage, numbers: Numbers): void;
@@ -166,6 +167,8 @@ export class Conversation {
       case "planting":
       case "strokes":
         return this.events.planting(told);
+      case "side":
+        return this.events.side(told);
       case "refused":
         if (!this.repeating) this.refuse(told.seq, told.message);
         return this.end(told.seq, told.message, told);

@@ -42,7 +42,7 @@ export class Played implements Wire {
     if (asked.type === "speak") this.tell(["spoken"], seq);
     else if (asked.type === "outputs") this.tell(["state"], seq);
     else if (asked.type === "ready")
-      this.tell(["hello", "state", "response", "planting", "strokes"], seq);
+      this.tell(["hello", "state", "response", "planting", "strokes", "side"], seq);
     else {
       const message = say(
         "this file plays what was computed; to change the machine, open its model in Equipoise",

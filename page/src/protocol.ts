@@ -267,6 +267,8 @@ export interface StateMessage {
   record: { name: string; told: string[]; left_out: string[] } | null;
   arrows: ArrowOf[];
   planting?: { tips: string[]; surface: number } | null;
+  /** Whether links lie beside each other. */
+  beside: boolean;
 }
 
 /** A vector at a point over the crank angle. */
@@ -401,6 +403,12 @@ export interface VariantsMessage {
   /** What figures are told against: a word, or a variant. */
   against: string;
   rows: { label: string; unit: string; texts: string[]; best: number[] }[];
+}
+
+/** Links beside each other, drawn from the side. */
+export interface Side {
+  type: "side";
+  svg: string;
 }
 
 /** Figures of a planting finger, or of sliders and rockers; null where they are not finite. */
@@ -563,6 +571,7 @@ export type Told =
   | Stores
   | VariantsMessage
   | Planted
+  | Side
   | Balanced
   | Refused
   | Tables

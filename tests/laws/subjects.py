@@ -32,7 +32,7 @@ ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 @cache
 def names() -> tuple[str, ...]:
     """Names of all subjects: examples, one in soil, and kinds of random machines with a seed."""
-    kinds = (*KINDS, *REDUNDANT, *machines_cams.KINDS)
+    kinds = (*KINDS, *REDUNDANT, *machines_cams.KINDS, *machines_cams.LOOPED)
     random = (f"{kind}:{seed}" for kind in kinds for seed in SEEDS)
     turned = (name for name in sorted(eq.examples("linkage")) if not eq.load(name).drive.pushes)
     return (*turned, IN_SOIL, *random)
@@ -45,7 +45,8 @@ def machine_of(name: str) -> eq.Machine:
         return in_soil()
     kind, _, seed = name.partition(":")
     # What may be changed of it does nothing to what is analysed, and its names need not follow.
-    made = machines_cams.make if kind in machines_cams.KINDS else make
+    cammed = {*machines_cams.KINDS, *machines_cams.LOOPED}
+    made = machines_cams.make if kind in cammed else make
     found = made(kind, int(seed)).machine if seed else eq.load(name).with_balance(None)
     return spelled_out(found)
 

@@ -12,10 +12,11 @@ from secondroute.test_free_bodies import FLOOR, same_reaction, same_totals
 from secondroute.test_motion import same_links, same_point
 from support import cams, free_bodies
 from support.analyses import Subject, analysed, force_size, moment_size
-from support.machines_cams import KINDS, make
+from support.machines_cams import KINDS, LOOPED, make
 from support.poses import from_motion
 
-CAMS = [f"{kind}:{seed}" for kind in KINDS for seed in range(10)] + ["cam-pusher"]
+CAMS = [f"{kind}:{seed}" for kind in (*KINDS, *LOOPED) for seed in range(10)]
+CAMS.append("cam-pusher")
 
 
 @cache

@@ -10,11 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import ModelError
+from equipoise.errors import ModelError, MotionError
 from equipoise.mechanism.cams import RIDES, Cam
 from equipoise.mechanism.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment
-from equipoise.mechanism.model import FRAME, Machine, Spring
+from equipoise.mechanism.model import FRAME, Drive, Machine, Position, Slider, Spring
+from support.cams import Cut
 from support.machines import Case, Draft, _draft, _four_bar, _scaled, _unit
+from unit.mechanism.build import heavy
 
 SMOOTH = ("cycloidal", "modified sine", "modified trapezoid", "3-4-5", "4-5-6-7", "harmonic")
 
@@ -172,6 +174,53 @@ def pusher_lever(rng: np.random.Generator) -> Case:
     return pusher(rng, False)
 
 
+def looped(rng: np.random.Generator, sliding: bool) -> Case:
+    """A five-bar whose coupler is a cam for a link on the next one: none can be moved by itself."""
+    draft = _draft(rng)
+    size, way, lean = draft.size, float(rng.uniform(-0.5, 0.5)), float(rng.normal() * 0.3)
+    link = "tappet" if sliding else "lever"
+    foot = (0.0, 0.3 * size) if sliding else (2.5 * size, 0.0)
+    points = {"K": (0.0, 0.0)} if sliding else {"S": (0.0, 0.0), "K": (2.2 * size, 0.0)}
+    far = size * (4.5 * _unit(float(rng.uniform(-0.6, 0.6))))
+    links = {
+        "crank": heavy(A=(0.0, 0.0), B=(0.6 * size, 0.0)),
+        "coupler": heavy(B=(0.0, 0.0), C=(4 * size, 0.0)),
+        "bar": heavy(C=(0.0, 0.0), S=foot),
+        link: heavy(**points, D=(float(far[0]), float(far[1]))),
+    }
+    slider = Slider("tappet", "K", "bar", "S", way, 0.3)
+    normal = -0.3 + lean if sliding else float(rng.choice([-1, 1])) * pi / 2
+    cam = _cam(rng, ("coupler", link, "bar"), size, sliding=sliding, normal=normal)
+    machine = Machine(
+        "looped", Drive("crank", 7.0, 20.0), {"A": (0.0, 0.0), "D": (1.0, 1.0)}, links,
+        sliders=(slider,) if sliding else (), cams=(cam,), gravity=(0.3, -9.0),
+    )  # fmt: skip
+    cut, angles = Cut(machine, cam), rng.uniform(0, 2 * pi, 2)
+    b = 0.6 * size + 0j
+    c = b + 4 * size * np.exp(1j * angles[0])
+    start, sense = cut.rest
+    place, turn = cut.pose(start + sense * float(cam.law.value(angles[0] - angles[1])[0]))
+    place, turn = c + place * np.exp(1j * angles[1]), turn + angles[1]
+    d = place + np.exp(1j * turn) * (cut.at(link, "D") - cut.foot)
+    rough = {"B": b, "C": c, "D": d}
+    position = Position(
+        0.0, {name: (at.real, at.imag) for name, at in rough.items()},
+        {"coupler": angles[0], "bar": angles[1], link: turn},
+    )  # fmt: skip
+    frame = {"A": (0.0, 0.0), "D": (float(d.real), float(d.imag))}
+    return Case(replace(machine, frame=frame, position=position))
+
+
+def looped_tappet(rng: np.random.Generator) -> Case:
+    return looped(rng, True)
+
+
+def looped_lever(rng: np.random.Generator) -> Case:
+    return looped(rng, False)
+
+
+LOOPED = {"looped_tappet": looped_tappet, "looped_lever": looped_lever}
+"""Kinds that Newton's method has to solve."""
 KINDS = {one.__name__: one for one in (camshaft_tappet, camshaft_lever, fixed_cam_tappet,
                                        fixed_cam_lever, pusher_tappet, pusher_lever)}  # fmt: skip
 
@@ -181,10 +230,10 @@ def make(kind: str, seed: int) -> Case:
     from equipoise.mechanism.linkage import assemble
 
     for draw in range(200):
-        case = KINDS[kind](np.random.default_rng([seed, draw, *kind.encode()]))
+        case = {**KINDS, **LOOPED}[kind](np.random.default_rng([seed, draw, *kind.encode()]))
         try:
-            assemble(case.machine)
-        except ModelError:
+            assemble(case.machine).cycle  # noqa: B018
+        except (ModelError, MotionError):
             continue
         return case
     raise AssertionError("no draw can be made")

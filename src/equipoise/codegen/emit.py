@@ -178,7 +178,8 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     if not can_emit(linkage):
         raise UsageError(
             "large groups of loops, fingers in soil, parallel cranks, double guides, drives that "
-            "push and gears of varying ratio on links that dyads move cannot be computed in a loop"
+            "push, couplings beside loops, and gears of varying ratio on links that dyads move "
+            "cannot be computed in a loop"
         )
     writer = Writer(linkage)
     write_motion(writer)

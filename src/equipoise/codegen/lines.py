@@ -22,9 +22,9 @@ from equipoise.codegen.writer import Writer
 from equipoise.errors import MassError
 from equipoise.mechanism import cam_kernels, kernels
 from equipoise.mechanism.cam_groups import Displacement
-from equipoise.mechanism.contacts import rolled
 from equipoise.mechanism.couplings import coupled
 from equipoise.mechanism.dynamics import inertia_about, massless
+from equipoise.mechanism.gear_contacts import rolled
 from equipoise.mechanism.model import FRAME, Drive, FurtherDrive
 from equipoise.mechanism.newton import LoopGroup
 from equipoise.mechanism.planes import beside

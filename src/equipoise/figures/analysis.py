@@ -117,7 +117,7 @@ def each(analysis: Analysis, output: str) -> Mapping[str, Array]:
     if output == "shaking_force":
         own, least = own.value, force
     else:
-        least = moment
+        least = force if output == "drive_force" else moment
     if not analysis.together:
         return {ALL: settled(own, least)}
     return {ONE: settled(own, least), ALL: settled(analysis.together[output], least)}

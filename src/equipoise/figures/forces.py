@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -113,18 +113,31 @@ def moment(analysis: Analysis) -> Chart:
     return over_crank(analysis, "moment", what, panels)
 
 
-def torque(analysis: Analysis) -> Chart:
-    """What the drive exerts over crank angle, a torque or a force, and below it what makes it."""
-    drive = analysis.machine.drive
-    signals = each(analysis, drive.effort)
-    told = say("Torque of the drive on {link}", link=short(drive.link, 16))
-    what = title(analysis, say("Force of the drive") if drive.pushes else told)
-    one = (output_named(drive.effort), drive.effort_in, signals)
-    chart = over_crank(analysis, "torque", what, [one])
+def torques(analysis: Analysis) -> Iterator[Chart]:
+    """What each drive exerts over crank angle: ``torque``, and of further ones ``torque-2``, ..."""
+    for number in range(1, len(analysis.machine.driven) + 1):
+        yield torque(analysis, number)
+
+
+def torque(analysis: Analysis, number: int = 1) -> Chart:
+    """What a drive exerts over crank angle, a torque or a force, and below it what makes it."""
+    machine, drive = analysis.machine, analysis.machine.driven[number - 1]
+    if number == 1:
+        output, signals = machine.drive.effort, each(analysis, machine.drive.effort)
+    else:  # of one row
+        output = f"drives.{drive.link}.{drive.effort_in}"
+        signals = {ALL: analysis.outputs[output].drawn}
+    link = short(drive.link, 16)
+    of_torque = say("Torque of the drive on {link}", link=link)
+    of_force = say("Force of the drive on {link}", link=link)
+    what = title(analysis, of_force if drive.pushes else of_torque)
+    name = "torque" if number == 1 else f"torque-{number}"
+    chart = over_crank(analysis, name, what, [(output_named(output), drive.effort_in, signals)])
     (whole,) = chart.panels
     if analysis.motion.whole_cycle:
         whole = with_mean(whole, signals[ALL])
-    return Chart("torque", chart.title, what, (whole, _causes(analysis)), keys=chart.keys)
+    causes = _causes(analysis, output, drive.effort_in)
+    return Chart(name, chart.title, what, (whole, causes), keys=chart.keys)
 
 
 def with_mean(panel: Panel, values: Array) -> Panel:
@@ -138,10 +151,9 @@ def with_mean(panel: Panel, values: Array) -> Panel:
     return replace(panel, lines=(Line(mean, "mean", axis="y"),), remark=remark)
 
 
-def _causes(analysis: Analysis) -> Panel:
-    """The torque of each cause that there is; of one row."""
-    drive = analysis.machine.drive
-    parts = analysis.forces.split.by_cause(drive.effort)
+def _causes(analysis: Analysis, output: str, kind: Dimension) -> Panel:
+    """What each cause that there is adds to what a drive exerts; of one row."""
+    parts = analysis.forces.split.by_cause(output)
     largest = max(float(np.max(np.abs(part))) for part in parts.values())
     curves = [
         Curve(*over(analysis, parts[name]), say(CAUSES[name]), f"several {number}")
@@ -151,7 +163,7 @@ def _causes(analysis: Analysis) -> Panel:
     if not curves:
         curves = [Curve(*over(analysis, 0 * analysis.crank_angle))]
     every = np.concatenate([curve.y for curve in curves])
-    y = Axis.of(say("by cause"), drive.effort_in, every, room=ROOM / 2)
+    y = Axis.of(say("by cause"), kind, every, room=ROOM / 2)
     remark = say("of one row") if analysis.together else ""
     return Panel(angle_axis(analysis), y, tuple(curves), title=remark, keyed=True)
 

@@ -73,9 +73,10 @@ def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
 
 
 def _ends_told(scene: Scene) -> Iterator[str]:
-    """Where a drive turns back that goes to and fro."""
-    drive = scene.drive
-    if drive.swings is not None or drive.between is not None:
+    """Where drives turn back that go to and fro."""
+    for drive in scene.drives:
+        if drive.swings is None and drive.between is None:
+            continue
         angle = scene.angles[drive.link]
         low, high = (told_angle(float(end)) for end in (angle.min(), angle.max()))
         link = short(drive.link)
@@ -109,11 +110,9 @@ def drawn(scene: Scene, k: int) -> dict[str, Any]:
 
 def _at_ends(scene: Scene) -> Iterator[Shape]:
     """Links, pale, where a drive turns back that goes to and fro."""
-    drive = scene.drive
-    if drive.swings is None and drive.between is None:
-        return
-    angle = scene.angles[drive.link]
-    for k in (int(np.argmin(angle)), int(np.argmax(angle))):
+    moved = [one for one in scene.drives if one.swings is not None or one.between is not None]
+    angles = [scene.angles[drive.link] for drive in moved]
+    for k in dict.fromkeys(int(end(angle)) for angle in angles for end in (np.argmin, np.argmax)):
         for body in scene.bodies:
             corners = [complex(place) for place in _outline(scene, body.outline, k)]
             if len(corners) > 1:
@@ -149,8 +148,8 @@ def joint_names(scene: Scene, k: int, optional: bool = False) -> Iterator[Mark]:
         z = complex(place[k])
         met = [body for body in scene.bodies if name in body.points]
         ways = [complex(np.mean(_outline(scene, body.outline, k))) - z for body in met]
-        ends = scene.drive.between or ()
-        ways += [complex(scene.places[to][k]) - z for to in ends if name in ends and to != name]
+        for ends in (drive.between or () for drive in scene.drives):
+            ways += [complex(scene.places[to][k]) - z for to in ends if name in ends and to != name]
         out = -sum(way / abs(way) for way in ways if way)
         wish = float(np.degrees(np.angle(out))) if abs(out) > 0.1 else 45.0
         yield Mark.of(z, short(name), "strong", wish, False, optional, near=5.0, bold=True)

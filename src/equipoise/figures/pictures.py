@@ -58,8 +58,9 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
 
     ``linkage``; ``side`` where links lie beside each other; ``curves`` and ``hodograph`` where
     points move; ``centrodes`` where links roll; where masses are known ``polar``, ``force``,
-    ``moment``, ``torque``, ``joints`` and ``joint-polars``, with ``joints-2`` and so on where there
-    are many; ``spectrum`` where the crank angles are those of a whole cycle, at least 90 in a turn.
+    ``moment``, ``torque`` (``torque-2`` and so on of further drives), ``joints`` and
+    ``joint-polars``, with ``joints-2`` and so on where there are many; ``spectrum`` where the crank
+    angles are those of a whole cycle, at least 90 in a turn.
 
     Of a single crank angle there is the linkage alone.
 
@@ -82,8 +83,9 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
         found["centrodes"] = centrodes(analysis)
     if analysis.solved is None:
         return found
-    for chart in (forces.polar, forces.force, forces.moment, forces.torque):
+    for chart in (forces.polar, forces.force, forces.moment):
         found[chart.__name__] = chart(analysis)
+    found |= {chart.name: chart for chart in forces.torques(analysis)}
     if analysis.has_orders:
         found["spectrum"] = forces.spectrum(analysis)
     of_joints = (*joints(analysis), *joint_polars(analysis))

@@ -128,7 +128,7 @@ def in_mode(free: FreeVibration, number: int, instants: int = INSTANTS) -> Scene
     angle = still.crank_angle[clear_angle(still)]
     scene = Scene.of(move(free.machine, np.full(instants, angle)))
     drive = Drive(scene.drive.link, scene.drive.pivot, 0)
-    scene = replace(scene, crank_angle=_phases(instants), drive=drive)
+    scene = replace(scene, crank_angle=_phases(instants), drives=(drive,))
     mode = ModeSwing.of(scene, number, free.modes[number - 1], free.coordinates)
     if not mode.seen:
         across = " and ".join(mode.across)

@@ -18,13 +18,14 @@ from equipoise.mechanism.joints import Structure, coupling_pins, place_in_file
 from equipoise.mechanism.loops import End, Poses
 from equipoise.mechanism.steps import Reaction, Step, flanked, planar
 from equipoise.mechanism.strands import LEFT, RIGHT, Strands
+from equipoise.mechanism.turned import Turned
 
 TOUCHING = 1e-9
 """Over the distance of the pins: a strand that comes so near to a pin runs through it."""
 
 
 @dataclass(frozen=True)
-class Pull:
+class Pull(Turned):
     """What both strands do to the driven pulley, in the carrier's axes.
 
     radius : of the driven pulley.

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
+from equipoise.i18n import Note
 from equipoise.mechanism import cam_kernels as kernels
 from equipoise.mechanism.builder import Builder, Group, guide_reaction
 from equipoise.mechanism.cam_fits import Fit, check_shape, fitted
 from equipoise.mechanism.cams import Cam
+from equipoise.mechanism.couplings import Coupling
 from equipoise.mechanism.joints import Structure, place_in_file
+from equipoise.mechanism.kernels import travelled
 from equipoise.mechanism.laws import Law
+from equipoise.mechanism.loops import CouplingLoop, End, Poses
 from equipoise.mechanism.steps import (
     Call,
     Reaction,
@@ -40,17 +45,142 @@ class Displacement:
         state.update(zip(self.outputs, self.law.value(angle), strict=True))
 
 
-def follower(builder: Builder, joints: Structure, cam: Cam) -> Group:
-    """A follower whose cam and carrier are known; the steps of its motion and forces."""
+def push_of(builder: Builder, joints: Structure, cam: Cam) -> Push:
+    """How a cam and its follower go together.
+
+    Raises
+    ------
+    ModelError : they cannot be joined like this, or the cam cannot be made.
+    """
     fit = fitted(builder.machine, joints, cam)
-    if np.ndim(fit.rest) == 0:  # else `family` tells which designs can be made
+    if np.ndim(fit.rest) == 0:  # else `refusing` tells which designs can be made
         check_shape(fit, place_in_file(joints, cam))
-    motion: list[Step] = []
+    return Push(fit)
+
+
+@dataclass(frozen=True)
+class Push:
+    """How a cam pushes its follower."""
+
+    fit: Fit
+
+    couples: ClassVar[bool] = False
+
+    def group(self, builder: Builder, joints: Structure, coupling: Coupling) -> Group:
+        return _follower(builder, joints, self.fit)
+
+    def loop(self, coupling: Coupling, end: Callable[[str, str], End]) -> CamLoop:
+        fit, cam = self.fit, self.fit.cam
+        on, by = end(cam.driven, fit.joint), end(cam.driver, fit.cam_pin)
+        base = end(cam.carrier, fit.pin if fit.guide is None else fit.guide.base)
+        kernel, numbers = cam.relation
+        return CamLoop(
+            cam.name, cam.kind, on, by, cam.carrier, kernel, numbers, 0.0, self,
+            end(cam.driven, cam.point), end(cam.carrier, fit.cam_pin), base,
+        )  # fmt: skip
+
+    def backwards(self, coupling: Coupling) -> Note:
+        return Note(
+            "{cam!r} and {carrier!r} have to be moved before {follower!r} is; other joints hold "
+            "that, or the cam itself moves by it",
+            cam=coupling.driver,
+            carrier=coupling.carrier,
+            follower=coupling.driven,
+        )
+
+
+@dataclass(frozen=True)
+class CamLoop(CouplingLoop):
+    """A follower is where the angle of its cam tells.
+
+    rider : what is on the cam.  axis : of the cam, and base : of the follower's pin or guide, as
+    the carrier has them.
+    """
+
+    contact: Any
+    rider: End
+    axis: End
+    base: End
+
+    starts: ClassVar[bool] = False
+
+    @property
+    def fit(self) -> Fit:
+        fit: Fit = self.contact.fit
+        return fit
+
+    @property
+    def at(self) -> str:
+        return _at(self.fit.cam)
+
+    def after(self, builder: Builder) -> list[Step]:
+        """What the law says, and where the two touch."""
+        cam = self.fit.cam
+        steps = _displaced(builder, self.fit)
+        return [*steps, *builder.reach(cam.driven, cam.point), *_touch(self.fit)]
+
+    def displaced(self, poses: Poses) -> tuple[Any, Any, Any]:
+        turned = poses[self.by.body].angle - poses[self.carrier].angle
+        y, y1, y2 = self.fit.cam.law.value(turned)
+        return y, y1, y2
+
+    def gaps(self, poses: Poses, level: int) -> list[Any]:
+        fit, carrier, link = self.fit, poses[self.carrier], poses[self.on.body]
+        (_, w, a), (_, w_r, a_r) = carrier.turn, poses[self.by.body].turn
+        y, y1, y2 = self.displaced(poses)
+        if fit.guide is None:
+            told = kernels.swung(y, y1, y2, w_r, a_r, carrier.angle, w, a, fit.rest, fit.sense)
+            off = link.turn[0] * np.exp(-1j * told[0])
+            half = 2 * off.imag / (1 + off.real)  # twice the tangent of half the angle
+            return [(half, link.turn[1] - told[1], link.turn[2] - told[2])[level]]
+        ends = (*link.point(self.on.arm), *carrier.point(self.base.arm))
+        way = travelled(*ends, *carrier.turn, fit.guide.along)
+        slip = w_r - w
+        told = fit.rest + y, y1 * slip, y1 * (a_r - a) + y2 * slip * slip
+        return [way[level] - told[level]]
+
+    def touching(self, poses: Poses) -> tuple[Any, Any]:
+        """Where the two touch, and the common normal."""
+        fit, (_, y1, _) = self.fit, self.displaced(poses)
+        carrier, link = poses[self.carrier], poses[self.on.body]
+        p, axis = link.point(self.rider.arm)[0], carrier.point(self.axis.arm)[0]
+        if fit.guide is None:
+            (rate,) = kernels.rate_swung(p, carrier.point(self.base.arm)[0], y1, fit.sense)
+        else:
+            (rate,) = kernels.rate_lifted(carrier.turn[0], y1, fit.guide.along)
+        if fit.face is None:
+            at, normal = kernels.touch_round(p, axis, rate, fit.cam.roller_radius)
+        else:
+            sense = fit.sense if fit.guide is None else 0.0
+            at, normal = kernels.touch_flat(p, axis, rate, link.turn[0], y1, fit.face, sense)
+        return at, normal
+
+    def place(self, poses: Poses) -> Any:
+        return self.touching(poses)[0]
+
+    def wrenches(self, poses: Poses, sense: Any) -> list[tuple[Any, float]]:
+        return [(self.touching(poses)[1], 0.0)]
+
+
+def _displaced(builder: Builder, fit: Fit) -> list[Step]:
+    """Steps that find what the law says."""
+    cam = fit.cam
+    steps: list[Step] = []
     for body in (cam.driver, cam.carrier):
-        motion += builder.running_angle(body)
-    motion += builder.reach(cam.driver, fit.cam_pin)
-    lift = tuple(f"{y}({cam.name})" for y in ("y", "y1", "y2"))
-    motion.append(Displacement(cam.driver, cam.carrier, cam.law, lift))  # type: ignore[arg-type]
+        steps += builder.running_angle(body)
+    steps += builder.reach(cam.driver, fit.cam_pin)
+    steps.append(Displacement(cam.driver, cam.carrier, cam.law, _lift(cam)))
+    return steps
+
+
+def _lift(cam: Cam) -> tuple[str, str, str]:
+    return f"y({cam.name})", f"y1({cam.name})", f"y2({cam.name})"
+
+
+def _follower(builder: Builder, joints: Structure, fit: Fit) -> Group:
+    """A follower whose cam and carrier are known; the steps of its motion and forces."""
+    cam, lift = fit.cam, _lift(fit.cam)
+    motion = _displaced(builder, fit)
     motion += (_swung if fit.guide is None else _lifted)(builder, joints, fit, lift)
     motion += builder.reach(cam.driven, cam.point)
     motion += _touch(fit)

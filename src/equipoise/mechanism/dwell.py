@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import pi
 
@@ -15,6 +16,8 @@ RIVALS = 4
 ZONE, INNER, ROUNDS = 65, 513, 5
 """Crank angles about each end and between both, and how often the ends are looked at closer."""
 DIRECTIONS = 64
+HALVINGS = 44
+"""Of a step, at one end of a rest."""
 ALIKE = 1e-5
 """rad: dwells that differ by less are equal, and the first in the cycle is told."""
 
@@ -66,6 +69,35 @@ class Path:
         quintic = 6 * way - 3 * (v + w) - 0.5 * (a - b)
         found: Array = p + t * (v + t * (0.5 * a + t * (cubic + t * (quartic + t * quintic))))
         return found
+
+
+def rests(
+    theta: Array, speed: Array, speed_at: Callable[[Array], Array], least: float
+) -> list[tuple[float, float]]:
+    """Where something stands still: crank angles at which rests begin, and how long they are, rad.
+
+    theta, speed : (N,) equal steps of a cycle, and the derivative there.
+    speed_at : that at any crank angles (K,).  least : what is slower stands still.
+    """
+    still, step = np.abs(speed) <= least, theta[1] - theta[0]
+    still &= np.roll(still, 1) | np.roll(still, -1)  # a dead point may be at one sample
+    if not np.any(still) or np.all(still):
+        return []
+    begins = theta[still & ~np.roll(still, 1)]
+    ends = theta[still & ~np.roll(still, -1)]
+    ends = ends if ends[0] >= begins[0] else np.roll(ends, -1)
+
+    def edge(inside: Array, outside: Array) -> Array:
+        for _ in range(HALVINGS):
+            middle = 0.5 * (inside + outside)
+            rested = np.abs(speed_at(middle)) <= least
+            inside, outside = np.where(rested, middle, inside), np.where(rested, outside, middle)
+        return inside
+
+    first, last = edge(begins, begins - step), edge(ends, ends + step)
+    period = step * len(theta)
+    lengths = (last - first) % period
+    return list(zip((first % period).tolist(), lengths.tolist(), strict=True))
 
 
 def longest_dwell(path: Path, tolerance: float) -> Dwell:

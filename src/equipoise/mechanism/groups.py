@@ -1,4 +1,4 @@
-"""Groups of links that are solved in closed form: dyads, and links that are coupled.
+"""Groups of links that are solved in closed form: dyads.
 
 A dyad is two links with three joints, R (pin) or P (sliding); the outer joints join it to known
 bodies.  There is one builder for each sequence of joints: it says which kernels solve it, and with
@@ -17,24 +17,16 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism import joint_kernels, kernels, parallels
 from equipoise.mechanism.builder import Builder, Group, Guide, Outer, guide_reaction, outer_joints
-from equipoise.mechanism.cam_groups import follower
-from equipoise.mechanism.cams import Cam
 from equipoise.mechanism.checks import MODES
-from equipoise.mechanism.contacts import contact_of
-from equipoise.mechanism.couplings import Coupling
 from equipoise.mechanism.joints import Structure
 from equipoise.mechanism.model import Slider
-from equipoise.mechanism.rack_groups import racked
-from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.steps import (
     Call,
     Kernel,
     Reaction,
-    Rotation,
     demand_names,
     p,
     pin_reaction,
-    run,
     u,
 )
 
@@ -236,36 +228,3 @@ def hung(builder: Builder, joints: Structure, links: Iterable[str]) -> Group | N
     builder.add({pin.link: pin.point}, [pin.point])
     builder.running.add(pin.link)
     return Group("hung", (pin.link,), motion, (builder.hand_over(ground),), (ground,))
-
-
-def coupled(builder: Builder, joints: Structure, coupling: Coupling) -> Group:
-    """A link that is pinned to a known carrier and coupled to a known driver."""
-    if isinstance(coupling, Cam):
-        return follower(builder, joints, coupling)
-    if isinstance(coupling, Rack):
-        return racked(builder, joints, coupling)
-    contact = contact_of(builder, joints, coupling)
-    link, carrier, pin = coupling.driven, coupling.carrier, contact.driven_pin
-    bearer = builder.carrier_of(joints.pins[pin])
-    before = (*builder.running_angle(coupling.driver), *builder.running_angle(carrier))
-    now = run(before, builder.now)
-    kernel, numbers = coupling.relation
-    driver, bearing, driven = (
-        (f"phi({body})", f"w({body})", f"a({body})") for body in (coupling.driver, carrier, link)
-    )
-    bare = Call(kernel, (*driver, *bearing), (*numbers, 0.0), driven)
-    with np.errstate(all="ignore"):  # a driver that cannot come to crank angle 0 is told of later
-        at_start = run([bare], dict(now))[f"phi({link})"]
-    offset = coupling.start - (at_start if at_start.ndim > 1 else float(at_start[0]))
-    motion = (
-        *before,
-        *builder.reach(bearer, pin),
-        Call(kernel, (*driver, *bearing), (*numbers, offset), driven),
-        Rotation(link),
-    )
-    builder.add({link: pin}, [pin])
-    builder.running.add(link)
-    ground = pin_reaction(pin, link, bearer)
-    push, forces = contact.steps(coupling, ground)
-    forces = (*forces, builder.hand_over(ground), builder.hand_over(push))
-    return Group("coupled", (link,), motion, forces, (ground, push))

@@ -25,14 +25,11 @@ from equipoise.mechanism.loops import (
     PinLoop,
     Place,
     Poses,
-    RackLoop,
     Rail,
     SlideLoop,
 )
 from equipoise.mechanism.model import FRAME, Position, Slider
 from equipoise.mechanism.newton import LoopGroup, poses_in
-from equipoise.mechanism.rack_groups import Teeth
-from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.steps import Reaction, Step, initial_state, pin_reaction, run
 
 STEPS_PER_TURN = 360
@@ -77,6 +74,8 @@ def loop_group(
         if reaction.kind in ("pin", "slider")
         for step in builder.reach(reaction.on, reaction.at)
     )
+    for loop in loops:
+        reach += tuple(loop.after(builder) if isinstance(loop, CouplingLoop) else ())
     forces: tuple[Step, ...] = (LoopForces(solved, loops, reactions), *hand_over)
     return Group("loops", links, (*before, solved, *reach), forces, reactions)
 
@@ -180,36 +179,10 @@ class Maker:
         return SlideLoop(slider.name, guide, link, turn.conjugate(), along.conjugate())
 
     def coupling(self, coupling: Coupling) -> CouplingLoop:
-        loop = self.rack(coupling) if isinstance(coupling, Rack) else self.mesh(coupling)
-        if coupling.driven not in self.links:
-            raise ModelError(
-                place_in_file(self.joints, coupling),
-                Note(
-                    "{driven!r} is moved already by other joints; name what is moved "
-                    "already first in between",
-                    driven=coupling.driven,
-                ),
-            )
-        return loop
-
-    def mesh(self, coupling: Coupling) -> CouplingLoop:
         contact = contact_of(self.builder, self.joints, coupling)
-        on = self.end(coupling.driven, contact.driven_pin)
-        by = self.end(coupling.driver, contact.driver_pin)
-        kernel, numbers = coupling.relation
-        return CouplingLoop(
-            coupling.name, coupling.kind, on, by, coupling.carrier, kernel, numbers, 0.0, contact
-        )
-
-    def rack(self, rack: Rack) -> RackLoop:
-        anchor = self.anchors.get(rack.carrier) or self.builder.anchors[rack.carrier]
-        teeth = Teeth.of(self.builder, self.joints, rack, anchor)
-        on, by = (self.end(body, teeth.points[body]) for body in (rack.driven, rack.driver))
-        own = on if rack.drives == "pinion" else by
-        base, along = self.end(rack.carrier, teeth.guide.base), teeth.guide.along
-        kernel, numbers = rack.relation
-        return RackLoop(rack.name, rack.kind, on, by, rack.carrier, kernel, numbers, 0.0, teeth,
-                        own, base, along)  # fmt: skip
+        if coupling.driven not in self.links:
+            raise ModelError(place_in_file(self.joints, coupling), contact.backwards(coupling))
+        return contact.loop(coupling, self.end)
 
     def reaction(self, loop: Loop) -> Reaction:
         on, by = loop.on.body, loop.by.body
@@ -220,7 +193,7 @@ class Maker:
             couple = f"C({loop.name}/{on})"
             return Reaction(loop.name, "slider", on, by, loop.on.point, force, couple)
         push = f"C({loop.name}/{on})" if loop.contact.couples else None
-        return Reaction(loop.name, loop.kind, on, by, f"pitch({loop.name})", force, push)
+        return Reaction(loop.name, loop.kind, on, by, loop.at, force, push)
 
 
 def _solve_start(
@@ -241,7 +214,7 @@ def _solve_start(
                 names=", ".join(group.links),
             ),
         )
-    meshes = {loop.name: loop for loop in loops if isinstance(loop, CouplingLoop)}
+    meshes = {loop.name: loop for loop in loops if isinstance(loop, CouplingLoop) and loop.starts}
     if meshes and position.crank_angle != 0:
         raise ModelError(
             "position.crank_angle",
@@ -285,7 +258,7 @@ def _standing(loops: Sequence[Loop], starts: Mapping[str, float]) -> tuple[Loop,
     """The same with gears that stand still at the angles at which they start."""
     return tuple(
         replace(loop, carrier=FRAME, kernel=kernels.gear, numbers=(0.0,), offset=starts[loop.name])
-        if isinstance(loop, CouplingLoop)
+        if isinstance(loop, CouplingLoop) and loop.starts
         else loop
         for loop in loops
     )

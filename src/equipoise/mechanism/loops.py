@@ -13,9 +13,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
+from equipoise.i18n import Note
 from equipoise.mechanism import kernels
-from equipoise.mechanism.couplings import Coupling
-from equipoise.mechanism.steps import Reaction, Step
+from equipoise.mechanism.steps import Step
 
 
 @dataclass(frozen=True)
@@ -58,21 +58,25 @@ Wrench = tuple[Any, float]
 
 
 class Contact(Protocol):
-    """How the driver's push reaches the driven body.
+    """How the driver's push reaches the driven body, and how this is solved.
 
-    driver_pin, driven_pin : points of the carrier about which the two turn.
     couples : whether it pushes with a couple, too.
     """
 
     couples: ClassVar[bool]
 
-    @property
-    def driver_pin(self) -> str: ...
-    @property
-    def driven_pin(self) -> str: ...
+    def group(self, builder: Any, joints: Any, coupling: Any) -> Any:
+        """The driven link, where driver and carrier are known."""
 
-    def steps(self, coupling: Coupling, ground: Reaction) -> tuple[Reaction, tuple[Step, ...]]:
-        """The push, and steps that find it and the force in the driven body's pin `ground`."""
+    def loop(self, coupling: Any, end: Callable[[str, str], End]) -> CouplingLoop:
+        """The same as an equation; `end` finds points of bodies from their anchors."""
+
+    def backwards(self, coupling: Any) -> Note:
+        """What is said where the driven link is known and the driver is not."""
+
+
+class Pushing(Contact, Protocol):
+    """A contact whose place and line of action its loop asks for."""
 
     def place(self, poses: Poses, on: End, carrier: str) -> Any:
         """Where the push acts, complex, m; `on` is the driven body's pin."""
@@ -159,9 +163,20 @@ class CouplingLoop:
     kernel: Callable[..., tuple[Any, ...]]
     numbers: tuple[Any, ...]
     offset: Any
-    contact: Contact
+    contact: Pushing
 
     unknowns: ClassVar[int] = 1
+    starts: ClassVar[bool] = True
+    """Whether the file says at which angle the driven link starts."""
+
+    @property
+    def at(self) -> str:
+        """The point at which the push acts."""
+        return f"pitch({self.name})"
+
+    def after(self, builder: Any) -> list[Step]:
+        """Steps that outputs ask for, once the bodies are known."""
+        return []
 
     def gaps(self, poses: Poses, level: int) -> list[Any]:
         bodies = (self.on.body, self.by.body, self.carrier)

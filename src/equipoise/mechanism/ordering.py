@@ -12,6 +12,7 @@ from equipoise.errors import MobilityError, MotionError
 from equipoise.i18n import Note
 from equipoise.mechanism import groups
 from equipoise.mechanism.builder import Builder, Group, Outer, outer_joints
+from equipoise.mechanism.contacts import contact_of
 from equipoise.mechanism.joints import Structure, held_fast, subsets
 from equipoise.mechanism.model import Position
 from equipoise.mechanism.newton import LoopGroup, poses_in
@@ -133,7 +134,8 @@ def _coupled(builder: Builder, joints: Structure, unknown: list[str]) -> Group |
         ready = one.driven in unknown and {one.driver, one.carrier} <= known.keys()
         freedom = joints.freedom([one.driven], known) if ready else 1
         if freedom == 0 or (freedom < 0 and joints.mobility < 1):
-            return groups.coupled(builder, joints, one)
+            group: Group = contact_of(builder, joints, one).group(builder, joints, one)
+            return group
     return None
 
 

@@ -106,9 +106,10 @@ def _wrong_bearing(where: str, bearing: Bearing, machine: Mechanism) -> Iterator
         yield ModelError(
             where,
             Note(
-                "{link!r} has {count} bearings in different planes; give it two, whose forces "
-                "statics can tell",
+                "bearings of {link!r}: {count}, different planes of them: {planes}; give it two in "
+                "two planes, whose forces statics can tell",
                 link=bearing.link,
-                count=len({*planes}),
+                count=len(planes),
+                planes=len({*planes}),
             ),
         )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -11,10 +12,10 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism import joint_kernels, kernels
 from equipoise.mechanism.builder import Builder, Group, Guide, guide_reaction
-from equipoise.mechanism.contacts import Mesh
 from equipoise.mechanism.couplings import Coupling
+from equipoise.mechanism.gear_contacts import Mesh
 from equipoise.mechanism.joints import Structure, place_in_file
-from equipoise.mechanism.loops import End, Poses
+from equipoise.mechanism.loops import End, Poses, RackLoop
 from equipoise.mechanism.racks import Rack
 from equipoise.mechanism.steps import (
     Call,
@@ -27,10 +28,11 @@ from equipoise.mechanism.steps import (
     run,
     u,
 )
+from equipoise.mechanism.turned import Turned
 
 
 @dataclass(frozen=True)
-class Teeth:
+class Teeth(Turned):
     """How a rack and its pinion push each other, in the carrier's axes.
 
     pin : about which the pinion turns.  guide : of the rack, as the carrier has it.
@@ -41,13 +43,13 @@ class Teeth:
     pin: str
     guide: Guide
     lever: Any
-    at: Any
+    at: Any = 0j
 
     couples: ClassVar[bool] = False
 
     @classmethod
-    def of(cls, builder: Builder, joints: Structure, rack: Rack, anchor: str) -> Teeth:
-        """From the joints of a rack, and the anchor of its carrier.
+    def of(cls, joints: Structure, rack: Rack) -> Teeth:
+        """From the joints of a rack.
 
         Raises
         ------
@@ -72,8 +74,7 @@ class Teeth:
             )
         guide = Guide.seen_from(sliders[0], rack.carrier)
         lever = -1j * rack.left * rack.radius * guide.along
-        at = builder.arm(rack.carrier, anchor, pins[0]) + lever
-        return cls(rack, pins[0], guide, lever, at)
+        return cls(rack, pins[0], guide, lever)
 
     @property
     def points(self) -> dict[str, str]:
@@ -81,11 +82,11 @@ class Teeth:
         return {self.rack.pinion: self.pin, self.rack.rack: self.guide.point}
 
     @property
-    def driver_pin(self) -> str:
+    def driver_pin(self) -> str:  # type: ignore[override]
         return self.points[self.rack.driver]
 
     @property
-    def driven_pin(self) -> str:
+    def driven_pin(self) -> str:  # type: ignore[override]
         return self.points[self.rack.driven]
 
     @property
@@ -113,6 +114,19 @@ class Teeth:
             ),
         )
 
+    def group(self, builder: Builder, joints: Structure, coupling: Coupling) -> Group:
+        return _racked(builder, joints, self)
+
+    def loop(self, coupling: Coupling, end: Callable[[str, str], End]) -> RackLoop:
+        rack = self.rack
+        on, by = (end(body, self.points[body]) for body in (rack.driven, rack.driver))
+        own = on if rack.drives == "pinion" else by
+        base, placed = end(rack.carrier, self.guide.base), end(rack.carrier, self.pin)
+        kernel, numbers = rack.relation
+        teeth = replace(self, at=placed.arm + self.lever)
+        return RackLoop(rack.name, rack.kind, on, by, rack.carrier, kernel, numbers, 0.0, teeth,
+                        own, base, self.guide.along)  # fmt: skip
+
     def place(self, poses: Poses, on: End, carrier: str) -> Any:
         """The pitch point."""
         return poses[carrier].point(self.at)[0]
@@ -124,10 +138,14 @@ class Teeth:
         return [(self.rack.left * way * (1 + 1j * np.tan(self.rack.pressure_angle) * sense), 0.0)]
 
 
-def racked(builder: Builder, joints: Structure, rack: Rack) -> Group:
+def teeth_of(_: Builder, joints: Structure, rack: Rack) -> Teeth:
+    """How a rack and its pinion go together."""
+    return Teeth.of(joints, rack)
+
+
+def _racked(builder: Builder, joints: Structure, teeth: Teeth) -> Group:
     """What a rack, or its pinion, drives."""
-    teeth = Teeth.of(builder, joints, rack, builder.anchors[rack.carrier])
-    guide, link = teeth.guide, rack.driven
+    rack, guide, link = teeth.rack, teeth.guide, teeth.rack.driven
     if rack.drives == "pinion":
         motion, ground = (
             _rack(builder, teeth),

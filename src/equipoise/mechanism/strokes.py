@@ -6,109 +6,28 @@ rocker is a link that is pinned to the frame and swings.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import Field, dataclass, field, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from math import isfinite, pi
-from typing import Any, Literal
 
 import numpy as np
 
 from equipoise.errors import ChangePointError, RangeError, UsageError
-from equipoise.i18n import to_say
 from equipoise.mechanism.checks import Named, unknown
 from equipoise.mechanism.cycle import FEWER_POINTS, MANY_TURNS, POINTS_PER_TURN
-from equipoise.mechanism.dwell import Dwell, Path, longest_dwell
+from equipoise.mechanism.dwell import Dwell, Path, longest_dwell, rests
 from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.poles import guided, pinned
 from equipoise.mechanism.steps import Array
+from equipoise.mechanism.stroke_figures import DeadPosition, Kind, Stroke
 from equipoise.mechanism.tip import largest, roots
-from equipoise.quantities import Dimension
 from equipoise.signals import EQUAL, highest_at
 
-Kind = Literal["slider", "rocker"]
-OF_KIND: dict[Kind, Dimension] = {"slider": "length", "rocker": "angle"}
 SHARE = 0.01
 """Of a stroke, or of the extent of a path: the usual tolerance of a dwell."""
 STILL = 1e-12
 """Of the largest rate of all: what is slower stands still."""
-
-
-# -- the figures, each declared once ---------------------------------------------------------------
-
-
-def figure(label: str, dimension: Dimension | None = None, own: bool = False) -> Any:
-    """A figure: its label for readers, and its dimension, or whether it has that of the stroke."""
-    return field(metadata={"label": label, "dimension": dimension, "own": own})
-
-
-@dataclass(frozen=True)
-class DeadPosition:
-    """Where something turns back: crank angle, rad, and place there, m or rad."""
-
-    crank_angle: float = figure(to_say("crank angle"), "angle")
-    place: float = figure(to_say("place"), own=True)
-
-
-@dataclass(frozen=True)
-class Stroke:
-    """Figures of a slider (m) or of a rocker (rad); crank angles in rad.
-
-    stroke : largest less smallest place.
-    lowest, highest : the smallest and largest place, both dead positions.
-    rise, fall : crank angle from the lowest place to the highest that comes next as the crank
-        turns, and from there to the lowest that comes next.
-    time_ratio : the longer of these over the shorter: how quick the return is.
-    dwell : longest crank angle over which it moves by no more than a hundredth of the stroke.
-    least_advantage : smallest force (per m) or torque on it, over the torque of the crank, by
-        virtual power; None of what slides on a moving link.  Towards dead positions it has no
-        bound.
-    dead_positions : all of them, in the order of the crank angle.
-    """
-
-    kind: Kind
-    stroke: float = figure(to_say("stroke"), own=True)
-    lowest: float = figure(to_say("lowest place"), own=True)
-    lowest_at: float = figure(to_say("lowest at crank angle"), "angle")
-    highest: float = figure(to_say("highest place"), own=True)
-    highest_at: float = figure(to_say("highest at crank angle"), "angle")
-    rise: float = figure(to_say("crank turns while it rises"), "angle")
-    fall: float = figure(to_say("crank turns while it falls"), "angle")
-    time_ratio: float = figure(to_say("time ratio"))
-    dwell: float = figure(to_say("dwell"), "angle")
-    dwell_at: float = figure(to_say("dwell begins at crank angle"), "angle")
-    least_advantage: float | None = figure(to_say("least mechanical advantage"))
-    least_advantage_at: float | None = figure(to_say("least mechanical advantage at"), "angle")
-    dead_positions: tuple[DeadPosition, ...] = ()
-
-    @property
-    def dimension(self) -> Dimension:
-        """Of its places."""
-        return OF_KIND[self.kind]
-
-    def told(self) -> dict[str, Any]:
-        """As plain data."""
-        return vars(self) | {"dead_positions": [dict(vars(one)) for one in self.dead_positions]}
-
-
-def declared_figures(of: type = Stroke) -> Iterator[Field[Any]]:
-    """Those of a stroke, or of a dead position."""
-    return (one for one in fields(of) if "label" in one.metadata)
-
-
-def dimension_of(machine: Machine, path: str) -> Dimension | None:
-    """Dimension of a figure by its path in the strokes of a machine, without places in lists."""
-    name, _, last = path.rpartition(".")
-    whole = name.removesuffix(".dead_positions")
-    for of in (Stroke,) if whole == name else (DeadPosition,):
-        for one in declared_figures(of):
-            if one.name == last:
-                slides = any(slider.name == whole for slider in machine.sliders)
-                own = OF_KIND["slider" if slides else "rocker"]
-                found: Dimension | None = own if one.metadata["own"] else one.metadata["dimension"]
-                return found
-    return None
 
 
 # -- what moves ------------------------------------------------------------------------------------
@@ -198,6 +117,10 @@ def strokes(linkage: Linkage) -> Mapping[str, Stroke]:
     table = np.array([samples[one] for one in kept])
     fastest = largest(outputs.size, outputs.gain, theta, np.abs(table[:, 1]))
     dead = _dead_positions(outputs, theta, table)
+    for k, one in enumerate(kept):
+        if len(dead[k]) > 1:
+            own = _Outputs(linkage, (one,))
+            dead[k] = _rested(own, dead[k], theta, table[k, 1], STILL * rates[one])
     found = {
         one.name: _stroke(one, linkage, table[k], dead[k], (fastest[0][k], fastest[1][k]))
         for k, one in enumerate(kept)
@@ -228,6 +151,20 @@ def _dead_positions(
     ]
 
 
+def _rested(
+    output: _Outputs, dead: tuple[DeadPosition, ...], theta: Array, speed: Array, least: float
+) -> tuple[DeadPosition, ...]:
+    """Dead positions of one output, each where a rest begins that it lies in."""
+    resting = rests(theta, speed, lambda at: output.speed(at[None])[0], least)
+    step = theta[1]
+    period, found = step * len(theta), []
+    for one in dead:
+        inside = (r for r in resting if (one.crank_angle - r[0] + step) % period < r[1] + 2 * step)
+        begin, rest = next(inside, (one.crank_angle, 0.0))
+        found.append(replace(one, crank_angle=begin, rest=rest))
+    return tuple(sorted(found, key=lambda position: position.crank_angle))
+
+
 def _turning(angles: Array, places: Array) -> list[DeadPosition]:
     """Dead positions by crank angle, without those between which it moves by rounding alone."""
     order = np.argsort(angles)
@@ -254,11 +191,12 @@ def _stroke(
     low, high = (dead[highest_at(sign * places, smooth=False)] for sign in (-1, 1))
     period = 2 * pi * linkage.cycle.turns
     stroke = high.place - low.place
-    angles = np.array([position.crank_angle for position in dead])
-    tops, bottoms = (angles[np.abs(places - end.place) <= EQUAL * stroke] for end in (high, low))
     way = 1 if linkage.machine.drive.speed >= 0 else -1
-    rise = float(np.min(way * (tops - low.crank_angle) % period))
-    fall = float(np.min(way * (bottoms - (low.crank_angle + way * rise)) % period))
+    angles = np.array([position.gone(-way) for position in dead])
+    tops, bottoms = (np.abs(places - end.place) <= EQUAL * stroke for end in (high, low))
+    rise = float(np.min(way * (angles[tops] - low.gone(way)) % period))
+    top = dead[int(np.argmin(np.where(tops, way * (angles - low.gone(way)) % period, np.inf)))]
+    fall = float(np.min(way * (angles[bottoms] - top.gone(way)) % period))
     held = longest_dwell(_along(samples[0], samples[1], samples[2], period), SHARE * stroke)
     advantage, at = None, None
     told = one.kind == "rocker" or one.name in guided(linkage.machine)
@@ -273,6 +211,8 @@ def _stroke(
         high.crank_angle,
         rise,
         fall,
+        low.rest,
+        top.rest,
         max(rise, fall) / min(rise, fall) if min(rise, fall) else float("nan"),
         held.angle,
         held.begin,

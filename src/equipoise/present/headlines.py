@@ -168,10 +168,11 @@ def topped(what: str, found: Figures, dimension: Dimension) -> str:
     )
 
 
-def caused(analysis: Analysis) -> str:
-    """What most of the swing of the drive's torque or force comes from."""
-    drive = analysis.machine.drive
-    parts = analysis.forces.split.by_cause(drive.effort)
+def caused(analysis: Analysis, number: int = 1) -> str:
+    """What most of the swing of a drive's torque or force comes from."""
+    machine, drive = analysis.machine, analysis.machine.driven[number - 1]
+    output = machine.drive.effort if number == 1 else f"drives.{drive.link}.{drive.effort_in}"
+    parts = analysis.forces.split.by_cause(output)
     name, share = next(iter(shares({k: part - np.mean(part) for k, part in parts.items()}).items()))
     values = {"share": percent(share), "cause": say(CAUSES[name])}
     of_force = to_say("{share} % of the swing of the drive force comes from: {cause}")

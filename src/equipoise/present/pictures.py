@@ -153,10 +153,20 @@ def _forces(found: Findings) -> Iterator[Entry]:
         partial(forces.moment, analysis),
         partial(seen.peaked, analysis, "shaking_moment", "torque"),
     )
-    caption = to_say("Drive torque over crank angle, and what it is for.")
-    yield Entry("torque", caption, partial(forces.torque, analysis), partial(seen.caused, analysis))
+    drives, pushes = analysis.machine.driven, analysis.machine.drive.pushes
+    of_torque = to_say("Drive torque over crank angle, and what it is for.")
+    of_force = to_say("Drive force over crank angle, and what it is for.")
+    for number, one in enumerate(drives, 1):
+        yield Entry(
+            "torque" if number == 1 else f"torque-{number}",
+            of_force if one.pushes else of_torque,
+            partial(forces.torque, analysis, number),
+            partial(seen.caused, analysis, number),
+        )
     if analysis.has_orders:
-        caption = to_say("Shaking force, shaking moment and drive torque by orders of the crank.")
+        of_torque = to_say("Shaking force, shaking moment and drive torque by orders of the crank.")
+        of_force = to_say("Shaking force, shaking moment and drive force by orders of the crank.")
+        caption = of_force if pushes else of_torque
         yield Entry(
             "spectrum", caption, partial(forces.spectrum, analysis), partial(seen.ordered, found)
         )
@@ -270,7 +280,9 @@ def _balance(found: Findings) -> Iterator[Entry]:
             "force": to_say("Shaking force, before and after."),
             "polar": to_say("Shaking force as a polar diagram, before and after."),
             "moment": to_say("Shaking moment, before and after."),
-            "torque": to_say("Drive torque, before and after."),
+            "torque": to_say("Drive force, before and after.")
+            if balanced.machine.drive.pushes
+            else to_say("Drive torque, before and after."),
         }
         for name, chart in signals(balanced).items():
             yield Entry(

@@ -21,7 +21,8 @@ from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.mechanism.planes import beside
 from equipoise.mechanism.shares import CAUSES
-from equipoise.mechanism.strokes import Stroke, dwell, strokes
+from equipoise.mechanism.stroke_figures import Stroke
+from equipoise.mechanism.strokes import dwell, strokes
 from equipoise.mechanism.undecided import undecided
 from equipoise.quantities import Dimension
 from equipoise.results.outputs import Outputs

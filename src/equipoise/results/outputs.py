@@ -15,7 +15,7 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.outputs import DECLARED, GROUPS, Declared, declared
-from equipoise.mechanism.strokes import DeadPosition, Stroke, declared_figures
+from equipoise.mechanism.stroke_figures import DeadPosition, Stroke, declared_figures
 from equipoise.mechanism.undecided import refuse_unbounded
 from equipoise.quantities import SI, Dimension, Display, display
 from equipoise.signals import Array, Figures, Periodic, figures

@@ -18,7 +18,7 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.outputs import declared
-from equipoise.mechanism.strokes import dimension_of as of_stroke
+from equipoise.mechanism.stroke_figures import dimension_of as of_stroke
 from equipoise.planting.names import dimension_of as of_planting
 from equipoise.signals import figures
 

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from equipoise.mechanism.model import Drive as Driving
+from equipoise.mechanism.model import FurtherDrive
 from equipoise.mechanism.motion import Motion
 
 
@@ -24,11 +26,16 @@ class Drive:
     between: tuple[str, str] | None = None
 
     @classmethod
-    def of(cls, motion: Motion) -> Drive:
-        """That of a machine in motion."""
-        drive, angle = motion.machine.drive, motion.links[motion.machine.drive.link].angle
+    def each(cls, motion: Motion) -> tuple[Drive, ...]:
+        """Those of a machine in motion."""
+        return tuple(cls._of(drive, motion) for drive in motion.machine.driven)
+
+    @classmethod
+    def _of(cls, drive: Driving | FurtherDrive, motion: Motion) -> Drive:
+        angle, pivot = motion.links[drive.link].angle, motion.linkage.anchors[drive.link]
         law = drive.stroke or drive.motion
         if law is None or law.windings:
-            return cls(drive.link, motion.linkage.pivot, int(np.sign(motion.speed)))
+            ahead = getattr(drive, "ratio", 1.0) if law is None else law.windings
+            return cls(drive.link, pivot, int(np.sign(motion.speed * ahead)))
         swings = None if drive.pushes else (float(angle.min()), float(angle.max()))
-        return cls(drive.link, motion.linkage.pivot, 0, swings, drive.between)
+        return cls(drive.link, pivot, 0, swings, drive.between)

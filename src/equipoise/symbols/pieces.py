@@ -10,6 +10,7 @@ import numpy as np
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.support import Mount, unit_vector
 from equipoise.symbols.carrier import foot, gauge, ground, strut, turning
+from equipoise.symbols.drives import Drive
 from equipoise.symbols.scene import WIDE, Body, Guide, Scene
 from equipoise.symbols.shapes import (
     PIN,
@@ -279,7 +280,7 @@ def _marks(scene: Scene, body: Body, traced: Collection[str]) -> Iterator[Shape]
     """Pins, traced points and centre of mass of a link."""
     others = scene.bodies[: scene.bodies.index(body)]
     hung = {point for ends in (*scene.springs, *scene.planned) for point in ends}
-    hung |= {*(scene.drive.between or ())}
+    hung |= {point for drive in scene.drives for point in drive.between or ()}
     drawn = {*scene.frame, *(point for other in others for point in other.points)}
     for point in body.points:
         if point in drawn:
@@ -300,9 +301,12 @@ def _sense(scene: Scene) -> Iterator[Piece]:
     """An arrow about the drive's pivot in the sense in which it turns, ahead of the crank; or one
     with two heads over all angles that it goes to and fro.
     """
-    drive = scene.drive
-    if not drive.sense and drive.swings is None:
-        return
+    for drive in scene.drives:
+        if drive.sense or drive.swings is not None:
+            yield _arrow(scene, drive)
+
+
+def _arrow(scene: Scene, drive: Drive) -> Piece:
     (body,) = (body for body in scene.bodies if body.name == drive.link)
     center = scene.local(body, scene.places[drive.pivot])
     arms = scene.corners(body) - center
@@ -311,23 +315,20 @@ def _sense(scene: Scene) -> Iterator[Piece]:
     if drive.swings is not None:
         over = np.linspace(*drive.swings, len(AHEAD)) + np.angle(arm)
         still = complex(scene.places[drive.pivot][0])
-        yield Piece("drive", tuple(driver(still, radius, over, both=True)))
-        return
+        return Piece("drive", tuple(driver(still, radius, over, both=True)))
     angles = np.angle(arm) + drive.sense * AHEAD
-    yield Piece("drive", tuple(driver(center, radius, angles)), _with(body))
+    return Piece("drive", tuple(driver(center, radius, angles)), _with(body))
 
 
 def _cylinder(scene: Scene) -> Iterator[Piece]:
     """A barrel at one point and a rod at the other, which keep their lengths."""
-    if scene.drive.between is None:
-        return
-    first, second = scene.drive.between
-    lengths = abs(scene.places[second] - scene.places[first])
-    short, long = float(lengths.min()), float(lengths.max())
-    barrel = min(max(BARREL * long, long - ROD * short), ROD * short)
-    shapes = cylinder(barrel, long - INSIDE * barrel)
-    for point, to, shape in ((second, first, shapes[0]), (first, second, shapes[1])):
-        yield Piece("drive", (shape,), Hold(point, to=to, rigid=True))
+    for first, second in (drive.between for drive in scene.drives if drive.between is not None):
+        lengths = abs(scene.places[second] - scene.places[first])
+        short, long = float(lengths.min()), float(lengths.max())
+        barrel = min(max(BARREL * long, long - ROD * short), ROD * short)
+        shapes = cylinder(barrel, long - INSIDE * barrel)
+        for point, to, shape in ((second, first, shapes[0]), (first, second, shapes[1])):
+            yield Piece("drive", (shape,), Hold(point, to=to, rigid=True))
 
 
 # -- at one crank angle ----------------------------------------------------------------------------

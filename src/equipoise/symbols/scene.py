@@ -115,7 +115,7 @@ class Scene:
     guides: tuple[Guide, ...]
     springs: tuple[tuple[str, str], ...]
     angles: Mapping[str, Array]
-    drive: Drive
+    drives: tuple[Drive, ...]
     planned: tuple[tuple[str, str], ...] = ()
     field: Field | None = None
     carrier: Carrier | None = None
@@ -142,7 +142,7 @@ class Scene:
             tuple(_guides(motion)),
             springs := tuple((spring.point, spring.to) for spring in machine.springs),
             {name: link.angle for name, link in motion.links.items()},
-            Drive.of(motion),
+            Drive.each(motion),
             tuple((one.point, one.to) for one in planned if (one.point, one.to) not in springs),
             _field(motion),
             Carrier.of(machine),
@@ -160,10 +160,15 @@ class Scene:
         return self if rows is ONE else replace(self, rows=rows)
 
     @property
+    def drive(self) -> Drive:
+        """The first of them."""
+        return self.drives[0]
+
+    @property
     def standing(self) -> tuple[str, ...]:
         """Points of the frame at which something is held."""
         held = {to for _, to in (*self.springs, *self.planned)} | self.pins
-        held |= {*(self.drive.between or ())}
+        held |= {point for drive in self.drives for point in drive.between or ()}
         return tuple(name for name in self.frame if name in held)
 
     def ground(self, point: str) -> complex:

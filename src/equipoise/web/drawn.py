@@ -244,7 +244,7 @@ def scene_of(sketch: Sketch) -> Scene:
         guides,
         springs,
         {name: pose.angle * one for name, pose in sketch.poses.items()},
-        drive,
+        (drive,),
         marks=tuple(_taut(sketch)),
         room=() if sketch.links else EMPTY,
     )

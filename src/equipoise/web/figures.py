@@ -15,6 +15,7 @@ import numpy as np
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import DECLARED, Declared
+from equipoise.mechanism.planes import beside
 from equipoise.quantities import Display, change, display, number, typeset
 from equipoise.quantities.numbers import SAME
 from equipoise.results.analysis import Analysis
@@ -31,6 +32,8 @@ def signals_of(analysis: Analysis) -> Signals:
     if found is None:
         return {}
     signals = {"shaking_force": found.shaking_force.value}
+    if beside(analysis.machine):
+        signals["rocking_moment"] = found.across.rocking_moment.value
     signals |= {
         name: analysis.outputs[name].values
         for name, one in told_signals().items()
@@ -129,11 +132,14 @@ def _is_force(name: str) -> bool:
 
 
 def _with_parts(signals: Signals) -> Signals:
-    """Signals with the components of the shaking force beside it."""
-    force = signals.get("shaking_force")
-    if force is None:
-        return signals
-    return {**signals, "shaking_force.x": force.real, "shaking_force.y": force.imag}
+    """Signals with the components of vectors beside them."""
+    vectors = {name: one for name, one in signals.items() if np.iscomplexobj(one)}
+    parts = {f"{name}.{axis}": part for name, one in vectors.items() for axis, part in _xy(one)}
+    return {**signals, **parts}
+
+
+def _xy(vector: Array) -> tuple[tuple[str, Array], ...]:
+    return ("x", vector.real), ("y", vector.imag)
 
 
 NONE = "\N{EN DASH}"

@@ -17,6 +17,7 @@ SAME = {
     "path": "curves",
     "shaking_force": "force",
     "shaking_moment": "moment",
+    "rocking_moment": "moment",
     "drive_torque": "torque",
     "drive_force": "torque",
     "spectrum": "spectrum",

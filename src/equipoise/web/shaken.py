@@ -8,12 +8,15 @@ from math import isfinite
 from typing import Any
 
 from equipoise.errors import EquipoiseError
+from equipoise.figures import render
+from equipoise.figures.side import side
 from equipoise.figures.swing import ModeSwing, swinging
 from equipoise.i18n import said, say
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.planes import beside
 from equipoise.mechanism.spoken import joint_named
-from equipoise.mechanism.strokes import declared_figures, dimension_of
+from equipoise.mechanism.stroke_figures import declared_figures, dimension_of
 from equipoise.mechanism.support import FREEDOMS, PLANAR
 from equipoise.planting.blocks import cell
 from equipoise.planting.names import FIGURES, figure_named, of_all_arms
@@ -150,12 +153,15 @@ class OutdatedError(Exception):
 def more(
     found: Solved, against: Solved | None, sweep: bool, outdated: Callable[[], bool]
 ) -> Iterator[tuple[Values, bytes]]:
-    """Strokes, planting figures, the response over speed; each as values and a block of floats.
+    """Planes from the side, strokes, planting figures, the response over speed; each as values and
+    a block of floats.
 
     against : the design that figures are told against, if any.
     sweep : whether the response is wanted.
     outdated : tells when the design is no longer shown, so that the rest is not wanted.
     """
+    if beside(found.analysis.machine) and not outdated():
+        yield {"type": "side", "svg": render(side(found.analysis)).decode()}, b""
     if found.analysis.strokes and not outdated():
         yield _told_against("strokes", _strokes, found, against), b""
     if _plants(found) and not outdated():

@@ -135,7 +135,10 @@ def test_rows_add_their_own_rocking() -> None:
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        ({"left": Bearing("shaft", 0.0)}, "has 1 bearings in different planes; give it two"),
+        (
+            {"left": Bearing("shaft", 0.0)},
+            "bearings of 'shaft': 1, different planes of them: 1; give it two",
+        ),
         ({"left": Bearing("axle", 0.0)}, "no link is called 'axle'"),
     ],
 )

@@ -11,7 +11,9 @@ import pytest
 import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.mechanism.dwell import Path, longest_dwell
-from equipoise.mechanism.strokes import DeadPosition, _turning
+from equipoise.mechanism.laws import AngleLaw, AngleSegment
+from equipoise.mechanism.stroke_figures import DeadPosition
+from equipoise.mechanism.strokes import _turning
 from support.conformance import compared
 from support.sources import CLOSED_FORMS
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
@@ -48,6 +50,26 @@ def test_an_offset_slider_crank(offset: float, speed: float) -> None:
     forwards = (found.highest_at - found.lowest_at) % (2 * pi)
     assert found.rise == pytest.approx(forwards if speed > 0 else 2 * pi - forwards)
     assert found.highest_at == pytest.approx(asin(offset / (rod + crank)) % (2 * pi), abs=1e-12)
+
+
+@pytest.mark.parametrize("speed", [10.0, -10.0])
+@pytest.mark.parametrize("phase", [0.0, 5.5])
+def test_rests_are_told_apart_from_strokes(speed: float, phase: float) -> None:
+    """A lever swung by segments: 120 deg ahead, a rest of 50, 150 back, a rest of 40."""
+    parts = ((120, 140), (50, 140), (150, 100), (40, 100))
+    segments = tuple(AngleSegment(radians(over), radians(to)) for over, to in parts)
+    law = AngleLaw(start=radians(100), segments=segments, phase=phase)
+    moved = crank_rocker().with_drive(speed=speed, motion=law)
+    found = eq.analyze(moved, 8).strokes["rocker"]
+    ways = (found.rise, found.highest_rest, found.fall, found.lowest_rest)
+    forth, back = (120.0, 150.0) if speed > 0 else (150.0, 120.0)
+    # a law that begins smoothly stands still to rounding a little before and after its rest
+    assert np.degrees(ways) == pytest.approx((forth, 50, back, 40), abs=1e-3)
+    assert found.time_ratio == pytest.approx(150 / 120, rel=1e-5)
+    assert sum(ways) == pytest.approx(2 * pi, abs=1e-12)
+    begin = degrees(found.highest_at - phase) % 360
+    assert begin == pytest.approx(120, abs=1e-3)
+    assert max(one.rest for one in found.dead_positions) == found.highest_rest
 
 
 @compared(CLOSED_FORMS, "strokes and time ratio by triangles", 1e-12, "quick-return")

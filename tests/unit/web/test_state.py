@@ -65,6 +65,18 @@ def test_the_path_over_ground_advances_by_a_hill_a_turn() -> None:
     assert not session.has_more
 
 
+def test_links_beside_each_other_are_told() -> None:
+    session, shown = opened("twin-engine")
+    across = eq.analyze(eq.load("twin-engine"), 720).forces.across
+    assert shown.content["beside"]
+    peak = shown.figure("rocking_moment.x.peak")["value"]
+    assert peak == pytest.approx(np.max(np.abs(across.rocking_moment.x)))
+    sent = shown.vector("rocking_moment")
+    np.testing.assert_allclose(sent, across.rocking_moment.value, rtol=0, atol=1e-4)
+    drawn = next(one.content for one in session.tell_more() if one.content["type"] == "side")
+    assert "piston-2" in drawn["svg"]
+
+
 def test_figures_of_sliders_and_rockers_are_told_in_the_units_of_tables() -> None:
     session, _ = opened("quick-return")
     (more,) = session.tell_more()
