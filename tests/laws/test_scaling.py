@@ -148,7 +148,7 @@ def test_every_objective(name: str, measure: Any) -> None:
     counterweight = AddedMass(crank, next(iter(machine.links[crank].points)), Weight(radius=0.05))
     moves = tuple(CenterMove(link) for link in machine.links)
     for output in balanced_names(machine):
-        if output.startswith("gauges") or (machine.gears and "moment" not in output):
+        if output.startswith("gauges") or (machine.gears and output != "shaking_moment"):
             continue
         wish = (Objective(output, measure),)
         for plan in (Balance(masses=(counterweight,), objectives=wish),

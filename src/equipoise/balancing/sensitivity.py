@@ -40,6 +40,8 @@ CHANGES: dict[str, tuple[Dimension, str, str]] = {
 unit in which it is usually shown, and what it is called.  z matters to rocking moments alone."""
 NOTHING = 1e-10
 """Share of the largest effect below which there is none."""
+BESIDE, JUMP = 1e-8, 1e-4
+"""rad, beside a change of sign; share of the largest effect below which a smooth one is there."""
 LEAST_ANGLES = 8
 
 
@@ -49,8 +51,8 @@ class Sensitivity:
 
     values : (N,) at each crank angle, unit of the output over unit of the parameter.
     rms : of it.
-    no_effect_at : crank angles (rad) within the cycle at which the sign changes; empty where there
-        is no effect at all.
+    no_effect_at : crank angles (rad) within the cycle at which it passes zero; empty where there is
+        no effect at all.
     percent : RMS of what a small change does: 1 % of the link's mass, 1 % of its moment of
         inertia, or its centre of mass moved by 1 % of the machine's size; unit of the output.
     """
@@ -214,7 +216,8 @@ def _by_change(link: Link, columns: Array) -> Array:
 
 
 def _sign_changes(motion: Motion, output: str, values: Array) -> list[Array]:
-    """Crank angles at which each derivative (4 L, N) changes sign, rising, within the cycle.
+    """Crank angles at which each derivative (4 L, N) passes zero, rising, within the cycle; where
+    accelerations jump it may change its sign and have an effect on either side.
 
     Those of all derivatives are closed in on together, by solving the machine there.
     """
@@ -231,8 +234,11 @@ def _sign_changes(motion: Motion, output: str, values: Array) -> list[Array]:
         return _derivatives(there, output)[which, each][None]
 
     low = k * step
-    found = np.mod(roots(signal, low[None], low[None] + step)[0], period)
-    return [np.sort(found[which == row]) for row in range(len(values))]
+    found = roots(signal, low[None], low[None] + step)[0]
+    sides = [np.abs(signal(found[None] + way)[0]) for way in (-BESIDE, BESIDE)]
+    smooth = np.minimum(*sides) <= JUMP * np.max(np.abs(values), axis=1)[which]
+    found = np.mod(found, period)
+    return [np.sort(found[smooth & (which == row)]) for row in range(len(values))]
 
 
 def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Block]:

@@ -16,7 +16,7 @@ import numpy as np
 
 from equipoise.codegen.backends import processors, run_loop
 from equipoise.codegen.coupled import shifts_laws
-from equipoise.codegen.emit import emit
+from equipoise.codegen.emit import emit, moves_shared
 from equipoise.codegen.figures import (
     CHANGE_POINT,
     COMPUTED,
@@ -162,12 +162,18 @@ class Batch:
         if shifts_laws(machine, paths):
             raise UsageError("got the start of a body from whose angle a varying ratio counts")
         self.base = assemble(machine)
+        if moves_shared(self.base, paths):
+            raise UsageError(
+                "got lengths of a linkage whose joints hold more than its motion needs; each "
+                "design has to be looked at by itself, whether they agree"
+            )
         self.paths, self.wanted = tuple(paths), tuple(wanted)
         self.angles, self.tolerance = angles, tolerance
         self.threads = threads or processors()
         self.needed = 2 if any(figure.name not in SMOOTH for figure in self.wanted) else 1
         has_steps = any(load.jumps for load in machine.loads)
-        has_steps |= any(len(cam.law.jumps(2)) for cam in machine.cams)
+        laws = [*machine.laws.values(), *(cam.law for cam in machine.cams)]
+        has_steps |= any(len(law.jumps(2)) for law in laws)
         self.least = STEP / tolerance if has_steps else FIRST
         self.source = emit(self.base, Gathered.of(self.wanted))
         self.gathered = self.source.gathered
@@ -277,7 +283,7 @@ class Batch:
         strongest = found[:, self.source.strongest].copy()
         self._look_closer(table, weakest, strongest, count)
         dyads = [*zip(weakest.T, strongest.T, strict=True)][: len(set(self.source.watched))]
-        groups = [group.margin for group in self.base.groups]
+        groups = [group.margin for group in self.base.groups if not group.through]
         for margin in reversed(groups):
             if margin is None:
                 if self.march:

@@ -28,6 +28,11 @@ from equipoise.mechanism.planes import beside
 
 _LOOKED_UP = re.compile(r"\{([^}:]+)(:name)?\}")
 """Values in the expression of an output: of the machine, or of the member of a family."""
+_OF_FORCES = re.compile(
+    r"drive\..+|gravity\..+|springs\[\d+\]\..+|links\..+\.(mass|inertia|center_of_mass\..+)"
+    r"|links\..+\.bodies\[\d+\]\..+"
+)
+"""Paths of numbers on which forces depend and the motion by crank angle does not."""
 ORDERS = {"position": 0, "velocity": 1, "acceleration": 2}
 OF_CAMS = {"cam push": "T({})", "cam forth": "forth({})", "cam normal": "normal({})"}
 """Values of a state that tell of a cam."""
@@ -153,10 +158,9 @@ def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
 
 def can_emit(linkage: Linkage) -> bool:
     """Whether the steps of a linkage can be written out: no soil, no gears beside loops, no laws of
-    couplings at angles that designs change, no drive that pushes, and no joints whose forces only
-    all free bodies together tell.
+    couplings at angles that designs change, and no drive that pushes.
     """
-    if linkage.shared is not None or linkage.machine.pushers:
+    if linkage.machine.pushers:
         return False
     machine = linkage.machine
     if machine.planting is not None and machine.planting.soil is not None:
@@ -177,9 +181,8 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     """
     if not can_emit(linkage):
         raise UsageError(
-            "large groups of loops, fingers in soil, parallel cranks, double guides, drives that "
-            "push, couplings beside loops, and gears of varying ratio on links that dyads move "
-            "cannot be computed in a loop"
+            "large groups of loops, fingers in soil, drives that push, couplings beside loops, and "
+            "gears of varying ratio on links that dyads move cannot be computed in a loop"
         )
     writer = Writer(linkage)
     write_motion(writer)
@@ -189,6 +192,8 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     passed = ["{joint ", "{bearing ", "{cam push", "{belt "]
     passed += [] if linkage.machine.has_crank else ["{drive torque"]
     if any(value in (one.loop or "") for one in wanted for value in passed):
+        if linkage.shared is not None:
+            raise UsageError("forces that joints share cannot be computed in a loop")
         if any(isinstance(step, LoopGroup) for step in linkage.motion):
             raise UsageError("joint forces of groups of loops cannot be computed in a loop")
         write_joints(writer)
@@ -196,12 +201,17 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     return source_of(writer.sheet, signals, writer.numbers(), gathered)
 
 
+def moves_shared(linkage: Linkage, paths: Sequence[str]) -> bool:
+    """Whether these numbers change the motion of a linkage whose lengths have to agree."""
+    return linkage.shared is not None and not all(map(_OF_FORCES.fullmatch, paths))
+
+
 def can_compute(machine: Machine, paths: Sequence[str], figure: Figure) -> bool:
     """Whether a loop can compute a figure of designs in which these numbers vary."""
     linkage = assemble(machine)
     if not can_emit(linkage) or not all(can_vary(machine, path) for path in paths):
         return False
-    if shifts_laws(machine, paths):
+    if shifts_laws(machine, paths) or moves_shared(linkage, paths):
         return False
     try:
         emit(linkage, Gathered.of([figure]))

@@ -36,7 +36,8 @@ MOST_UNKNOWNS = 7
 def can_write(group: LoopGroup) -> bool:
     """Whether a group can be written out: it is small, and each link hangs on a pin or a guide."""
     hung = not any(isinstance(place, Free) for place in group.tree)
-    return hung and len(group.turning) <= MOST_UNKNOWNS
+    square = len(group.turning) == sum(one.unknowns for one in group.equations)
+    return hung and square and len(group.turning) <= MOST_UNKNOWNS
 
 
 def write_loops(sheet: Sheet, linkage: Linkage, number: int) -> None:

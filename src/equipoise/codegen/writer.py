@@ -65,7 +65,7 @@ class Writer:
         """Identifiers of the dyads' own numbers, and of what else is to be watched; each with the
         dyad that it tells of, by its place in the order in which they are solved.
         """
-        own = [g.margin for g in self.linkage.groups if g.margin is not None]
+        own = [g.margin for g in self.linkage.groups if g.margin is not None and not g.through]
         found = {self.name(number): k for k, number in enumerate(own)}
         return found | {self.apart[n]: k for k, n in enumerate(own) if n in self.apart}
 

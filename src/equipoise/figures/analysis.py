@@ -82,7 +82,11 @@ def angle_axis(analysis: Analysis) -> Axis:
 
 
 def settled(values: Array, least: float) -> Array:
-    """Values (N,), or zeros where none is larger than what is told as rounding."""
+    """Values (N,), or zeros where none is larger than what is told as rounding; of each component
+    of complex ones.
+    """
+    if np.iscomplexobj(values):
+        return settled(values.real, least) + 1j * settled(values.imag, least)
     return values if float(np.max(np.abs(values), initial=0.0)) > least else 0 * values
 
 

@@ -153,6 +153,8 @@ def _opposite(one: float, other: float, opposite: float) -> float:
     return acos(min(1.0, max(-1.0, cosine)))
 
 
+MOST_JUMPS = 6
+"""Crank angles that are told at which an acceleration jumps."""
 POOR_TRANSMISSION = 30.0
 """Degrees from stretched or folded below which force is transmitted badly."""
 
@@ -165,6 +167,21 @@ LEVEL = 1e-6
 """Degrees up to which axes are not turned."""
 
 
+def _jerks(machine: Machine) -> Iterator[Note]:
+    """Where laws of drives let accelerations jump, and with them all forces."""
+    for link, law in machine.laws.items():
+        angles = [f"{degrees(at):.4g}" for at in law.jumps(2)]
+        more = [] if len(angles) <= MOST_JUMPS else ["..."]
+        if angles:
+            yield Note(
+                "the acceleration that the drive of {link!r} commands jumps at crank angle "
+                "{angles} deg, an infinite jerk, and forces jump there; laws such as cycloidal, "
+                "3-4-5 or s-curve do not",
+                link=link,
+                angles=", ".join([*angles[:MOST_JUMPS], *more]),
+            )
+
+
 def remarks(linkage: Linkage) -> Iterator[Note | str]:
     """Things worth a second look, each one sentence; none of them keeps a model from running."""
     machine = linkage.machine
@@ -173,6 +190,7 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
     yield from undecided(linkage).told()
     if beside(machine):
         yield from statics(linkage).told()
+    yield from _jerks(machine)
     through = {group.joint for group in linkage.groups if group.through}
     for joint, (number, angle) in linkage.cycle.weakest.items():
         if joint in through:

@@ -183,6 +183,7 @@ class Builder:
         """+1 or -1 for the side on which the file assembles a dyad; +1 where that is missing."""
         side = self.machine.assembly.get(joint)
         if side is None and words == MODES and self.mode is not None:
+            self.sides.add(joint)
             joint, side = MODE, self.mode
         self.sides.add(joint)
         if side not in words:

@@ -93,6 +93,16 @@ def close(
     MotionError : the motion does not close within `MOST_TURNS` turns of the crank.
     """
     base = turns = tried = turns_given(machine)
+    if base > MOST_TURNS:
+        raise MotionError(
+            Note(
+                "drives, motion laws and loads are back together only after {turns} turns of the "
+                "crank, more than the {most} that are analysed; give them numbers of turns with "
+                "common factors",
+                turns=base,
+                most=MOST_TURNS,
+            )
+        )
     while turns <= min(MOST_TURNS, MOST_LOOP_TURNS * base):
         tried = turns
         grid = _Grid(machine, turns, near)

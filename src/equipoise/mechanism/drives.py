@@ -241,6 +241,12 @@ class Driven:
         return found
 
     @property
+    def laws(self) -> dict[str, AngleLaw | LengthLaw]:
+        """Motion laws of the drives, by the names of their links."""
+        each = ((one.link, one.motion or one.stroke) for one in self.driven)
+        return {link: law for link, law in each if law is not None}
+
+    @property
     def pushers(self) -> tuple[Drive | FurtherDrive, ...]:
         """Drives that push."""
         return tuple(drive for drive in self.driven if drive.pushes)

@@ -16,6 +16,7 @@ import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
+from equipoise.keys.kinds import choice
 from equipoise.mechanism.builder import Builder, Group
 from equipoise.mechanism.checks import MODE, MODES, meant
 from equipoise.mechanism.cycle import Cycle, close
@@ -174,7 +175,7 @@ def ordered(
     for joint in idle:
         if joint == MODE and machine.assembly[joint] in MODES:
             raise ModelError(f"assembly.{joint}", NO_PARALLELS)
-        dyads = ", ".join(sorted(builder.sides)) or "no point"
+        dyads = ", ".join(sorted(builder.sides - {MODE})) or "no point"
         hint = meant(joint, [*builder.sides]) or f"the dyads of this linkage meet at {dyads}"
         raise ModelError(
             f"assembly.{joint}",
@@ -212,6 +213,9 @@ def _grouped(
     from equipoise.mechanism import sides
 
     mode = machine.assembly.get(MODE)
+    if mode not in (None, *MODES) and MODE not in joints.pins:  # else it is the side of that pin
+        told = Note("got {leaf!r}; give {choice}", leaf=mode, choice=choice(MODES))
+        raise ModelError(f"assembly.{MODE}", told)
     if mode not in MODES:
         mode = MODES[0] if joints.mobility < 1 else None
     drives = {machine.drive.link: drive_pivot(joints, machine.drive.link)}

@@ -49,8 +49,9 @@ class Slider(Frozen):
         return self.label or f"{self.link} on {self.on}"
 
 
-OF_JOINT = "joints."
-"""Begin of the names of outputs of joints."""
+OF_FORCES = {"pin": "joints.", "slider": "joints.", "gear": "gears.", "rack": "racks.",
+             "belt": "belts.", "cam": "cams."}  # fmt: skip
+"""How names of outputs begin that tell of a force, by the kind of what exerts it."""
 
 
 @declared
@@ -120,7 +121,7 @@ def wrong_slider(where: str, slider: Slider, bodies: Bodies) -> Iterator[ModelEr
 
 def wrong_joint(where: str, one: JointStiffness, bodies: Bodies) -> Iterator[ModelError]:
     """Complain of what is no joint's force; which joints there are, assembling tells."""
-    if not one.joint.startswith(OF_JOINT):
+    if not one.joint.startswith((*OF_FORCES.values(),)):
         yield ModelError(
             f"{where}.joint", Note("got {joint!r}; give a joint as joints.B", joint=one.joint)
         )

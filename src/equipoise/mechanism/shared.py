@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import MobilityError, ModelError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, all_of
 from equipoise.mechanism import kernels
 from equipoise.mechanism.builder import Builder, Group
 from equipoise.mechanism.checks import numbered, unknown
@@ -29,7 +29,7 @@ from equipoise.mechanism.loops import Poses, SlideLoop
 from equipoise.mechanism.misfits import AGREES, Fit
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.newton import LoopGroup, poses_in
-from equipoise.mechanism.parts import OF_JOINT
+from equipoise.mechanism.parts import OF_FORCES
 from equipoise.mechanism.steps import Array, State, planar
 
 OPEN = 1e-9
@@ -50,12 +50,14 @@ class Shared(LoopForces):
 
     group : these links and their joints.  pivot : the drive's.
     count : says that the joints hold too much; empty where they do not.
+    names : joints as outputs call them, each with the name of its force.
     compliance : of each joint, m/N, by name of its force; empty where none is given.
     fit : what has to fit.  decided : groups whose forces are found before, by their own steps.
     """
 
     pivot: str
     count: Note | str
+    names: Mapping[str, str]
     compliance: Mapping[str, float]
     fit: Fit
     decided: tuple[Group, ...]
@@ -141,11 +143,18 @@ class Shared(LoopForces):
         """Raise a `ModelError` where the stiffness of joints leaves forces open."""
         _, loose = _parts(self.unsensed(state))
         _, energy = self.energy(loose)
-        if np.any(np.linalg.eigvalsh(energy)[..., 0] < AGREES * max(self.compliance.values())):
+        sizes, ways = np.linalg.eigh(energy)
+        if np.any(sizes[..., 0] < AGREES * max(self.compliance.values())):
+            left = np.max(np.abs(loose @ ways[..., :1]), axis=(0, -1))
+            rigid = self.those(left > OPEN).difference(self.compliance)
+            names = [name for name, force in self.names.items() if force in rigid]
             raise ModelError(
                 "joints",
-                "the stiffness given does not decide the forces that statics leaves open; give "
-                "that of further joints, or of none",
+                Note(
+                    "the stiffness given leaves forces in {names} open; give that of one of "
+                    "these, or of no joint at all",
+                    names=all_of(names, commas=True),
+                ),
             )
 
     def by_stiffness(self, inverse: Array, loose: Array) -> Array:
@@ -257,11 +266,11 @@ def shared(
     whole = LoopGroup(links, anchors, ((FRAME, pivot),), (), tuple(loops), (), size)
     reactions = tuple(map(maker.reaction, loops))
     every = (*reactions, *(one for group in decided for one in group.reactions))
-    named = {OF_JOINT + name_in_outputs(joints, one): one.force for one in every}
+    named = {OF_FORCES[one.kind] + name_in_outputs(joints, one): one.force for one in every}
     compliance = dict(_compliances(builder.machine, named))
     starts = {one.name: one.start for one in joints.couplings}
     fit = Fit(whole.equations, groups, size, starts)
-    return Shared(whole, whole.equations, reactions, pivot, count, compliance, fit, decided)
+    return Shared(whole, whole.equations, reactions, pivot, count, named, compliance, fit, decided)
 
 
 def _decided(builder: Builder, joints: Structure, groups: tuple[Group, ...]) -> tuple[Group, ...]:
@@ -278,7 +287,12 @@ def _decided(builder: Builder, joints: Structure, groups: tuple[Group, ...]) -> 
 
 def _compliances(machine: Machine, named: Mapping[str, str]) -> Iterator[tuple[str, float]]:
     """Of joints by the name of their force, m/N."""
+    given: set[str] = set()
     for where, one in numbered("joints", machine.joints):
         if one.joint not in named:
             raise ModelError(f"{where}.joint", unknown(one.joint, named, "joint"))
+        if one.joint in given:
+            told = Note("{joint!r} has its stiffness already; leave one out", joint=one.joint)
+            raise ModelError(f"{where}.joint", told)
+        given.add(one.joint)
         yield named[one.joint], 1 / one.stiffness

@@ -10,8 +10,8 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.schema.entries import Held
 from equipoise.schema.files import printable
-from equipoise.schema.models import content_of, load_linkage, loads_linkage, machine_of
-from equipoise.schema.opening import examples, in_file, kind_of_text, opened
+from equipoise.schema.models import load_linkage, loads_linkage, machine_of
+from equipoise.schema.opening import content_of, examples, in_file, kind_of_text, opened
 from equipoise.web.design import Design
 
 NO_FILES: Mapping[str, str] = MappingProxyType({})

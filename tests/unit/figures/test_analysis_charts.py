@@ -26,6 +26,7 @@ from equipoise.results.charts import Chart, Panel
 from equipoise.signals import Periodic
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
+from unit.figures.checks import check
 from unit.figures.samples import BUNDLED, drawn, long_cycle, one_link, read_off, words
 
 MOTION = ["linkage", "curves", "hodograph", "centrodes"]
@@ -171,6 +172,13 @@ def test_what_is_rounding_is_told_to_be_zero() -> None:
     force = view.each(eq.analyze(opposed, 360), "shaking_force")["all"]
     orders = np.abs(np.fft.fft(force))
     assert np.max(orders[1::2]) < 1e-9 * np.max(orders) > 0
+    light = eq.load("scotch-yoke")
+    for link in ("crank", "block"):
+        light = light.with_link(link, mass=1e-30, inertia=0.0)
+    only_along = eq.analyze(light, 360)
+    force = view.each(only_along, "shaking_force")["all"]
+    assert np.any(force.real) and not np.any(force.imag)
+    check(forces.force(only_along))
     couples = [one for one in of_joints.joints_of(eq.analyze(rotor(), 360)).values() if one.couple]
     assert all(not np.any(one.values) for one in couples)
 

@@ -9,9 +9,12 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.errors import MobilityError, ModelError, UsageError
+from equipoise.balancing.sensitivity import sensitivities
+from equipoise.errors import MobilityError, ModelError, MotionError, UsageError
+from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.force_elements import Motor
 from equipoise.mechanism.laws import AngleLaw, AngleSegment
+from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Drive, FurtherDrive, Link, Machine
 from equipoise.web.design import Design
 from equipoise.web.edits import solved
@@ -19,6 +22,7 @@ from equipoise.web.sketch import Sketch
 from equipoise.web.state import status_of
 from laws.subjects import gravity_power, kinetic_power
 from support.machines import make
+from unit.mechanism.build import crank_rocker
 
 SWING = AngleLaw(between=(radians(-30), radians(40)))
 
@@ -77,6 +81,28 @@ def test_the_cycle_is_that_of_all_drives_and_laws():
     law = AngleLaw(between=(0.0, 2.0), turns=2)
     machine = machine.with_drive(motion=law)
     assert eq.move(machine, 4).turns == 6
+
+
+def test_cycles_that_take_too_many_turns_are_told():
+    machine = five_bar(drives=(FurtherDrive("follower", motion=replace(SWING, turns=97)),))
+    machine = machine.with_drive(motion=replace(SWING, turns=89))
+    with pytest.raises(MotionError, match="back together only after 8633 turns of the crank"):
+        eq.move(machine, 4)
+
+
+def test_a_jump_of_acceleration_is_noted_and_is_no_place_without_effect():
+    """A trapezoid of speed, whose acceleration jumps at four crank angles; a cycloid has none."""
+    ways = (AngleSegment(pi, 0.8, "trapezoid"), AngleSegment(pi, 0.0, "trapezoid"))
+    pendulum = crank_rocker().with_drive(motion=AngleLaw(segments=ways))
+    (told,) = [str(one) for one in remarks(assemble(pendulum)) if "infinite jerk" in str(one)]
+    assert "'crank' commands jumps at crank angle 60, 120, 240, 300 deg, an" in told
+    found = sensitivities(pendulum, "drive_torque")
+    theta = found["rocker.inertia"].no_effect_at
+    away = np.abs(theta[:, None] - np.arange(7) * pi / 3)
+    assert len(theta) and np.min(away) > 1e-6
+    smooth = AngleLaw(segments=tuple(replace(way, law="cycloidal") for way in ways))
+    told = map(str, remarks(assemble(pendulum.with_drive(motion=smooth))))
+    assert not any("jerk" in one for one in told)
 
 
 @pytest.mark.parametrize(

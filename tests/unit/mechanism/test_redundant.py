@@ -288,6 +288,13 @@ def test_sides_that_are_nearly_equal_are_told_with_the_misfit() -> None:
     )
 
 
+def test_a_mode_that_is_a_side() -> None:
+    given = replace(cranks(), assembly={"mode": "left"})
+    assert told(given) == "assembly.mode: got 'left'; give 'parallel' or 'antiparallel'"
+    given = replace(cranks(), assembly={"B0": "left"})
+    assert told(given).endswith("the dyads of this linkage meet at B1")
+
+
 def test_a_mode_without_change_points() -> None:
     given = four_bar(1.0, 0.3, 0.9, 0.8)
     mode = replace(given, assembly={**given.assembly, "mode": "parallel"})
@@ -338,9 +345,24 @@ def test_stiff_supports_share_a_weight_as_springs_do() -> None:
 
 def test_stiffness_that_leaves_forces_open() -> None:
     stiff = (JointStiffness("joints.C", 1e6),)
-    assert "does not decide the forces that statics leaves open" in told(
-        replace(guided(), joints=stiff)
+    sentence = told(replace(guided(), joints=stiff))
+    assert sentence.startswith(
+        "joints: the stiffness given leaves forces in joints.block on frame and joints.upper open"
     )
+
+
+def test_teeth_share_by_their_stiffness() -> None:
+    """Planets alike on teeth of other stiffness: each bears as much as its teeth are stiff."""
+    given = planets()
+    still = {name: replace(link, center_of_mass=ORIGIN, inertia=0.0 if name == "arm" else 2e-3)
+             for name, link in given.links.items()}  # fmt: skip
+    springs = tuple(JointStiffness(f"gears.planet{k} to sun", 1e6 * (k + 1)) for k in range(3))
+    springs += tuple(JointStiffness(f"joints.P{k}", 1e12) for k in range(3))
+    springs += (JointStiffness("joints.A/sun", 1e12),)
+    flat = {"links": still, "gravity": ORIGIN, "joints": springs}
+    forces = eq.analyze(replace(given, **flat)).forces.at(acceleration=50.0)
+    push = [forces.gears[f"planet{k} to sun"].tangential[0] for k in range(3)]
+    np.testing.assert_allclose(push, np.sum(push) * np.array([1, 2, 3]) / 6, rtol=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -348,6 +370,7 @@ def test_stiffness_that_leaves_forces_open() -> None:
     [
         ("joints.Q", guided(), "joints[1].joint: no joint is called 'joints.Q'"),
         ("B", guided(), "joints[1].joint: got 'B'; give a joint as joints.B"),
+        ("gears.B", guided(), "joints[1].joint: no joint is called 'gears.B'"),
         ("joints.B1", parallel(), "joints: statics decides all joint forces"),
     ],
 )
