@@ -127,7 +127,7 @@ class GearShape(Frozen):
     @property
     def waves(self) -> int:
         """About how many waves of its ratio a lobe has."""
-        return max(1, len(self.angle), 2 * len(self.cosines), 2 * len(self.sines))
+        return max(1, len(self.angle) // 2, 2 * len(self.cosines), 2 * len(self.sines))
 
 
 # -- checks ----------------------------------------------------------------------------------------

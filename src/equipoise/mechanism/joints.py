@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
@@ -220,15 +221,16 @@ def _check_mobility(joints: Structure, drives: Sequence[str], alike: Note | str)
     )
 
 
-def _count(joints: Structure) -> Note:
-    pins = sum(len(bodies) - 1 for bodies in joints.pins.values())
-    return Note(
-        "{links}, {pins}, {sliders} and {gears}",
-        links=_number(len(joints.bodies) - 1, MOVING_LINKS),
-        pins=_number(pins, PINS),
-        sliders=_number(len(joints.sliders), SLIDING_JOINTS),
-        gears=_number(len(joints.couplings), GEARS),
-    )
+def _count(joints: Structure) -> Note | str:
+    coupled = Counter(one.table for one in joints.couplings)
+    parts = [
+        _number(len(joints.bodies) - 1, MOVING_LINKS),
+        _number(sum(len(bodies) - 1 for bodies in joints.pins.values()), PINS),
+        _number(len(joints.sliders), SLIDING_JOINTS),
+        *(_number(coupled[table], words) for table, words in COUPLINGS.items()
+          if coupled[table] or table == "gears"),
+    ]  # fmt: skip
+    return all_of(parts, commas=True)
 
 
 def no_motion(joints: Structure) -> Note:
@@ -280,7 +282,12 @@ def subsets(joints: Structure, links: list[str]) -> Iterator[tuple[str, ...]]:
 MOVING_LINKS = (to_say("{count} moving link"), to_say("{count} moving links"))
 PINS = (to_say("{count} pin"), to_say("{count} pins"))
 SLIDING_JOINTS = (to_say("{count} sliding joint"), to_say("{count} sliding joints"))
-GEARS = (to_say("{count} gear"), to_say("{count} gears"))
+COUPLINGS = {
+    "gears": (to_say("{count} gear"), to_say("{count} gears")),
+    "belts": (to_say("{count} belt"), to_say("{count} belts")),
+    "racks": (to_say("{count} rack"), to_say("{count} racks")),
+    "cams": (to_say("{count} cam"), to_say("{count} cams")),
+}
 
 
 def _number(count: int, words: tuple[str, str]) -> Note:

@@ -36,7 +36,13 @@ PIECES = 128
 @lru_cache(maxsize=256)
 def law_of(shape: GearShape, mean: float) -> Rolling:
     """The driven gear's angle by the driver's, both seen from the carrier; mean : ratio."""
-    return replace(_law(replace(shape, phase=0.0), mean), zero=shape.phase)
+    return replace(_law(_even(shape), mean), zero=shape.phase)
+
+
+@lru_cache(maxsize=256)
+def _even(shape: GearShape) -> GearShape:
+    """The same with the phase 0, as the gears of a train mostly have it in common."""
+    return replace(shape, phase=0.0)
 
 
 @lru_cache(maxsize=64)
@@ -77,14 +83,22 @@ def curve_of(shape: GearShape) -> EccentricCircle | Tabled | Waves:
 
 def ratios_of(shape: GearShape, mean: float) -> tuple[float, float]:
     """The smallest and the largest size of the ratio, with its sign."""
-    low, high, _ = _extent(shape, mean)
+    low, high, _ = _extent(_even(shape), mean)
     return (low, high) if mean > 0 else (high, low)
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=64)
+def _lowest(shape: GearShape) -> float:
+    """Of the table or the series of a shape."""
+    return float(np.min(curve_of(shape)(_fine(shape))[0]))
+
+
+@lru_cache(maxsize=64)
 def _extent(shape: GearShape, mean: float) -> tuple[float, float, float]:
-    """Lowest and highest ratio, and the tangent by which the pitch curves lean at most."""
-    _, first, second = law_of(shape, mean)(shape.phase + _fine(shape))
+    """Lowest and highest ratio of a shape whose phase is 0, and the tangent by which the pitch
+    curves lean at most.
+    """
+    _, first, second = _law(shape, mean)(_fine(shape))
     with np.errstate(all="ignore"):  # a ratio of 1 is told of
         leaning = np.abs(kernels.pitch_slope(first, second))
     return float(np.min(first)), float(np.max(first)), float(np.max(leaning))
@@ -109,7 +123,8 @@ def closed_table(shape: GearShape, mean: float, distance: float | None) -> GearS
 
 def wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterator[Told]:
     """What is wrong with the pitch curves that follow; distance : of the axes, if known, m."""
-    if shape.kind in TABLED and (lowest := float(np.min(curve_of(shape)(_fine(shape))[0]))) <= 0:
+    even = _even(shape)
+    if shape.kind in TABLED and (lowest := _lowest(even)) <= 0:
         told = Note(
             "goes down to {lowest:.4g}; a pitch curve needs it above 0 all the way round",
             lowest=lowest,
@@ -119,7 +134,7 @@ def wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterat
     ratio = gears.speed_ratio
     law = law_of(shape, ratio)
     yield from _misfits(shape, law, ratio, distance)
-    low, high, steepest = _extent(shape, ratio)
+    low, high, steepest = _extent(even, ratio)
     if low <= 1 <= high:
         told = Note(
             "the ratio would go from {low:.4g} to {high:.4g}; of a ring and the gear in it it "
@@ -137,7 +152,7 @@ def wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterat
             most=most,
         )
         yield "", told
-    if ratio > 0 and (deepest := _overlap(shape, ratio)) > CUT:
+    if ratio > 0 and (deepest := _overlap(even, ratio)) > CUT:
         told = Note(
             "the gear would cut its ring where they do not mesh, by {deepest:.2g} of the distance "
             "of the axes; give a smaller eccentricity, a flatter curve or a larger ring",

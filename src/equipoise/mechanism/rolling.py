@@ -223,11 +223,11 @@ class PitchCurve:
         at = x - rounds * period
         k = np.searchsorted(0.5 * (self.knots[1:] + self.knots[:-1]), at)
         half = 0.5 * (at - self.knots[k])
-        nodes = FEW_NODES.reshape(-1, *(1 for _ in x.shape))
-        values, _ = self.rate(self.knots[k] + half * (1 + nodes))
+        ways = np.append(FEW_NODES, 1.0).reshape(-1, *(1 for _ in x.shape))  # the last is x itself
+        ratio, bend = self.rate(self.knots[k] + half * (1 + ways))
         come = self.sums[k] if self.sums.ndim == 1 else np.take_along_axis(self.sums, k, axis=1)
-        y = self.mean * period * rounds + come + half * np.tensordot(FEW_WEIGHTS, values, 1)
-        return (y, *self.rate(at))
+        way = half * np.tensordot(FEW_WEIGHTS, ratio[:-1], 1)
+        return self.mean * period * rounds + come + way, ratio[-1], bend[-1]
 
 
 Rolling = HalfAngle | RatioWaves | RatioTable | PitchCurve

@@ -140,7 +140,7 @@ def lowest_within(
     width = (high - low) / (samples - 1)
     while True:
         at = np.take_along_axis(near, k, axis=1)
-        if not np.nanmax(np.abs(width)) > FINE:
+        if not np.any(np.abs(width) > FINE):
             return np.take_along_axis(values, k, axis=1)[:, 0], at[:, 0]
         between = at + width * offsets
         near = np.clip(between, np.minimum(low, high), np.maximum(low, high))

@@ -258,6 +258,13 @@ def test_a_cam_moved_by_its_own_follower() -> None:
         assemble(given)
 
 
+def test_cams_are_counted_as_such() -> None:
+    given = tappet()
+    loose = {**given.links, "arm": heavy(A=ORIGIN)}
+    with pytest.raises(eq.EquipoiseError, match="1 sliding joint, 0 gears and 1 cam"):
+        assemble(replace(given, links=loose))
+
+
 def test_a_groove_has_a_second_flank() -> None:
     """In a narrow dip the far flank of a groove is undercut, where ribs need none."""
     law = LengthLaw(
