@@ -44,7 +44,7 @@ MICRO = Units(2.0**-13, 2.0**-38, 2.0**-6)
 NUMBER = re.compile(r"[-+−]?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 
 
-SCALES = (*FACTORS, "kg/m³", "ng", "nN m", "nN", "nJ")
+SCALES = (*FACTORS, "kg/m³", "µg", "ng", "nN m", "nN", "nJ")
 """Units, and those that only tell what is small."""
 UNIT = re.compile(f"# (?:{'|'.join(sorted(map(re.escape, SCALES), key=len, reverse=True))})\\b")
 
