@@ -289,12 +289,13 @@ def _chosen(drive: Drive, law: LengthLaw, branches: Sequence[Branch], shift: flo
         widest = next((one for one in branches if _has(one, 0.0)), widest)
     assert widest is not None
     ends = {"low": low, "high": high, "least": widest.low, "most": widest.high}
+    size = max(map(abs, ends.values()))  # of which rounding is left where a length is 0
     raise ModelError(
         "drive.stroke",
         Note(
             "it runs from {low} to {high}, and the linkage lets it be between {least} and {most} "
             "only; stay within these, short of the dead points at both ends",
-            **{name: _shown(end) for name, end in ends.items()},
+            **{name: _shown(size * round(end / size, 9)) for name, end in ends.items()},
         ),
     )
 

@@ -268,10 +268,8 @@ def wrong_law(where: str, law: Law) -> Iterator[ModelError]:
     """Everything that is wrong with a motion law."""
     given = [law.between is not None, bool(law.segments), bool(law.values), law.table is not None]
     if sum(given) != 1 or bool(law.crank_angles) != bool(law.values):
-        yield ModelError(
-            where,
-            Note("give exactly one of between, segments, table, and crank_angles with values"),
-        )
+        told = Note("give exactly one of between, segments, table, and crank_angles with values")
+        yield ModelError(where, told)
         return
     problem = next(_wrong_segments(where, law) if law.segments else _wrong_rows(where, law), None)
     if problem is not None:
@@ -320,6 +318,8 @@ def _wrong_return(where: str, law: Law, first: float, last: float) -> Iterator[M
 
 def _wrong_rows(where: str, law: Law) -> Iterator[ModelError]:
     """Complain of rows through which no spline goes."""
+    if law.start:
+        yield ModelError(f"{where}.start", Note("goes with segments; leave it out"))
     if law.between is not None:
         return
     (angles, values), count = law.rows, len(law.rows[1])
