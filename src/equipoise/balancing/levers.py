@@ -11,7 +11,6 @@ from equipoise.mechanism.kernels import cross
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.objectives import OF_ROWS
-from equipoise.mechanism.planes import beside
 from equipoise.mechanism.support import Row
 from equipoise.signals import Array
 
@@ -35,7 +34,7 @@ def signals_of_row(motion: Motion) -> Array:
     found, nothing = forces(motion), np.zeros(len(motion.crank_angle))
     shaking, frame = found.shaking_force, found.frame_force
     rocking = (nothing, nothing)
-    if beside(motion.machine):
+    if motion.machine.has_planes:
         rocking = (found.across.rocking_moment.x, found.across.rocking_moment.y)
     moments = found.shaking_moment, found.frame_moment
     return np.stack([shaking.x, shaking.y, moments[0], frame.x, frame.y, moments[1], *rocking])

@@ -24,7 +24,6 @@ from equipoise.mechanism.model import Machine
 from equipoise.mechanism.newton import LoopGroup
 from equipoise.mechanism.outputs import DECLARED, Declared, declared
 from equipoise.mechanism.parts import JOINTS
-from equipoise.mechanism.planes import beside
 
 _LOOKED_UP = re.compile(r"\{([^}:]+)(:name)?\}")
 """Values in the expression of an output: of the machine, or of the member of a family."""
@@ -75,7 +74,7 @@ def _known(writer: Writer) -> Sequence[str]:
 
 def _has(writer: Writer, one: Declared) -> bool:
     """Whether the machine has what an output tells of, as far as that depends on no member."""
-    return one.needs != "planes" or beside(writer.machine)
+    return one.needs != "planes" or writer.machine.has_planes
 
 
 def _identified(writer: Writer, looked_up: re.Match[str], item: str) -> str:

@@ -27,7 +27,6 @@ from equipoise.mechanism.dynamics import inertia_about, massless
 from equipoise.mechanism.gear_contacts import rolled
 from equipoise.mechanism.model import FRAME, Drive, FurtherDrive
 from equipoise.mechanism.newton import LoopGroup
-from equipoise.mechanism.planes import beside
 from equipoise.mechanism.steps import (
     Call,
     Rotation,
@@ -149,7 +148,7 @@ def write_demands(writer: Writer) -> None:
         held for k, one in enumerate(machine.springs) for held in write_spring(writer, k, one)
     ]
     springs += [held for k in range(len(machine.belts)) for held in write_tension(writer, k)]
-    if beside(machine):
+    if machine.has_planes:
         held = [[force for _, force, _ in each] for each in (loads, springs)]
         write_across(writer.sheet, writer.linkage, writer.body, *held)
     _write_frame(writer, "shaking", moving)

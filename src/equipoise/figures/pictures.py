@@ -70,10 +70,9 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
     from equipoise.figures.analysis import joint_polars, joints
     from equipoise.figures.linkage import centrodes, linkage, rolling
     from equipoise.figures.side import side
-    from equipoise.mechanism.planes import beside
 
     found: Pictures = {"linkage": linkage(analysis, at)}
-    if beside(analysis.machine):
+    if analysis.machine.has_planes:
         found["side"] = side(analysis, at)
     if len(analysis.crank_angle) < 2:
         return found

@@ -12,7 +12,6 @@ from equipoise.mechanism.checks import numbered
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import FRAME, Machine, size_of
-from equipoise.mechanism.planes import beside
 from equipoise.mechanism.statics import statics
 from equipoise.mechanism.steps import Call
 from equipoise.mechanism.undecided import undecided
@@ -188,7 +187,7 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
     if missing := massless(machine):
         yield missing
     yield from undecided(linkage).told()
-    if beside(machine):
+    if machine.has_planes:
         yield from statics(linkage).told()
     yield from _jerks(machine)
     through = {group.joint for group in linkage.groups if group.through}

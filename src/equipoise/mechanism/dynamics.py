@@ -23,7 +23,6 @@ from equipoise.mechanism.across import Across, apart, masses_across, pushes_acro
 from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.planes import beside
 from equipoise.mechanism.reactions import (
     BeltForce,
     CamForce,
@@ -310,7 +309,7 @@ def split(whole: Forces) -> Split:
         solved.racks,
         solved.belts(tension_told),
         solved.cams,
-        apart(whole.across, solved.exerted, shape) if beside(motion.machine) else None,
+        apart(whole.across, solved.exerted, shape) if motion.machine.has_planes else None,
         links,
         drive_force=pushed(solved),
     )

@@ -193,6 +193,14 @@ class Machine(Driven, Frozen):
         return (*self.gears, *self.belts, *self.racks, *self.cams)
 
     @property
+    def has_planes(self) -> bool:
+        """Whether it tells where its parts lie across the plane of its motion."""
+        return bool(self.bearings) or any(
+            link.plane or link.planes or any(body.plane is not None for body in link.bodies)
+            for link in self.links.values()
+        )
+
+    @property
     def mass(self) -> float:
         """Mass of all links of one linkage together, kg; one without a mass adds nothing."""
         return sum(link.mass or 0.0 for link in self.links.values())

@@ -23,7 +23,6 @@ from equipoise.mechanism.declaring import (
     matches,
     output,
 )
-from equipoise.mechanism.planes import beside
 from equipoise.mechanism.poles import advantage, guided, instant_center, pairs, pinned
 from equipoise.mechanism.spoken import joint_named, joint_names, pair_named, slider_names
 
@@ -150,7 +149,7 @@ of_space = alike(
     "",
     lambda name, found: getattr(found.forces.across, name),
     needs="planes",
-    members=lambda machine: ("",) if beside(machine) else (),
+    members=lambda machine: ("",) if machine.has_planes else (),
     linear=True,
     loop=True,
 )
@@ -264,8 +263,8 @@ of_joint(
     "torque",
     to_say("tilting moment in joint {name}"),
     XY,
-    members=lambda machine: joint_names(machine) if beside(machine) else (),
-    items=lambda found: found.forces.across.tilting_moments if beside(found.machine) else (),
+    members=lambda machine: joint_names(machine) if machine.has_planes else (),
+    items=lambda found: found.forces.across.tilting_moments if found.machine.has_planes else (),
     had="tilting_moments",
     needs="planes",
     linear=True,

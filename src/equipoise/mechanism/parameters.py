@@ -32,7 +32,7 @@ from equipoise.mechanism.dynamics import (
 )
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.planes import beside, moments_across
+from equipoise.mechanism.planes import moments_across
 from equipoise.mechanism.reactions import Pass, pushed, reactions
 from equipoise.mechanism.shares import Shares
 from equipoise.mechanism.steps import Array, planar
@@ -125,7 +125,7 @@ def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Re
         solved.racks,
         solved.belts(lambda belt: 0.0),
         solved.cams,
-        _across(motion, solved) if beside(machine) else None,
+        _across(motion, solved) if machine.has_planes else None,
         parameter_names(machine),
         values,
         drive_force=pushed(solved),

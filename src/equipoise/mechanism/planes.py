@@ -14,14 +14,6 @@ from equipoise.mechanism.links import Link
 from equipoise.mechanism.parts import Bearing, Mechanism
 
 
-def beside(machine: Mechanism) -> bool:
-    """Whether a machine tells where its parts lie across the plane of its motion."""
-    return bool(machine.bearings) or any(
-        link.plane or link.planes or any(body.plane is not None for body in link.bodies)
-        for link in machine.links.values()
-    )
-
-
 def masses_of(link: Link) -> Iterator[tuple[float, complex, float]]:
     """Mass (kg), centre (complex, m, in the link's axes) and plane (m) of each part of a link."""
     for body in link.bodies:
@@ -61,7 +53,7 @@ def _told_of_pins(machine: Mechanism) -> Iterator[tuple[str, list[tuple[str, flo
 
 def wrong_planes(machine: Mechanism) -> Iterator[ModelError]:
     """Everything that is wrong with planes of pins and with bearings."""
-    if machine.pushers and beside(machine):
+    if machine.pushers and machine.has_planes:
         yield ModelError(
             "drive",
             Note(

@@ -19,7 +19,6 @@ from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.model import Machine, Vector
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
-from equipoise.mechanism.planes import beside
 from equipoise.mechanism.shares import CAUSES
 from equipoise.mechanism.stroke_figures import Stroke
 from equipoise.mechanism.strokes import dwell, strokes
@@ -128,7 +127,7 @@ class Analysis(Result):
         effort = self.machine.drive.effort
         exerted = getattr(found, effort)
         signals = np.array([force.x, force.y, found.shaking_moment, exerted])
-        rocking = found.across.rocking_moment.value if beside(self.machine) else np.zeros(count)
+        rocking = found.across.rocking_moment.value if self.machine.has_planes else np.zeros(count)
         signals = np.vstack([signals, np.real(rocking), np.imag(rocking)])
         one = Periodic.of(signals, self.motion.turns)
         whole = {"shaking_force": np.zeros(count, complex)}

@@ -29,7 +29,7 @@ from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.kernels import cross, dot
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.planes import beside, masses_of, moments_across
+from equipoise.mechanism.planes import masses_of, moments_across
 from equipoise.mechanism.reactions import Demand, Pass, demands_of, reactions
 from equipoise.mechanism.steps import p, u
 from equipoise.mechanism.support import Row
@@ -175,7 +175,7 @@ def spread(machine: Machine, theta: Array) -> Array:
         total[3:, 3:] += np.array(
             [[yy + own / 2, -xy, 0], [-xy, xx + own / 2, 0], [0, 0, xx + yy + own]]
         )
-    if beside(machine):
+    if machine.has_planes:
         total += _spread_across(motion)
     total[3:, :3] = total[:3, 3:].T
     return total

@@ -11,7 +11,6 @@ from equipoise.i18n import said, say
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import GROUPS
-from equipoise.mechanism.planes import beside
 from equipoise.mechanism.poles import guided, pinned
 from equipoise.quantities import display
 from equipoise.results.analysis import Analysis
@@ -86,7 +85,7 @@ def state_of(
         "before": before is not None,
         "status": status_of(found),
         "compared": against is not None,
-        "beside": beside(machine),
+        "beside": machine.has_planes,
         "points": points_of(analysis),
         "record": measured_told(record, found, block),
         "arrows_at": arrows_at,
