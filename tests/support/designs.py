@@ -15,8 +15,8 @@ import numpy as np
 
 import equipoise as eq
 from equipoise.errors import ChangePointError, ModelError, MotionError, RangeError
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.parts.machine import Machine
 
 Array = np.ndarray[Any, Any]
 Plain = dict[str, Any]

@@ -19,12 +19,12 @@ from equipoise.balancing.effects import Effects, Signal
 from equipoise.balancing.levers import OWN, arm_of, moment_of_row
 from equipoise.balancing.program import Affine, Block, Program
 from equipoise.errors import ModelError
-from equipoise.mechanism.balance import Measure, Objective
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.objectives import GAUGES, OF_ROWS, WITHIN, output_of, quantity_of
-from equipoise.mechanism.parameters import parameter_values
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.dynamics.parameters import parameter_values
+from equipoise.mechanism.parts.balance import Measure, Objective
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import GAUGES, OF_ROWS, WITHIN, output_of, quantity_of
+from equipoise.mechanism.parts.support import Row
 from equipoise.quantities import SI
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.forced import usual_step

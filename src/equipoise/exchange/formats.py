@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.joints import Structure
+from equipoise.mechanism.assembly.joints import Structure
+from equipoise.mechanism.dynamics.forces import massless
 
 if TYPE_CHECKING:
     from equipoise.balancing.workshop import Change
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
 
 
 CAM, RACK, VARYING = "cam", "rack", "gears of varying ratio"

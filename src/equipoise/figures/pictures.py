@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
     from equipoise.balancing.phasing import Phasing
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
     from equipoise.vibration.free import FreeVibration

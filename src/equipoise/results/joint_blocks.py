@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.reactions import JointForce, SliderForce
-from equipoise.mechanism.spoken import body_named, joint_named
-from equipoise.mechanism.undecided import undecided
+from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
+from equipoise.mechanism.dynamics.undecided import undecided
+from equipoise.mechanism.outputs.spoken import body_named, joint_named
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest
 from equipoise.signals import figures

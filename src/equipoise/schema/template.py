@@ -18,11 +18,11 @@ from typing import Any
 from equipoise.errors import MobilityError, ModelError, MotionError
 from equipoise.handheld.model import Impedance, Tool
 from equipoise.i18n import Note
-from equipoise.mechanism.field import SoilTable
-from equipoise.mechanism.force_elements import MotorTable
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import LoadTable, Machine
-from equipoise.mechanism.swings import SWUNG, swing
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.kinematics.swings import SWUNG, swing
+from equipoise.mechanism.parts.field import SoilTable
+from equipoise.mechanism.parts.force_elements import MotorTable
+from equipoise.mechanism.parts.machine import LoadTable, Machine
 from equipoise.schema.finding import Found, all_numbers, find, replaced, unit_in, with_changes
 from equipoise.schema.models import Beside, machine_of, parts_of, plain_of, text_of, tool_of
 from equipoise.schema.numbers import Number

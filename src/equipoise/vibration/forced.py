@@ -14,9 +14,9 @@ from typing import cast, get_args
 
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.support import idle_parts
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities.units import HUGE
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.exact import solve_exact

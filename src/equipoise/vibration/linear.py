@@ -18,12 +18,12 @@ from typing import Literal
 import numpy as np
 
 from equipoise.errors import ModelError, ResponseError
-from equipoise.mechanism.dynamics import Forces, forces
-from equipoise.mechanism.kernels import cross
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.planes import moments_across
-from equipoise.mechanism.support import AXES, FREEDOMS, Gauge, Row
+from equipoise.mechanism.dynamics.forces import Forces, forces
+from equipoise.mechanism.formulas.kernels import cross
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.planes import moments_across
+from equipoise.mechanism.parts.support import AXES, FREEDOMS, Gauge, Row
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import (
     Body,

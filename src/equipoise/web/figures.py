@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.outputs import DECLARED, Declared
+from equipoise.mechanism.outputs.declared import DECLARED, Declared
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import Display, change, display, number, typeset
 from equipoise.quantities.numbers import SAME
 from equipoise.results.analysis import Analysis

@@ -12,11 +12,11 @@ from equipoise.figures import render
 from equipoise.figures.side import side
 from equipoise.figures.swing import ModeSwing, swinging
 from equipoise.i18n import said, say
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.spoken import joint_named
-from equipoise.mechanism.stroke_figures import declared_figures, dimension_of
-from equipoise.mechanism.support import FREEDOMS, PLANAR
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.kinematics.stroke_figures import declared_figures, dimension_of
+from equipoise.mechanism.outputs.spoken import joint_named
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import FREEDOMS, PLANAR
 from equipoise.planting.blocks import cell
 from equipoise.planting.names import FIGURES, figure_named, of_all_arms
 from equipoise.planting.summary import PlantingFigures, plant

@@ -8,10 +8,10 @@ import numpy as np
 
 from equipoise.figures.points import traced
 from equipoise.i18n import said, say
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.outputs import GROUPS
-from equipoise.mechanism.poles import guided, pinned
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.outputs.declared import GROUPS
+from equipoise.mechanism.outputs.poles import guided, pinned
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import display
 from equipoise.results.analysis import Analysis
 from equipoise.results.drive_blocks import driven
