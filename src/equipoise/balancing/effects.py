@@ -21,6 +21,7 @@ from equipoise.mechanism.dynamics.forces import Forces, demand_of_inertia, force
 from equipoise.mechanism.dynamics.reactions import (
     BeltForce,
     CamForce,
+    Demand,
     JointForce,
     MeshForce,
     Pass,
@@ -37,9 +38,6 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import balanced_names
 from equipoise.mechanism.parts.places import in_frame
 from equipoise.signals import Array
-
-Demand = tuple[Array, Array]
-"""Force and moment (K, N) about a link's anchor."""
 
 ANGLES = 720
 """Crank angles in a turn at which balancing looks."""

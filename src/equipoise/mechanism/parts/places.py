@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import hypot
+from math import hypot, isfinite
 from typing import Any
-
-import numpy as np
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note, to_say
@@ -74,10 +72,10 @@ def in_frame(frame: Mapping[str, Vector], point: str | Vector | complex) -> comp
             raise UsageError(unknown(point, frame, "point of the frame"))
         return complex(*frame[point])
     try:
-        place = complex(*np.asarray(point).ravel().tolist())
+        place = point if isinstance(point, complex) else complex(*point)
     except (TypeError, ValueError, OverflowError):
         place = complex("nan")
-    if not np.isfinite(hypot(place.real, place.imag)):
+    if not isfinite(hypot(place.real, place.imag)):
         raise UsageError(
             Note("got {point!r}; give a point of the frame or two finite coordinates", point=point)
         )
