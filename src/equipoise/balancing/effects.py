@@ -229,7 +229,7 @@ class Effects:
 
     def moment(self, demands: Demand, about: complex) -> Array:
         """Moment on the frame (K, N) of demands."""
-        total = -demands[1]
+        total: Array = -demands[1]
         for part, rows in self.masses:
             at = self.motion.state[f"p({self.start.anchor(part.link)})"]
             total[rows] -= kernels.cross(at - about, demands[0][rows])

@@ -243,7 +243,7 @@ class Part:
     """A table or linkage that has a file of its own.
 
     where : key that names the file.
-    sort : ``load``, ``soil``, ``motor``, ``impedance`` or ``linkage``.
+    sort : of `tables.TABLES`, or ``linkage``.
     file : name of the one that it came from.
     number : in the name of a new one; 0 for none.
     """

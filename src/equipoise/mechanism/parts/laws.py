@@ -1,7 +1,8 @@
 """Motion laws as they stand in a file: a value, an angle or a length, over the crank angle.
 
 `AngleLaw` and `LengthLaw` are the same with another dimension: a swing by a sine, a sequence of
-segments, or a spline through given values.  `curve` is what `mechanism.formulas.curves` evaluates.
+segments, or a spline through values that are given or in a CSV file.  `curve` is what
+`mechanism.formulas.curves` evaluates.
 """
 
 from __future__ import annotations
@@ -15,7 +16,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import (
+    ROW,
     Conditions,
+    File,
     Frozen,
     Listing,
     Quantity,
@@ -24,6 +27,7 @@ from equipoise.keys import (
     Text,
     Whole,
     declared,
+    inside,
     key,
 )
 from equipoise.quantities import format_exact
@@ -39,6 +43,7 @@ CLOSED = 1e-9
 """Of the largest value, or of the cycle, by which rounding may miss what has to agree."""
 OVER = "crank angle that it takes"
 LAW = "by which it moves; nothing moves where `to` is the value before"
+BESIDE = "CSV file beside this one, instead of `crank_angles` and `values`: "
 AT = 'a list such as ["0 deg", "90 deg", "210 deg"]'
 
 
@@ -64,6 +69,32 @@ class LengthSegment(Frozen):
     law: str = key(Text(LAWS), LAW, default="cycloidal")
 
 
+@declared
+class AngleTable(Frozen):
+    """Angles over the crank angle, through which a spline goes.
+
+    crank_angle : rad, rising.  angle : rad, as long as `crank_angle`.
+    file : name of the CSV file that it came from.
+    """
+
+    crank_angle: tuple[float, ...] = inside(ROW)
+    angle: tuple[float, ...] = inside(ROW)
+    file: str = inside(Text(), default="", compare=False)
+
+
+@declared
+class LengthTable(Frozen):
+    """Lengths over the crank angle, through which a spline goes.
+
+    crank_angle : rad, rising.  length : m, as long as `crank_angle`.
+    file : name of the CSV file that it came from.
+    """
+
+    crank_angle: tuple[float, ...] = inside(ROW)
+    length: tuple[float, ...] = inside(ROW)
+    file: str = inside(Text(), default="", compare=False)
+
+
 class Law(Frozen):
     """What both kinds of law do.
 
@@ -73,12 +104,14 @@ class Law(Frozen):
     whole: ClassVar[float]
     dimension: ClassVar[Literal["angle", "length"]]
     conditions: ClassVar[Conditions] = {
-        "oneOf": [{"required": [one]} for one in ("between", "segments", "values")],
+        "oneOf": [{"required": [one]} for one in ("between", "segments", "values", "table")],
         "dependentRequired": {
             "crank_angles": ["values"],
             "values": ["crank_angles"],
-            "spline": ["values"],
             "start": ["segments"],
+        },
+        "dependentSchemas": {
+            "spline": {"anyOf": [{"required": [one]} for one in ("values", "table")]},
         },
     }
 
@@ -87,6 +120,7 @@ class Law(Frozen):
     segments: tuple[Any, ...]
     crank_angles: tuple[float, ...]
     values: tuple[float, ...]
+    table: AngleTable | LengthTable | None
     spline: Literal["cubic", "quintic"]
     turns: int
     phase: float
@@ -95,6 +129,13 @@ class Law(Frozen):
     def period(self) -> float:
         """Crank angle after which it begins anew, rad."""
         return 2 * pi * self.turns
+
+    @property
+    def rows(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Crank angles, rad, and the values there through which a spline goes."""
+        if self.table is None:
+            return self.crank_angles, self.values
+        return self.table.crank_angle, getattr(self.table, self.dimension)
 
     @cached_property
     def curve(self) -> Curve:
@@ -105,11 +146,10 @@ class Law(Frozen):
 
         if self.between is not None:
             return sine(*self.between, self.period)
-        if self.values:
-            knots = np.subtract(
-                [*self.crank_angles, self.crank_angles[0] + self.period], self.crank_angles[0]
-            )
-            values = np.array([*self.values, self.values[0]])
+        angles, given = self.rows
+        if given:
+            knots = np.subtract([*angles, angles[0] + self.period], angles[0])
+            values = np.array([*given, given[0]])
             if self._is_closed:
                 knots, values = np.append(knots[:-2], self.period), values[:-1]
             return spline(knots, values, SPLINES[self.spline])
@@ -121,14 +161,13 @@ class Law(Frozen):
     @property
     def origin(self) -> float:
         """Crank angle at which the curve begins, rad."""
-        return self.phase + (self.crank_angles[0] if self.values else 0.0)
+        return self.phase + next(iter(self.rows[0]), 0.0)
 
     @property
     def _is_closed(self) -> bool:
         """Whether the last of the rows is the first one in the next cycle."""
-        return (
-            abs(self.crank_angles[-1] - self.crank_angles[0] - self.period) <= CLOSED * self.period
-        )
+        angles = self.rows[0]
+        return abs(angles[-1] - angles[0] - self.period) <= CLOSED * self.period
 
     def value(self, crank_angle: Any) -> tuple[Array, Array, Array]:
         """The value and its first and second derivative by crank angle, at crank angles (...)."""
@@ -179,6 +218,9 @@ class AngleLaw(Law):
     values: tuple[float, ...] = key(
         Listing(Quantity(dimension="angle"), right=AT), "through which a spline goes", default=()
     )
+    table: AngleTable | None = key(
+        File("angles"), BESIDE + "`crank_angle [deg],angle [deg]`", default=None, example="law.csv"
+    )
     spline: Literal["cubic", "quintic"] = key(
         Text((*SPLINES,)), "through `values`; both come back smoothly", default="cubic"
     )
@@ -209,6 +251,9 @@ class LengthLaw(Law):
         "through which a spline goes",
         default=(),
     )
+    table: LengthTable | None = key(
+        File("lengths"), BESIDE + "`crank_angle [deg],length [mm]`", default=None, example="law.csv"
+    )
     spline: Literal["cubic", "quintic"] = key(
         Text((*SPLINES,)), "through `values`; both come back smoothly", default="cubic"
     )
@@ -221,10 +266,11 @@ class LengthLaw(Law):
 
 def wrong_law(where: str, law: Law) -> Iterator[ModelError]:
     """Everything that is wrong with a motion law."""
-    given = [law.between is not None, bool(law.segments), bool(law.values)]
+    given = [law.between is not None, bool(law.segments), bool(law.values), law.table is not None]
     if sum(given) != 1 or bool(law.crank_angles) != bool(law.values):
         yield ModelError(
-            where, Note("give exactly one of between, segments, and crank_angles with values")
+            where,
+            Note("give exactly one of between, segments, table, and crank_angles with values"),
         )
         return
     problem = next(_wrong_segments(where, law) if law.segments else _wrong_rows(where, law), None)
@@ -276,29 +322,29 @@ def _wrong_rows(where: str, law: Law) -> Iterator[ModelError]:
     """Complain of rows through which no spline goes."""
     if law.between is not None:
         return
-    count = len(law.values)
-    if len(law.crank_angles) != count or not 3 <= count <= MOST_ROWS:
+    (angles, values), count = law.rows, len(law.rows[1])
+    listed = ("values", "crank_angles") if law.table is None else ("table",) * 2
+    told, at = (f"{where}.{one}" for one in listed)
+    if len(angles) != count or not 3 <= count <= MOST_ROWS:
         yield ModelError(
-            f"{where}.values",
+            told,
             Note(
                 "got {values} values at {angles} crank angles; give 3 to {most} of each",
                 values=count,
-                angles=len(law.crank_angles),
+                angles=len(angles),
                 most=MOST_ROWS,
             ),
         )
-    elif any(b - a <= CLOSED for a, b in pairwise(law.crank_angles)):
+    elif any(b - a <= CLOSED for a, b in pairwise(angles)):
+        yield ModelError(at, Note("the crank angles must rise from row to row"))
+    elif angles[-1] - angles[0] > law.period * (1 + CLOSED):
         yield ModelError(
-            f"{where}.crank_angles", Note("the crank angles must rise from row to row")
-        )
-    elif law.crank_angles[-1] - law.crank_angles[0] > law.period * (1 + CLOSED):
-        yield ModelError(
-            f"{where}.crank_angles",
+            at,
             Note(
                 "got crank angles over {span:.6g} deg, more than the {period:.6g} deg of a cycle",
-                span=degrees(law.crank_angles[-1] - law.crank_angles[0]),
+                span=degrees(angles[-1] - angles[0]),
                 period=degrees(law.period),
             ),
         )
     elif law._is_closed:
-        yield from _wrong_return(f"{where}.values", law, law.values[0], law.values[-1])
+        yield from _wrong_return(told, law, values[0], values[-1])
