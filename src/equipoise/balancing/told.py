@@ -159,8 +159,11 @@ def freedoms(plan: Balance) -> Iterator[str]:
     for move in plan.moves:
         yield say("another centre of mass of {link}", link=move.link)
     for added in plan.masses:
-        room = _room(added.weight)
-        yield say("{weight} on {link} about {point}", weight=room, link=added.link, point=added.at)
+        room, plane = _room(added.weight), added.weight.plane
+        what = say("{weight} on {link} about {point}", weight=room, link=added.link, point=added.at)
+        if plane is not None:
+            what = say("{what}, in the plane z = {plane}", what=what, plane=told(plane, "length"))
+        yield what
     for geared in plan.geared:
         yield say("{weight} geared to {link}", weight=_room(geared.weight), link=geared.driver)
     for shafts in plan.shafts:

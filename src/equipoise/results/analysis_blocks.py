@@ -13,6 +13,7 @@ from equipoise.mechanism.kinematics.dwell import Dwell
 from equipoise.mechanism.kinematics.strokes import SHARE
 from equipoise.mechanism.outputs.spoken import joint_named
 from equipoise.quantities import Dimension, angle, percent
+from equipoise.quantities.numbers import ROUNDING
 from equipoise.results.belt_blocks import belt_blocks
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import cam_blocks
@@ -185,10 +186,14 @@ def _by_link(analysis: Analysis) -> Table:
 def shares(parts: Mapping[str, Array]) -> dict[str, float]:
     """Share of each part in the mean square of their sum, the largest first.
 
-    One below 0 works against the others.  parts : signals (N,), real or complex.
+    One below 0 works against the others, and all are 0 where they cancel but for rounding.
+    parts : signals (N,), real or complex.
     """
-    whole = np.sum(list(parts.values()), axis=0)
-    square = float(np.mean(np.abs(whole) ** 2)) or 1.0
+    signals = np.array(list(parts.values()))
+    whole, beside = np.sum(signals, axis=0), np.max(np.abs(signals), initial=0.0)
+    if np.max(np.abs(whole)) <= ROUNDING * beside:
+        return dict.fromkeys(parts, 0.0)
+    square = float(np.mean(np.abs(whole) ** 2))
     found = {
         name: float(np.mean((part * np.conj(whole)).real)) / square for name, part in parts.items()
     }
@@ -198,7 +203,7 @@ def shares(parts: Mapping[str, Array]) -> dict[str, float]:
 def _causes(analysis: Analysis) -> Table:
     drive, forces = analysis.machine.drive, analysis.forces
     scale = analysis.summary[drive.effort].peak
-    given = {"load": forces.loads, "spring": forces.springs}
+    given = {"load": forces.loads, "spring": analysis.machine.springs}
     rows: list[tuple[Cell, ...]] = []
     for cause, values in forces.split.by_cause(drive.effort).items():
         if given.get(cause, True):

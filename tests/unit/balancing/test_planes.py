@@ -12,6 +12,7 @@ import equipoise as eq
 from equipoise.balancing.multi_row import Rows
 from equipoise.balancing.objectives import signals_of
 from equipoise.balancing.problem import Problem
+from equipoise.balancing.told import freedoms
 from equipoise.errors import ModelError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.assessment import remarks
@@ -160,3 +161,12 @@ def test_what_statics_leaves_open_is_told() -> None:
     bent = machine.with_link("rocker", planes={"C": 0.05})
     assert statics(assemble(bent)).open == ("B", "C")
     assert any("tilting moments" in str(one) for one in remarks(assemble(bent)))
+
+
+def test_a_plan_tells_two_counterweights_on_one_shaft_apart() -> None:
+    masses = tuple(AddedMass("shaft", "A", Weight(plane=plane)) for plane in (None, *PLANES))
+    assert list(freedoms(Balance(masses=masses))) == [
+        "any mass on shaft about A",
+        "any mass on shaft about A, in the plane z = 100.0 mm",
+        "any mass on shaft about A, in the plane z = 800.0 mm",
+    ]

@@ -300,8 +300,16 @@ def test_phases_need_rows() -> None:
     ("output", "words"),
     [
         ("gauges.g", "there is no gauge; give a support with gauges"),
-        ("roll_moment", "roll_moment comes from linkages side by side; give [[rows]]"),
-        ("yaw_moment", "yaw_moment comes from linkages side by side; give [[rows]]"),
+        (
+            "roll_moment",
+            "roll_moment comes from linkages side by side; give [[rows]], or ask for "
+            "rocking_moment of links in planes",
+        ),
+        (
+            "yaw_moment",
+            "yaw_moment comes from linkages side by side; give [[rows]], or ask for "
+            "rocking_moment of links in planes",
+        ),
     ],
 )
 def test_outputs_of_support_and_rows(output: str, words: str) -> None:

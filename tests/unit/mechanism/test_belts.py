@@ -127,6 +127,12 @@ def test_a_slack_strand_is_told() -> None:
         "to push with 5.000 N; give it a tension of more than 15.00 N"
     )
     assert any(isinstance(block, Notes) for block in analysis_blocks(found))
+    causes = next(
+        one
+        for one in analysis_blocks(found)
+        if str(getattr(one, "title", "")) == "Drive torque by cause"
+    )
+    assert "springs" not in [str(row[0]) for row in causes.rows]
     chain = eq.analyze(replace(given, belts=(belt(),)), 12)
     assert not any(isinstance(block, Notes) for block in analysis_blocks(chain))
 

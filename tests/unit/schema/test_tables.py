@@ -227,7 +227,7 @@ def test_a_motion_law_follows_its_table(tmp_path: Path) -> None:
     assert machine.drive.motion is not None
     np.testing.assert_array_equal(machine.drive.motion.value(1.0), given.value(1.0))
     save(machine, tmp_path / "b.toml")
-    assert (tmp_path / "b.angles-1.csv").read_text().splitlines()[2] == "90,90.0"
+    assert (tmp_path / "b.angles-1.csv").read_text().splitlines()[2] == "90,90"
     assert load(tmp_path / "b.toml") == machine
     carried = Template.restored(Template.load(tmp_path / "a.toml").texts())
     assert carried.base() == machine

@@ -59,7 +59,7 @@ class Objective(Frozen):
         Text(),
         "such as `shaking_force.y`, `shaking_force`, `shaking_moment`, `drive_torque`, "
         "`frame_force`, `frame_moment`, `joints.NAME`, `gears.NAME`, `belts.NAME.pull`, "
-        "`gauges.NAME`, `roll_moment`, `yaw_moment`",
+        "`gauges.NAME`, `roll_moment`, `yaw_moment`, `rocking_moment`",
         example="shaking_moment",
     )
     measure: Measure = key(
@@ -166,7 +166,11 @@ def _balanced(one: Declared, item: str, machine: Mechanism) -> Declared:
     """An output that balancing can take, with the dimension that it has in this machine."""
     name = one.named(item).removeprefix("rows.")
     if one.needs == "rows" and not machine.rows:
-        raise ModelError("", f"{name} comes from linkages side by side; give [[rows]]")
+        raise ModelError(
+            "",
+            f"{name} comes from linkages side by side; give [[rows]], or ask for rocking_moment of "
+            "links in planes",
+        )
     if one.reason:
         raise ModelError("", one.reason.format(what=name))
     if one.needs == "support" and machine.support.gauges[item].axis is not None:  # type: ignore[union-attr]
