@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 
-from equipoise.mechanism.curves import NORMAL, spline
-from equipoise.mechanism.laws import (
+from equipoise.mechanism.formulas.curves import NORMAL, spline
+from equipoise.mechanism.parts.laws import (
     LAWS,
     AngleLaw,
     AngleSegment,

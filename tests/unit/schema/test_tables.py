@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from equipoise import move
 from equipoise.errors import ModelError
 from equipoise.handheld.model import Impedance
-from equipoise.mechanism.field import Soil, SoilTable
-from equipoise.mechanism.force_elements import Motor, MotorTable
-from equipoise.mechanism.laws import AngleLaw, AngleTable
-from equipoise.mechanism.model import Load, LoadTable, Machine
+from equipoise.mechanism.parts.field import Soil, SoilTable
+from equipoise.mechanism.parts.force_elements import Motor, MotorTable
+from equipoise.mechanism.parts.laws import AngleLaw, AngleTable
+from equipoise.mechanism.parts.machine import Load, LoadTable, Machine
 from equipoise.schema import dumps, load, loads, save
 from equipoise.schema.models import files_of, parts_of
 from equipoise.schema.opening import opened_example
