@@ -30,9 +30,9 @@ from equipoise.codegen.backends import run_loop
 from equipoise.codegen.batch import Batch, all_angles, designs_of, grid_of
 from equipoise.codegen.figures import Figure
 from equipoise.codegen.gram import MassBatch
-from equipoise.mechanism import kernels
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.machine import Machine
 from study_runs import ANGLES, MACHINE, SIGNALS, VARIED, designs
 from timing import in_turn
 

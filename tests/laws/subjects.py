@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import equipoise as eq
-from equipoise.mechanism.field import Soil, SoilTable
+from equipoise.mechanism.parts.field import Soil, SoilTable
 from support import machines_cams
 from support.loads import force_and_torque, has_soil, soil_force, tips_of
 from support.machines import KINDS, make

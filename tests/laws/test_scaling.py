@@ -18,7 +18,7 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.advice import pin_of, reach_of
 from equipoise.figures.animation import laid_out
-from equipoise.mechanism.balance import (
+from equipoise.mechanism.parts.balance import (
     MATERIALS,
     AddedMass,
     Balance,
@@ -27,7 +27,7 @@ from equipoise.mechanism.balance import (
     Phases,
     Weight,
 )
-from equipoise.mechanism.objectives import balanced_names
+from equipoise.mechanism.parts.objectives import balanced_names
 from equipoise.quantities import SI
 from equipoise.quantities.units import FACTORS
 from equipoise.results.blocks import Column, Many, Span, Table, Value

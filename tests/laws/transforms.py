@@ -15,12 +15,12 @@ import pint
 import equipoise as eq
 from equipoise.keys import Frozen, Kind, Point, Table, innermost
 from equipoise.keys.declaring import declarations
-from equipoise.mechanism.balance import Limit
-from equipoise.mechanism.cams import Cam
-from equipoise.mechanism.field import Planting
-from equipoise.mechanism.model import FRAME, FurtherDrive, Vector
-from equipoise.mechanism.objectives import quantity_of
-from equipoise.mechanism.racks import Rack
+from equipoise.mechanism.parts.balance import Limit
+from equipoise.mechanism.parts.cams import Cam
+from equipoise.mechanism.parts.field import Planting
+from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Vector
+from equipoise.mechanism.parts.objectives import quantity_of
+from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities import SI
 
 Value = TypeVar("Value")

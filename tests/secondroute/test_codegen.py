@@ -14,9 +14,9 @@ from equipoise.codegen.batch import Batch
 from equipoise.codegen.emit import can_compute, can_emit
 from equipoise.codegen.figures import Figure
 from equipoise.errors import UsageError
-from equipoise.mechanism.laws import LengthLaw
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Gear, Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.parts.laws import LengthLaw
+from equipoise.mechanism.parts.machine import Gear, Machine
 from support import machines_cams
 from support.batches import by_numpy, every_dyad, known_of, same_figures, signals_of, wanted_of
 from support.designs import design, drawn, named, numbers_of, paths_of, reason_of

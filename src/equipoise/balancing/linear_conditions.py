@@ -17,17 +17,17 @@ import numpy as np
 from equipoise.balancing.readings import UNITS, Reading, machine_size, reading
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine, unknown
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.outputs import DECLARED, Found
-from equipoise.mechanism.parameters import (
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.dynamics.parameters import (
     QUANTITIES,
     independent_columns,
     parameter_names,
     parameter_values,
     regressor,
 )
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.outputs.declared import DECLARED, Found
+from equipoise.mechanism.parts.machine import Machine, unknown
 from equipoise.quantities import Dimension, display
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value
 from equipoise.results.outputs import output_named

@@ -13,8 +13,8 @@ from equipoise.balancing.compared import PRICE, WORTH, too_dear
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.workshop import sentences
 from equipoise.i18n import said, say, spoken, to_say
-from equipoise.mechanism.balance import CUT, Balance, Objective, Weight, material_of
-from equipoise.mechanism.outputs import GROUPS
+from equipoise.mechanism.outputs.declared import GROUPS
+from equipoise.mechanism.parts.balance import CUT, Balance, Objective, Weight, material_of
 from equipoise.quantities import PER_RPM, brief, change, percent, told
 from equipoise.results.blocks import Block, Change, Column, Table, Text
 from equipoise.results.outputs import (

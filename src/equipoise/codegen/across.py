@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Sequence
 from itertools import chain
 
 from equipoise.codegen.source import Read, Sheet
-from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.planes import moments_across
-from equipoise.mechanism.statics import contacts, statics
+from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.mechanism.dynamics.statics import contacts, statics
+from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.planes import moments_across
 
 
 def write_across(

@@ -17,14 +17,13 @@ from equipoise.codegen.loops import can_write
 from equipoise.codegen.source import Source, source_of
 from equipoise.codegen.writer import Writer
 from equipoise.errors import MassError, UsageError
+from equipoise.mechanism.assembly.family import can_vary
+from equipoise.mechanism.assembly.linkage import Linkage, assemble
+from equipoise.mechanism.assembly.newton import LoopGroup
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.family import can_vary
-from equipoise.mechanism.linkage import Linkage, assemble
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.newton import LoopGroup
-from equipoise.mechanism.outputs import DECLARED, Declared, declared
-from equipoise.mechanism.parts import JOINTS
-from equipoise.mechanism.planes import beside
+from equipoise.mechanism.outputs.declared import DECLARED, Declared, declared
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.sliders import JOINTS
 
 _LOOKED_UP = re.compile(r"\{([^}:]+)(:name)?\}")
 """Values in the expression of an output: of the machine, or of the member of a family."""
@@ -75,7 +74,7 @@ def _known(writer: Writer) -> Sequence[str]:
 
 def _has(writer: Writer, one: Declared) -> bool:
     """Whether the machine has what an output tells of, as far as that depends on no member."""
-    return one.needs != "planes" or beside(writer.machine)
+    return one.needs != "planes" or writer.machine.has_planes
 
 
 def _identified(writer: Writer, looked_up: re.Match[str], item: str) -> str:

@@ -16,8 +16,8 @@ import numpy as np
 from equipoise.errors import UsageError, needed
 from equipoise.exchange.formats import Job
 from equipoise.exchange.parts import Part, parts
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.motion import move
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.machine import FRAME
 from equipoise.symbols.scene import Scene
 
 MM = 1e3

@@ -10,8 +10,8 @@ from equipoise.balancing.balanced import Balanced
 from equipoise.errors import ChangePointError, RangeError, UsageError, needed, unknown
 from equipoise.exchange.formats import CAM, FORMATS, RACK, VARYING, Format, Job
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.files import printable, write
 from equipoise.studies.selection import write_designs
 from equipoise.studies.store import Store

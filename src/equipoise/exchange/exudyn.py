@@ -19,10 +19,10 @@ from equipoise.exchange.tree import (
     trees,
     weighed,
 )
-from equipoise.mechanism.joints import structure
-from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.support import PLANAR, Support, unit_vector
+from equipoise.mechanism.assembly.joints import structure
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.mechanism.parts.support import PLANAR, Support, unit_vector
 
 Data = dict[str, Any]
 End = tuple[str, list[float]]

@@ -7,13 +7,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.joints import Structure
-from equipoise.mechanism.planes import beside
+from equipoise.mechanism.assembly.joints import Structure
+from equipoise.mechanism.dynamics.forces import massless
 
 if TYPE_CHECKING:
     from equipoise.balancing.workshop import Change
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
 
 
 CAM, RACK, VARYING = "cam", "rack", "gears of varying ratio"
@@ -174,7 +173,7 @@ class Job:
 
     def leave_out_planes(self) -> None:
         """Tell that everything lies in one plane."""
-        if beside(self.machine):
+        if self.machine.has_planes:
             self.leave_out("the planes of links beside each other, and their bearings")
 
     def leave_out_motor(self) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.told import capital, figure_named, figure_unit, good_already
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.spoken import joint_named, named
+from equipoise.mechanism.outputs.spoken import joint_named, named
 from equipoise.present.shaking import NOTHING, Shaking, acting, largest_joint, largest_of
 from equipoise.present.support_headlines import first_gauge
 from equipoise.quantities import Dimension, angle, brief, change, percent, told

@@ -15,7 +15,7 @@ from equipoise.quantities import angle
 from equipoise.signals import Array, Figures, figures, harmonics
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.present.findings import Findings
     from equipoise.results.analysis import Analysis
 

@@ -10,7 +10,7 @@ import numpy as np
 from equipoise.balancing.told import capital, good_already, helps_told
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.spoken import joint_named, named
+from equipoise.mechanism.outputs.spoken import joint_named, named
 from equipoise.planting.summary import PlantingFigures
 from equipoise.present.findings import Findings
 from equipoise.present.pages import Answer, Tile

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say
-from equipoise.mechanism.dwell import Dwell
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.spoken import joint_named
-from equipoise.mechanism.strokes import SHARE
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.kinematics.dwell import Dwell
+from equipoise.mechanism.kinematics.strokes import SHARE
+from equipoise.mechanism.outputs.spoken import joint_named
 from equipoise.quantities import Dimension, angle, percent
 from equipoise.quantities.numbers import ROUNDING
 from equipoise.results.belt_blocks import belt_blocks

@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.model import Impedance
-from equipoise.mechanism.field import SoilTable
-from equipoise.mechanism.force_elements import MotorTable
-from equipoise.mechanism.laws import AngleTable, LengthTable
-from equipoise.mechanism.model import LoadTable
+from equipoise.mechanism.parts.field import SoilTable
+from equipoise.mechanism.parts.force_elements import MotorTable
+from equipoise.mechanism.parts.laws import AngleTable, LengthTable
+from equipoise.mechanism.parts.machine import LoadTable
 from equipoise.quantities import (
     FACTORS,
     HUGE,

@@ -18,9 +18,9 @@ from typing import Any
 from equipoise.errors import MobilityError, ModelError, MotionError
 from equipoise.handheld.model import Tool
 from equipoise.i18n import Note
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.swings import SWUNG, swing
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.kinematics.swings import SWUNG, swing
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.finding import Found, all_numbers, find, replaced, unit_in, with_changes
 from equipoise.schema.models import Beside, machine_of, parts_of, plain_of, text_of, tool_of
 from equipoise.schema.numbers import Number

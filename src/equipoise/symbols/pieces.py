@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.support import Mount, unit_vector
+from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.support import Mount, unit_vector
 from equipoise.symbols.carrier import foot, gauge, ground, strut, turning
 from equipoise.symbols.drives import Drive
 from equipoise.symbols.scene import WIDE, Body, Guide, Scene

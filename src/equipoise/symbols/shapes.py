@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism.kernels import cross
+from equipoise.mechanism.formulas.kernels import cross
 
 Array = np.ndarray[Any, Any]
 

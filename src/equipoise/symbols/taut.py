@@ -7,12 +7,12 @@ from math import pi, radians, tan
 
 import numpy as np
 
-from equipoise.mechanism.builder import Guide
+from equipoise.mechanism.assembly.builder import Guide
+from equipoise.mechanism.assembly.joints import Structure, coupling_pins
 from equipoise.mechanism.checks import Bodies
-from equipoise.mechanism.joints import Structure, coupling_pins
-from equipoise.mechanism.model import Slider
-from equipoise.mechanism.racks import Rack
-from equipoise.mechanism.strands import LEFT, RIGHT
+from equipoise.mechanism.formulas.strands import LEFT, RIGHT
+from equipoise.mechanism.parts.machine import Slider
+from equipoise.mechanism.parts.racks import Rack
 from equipoise.symbols.shapes import Array, Mark, line
 
 MOST_TEETH = 80

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from equipoise.i18n import say
-from equipoise.mechanism.belts import Belt
+from equipoise.mechanism.assembly.joints import Structure, coupling_pins
 from equipoise.mechanism.checks import Bodies
-from equipoise.mechanism.couplings import Law
-from equipoise.mechanism.gears import Gear
-from equipoise.mechanism.joints import Structure, coupling_pins
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.racks import Rack
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.couplings import Law
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.racks import Rack
 from equipoise.symbols.shapes import Array
 
 CORNERS = 180

@@ -14,8 +14,8 @@ from string import ascii_uppercase
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.model import FRAME, Drive, Link, Slider
-from equipoise.mechanism.outline import Pose, length_between, pose_between
+from equipoise.mechanism.kinematics.outline import Pose, length_between, pose_between
+from equipoise.mechanism.parts.machine import FRAME, Drive, Link, Slider
 from equipoise.quantities import clean
 from equipoise.web.messages import Spot
 from equipoise.web.sketch import Sketch

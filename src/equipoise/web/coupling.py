@@ -12,9 +12,9 @@ from math import pi
 
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.belts import Belt
-from equipoise.mechanism.model import FRAME, Gear
-from equipoise.mechanism.racks import Rack
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.machine import FRAME, Gear
+from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities import clean
 from equipoise.web.adding import TOGETHER, check_body, the
 from equipoise.web.sketch import Sketch

@@ -11,7 +11,7 @@ import numpy as np
 from equipoise.errors import EquipoiseError, MobilityError, UsageError, to_paste
 from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.model import FRAME, Machine
+from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import DIGITS, display
 from equipoise.symbols.drives import Drive
 from equipoise.symbols.scene import Guide, Scene, bodies_of

@@ -8,7 +8,7 @@ from functools import partial
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.parts.machine import FRAME
 from equipoise.web.adding import with_drive, with_link, with_point, with_slider
 from equipoise.web.coupling import with_belt, with_gears, with_rack
 from equipoise.web.messages import Message

@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import Any, Literal
 
 from equipoise.keys import Frozen, Kind, Point, Text, innermost, keys_of
-from equipoise.mechanism.couplings import Turning, name_of
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.objectives import JOINTS, WITHIN
+from equipoise.mechanism.parts.couplings import Turning, name_of
+from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.objectives import JOINTS, WITHIN
 
 What = Literal["point", "link"]
 NAMING = {"point": {"point"}, "link": {"link", "body"}}

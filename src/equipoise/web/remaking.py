@@ -10,9 +10,9 @@ from typing import Any
 
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.checks import Bodies, unknown
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.parts.balance import Balance
+from equipoise.mechanism.parts.machine import FRAME
 from equipoise.web.adding import (
     check_body,
     check_link,

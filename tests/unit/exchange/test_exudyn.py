@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.support import unit_vector
+from equipoise.mechanism.parts.support import unit_vector
 from support.conformance import compared
 from support.machines import make
 from support.sources import EXUDYN

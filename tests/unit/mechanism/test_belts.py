@@ -13,7 +13,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError, MotionError, UsageError
 from equipoise.mechanism import Belt, Position, Rack
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.parts.machine import FRAME
 from equipoise.results.analysis_blocks import analysis_blocks
 from equipoise.results.belt_blocks import slack
 from equipoise.results.blocks import Notes

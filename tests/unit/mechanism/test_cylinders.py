@@ -15,9 +15,9 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.exchange.export import made
 from equipoise.exchange.formats import FORMATS
 from equipoise.figures import render
-from equipoise.mechanism.drives import Drive, FurtherDrive
-from equipoise.mechanism.laws import AngleLaw, LengthLaw
-from equipoise.mechanism.parameters import parameter_values, regressor
+from equipoise.mechanism.dynamics.parameters import parameter_values, regressor
+from equipoise.mechanism.parts.drives import Drive, FurtherDrive
+from equipoise.mechanism.parts.laws import AngleLaw, LengthLaw
 from equipoise.present.findings import Findings
 from equipoise.present.pictures import each
 from equipoise.web.design import Design

@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from equipoise import move
 from equipoise.errors import ModelError
 from equipoise.handheld.model import Impedance
-from equipoise.mechanism.field import Soil, SoilTable
-from equipoise.mechanism.force_elements import Motor, MotorTable
-from equipoise.mechanism.laws import AngleLaw, AngleTable
-from equipoise.mechanism.model import Load, LoadTable, Machine
+from equipoise.mechanism.parts.field import Soil, SoilTable
+from equipoise.mechanism.parts.force_elements import Motor, MotorTable
+from equipoise.mechanism.parts.laws import AngleLaw, AngleTable
+from equipoise.mechanism.parts.machine import Load, LoadTable, Machine
 from equipoise.schema import dumps, load, loads, save
 from equipoise.schema.models import files_of, parts_of
 from equipoise.schema.opening import opened_example
@@ -227,7 +227,7 @@ def test_a_motion_law_follows_its_table(tmp_path: Path) -> None:
     assert machine.drive.motion is not None
     np.testing.assert_array_equal(machine.drive.motion.value(1.0), given.value(1.0))
     save(machine, tmp_path / "b.toml")
-    assert (tmp_path / "b.angles-1.csv").read_text().splitlines()[2] == "90,90.0"
+    assert (tmp_path / "b.angles-1.csv").read_text().splitlines()[2] == "90,90"
     assert load(tmp_path / "b.toml") == machine
     carried = Template.restored(Template.load(tmp_path / "a.toml").texts())
     assert carried.base() == machine
