@@ -18,7 +18,9 @@ from equipoise.present.headlines import caused, ordered, pushed
 from equipoise.present.pages import Document, page, paired, pdf
 from equipoise.present.shaking import Shaking
 from equipoise.present.summary import answers, tiles
-from equipoise.results.blocks import Drawn, Table
+from equipoise.quantities import brief
+from equipoise.results.analysis_blocks import orders_table
+from equipoise.results.blocks import Drawn, Table, Value
 from support.found import found as found_of
 
 
@@ -151,6 +153,8 @@ def test_a_force_that_cancels_but_for_rounding_is_none(tmp_path: Path) -> None:
     (tmp_path / "reel.toml").write_text("".join([frame, *turns, *bars]))
     found = find(tmp_path / "reel.toml")
     assert isinstance(found, Findings)
+    for _, _, x, *_ in orders_table(found.analysis).rows:
+        assert isinstance(x, Value) and brief(x.value, x.scale) == "0"
     assert not np.any(Shaking.of(found).force)
     told = [sentence for answer in answers(found) for sentence in answer.sentences]
     assert any("does not shake its frame by any force" in one for one in told)
