@@ -19,7 +19,7 @@ import numpy as np
 
 from equipoise.codegen.figures import KINDS
 from equipoise.codegen.source import Source
-from equipoise.mechanism import kernels
+from equipoise.mechanism.formulas import kernels
 
 ALWAYS = ["-O3", "-march=native", "-ffast-math", "-shared", "-fPIC"]
 FLAGS = (

@@ -32,7 +32,7 @@ from statistics import median
 import numpy as np
 
 import equipoise as eq
-from equipoise.mechanism.balance import Balance, Objective
+from equipoise.mechanism.parts.balance import Balance, Objective
 from timing import in_turn
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))

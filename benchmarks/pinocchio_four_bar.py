@@ -17,8 +17,8 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 import pinocchio as pin
 
-from equipoise.mechanism import kernels
-from equipoise.mechanism.model import Link, Machine
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.machine import Link, Machine
 
 VERSION = pin.__version__
 AT_A_TIME = 8192

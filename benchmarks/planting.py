@@ -15,8 +15,8 @@ from dataclasses import replace
 import numpy as np
 
 import equipoise as eq
-from equipoise.mechanism.gear_shapes import GearShape
-from equipoise.mechanism.tip import TipCurve
+from equipoise.mechanism.kinematics.tip import TipCurve
+from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.planting.designs import Designs
 from equipoise.planting.figures import tip_figures
 from equipoise.planting.goals import Goal, Problem

@@ -30,9 +30,9 @@ from equipoise.codegen.backends import run_loop
 from equipoise.codegen.batch import Batch, all_angles, designs_of, grid_of
 from equipoise.codegen.figures import Figure
 from equipoise.codegen.gram import MassBatch
-from equipoise.mechanism import kernels
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.machine import Machine
 from study_runs import ANGLES, MACHINE, SIGNALS, VARIED, designs
 from timing import in_turn
 
@@ -47,6 +47,7 @@ WANTED = [Figure(signal, "rms") for signal in SIGNALS]
 LIKE_FOUR_BAR = (
     "watt-six-bar", "stephenson-six-bar", "balance-geared-a", "geared-counterweight",
     "elliptic-quick-return", "cam-pusher", "straw-walker",
+    "knife-drive",
 )  # fmt: skip
 """`geared-counterweight` has its gear, and `cam-pusher` its cam, on a link that the crank moves
 unevenly; `straw-walker` has twice as many links."""

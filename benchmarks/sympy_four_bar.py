@@ -14,7 +14,7 @@ from math import hypot
 import numpy as np
 import sympy as sp
 
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.machine import Machine
 
 
 class Form:

@@ -12,6 +12,8 @@ export type Tool =
   | "separate"
   | "slider"
   | "gears"
+  | "belt"
+  | "rack"
   | "drive"
   | "delete";
 
@@ -83,6 +85,22 @@ export const TOOLS: Told[] = [
     picture: "M5.500 5.500a3 3 0 1 0 .01 0M11.500 3a2.200 2.200 0 1 0 .01 0",
   },
   {
+    tool: "belt",
+    key: "b",
+    name: toSay("Belt"),
+    first: toSay("click the link of the driving pulley"),
+    then: toSay("click the link of the driven pulley"),
+    picture: "M4.500 6.500a2 2 0 1 0 .01 0M12 5a3 3 0 1 0 .01 0M4.500 6.500l7.500-1.500M4.500 10.500l7.500 .5",
+  },
+  {
+    tool: "rack",
+    key: "k",
+    name: toSay("Rack"),
+    first: toSay("click what drives: the link of the pinion, or the block of the rack"),
+    then: toSay("click the other of both: the block of the rack slides on the carrier of the pinion"),
+    picture: "M7 2.500a3 3 0 1 0 .01 0M2 13.500v-2.500h1.500v-1.500h2v1.500h2v-1.500h2v1.500h2v-1.500h2v1.500h.5v2.500z",
+  },
+  {
     tool: "drive",
     key: "d",
     name: toSay("Drive"),
@@ -94,7 +112,7 @@ export const TOOLS: Told[] = [
     tool: "delete",
     key: "Delete",
     name: toSay("Delete"),
-    first: toSay("click the joint, the link, the slider or the gears that are to go"),
+    first: toSay("click the joint, the link, the slider, the gears, the belt or the rack that is to go"),
     then: "",
     picture: "M3 4.500h10M6.500 4.500v-2h3v2M4.500 4.500l.7 9h5.600l.7-9",
   },
@@ -131,7 +149,7 @@ export class Palette {
       return button;
     });
     const make = h("button", { type: "button", onclick: () => page.made() }, say("New"));
-    this.teeth = [say("Teeth of the driving gear"), say("Teeth of the driven gear")].map((name) =>
+    this.teeth = [say("Teeth of the driver"), say("Teeth of the driven link")].map((name) =>
       h("input", { type: "text", inputmode: "numeric", class: "teeth", "aria-label": name, value: "20" }),
     );
     this.meshing = h("span", { class: "meshing", hidden: true }, say("teeth"), ...this.teeth);
@@ -147,7 +165,7 @@ export class Palette {
     );
   }
 
-  /** Numbers of teeth of the next pair of gears. */
+  /** Numbers of teeth of the next pair of gears, or belt. */
   get meshes(): [number, number] {
     const [one, other] = this.teeth.map((input) => Math.round(Number(input.value)));
     return [one ?? NaN, other ?? NaN];
@@ -158,7 +176,7 @@ export class Palette {
     for (const [name, button] of this.buttons) set(button, { "aria-pressed": String(name === tool) });
     const told = TOOLS.find((one) => one.tool === tool);
     write(this.next, tool === "select" || !told ? "" : say(pending ? told.then : told.first));
-    this.meshing.hidden = tool !== "gears";
+    this.meshing.hidden = tool !== "gears" && tool !== "belt";
   }
 
   tell(status: Status): void {

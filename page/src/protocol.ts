@@ -176,8 +176,8 @@ export interface Sign {
     at?: Pair;
     ground?: Pair;
   } | null;
-  /** The slider or the pair of gears that it tells, if any. */
-  part: [what: "slider" | "gears", name: string] | null;
+  /** The slider or the coupling that it tells, if any. */
+  part: [what: "slider" | "gears" | "belts" | "racks", name: string] | null;
   /** Whether it stands on the ground, and not on the support. */
   still: boolean;
   shapes: Shape[];

@@ -17,7 +17,7 @@ const STEPS = 15;
 export interface Hit {
   point?: string;
   link?: string;
-  /** A slider or a pair of gears whose sign is there. */
+  /** A slider or a coupling whose sign is there. */
   part?: { what: string; name: string };
   place: Pair;
 }

@@ -20,7 +20,8 @@ const ARROWS: Record<string, Pair> = {
 };
 
 /** Tools that need two clicks. */
-const TWO = new Set<Tool>(["link", "pin", "slider", "gears"]);
+const COUPLING = new Set<Tool>(["gears", "belt", "rack"]);
+const TWO = new Set<Tool>(["link", "pin", "slider", ...COUPLING]);
 
 export interface Making extends Turning, Snapping {
   talk: Conversation;
@@ -156,8 +157,8 @@ export class Tools {
     const from = level ? (this.pending?.place ?? null) : null;
     const hit = meant(this.page, px, link, from);
     const { what, name } = parts[0]?.dataset ?? {};
-    // A block lies on its joint, wheels lie about theirs.
-    if (what === "slider" || (what === "gears" && !hit.point)) hit.part = { what, name: name ?? "" };
+    // A block lies on its joint, all else about one.
+    if (what && (what === "slider" || !hit.point)) hit.part = { what, name: name ?? "" };
     return hit;
   }
 
@@ -261,7 +262,7 @@ export class Tools {
   private put(hit: Hit): void {
     if (TWO.has(this.tool) && !this.pending) {
       if (this.tool === "pin" && !hit.point) return;
-      if (this.tool === "gears" && !this.linkOf(hit)) return;
+      if (COUPLING.has(this.tool) && !this.linkOf(hit)) return;
       this.pending = hit;
       this.palette.show(this.tool, true);
       return;
@@ -286,10 +287,12 @@ export class Tools {
         return first?.point ? this.pin(first.point, hit.point) : null;
       case "separate":
         return hit.point ? { do: "separate", point: hit.point } : null;
-      case "gears": {
+      case "gears":
+      case "belt":
+      case "rack": {
         const [teeth, driven_teeth] = this.palette.meshes;
         const driver = first && this.linkOf(first);
-        return driver && link ? { do: "gears", driver, driven: link, teeth, driven_teeth } : null;
+        return driver && link ? { do: this.tool, driver, driven: link, teeth, driven_teeth } : null;
       }
       case "drive":
         return link ? { do: "drive", link } : null;
@@ -308,9 +311,15 @@ export class Tools {
     return { do: pinned ? "free" : "ground", point };
   }
 
-  /** The link that is meant; at a joint the one that turns about a point of the frame. */
+  /**
+   * The link that is meant; at a joint the one that turns about a point of the frame, and for a rack
+   * the one that slides.
+   */
   private linkOf(hit: Hit): string | undefined {
     const { bodies = [], frame = [] } = this.page.state()?.scene ?? {};
+    const block = this.tool === "rack" && hit.part?.what === "slider" ? hit.part.name : "";
+    const sliding = bodies.find(({ name }) => block.startsWith(`${name} on `));
+    if (sliding) return sliding.name;
     const met = bodies.filter(({ points }) => hit.point && points.includes(hit.point));
     const turning = met.find(({ points }) => points.some((point) => frame.includes(point)));
     return hit.link ?? (turning ?? met[0])?.name;

@@ -149,6 +149,15 @@ def test_a_slider_crank_is_made_by_finger(new_page: Callable[..., Page], address
     sheet.type(**{"crank A to B": "25 mm", "coupler B to C": "90 mm"})
     made, like = live.machine(), eq.load("slider-crank-engine")
     check_same(massed(made, like, {"crank": "crank", "coupler": "rod", "slider": "piston"}), like)
+    sheet.take("Link")
+    sheet.click((-40, 40), (-40, 60))
+    sheet.take("Pin")
+    sheet.click((-40, 40), (-40, 40))
+    sheet.take("Rack")
+    sheet.click((0, 86), (-40, 50))
+    sheet.says(TURNS)
+    (rack,) = live.machine().racks
+    assert (rack.drives, rack.radius) == ("rack", 0.04)
 
 
 def test_a_geared_five_bar_is_made_by_keys(sheet: Sheet) -> None:
@@ -166,8 +175,15 @@ def test_a_geared_five_bar_is_made_by_keys(sheet: Sheet) -> None:
     sheet.says("free motions too many: 1")
     keys.press("d")
     sheet.steer(15, 0)
+    keys.press("b")
+    sheet.steer(15, 0)
+    sheet.steer(94, 11)
+    sheet.says(TURNS)
+    keys.press("Delete")
+    sheet.steer(-15, -15)  # on the wheel about A
+    sheet.says("free motions too many: 1")
     keys.press("g")
-    sheet.live.field("Teeth of the driven gear").fill("40")
+    sheet.live.field("Teeth of the driven link").fill("40")
     sheet.steer(15, 0)
     sheet.steer(94, 11)
     sheet.says(TURNS)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.parts.machine import FRAME
 from support import mujoco_engine
 from support.analyses import (
     Subject,

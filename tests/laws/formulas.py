@@ -12,7 +12,7 @@ from typing import Any
 
 import mpmath
 
-from equipoise.mechanism import kernels
+from equipoise.mechanism.formulas import kernels
 
 Exp = Callable[[Any], Any]
 Inputs = Callable[[Any, Exp], tuple[Any, ...]]

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import equipoise as eq
-from equipoise.mechanism.field import Soil, SoilTable
+from equipoise.mechanism.parts.field import Soil, SoilTable
 from support import machines_cams
 from support.loads import force_and_torque, has_soil, soil_force, tips_of
 from support.machines import KINDS, make
@@ -34,8 +34,7 @@ def names() -> tuple[str, ...]:
     """Names of all subjects: examples, one in soil, and kinds of random machines with a seed."""
     kinds = (*KINDS, *REDUNDANT, *machines_cams.KINDS, *machines_cams.LOOPED)
     random = (f"{kind}:{seed}" for kind in kinds for seed in SEEDS)
-    turned = (name for name in sorted(eq.examples("linkage")) if not eq.load(name).drive.pushes)
-    return (*turned, IN_SOIL, *random)
+    return (*sorted(eq.examples("linkage")), IN_SOIL, *random)
 
 
 @cache

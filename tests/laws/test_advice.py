@@ -13,8 +13,8 @@ import equipoise as eq
 from equipoise.balancing.advice import advise
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.told import worse_told
-from equipoise.mechanism.body_checks import outlines
-from equipoise.mechanism.support import Gauge, Row
+from equipoise.mechanism.parts.body_checks import outlines
+from equipoise.mechanism.parts.support import Gauge, Row
 from equipoise.results.outputs import output_named
 from laws.test_vibration_laws import load_free, supported
 from support.machines import make

@@ -19,7 +19,7 @@ from equipoise.balancing.sensitivity import (
     known_outputs,
     sensitivities,
 )
-from equipoise.mechanism.bodies import Body
+from equipoise.mechanism.parts.bodies import Body
 from support.machines import KINDS, make
 from support.machines_planes import set_apart
 

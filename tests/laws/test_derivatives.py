@@ -11,8 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 import equipoise as eq
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.steps import Call, p, u
+from equipoise.mechanism.assembly.steps import Call, p, u
+from equipoise.mechanism.parts.machine import FRAME
 from laws.subjects import machine_of
 from support.machines import KINDS, make
 

@@ -15,7 +15,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from equipoise.mechanism import joint_kernels, kernels
+from equipoise.mechanism.formulas import joint_kernels, kernels
 from laws.formulas import FORMULAS, Formula, constants, evaluate
 
 ANGLES = np.array([0.1, 0.9, 1.7, 2.6, 3.5, 4.4, 5.8])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.parts.machine import FRAME
 from support.conformance import compared
 from support.sources import CLOSED_FORMS
 

@@ -21,7 +21,7 @@ from equipoise.balancing.phase_bound import CLOSE
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import Phasing, choose_phases
 from equipoise.errors import UsageError
-from equipoise.mechanism.balance import Objective, Phases
+from equipoise.mechanism.parts.balance import Objective, Phases
 from support.machines import make
 from support.rows_in_time import anyhow, in_time, measured, side_by_side, value_of
 from unit.vibration.build import Array

@@ -15,7 +15,7 @@ from equipoise.balancing.phase_grid import Grid
 from equipoise.balancing.phase_polish import Tops, square_with_slopes
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import choose_phases
-from equipoise.mechanism.balance import MEASURES, Objective, Phases
+from equipoise.mechanism.parts.balance import MEASURES, Objective, Phases
 from equipoise.vibration.forced import respond, usual_step
 from support.machines import make
 from support.rows_in_time import anyhow, in_time, measured, side_by_side, value_of

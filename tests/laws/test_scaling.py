@@ -18,7 +18,7 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.advice import pin_of, reach_of
 from equipoise.figures.animation import laid_out
-from equipoise.mechanism.balance import (
+from equipoise.mechanism.parts.balance import (
     MATERIALS,
     AddedMass,
     Balance,
@@ -27,7 +27,7 @@ from equipoise.mechanism.balance import (
     Phases,
     Weight,
 )
-from equipoise.mechanism.objectives import balanced_names
+from equipoise.mechanism.parts.objectives import balanced_names
 from equipoise.quantities import SI
 from equipoise.quantities.units import FACTORS
 from equipoise.results.blocks import Column, Many, Span, Table, Value
@@ -44,7 +44,7 @@ MICRO = Units(2.0**-13, 2.0**-38, 2.0**-6)
 NUMBER = re.compile(r"[-+−]?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 
 
-SCALES = (*FACTORS, "kg/m³", "ng", "nN m", "nN", "nJ")
+SCALES = (*FACTORS, "kg/m³", "µg", "ng", "nN m", "nN", "nJ")
 """Units, and those that only tell what is small."""
 UNIT = re.compile(f"# (?:{'|'.join(sorted(map(re.escape, SCALES), key=len, reverse=True))})\\b")
 

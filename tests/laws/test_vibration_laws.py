@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.bodies import Body
-from equipoise.mechanism.force_elements import Motor
-from equipoise.mechanism.support import Gauge, Mount, Row, Support, unit_vector
+from equipoise.mechanism.parts.bodies import Body
+from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.support import Gauge, Mount, Row, Support, unit_vector
 from equipoise.signals import Periodic
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import respond

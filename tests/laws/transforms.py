@@ -15,12 +15,12 @@ import pint
 import equipoise as eq
 from equipoise.keys import Frozen, Kind, Point, Table, innermost
 from equipoise.keys.declaring import declarations
-from equipoise.mechanism.balance import Limit
-from equipoise.mechanism.cams import Cam
-from equipoise.mechanism.field import Planting
-from equipoise.mechanism.model import FRAME, FurtherDrive, Vector
-from equipoise.mechanism.objectives import quantity_of
-from equipoise.mechanism.racks import Rack
+from equipoise.mechanism.parts.balance import Limit
+from equipoise.mechanism.parts.cams import Cam
+from equipoise.mechanism.parts.field import Planting
+from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Vector
+from equipoise.mechanism.parts.objectives import quantity_of
+from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities import SI
 
 Value = TypeVar("Value")
@@ -70,8 +70,8 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
     start = eq.move(machine, np.array([-angle]))
     return replace(
         machine,
-        drive=swung(machine.drive, lambda value: value + angle, lambda phase: phase + angle),
-        drives=tuple(later_drive(one, angle) for one in machine.drives),
+        drive=later_drive(machine.drive, angle, start),
+        drives=tuple(later_drive(one, angle, start) for one in machine.drives),
         frame=mapped(machine.frame, lambda z: z * turn),
         gravity=vector(lambda z: z * turn, machine.gravity),
         sliders=tuple(
@@ -99,11 +99,17 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
     )
 
 
-def later_drive(drive: FurtherDrive, angle: float) -> FurtherDrive:
-    """Turn a further drive as the frame, at crank angles that grow by the same angle."""
-    if drive.motion is None:
-        return replace(drive, start=drive.start + angle * (1 - drive.ratio))
-    return swung(drive, lambda value: value + angle, lambda phase: phase + angle)
+def later_drive(drive: Driven, angle: float, start: Any) -> Driven:
+    """Turn a drive as the frame, at crank angles that grow by the same angle.
+
+    start : the motion at the crank angle that is 0 then.
+    """
+    found = swung(drive, lambda value: value + angle, lambda phase: phase + angle)
+    if found.pushes:
+        return replace(found, start=float(start.links[drive.link].angle[0]) + angle)
+    if isinstance(found, FurtherDrive) and found.motion is None:
+        return replace(found, start=found.start + angle * (1 - found.ratio))
+    return found
 
 
 def put_off(gear: eq.Gear, later: float) -> eq.Gear:
@@ -115,22 +121,26 @@ def put_off(gear: eq.Gear, later: float) -> eq.Gear:
 def swung(
     drive: Driven, change: Callable[[float], float], later: Callable[[float], float]
 ) -> Driven:
-    """Change the angles between which a drive swings, and when it begins; all runs backwards where
-    `later` does.
+    """Change the angles between which a drive swings, and when it begins to swing or to push; all
+    runs backwards where `later` does.
     """
-    law = drive.motion
-    if law is None:
-        return drive
+    return replace(
+        drive,
+        motion=None if drive.motion is None else put_law(drive.motion, change, later),
+        stroke=None if drive.stroke is None else put_law(drive.stroke, float, later),
+    )
+
+
+def put_law(law: Any, change: Callable[[float], float], later: Callable[[float], float]) -> Any:
     if law.between is not None:
         low, high = map(change, law.between)
-        return replace(drive, motion=replace(law, between=(low, high), phase=later(law.phase)))
+        return replace(law, between=(low, high), phase=later(law.phase))
     values = [change(one) for one in (law.start, *(part.to for part in law.segments))]
     parts = list(law.segments)
     if later(1.0) < later(0.0):
         values, parts = values[::-1], parts[::-1]  # each law is its own image in its middle
     ways = tuple(replace(part, to=to) for part, to in zip(parts, values[1:], strict=True))
-    moved = replace(law, start=values[0], segments=ways, phase=later(law.phase))
-    return replace(drive, motion=moved)
+    return replace(law, start=values[0], segments=ways, phase=later(law.phase))
 
 
 def turned_position(position: eq.mechanism.Position, angle: float) -> eq.mechanism.Position:
@@ -203,14 +213,12 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
             mapped(position.points, np.conj),
             {link: -value for link, value in position.angles.items()},
         )
-    drive = swung(machine.drive, operator.neg, operator.neg)
+    drive, *drives = (mirrored_drive(one) for one in machine.driven)
+    assert isinstance(drive, eq.Drive)
     return replace(
         machine,
         drive=replace(drive, speed=-drive.speed, acceleration=-drive.acceleration),
-        drives=tuple(
-            replace(swung(one, operator.neg, operator.neg), start=-one.start)
-            for one in machine.drives
-        ),
+        drives=tuple(drives),
         frame=mapped(machine.frame, np.conj),
         links={name: mirrored_link(link) for name, link in machine.links.items()},
         assembly={joint: flip.get(side, side) for joint, side in machine.assembly.items()},
@@ -225,6 +233,11 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
         gravity=vector(np.conj, machine.gravity),
         position=position,
     )  # fmt: skip
+
+
+def mirrored_drive(drive: Driven) -> Driven:
+    start = None if drive.start is None else -drive.start
+    return replace(swung(drive, operator.neg, operator.neg), start=start)
 
 
 def mirrored_gear(gear: eq.Gear) -> eq.Gear:
@@ -448,6 +461,10 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
     def keys(given: Mapping[str, Value]) -> dict[str, Value]:
         return {names(key): value for key, value in given.items()}
 
+    def driven(drive: Driven) -> Driven:
+        between = drive.between and (names(drive.between[0]), names(drive.between[1]))
+        return replace(drive, link=body(drive.link), between=between)
+
     position, planting = machine.position, machine.planting
     if position is not None:
         position = replace(position, points=keys(position.points), angles=keys(position.angles))
@@ -460,8 +477,8 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
         planting = replace(planting, **changes)
     return replace(
         machine,
-        drive=replace(machine.drive, link=body(machine.drive.link)),
-        drives=tuple(replace(one, link=body(one.link)) for one in machine.drives),
+        drive=driven(machine.drive),
+        drives=tuple(map(driven, machine.drives)),
         frame=keys(machine.frame),
         links={
             names(name): replace(link, points=keys(link.points), planes=keys(link.planes))

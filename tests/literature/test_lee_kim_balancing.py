@@ -27,7 +27,7 @@ import pytest
 from scipy.optimize import differential_evolution, minimize
 
 import equipoise as eq
-from equipoise.mechanism.balance import Balance, GearedWeight
+from equipoise.mechanism.parts.balance import Balance, GearedWeight
 
 Array = np.ndarray[Any, Any]
 

@@ -22,8 +22,8 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.patterns import PATTERNS, arranged, halved, patterns_for
 from equipoise.balancing.phasing import choose_phases
-from equipoise.mechanism.balance import Objective
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.parts.balance import Objective
+from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Periodic
 from support.conformance import Printed, equation, published
 from support.sources import YAMASHITA

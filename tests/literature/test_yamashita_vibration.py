@@ -32,7 +32,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.support import Gauge, Mount, Row
+from equipoise.mechanism.parts.support import Gauge, Mount, Row
 from equipoise.signals import Periodic
 from equipoise.vibration.forced import respond
 from equipoise.vibration.linear import Linear

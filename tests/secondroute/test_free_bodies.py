@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.parameters import regressor, values_across
+from equipoise.mechanism.dynamics.parameters import regressor, values_across
+from equipoise.mechanism.parts.machine import FRAME
 from support import free_bodies, machines_planes
 from support.analyses import (
     Subject,

@@ -30,7 +30,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.field import Planting
+from equipoise.mechanism.parts.field import Planting
 from equipoise.planting.ground import Loop
 from equipoise.planting.summary import PlantingFigures, plant
 from support import planting_reference as reference

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.gear_shapes import GearShape
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.pitch_curves import law_of
+from equipoise.mechanism.parts.gear_shapes import GearShape
+from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.pitch_curves import law_of
 from support.analyses import agree
 from support.rolling_reference import Rolling
 from unit.mechanism.build import ORIGIN, machine

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.field import PlantingArm
-from equipoise.mechanism.gear_shapes import GearShape
+from equipoise.mechanism.parts.field import PlantingArm
+from equipoise.mechanism.parts.gear_shapes import GearShape
 from support.rotary_reference import CYCLE, TURN, Arm, Body, Rotary, rolled
 
 WITHIN = 1e-12

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.parts.machine import FRAME
 from laws.subjects import gravity_power, kinetic_power, load_power, spring_power
 from laws.subjects import same as alike
 from secondroute.test_free_bodies import acting_on_the_later, same_forces

@@ -11,8 +11,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MassError
-from equipoise.mechanism.field import PlantingArm, Soil, SoilTable
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.field import PlantingArm, Soil, SoilTable
+from equipoise.mechanism.parts.machine import Machine
 from support import machines_strokes
 from support.loads import springs_on_links
 from support.machines import KINDS, Case, make

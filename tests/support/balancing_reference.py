@@ -21,7 +21,7 @@ import numpy as np
 from scipy.optimize import differential_evolution, minimize
 
 import equipoise as eq
-from equipoise.mechanism.model import Gear, Link, Machine
+from equipoise.mechanism.parts.machine import Gear, Link, Machine
 from support.poses import Array, drive_pivot
 
 SAMPLES = 720

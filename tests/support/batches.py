@@ -16,10 +16,10 @@ import equipoise as eq
 from equipoise.codegen import backends
 from equipoise.codegen.emit import can_emit
 from equipoise.codegen.figures import Figure
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Gear, Machine, Slider
-from equipoise.mechanism.newton import LoopGroup
-from equipoise.mechanism.outputs import declared
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.newton import LoopGroup
+from equipoise.mechanism.outputs.declared import declared
+from equipoise.mechanism.parts.machine import Gear, Machine, Slider
 from equipoise.signals import Figures, figures
 from support.designs import Array, size_of
 from support.machines import KINDS, make

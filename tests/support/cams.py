@@ -13,8 +13,8 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import brentq
 
-from equipoise.mechanism.cams import Cam
-from equipoise.mechanism.model import FRAME, Machine, Slider
+from equipoise.mechanism.parts.cams import Cam
+from equipoise.mechanism.parts.machine import FRAME, Machine, Slider
 from support import newton
 from support.newton import Constraints, Row
 from support.poses import Array, Poses, pin_between

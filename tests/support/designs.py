@@ -15,9 +15,8 @@ import numpy as np
 
 import equipoise as eq
 from equipoise.errors import ChangePointError, ModelError, MotionError, RangeError
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.planes import beside
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.parts.machine import Machine
 
 Array = np.ndarray[Any, Any]
 Plain = dict[str, Any]
@@ -145,7 +144,7 @@ def numbers_of(machine: Machine, share: float = 0.01, polar: bool = False) -> li
     return [
         *_places(machine, share, polar),
         *_of_links(machine),
-        *(_across(machine) if beside(machine) else ()),
+        *(_across(machine) if machine.has_planes else ()),
         *_of_drive(machine),
         *_listed(machine),
     ]

@@ -6,8 +6,8 @@ from math import cos, pi, sin
 
 from scipy.interpolate import make_interp_spline
 
-from equipoise.mechanism.laws import SPLINES, AngleLaw, LengthLaw
-from equipoise.mechanism.model import Drive, FurtherDrive
+from equipoise.mechanism.parts.laws import SPLINES, AngleLaw, LengthLaw
+from equipoise.mechanism.parts.machine import Drive, FurtherDrive
 
 Rates = tuple[float, float, float]
 """A value and its first and second derivative."""

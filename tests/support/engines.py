@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.machine import Machine
 from support.analyses import Subject, agree, force_size, moment_size, vector
 from support.mujoco_engine import Totals
 from support.poses import Poses

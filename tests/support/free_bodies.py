@@ -17,10 +17,10 @@ from itertools import chain, combinations
 
 import numpy as np
 
-from equipoise.mechanism.belts import Belt
-from equipoise.mechanism.cams import Cam
-from equipoise.mechanism.model import FRAME, Drive, FurtherDrive, Gear, Machine
-from equipoise.mechanism.racks import Rack
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.cams import Cam
+from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Gear, Machine
+from equipoise.mechanism.parts.racks import Rack
 from support.cams import line_of_force
 from support.loads import on_links, springs_on_links
 from support.newton import rack_guide

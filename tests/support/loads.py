@@ -9,8 +9,8 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 import equipoise as eq
-from equipoise.mechanism.field import Planting
-from equipoise.mechanism.model import FRAME, Load, LoadTable, Machine, Spring, Vector
+from equipoise.mechanism.parts.field import Planting
+from equipoise.mechanism.parts.machine import FRAME, Load, LoadTable, Machine, Spring, Vector
 from support.poses import Array, Poses, cross
 
 TURN = 2 * np.pi

@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 from hypothesis import strategies as st
 
-from equipoise.mechanism.model import (
+from equipoise.mechanism.parts.machine import (
     FRAME,
     Drive,
     Gear,

@@ -7,9 +7,9 @@ from typing import Literal
 
 import numpy as np
 
-from equipoise.mechanism.belts import Belt
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.racks import Rack
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.racks import Rack
 from support import machines  # which has these kinds among its own, and is imported first
 
 

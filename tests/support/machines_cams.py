@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError, MotionError
-from equipoise.mechanism.cams import RIDES, Cam
-from equipoise.mechanism.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment
-from equipoise.mechanism.model import FRAME, Drive, Machine, Position, Slider, Spring
+from equipoise.mechanism.parts.cams import RIDES, Cam
+from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment
+from equipoise.mechanism.parts.machine import FRAME, Drive, Machine, Position, Slider, Spring
 from support.cams import Cut
 from support.machines import Case, Draft, _draft, _four_bar, _scaled, _unit
 from unit.mechanism.build import heavy
@@ -227,7 +227,7 @@ KINDS = {one.__name__: one for one in (camshaft_tappet, camshaft_lever, fixed_ca
 
 def make(kind: str, seed: int) -> Case:
     """Return the machine of a kind that belongs to a seed, one whose cam can be made."""
-    from equipoise.mechanism.linkage import assemble
+    from equipoise.mechanism.assembly.linkage import assemble
 
     for draw in range(200):
         case = {**KINDS, **LOOPED}[kind](np.random.default_rng([seed, draw, *kind.encode()]))

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.mechanism.laws import AngleLaw, AngleSegment
-from equipoise.mechanism.model import FurtherDrive
+from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment
+from equipoise.mechanism.parts.machine import FurtherDrive
 from support.driving import FORMULAS
 
 if TYPE_CHECKING:

@@ -12,10 +12,10 @@ from itertools import chain, repeat
 
 import numpy as np
 
-from equipoise.mechanism.bodies import Body, inertia_of
-from equipoise.mechanism.links import Link
-from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.parts import Bearing
+from equipoise.mechanism.parts.bodies import Body, inertia_of
+from equipoise.mechanism.parts.links import Link
+from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.mechanism.parts.sliders import Bearing
 from support.free_bodies import FreeBodies
 from support.loads import has_soil, on_links, springs_on_links, tips_of
 from support.poses import Array, Poses
@@ -43,8 +43,7 @@ def set_apart(machine: Machine, rng: np.random.Generator, flat: bool = False) ->
         for name in shafts
         for side, place in (("left", -1.0), ("right", 1.0))
     }
-    belts = tuple(replace(belt, tension=None) for belt in machine.belts)
-    return replace(machine, links=links, bearings=bearings, belts=belts)
+    return replace(machine, links=links, bearings=bearings)
 
 
 def _in_two_planes(link: Link, rng: np.random.Generator, size: float) -> dict[str, object]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from equipoise.mechanism.model import FRAME, Gear, Slider
+from equipoise.mechanism.parts.machine import FRAME, Gear, Slider
 from support.machines import Case, Draft, _draft, _spot, _unit, slider_crank
 from support.newton import Constraints, closed
 from support.poses import Array

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import EquipoiseError, UsageError
-from equipoise.mechanism.drives import Drive
-from equipoise.mechanism.laws import AngleLaw, LengthLaw, LengthSegment
-from equipoise.mechanism.model import FRAME, FurtherDrive, Link, Load, Machine
-from equipoise.mechanism.motion import move
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.drives import Drive
+from equipoise.mechanism.parts.laws import AngleLaw, LengthLaw, LengthSegment
+from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Link, Load, Machine
 from support.machines import CYCLE, KINDS, Case, make
 from support.poses import Array, from_motion
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from equipoise.exchange.formats import Job
 from equipoise.exchange.mjcf import made
-from equipoise.mechanism.model import FRAME, Machine, Spring, Vector
+from equipoise.mechanism.parts.machine import FRAME, Machine, Spring, Vector
 from support.loads import work_per_crank_angle
 from support.poses import Array, Poses, cross, drive_pivot, quarter, turned
 

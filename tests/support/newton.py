@@ -13,9 +13,17 @@ from functools import cached_property
 
 import numpy as np
 
-from equipoise.mechanism.belts import Belt
-from equipoise.mechanism.model import FRAME, Drive, FurtherDrive, Gear, Machine, Slider, Vector
-from equipoise.mechanism.racks import Rack
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.machine import (
+    FRAME,
+    Drive,
+    FurtherDrive,
+    Gear,
+    Machine,
+    Slider,
+    Vector,
+)
+from equipoise.mechanism.parts.racks import Rack
 from support.driving import driven
 from support.driving import followed as followed_law
 from support.poses import Array, Poses, cross, pins, quarter, turned

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pinocchio as pin
 
-from equipoise.mechanism.model import FRAME, Link, Machine, Vector
+from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector
 from support.loads import work_per_crank_angle
 from support.machines_planes import pieces
 from support.mujoco_engine import Totals

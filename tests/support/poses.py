@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from equipoise.mechanism.model import FRAME, Machine, Vector
+from equipoise.mechanism.parts.machine import FRAME, Machine, Vector
 
 Array = NDArray[Any]
 

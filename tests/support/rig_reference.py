@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from equipoise.mechanism.model import FRAME, Link, Machine
+from equipoise.mechanism.parts.machine import FRAME, Link, Machine
 from support.poses import drive_pivot, pin_between
 
 TURN = 2 * np.pi

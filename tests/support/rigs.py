@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import equipoise as eq
-from equipoise.mechanism import support as package
-from equipoise.mechanism.force_elements import Motor
-from equipoise.mechanism.springs import Spring
+from equipoise.mechanism.parts import support as package
+from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.springs import Spring
 from support.rig_reference import Mount, Rig, Row, Support, Tie, Torsion, paper_rig, rig_of
 
 MACHINE = eq.load("yamashita-1")

@@ -17,8 +17,8 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 from scipy.special import roots_legendre
 
-from equipoise.mechanism.gear_shapes import GearShape
-from equipoise.mechanism.model import Gear
+from equipoise.mechanism.parts.gear_shapes import GearShape
+from equipoise.mechanism.parts.machine import Gear
 
 STEP = 1e-30
 NODES, WEIGHTS = roots_legendre(30)

@@ -9,8 +9,8 @@ import numpy as np
 
 import equipoise as eq
 from equipoise.balancing.multi_row import Rows, Term
-from equipoise.mechanism.balance import Objective
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.parts.balance import Objective
+from equipoise.mechanism.parts.support import Row
 from unit.vibration.build import Array
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.field import Soil
+from equipoise.mechanism.parts.field import Soil
 from equipoise.planting.summary import plant
 from surface.running import cells, changed, equipoise, massless, read, refuses, succeeded
 from unit.planting.build import planetary, spinner, twice

@@ -240,7 +240,7 @@ REFUSED = {
     },
     "resume": {
         "x": "x: there is no such store; make it by: equipoise sweep",
-        "study.toml": "study.toml: is no store of Equipoise, or one that was damaged (",
+        "study.toml": "study.toml: a store is a folder; of a study file it is made by: equi",
     },
     "best lengths.zarr": {
         "--by vertcal": "no output or varied number is called 'vertcal'; ",

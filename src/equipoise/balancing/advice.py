@@ -18,7 +18,9 @@ from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.balance import (
+from equipoise.mechanism.assembly.steps import size_of_bodies
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.parts.balance import (
     MATERIALS,
     AddedMass,
     Balance,
@@ -28,10 +30,8 @@ from equipoise.mechanism.balance import (
     Weight,
     largest_mass,
 )
-from equipoise.mechanism.body_checks import outlines
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.steps import size_of_bodies
+from equipoise.mechanism.parts.body_checks import outlines
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.vibration.forced import usual_step
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.resonance import resonances

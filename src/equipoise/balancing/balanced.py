@@ -21,10 +21,10 @@ from equipoise.balancing.problem import ADDED
 from equipoise.balancing.solution import Solution
 from equipoise.balancing.workshop import Change
 from equipoise.i18n import Note
-from equipoise.mechanism.balance import Balance, Objective
-from equipoise.mechanism.dynamics import forces
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import move
+from equipoise.mechanism.dynamics.forces import forces
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.balance import Balance, Objective
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result

@@ -11,11 +11,11 @@ from equipoise.balancing.effects import ANGLES
 from equipoise.balancing.multi_row import Rows, Term
 from equipoise.balancing.objectives import measured
 from equipoise.errors import EquipoiseError, ModelError, ResponseError
-from equipoise.mechanism.balance import Balance, Objective
-from equipoise.mechanism.dynamics import forces
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.outputs import DECLARED, GROUPS, declared
+from equipoise.mechanism.dynamics.forces import forces
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.outputs.declared import DECLARED, GROUPS, declared
+from equipoise.mechanism.parts.balance import Balance, Objective
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.summary import plant
 from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import Outputs, unit_of_measure

@@ -19,16 +19,16 @@ from equipoise.balancing.branch_and_bound import Square
 from equipoise.balancing.program import Affine, Program, stacked
 from equipoise.balancing.workshop import Change
 from equipoise.i18n import Note
-from equipoise.mechanism.balance import CenterMove, SpringChoice
-from equipoise.mechanism.model import Link, Machine
-from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.parameters import (
+from equipoise.mechanism.assembly.steps import size_of_bodies
+from equipoise.mechanism.dynamics.parameters import (
     parameter_values,
     parameters_of,
     spring_units,
 )
-from equipoise.mechanism.springs import Spring
-from equipoise.mechanism.steps import size_of_bodies
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.balance import CenterMove, SpringChoice
+from equipoise.mechanism.parts.machine import Link, Machine
+from equipoise.mechanism.parts.springs import Spring
 from equipoise.signals import Array
 
 ROUNDING = 1e-14

@@ -15,18 +15,13 @@ import numpy as np
 
 from equipoise.balancing.design_variables import DesignVariables, FreeSpring, LinkParameters
 from equipoise.errors import UsageError
-from equipoise.mechanism import kernels
-from equipoise.mechanism.across import Across
-from equipoise.mechanism.belts import Belt
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics import Forces, demand_of_inertia, forces, place_of
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.objectives import balanced_names
-from equipoise.mechanism.outputs import Declared, Found, matches
-from equipoise.mechanism.reactions import (
+from equipoise.mechanism.dynamics.across import Across
+from equipoise.mechanism.dynamics.forces import Forces, demand_of_inertia, forces
+from equipoise.mechanism.dynamics.reactions import (
     BeltForce,
     CamForce,
+    Demand,
     JointForce,
     MeshForce,
     Pass,
@@ -34,11 +29,15 @@ from equipoise.mechanism.reactions import (
     demands_of,
     reactions,
 )
-from equipoise.mechanism.undecided import refuse_unbounded
+from equipoise.mechanism.dynamics.undecided import refuse_unbounded
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.outputs.declared import Declared, Found, matches
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import balanced_names
+from equipoise.mechanism.parts.places import in_frame
 from equipoise.signals import Array
-
-Demand = tuple[Array, Array]
-"""Force and moment (K, N) about a link's anchor."""
 
 ANGLES = 720
 """Crank angles in a turn at which balancing looks."""
@@ -118,7 +117,7 @@ class Effects:
         UsageError : there is no such output.
         """
         one, item = self._declared(output)
-        pole = place_of(self.machine, self.motion.linkage.pivot if about is None else about)
+        pole = in_frame(self.machine.frame, self.motion.linkage.pivot if about is None else about)
         start, columns = (
             one.component(one.vector(Found(self.motion, forces_of(self, pole)), item))
             for forces_of in (Present, Unit)
@@ -230,7 +229,7 @@ class Effects:
 
     def moment(self, demands: Demand, about: complex) -> Array:
         """Moment on the frame (K, N) of demands."""
-        total = -demands[1]
+        total: Array = -demands[1]
         for part, rows in self.masses:
             at = self.motion.state[f"p({self.start.anchor(part.link)})"]
             total[rows] -= kernels.cross(at - about, demands[0][rows])

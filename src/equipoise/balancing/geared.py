@@ -16,11 +16,11 @@ from equipoise.balancing.design_variables import with_parameters
 from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
 from equipoise.errors import UsageError
-from equipoise.mechanism.balance import BalanceShafts, GearedWeight
-from equipoise.mechanism.kernels import about
-from equipoise.mechanism.model import Gear, Link, Machine, Vector
-from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.parameters import parameter_values
+from equipoise.mechanism.dynamics.parameters import parameter_values
+from equipoise.mechanism.formulas.kernels import about
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.parts.balance import BalanceShafts, GearedWeight
+from equipoise.mechanism.parts.machine import Gear, Link, Machine, Vector
 
 GRID, COARSE, WAYS = 33, 13, 24
 """Ratios at which a range is looked at, before the best are followed to their tops; the same where

@@ -16,8 +16,8 @@ import numpy as np
 from equipoise.balancing.linear_conditions import conditions, parameter_scales
 from equipoise.errors import UsageError
 from equipoise.i18n import say
-from equipoise.mechanism.model import Machine, Vector, unknown
-from equipoise.mechanism.parameters import parameter_values
+from equipoise.mechanism.dynamics.parameters import parameter_values
+from equipoise.mechanism.parts.machine import Machine, Vector, unknown
 from equipoise.results.blocks import Block, Cell, Column, Table, Value
 from equipoise.results.result import Result
 from equipoise.signals import Array

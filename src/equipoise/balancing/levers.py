@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from equipoise.mechanism.dynamics import forces, place_of
-from equipoise.mechanism.kernels import cross
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.objectives import OF_ROWS
-from equipoise.mechanism.planes import beside
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.dynamics.forces import forces
+from equipoise.mechanism.formulas.kernels import cross
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import OF_ROWS
+from equipoise.mechanism.parts.places import in_frame
+from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Array
 
 SHAKING, FRAME, ROCKING = 0, 3, 6
@@ -35,7 +35,7 @@ def signals_of_row(motion: Motion) -> Array:
     found, nothing = forces(motion), np.zeros(len(motion.crank_angle))
     shaking, frame = found.shaking_force, found.frame_force
     rocking = (nothing, nothing)
-    if beside(motion.machine):
+    if motion.machine.has_planes:
         rocking = (found.across.rocking_moment.x, found.across.rocking_moment.y)
     moments = found.shaking_moment, found.frame_moment
     return np.stack([shaking.x, shaking.y, moments[0], frame.x, frame.y, moments[1], *rocking])
@@ -60,7 +60,9 @@ def lever(motion: Motion, output: str, row: Row, about: str | None) -> Array:
 def arm_of(machine: Machine, motion: Motion, row: Row, about: str | None) -> complex:
     """From the point about which moments are taken to a row's drive pivot, m."""
     pivot = complex(*machine.frame[motion.linkage.pivot])
-    return pivot + complex(*row.offset) - (pivot if about is None else place_of(machine, about))
+    return (
+        pivot + complex(*row.offset) - (pivot if about is None else in_frame(machine.frame, about))
+    )
 
 
 def moment_of_row(output: str, row: Row, arm: complex, force: Array, moment: Array) -> Array:

@@ -17,17 +17,17 @@ import numpy as np
 from equipoise.balancing.readings import UNITS, Reading, machine_size, reading
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine, unknown
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.outputs import DECLARED, Found
-from equipoise.mechanism.parameters import (
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.dynamics.parameters import (
     QUANTITIES,
     independent_columns,
     parameter_names,
     parameter_values,
     regressor,
 )
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.outputs.declared import DECLARED, Found
+from equipoise.mechanism.parts.machine import Machine, unknown
 from equipoise.quantities import Dimension, display
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value
 from equipoise.results.outputs import output_named
@@ -60,6 +60,7 @@ class Conditions(Result):
     residuals : (B,) what the machine's own parameters give, in `units`.
     units : of each row's residual, by that parameter: kg m, kg m2, or kg of masses alone.
     readings : each row in words, divided by lengths.  sentences : the same with "= 0".
+    crank : whether a crank turns with the crank angle; else it tells the cycle's phase alone.
     without_effect : parameters that stand in no row.
     """
 
@@ -73,6 +74,7 @@ class Conditions(Result):
     residuals: Array
     units: tuple[str, ...]
     readings: tuple[Reading, ...]
+    crank: bool
 
     @property
     def count(self) -> int:
@@ -147,6 +149,7 @@ def conditions(
         rows @ values,
         tuple(UNITS[names[k][1]] for k in leading),
         tuple(reading(machine, row) for row in rows),
+        bool(machine.drive.crank),
     )
 
 
@@ -228,7 +231,13 @@ def _without_noise(kept: Array, grouping: Array, columns: Array) -> Array:
 
 # -- what is shown ---------------------------------------------------------------------------------
 
-WANTED = {"zero": to_say("zero"), "sine": to_say("a pure sine of the crank angle")}
+WANTED = {
+    ("zero", True): to_say("zero"),
+    ("zero", False): to_say("zero"),
+    ("sine", True): to_say("a pure sine of the crank angle"),
+    ("sine", False): to_say("a pure sine, once a cycle"),
+}
+"""What outputs are to be, by kind, and by whether a crank turns."""
 SHOWN: dict[str, tuple[Dimension, str]] = {
     "kg": ("mass", "kg"),
     "kg m": ("unbalance", "kg mm"),
@@ -254,7 +263,7 @@ def conditions_blocks(*found: Conditions, verdict: Sequence[str] = ()) -> Iterat
 
 def _conditions(found: Conditions) -> Block:
     subject = say(" and ").join(map(output_named, found.outputs))
-    told = {"what": subject, "wanted": say(WANTED[found.kind])}
+    told = {"what": subject, "wanted": say(WANTED[found.kind, found.crank])}
     if not found.count:
         return Text(say("Conditions for {what} to be {wanted}: none, it always is.", **told))
     now = [one.factor * float(k) for one, k in zip(found.readings, found.residuals, strict=True)]

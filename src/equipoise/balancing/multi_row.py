@@ -21,11 +21,11 @@ import numpy as np
 from equipoise.balancing.levers import lever, signals_of_row
 from equipoise.balancing.objectives import read_rows
 from equipoise.errors import UsageError
-from equipoise.mechanism.balance import Measure, Objective
-from equipoise.mechanism.dynamics import forces
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.objectives import GAUGES, output_of, wrong_objective
+from equipoise.mechanism.dynamics.forces import forces
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.parts.balance import Measure, Objective
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import GAUGES, output_of, wrong_objective
 from equipoise.results.analysis import Analysis
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.forced import chosen_model, steady_speed, usual_step

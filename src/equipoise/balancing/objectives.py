@@ -19,13 +19,12 @@ from equipoise.balancing.effects import Effects, Signal
 from equipoise.balancing.levers import OWN, arm_of, moment_of_row
 from equipoise.balancing.program import Affine, Block, Program
 from equipoise.errors import ModelError
-from equipoise.mechanism.balance import Measure, Objective
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.objectives import GAUGES, OF_ROWS, WITHIN, output_of, quantity_of
-from equipoise.mechanism.parameters import parameter_values
-from equipoise.mechanism.planes import beside
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.dynamics.parameters import parameter_values
+from equipoise.mechanism.parts.balance import Measure, Objective
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import GAUGES, OF_ROWS, WITHIN, output_of, quantity_of
+from equipoise.mechanism.parts.support import Row
 from equipoise.quantities import SI
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.forced import usual_step
@@ -86,7 +85,7 @@ def of_rows_alone(effects: Effects, output: str, about: str | None = None) -> li
     machine = effects.machine
     force = effects.signal("frame_force" if output.startswith("frame") else "shaking_force")
     one = force.divided(np.inf)
-    if output not in OWN or beside(machine):
+    if output not in OWN or machine.has_planes:
         one = effects.signal(OWN.get(output, output))
     if not output.endswith("_moment"):
         return [one] * len(machine.rows)
@@ -192,7 +191,7 @@ def _wrench(effects: Effects, linear: Linear, rows: Sequence[Row]) -> Periodic:
     force = effects.signal("frame_force").start - machine.mass * complex(*machine.gravity)
     forces = np.vstack([force, effects.signal("shaking_force").columns])
     rocking = np.zeros(forces.shape, complex)
-    if excitation.step == "moment" and beside(machine):
+    if excitation.step == "moment" and machine.has_planes:
         weight = 1j * excitation.across * complex(*machine.gravity)
         still = effects.signal("frame_rocking_moment").start - weight
         rocking = np.vstack([still, effects.signal("rocking_moment").columns])

@@ -26,10 +26,10 @@ from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.balance import Balance
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.objectives import WITHIN
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.parts.balance import Balance
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import WITHIN
 from equipoise.signals import Array
 from equipoise.vibration.forced import check_moving
 

@@ -19,8 +19,8 @@ from equipoise.balancing.problem import Problem
 from equipoise.balancing.told import gap_told, scope_of
 from equipoise.errors import UsageError
 from equipoise.i18n import say
-from equipoise.mechanism.balance import Balance, Limit, Objective
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.balance import Balance, Limit, Objective
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.blocks import Block, Column, Table, Text, Value
 from equipoise.results.outputs import DIMENSIONS, objective_named
 from equipoise.results.result import Result

@@ -22,11 +22,11 @@ import numpy as np
 from equipoise.balancing.multi_row import Rows, Term
 from equipoise.errors import UsageError
 from equipoise.i18n import say
-from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.objectives import OF_ROWS
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.parts.balance import Objective
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import OF_ROWS
+from equipoise.mechanism.parts.support import Row
 from equipoise.quantities import display, fixed, told
 from equipoise.results.blocks import Block, Cell, Column, Table, Text, Value
 from equipoise.results.outputs import output_named

@@ -29,8 +29,8 @@ from equipoise.balancing.phase_grid import (
 from equipoise.balancing.phase_polish import polished
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.balance import Limit, Objective, Phases
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.balance import Limit, Objective, Phases
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array
 
 Progress = Callable[[int, int], None]

@@ -14,9 +14,9 @@ from equipoise.balancing.phase_bound import Proof, prove
 from equipoise.balancing.phase_search import PhaseSearch, Progress, with_phases
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.balance import Limit, Objective, Phases
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.objectives import OF_ROWS
+from equipoise.mechanism.parts.balance import Limit, Objective, Phases
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import OF_ROWS
 from equipoise.results.result import Result
 from equipoise.signals import Array
 

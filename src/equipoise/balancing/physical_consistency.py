@@ -23,8 +23,8 @@ from equipoise.balancing.linear_conditions import (
 )
 from equipoise.balancing.program import Affine, NoSolutionError, Program
 from equipoise.balancing.readings import machine_size, reading
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.parameters import QUANTITIES
+from equipoise.mechanism.dynamics.parameters import QUANTITIES
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import SI, display
 from equipoise.signals import Array
 

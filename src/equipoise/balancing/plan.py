@@ -1,6 +1,6 @@
 """What a plan of balancing is made of: parts of a machine, as its file holds them."""
 
-from equipoise.mechanism.balance import (
+from equipoise.mechanism.parts.balance import (
     AddedMass,
     Balance,
     BalanceShafts,

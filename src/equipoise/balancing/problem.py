@@ -21,9 +21,9 @@ from equipoise.balancing.program import Affine, Program
 from equipoise.balancing.weights import AddedWeight
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.balance import Balance, Objective
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.objectives import WITHIN
+from equipoise.mechanism.parts.balance import Balance, Objective
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import WITHIN
 from equipoise.signals import Array
 
 WITHOUT_EFFECT = 1e-9
@@ -98,8 +98,7 @@ class Problem:
 
     @property
     def asked(self) -> tuple[Objective, ...]:
-        """Every output and measure that counts."""
-        return (*self.plan.objectives, *(limit.objective for limit in self.plan.limits))
+        return self.plan.asked
 
     @property
     def reads_gauges(self) -> bool:

@@ -9,8 +9,8 @@ from itertools import combinations
 import numpy as np
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.model import Machine, size_of
-from equipoise.mechanism.parameters import QUANTITIES, parameter_names
+from equipoise.mechanism.dynamics.parameters import QUANTITIES, parameter_names
+from equipoise.mechanism.parts.machine import Machine, size_of
 from equipoise.quantities import display
 from equipoise.signals import Array
 

@@ -30,9 +30,9 @@ from equipoise.balancing.program import NoSolutionError, Program
 from equipoise.balancing.solution import Solution, solve_problem
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.balance import Objective
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.objectives import GAUGES, WITHIN
+from equipoise.mechanism.parts.balance import Objective
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import GAUGES, WITHIN
 from equipoise.signals import Array, Periodic
 
 CLOSE = 1e-3

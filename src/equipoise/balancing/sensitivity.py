@@ -17,12 +17,12 @@ import numpy as np
 from equipoise.balancing.readings import machine_size
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.model import Link, Machine, unknown
-from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.outputs import DECLARED, Found
-from equipoise.mechanism.parameters import ACROSS, QUANTITIES, regressor
-from equipoise.mechanism.planes import moments_across
-from equipoise.mechanism.tip import roots
+from equipoise.mechanism.dynamics.parameters import ACROSS, QUANTITIES, regressor
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.kinematics.tip import roots
+from equipoise.mechanism.outputs.declared import DECLARED, Found
+from equipoise.mechanism.parts.machine import Link, Machine, unknown
+from equipoise.mechanism.parts.planes import moments_across
 from equipoise.quantities import Dimension, angle, display, fixed
 from equipoise.results.blocks import Block, Cell, Column, Table, Text, Value
 from equipoise.results.outputs import output_named

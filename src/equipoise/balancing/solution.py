@@ -22,8 +22,8 @@ from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of
-from equipoise.mechanism.balance import Limit
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.balance import Limit
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array
 
 Progress = Callable[[int, int], None]

@@ -13,8 +13,8 @@ from equipoise.balancing.compared import PRICE, WORTH, too_dear
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.workshop import sentences
 from equipoise.i18n import said, say, spoken, to_say
-from equipoise.mechanism.balance import CUT, Balance, Objective, Weight, material_of
-from equipoise.mechanism.outputs import GROUPS
+from equipoise.mechanism.outputs.declared import GROUPS
+from equipoise.mechanism.parts.balance import CUT, Balance, Objective, Weight, material_of
 from equipoise.quantities import PER_RPM, brief, change, percent, told
 from equipoise.results.blocks import Block, Change, Column, Table, Text
 from equipoise.results.outputs import (
@@ -159,8 +159,11 @@ def freedoms(plan: Balance) -> Iterator[str]:
     for move in plan.moves:
         yield say("another centre of mass of {link}", link=move.link)
     for added in plan.masses:
-        room = _room(added.weight)
-        yield say("{weight} on {link} about {point}", weight=room, link=added.link, point=added.at)
+        room, plane = _room(added.weight), added.weight.plane
+        what = say("{weight} on {link} about {point}", weight=room, link=added.link, point=added.at)
+        if plane is not None:
+            what = say("{what}, in the plane z = {plane}", what=what, plane=told(plane, "length"))
+        yield what
     for geared in plan.geared:
         yield say("{weight} geared to {link}", weight=_room(geared.weight), link=geared.driver)
     for shafts in plan.shafts:

@@ -23,9 +23,9 @@ from equipoise.balancing.design_variables import Bound, DesignVariables
 from equipoise.balancing.program import Affine, Block, Program, stacked
 from equipoise.balancing.workshop import SPREAD, Change, pieces_of
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.balance import Weight, largest_mass
-from equipoise.mechanism.model import Machine, Vector, size_of
-from equipoise.mechanism.steps import size_of_bodies
+from equipoise.mechanism.assembly.steps import size_of_bodies
+from equipoise.mechanism.parts.balance import Weight, largest_mass
+from equipoise.mechanism.parts.machine import Machine, Vector, size_of
 from equipoise.signals import Array
 
 NAMES = {

@@ -9,7 +9,7 @@ from math import acos, degrees, pi, sin, sqrt
 from typing import Any
 
 from equipoise.i18n import say
-from equipoise.mechanism.balance import Weight
+from equipoise.mechanism.parts.balance import Weight
 from equipoise.quantities import display, fixed, number, told
 from equipoise.results.machine_blocks import place_told
 

@@ -16,7 +16,7 @@ from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
 
 FILE = "Path of a model file or of a store, or the name of a bundled example."
 

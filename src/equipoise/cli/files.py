@@ -41,7 +41,7 @@ def check(
 ) -> None:
     """Check a file and tell how the linkage or tool is built up, or what a study will compute."""
     from equipoise.handheld.model import Tool
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.present import checks, show_blocks
     from equipoise.schema.documents import load
     from equipoise.schema.files import printable

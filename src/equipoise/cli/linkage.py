@@ -48,7 +48,7 @@ from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.vibration.response import Response
 
 planting = App(name="plant")

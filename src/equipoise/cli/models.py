@@ -10,7 +10,7 @@ from equipoise.cli.outputs import tell
 
 if TYPE_CHECKING:
     from equipoise.i18n import Note
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.schema.template import Template
     from equipoise.studies.study import Study
 
@@ -29,7 +29,7 @@ def linkage_of(file: str, speed: float | None = None, swings: bool = True) -> Ma
 
 def swinging(machine: Machine, file: str) -> Machine:
     """The machine of a file, which swings where its crank cannot turn."""
-    from equipoise.mechanism.swings import swing
+    from equipoise.mechanism.kinematics.swings import swing
 
     with naming(file):
         found = swing(machine)

@@ -23,7 +23,7 @@ from equipoise.errors import (
 )
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.quantities import Units
 
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]
@@ -139,7 +139,7 @@ def tolerance(option: str, text: str) -> tuple[float, str]:
 
 
 def _units(option: str, text: str) -> Units:
-    from equipoise.mechanism.shown_units import read_units
+    from equipoise.mechanism.parts.shown_units import read_units
 
     with blaming(option):
         return read_units(text)

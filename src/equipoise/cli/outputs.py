@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from equipoise.figures import Picture
     from equipoise.handheld.model import Tool
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.results.blocks import Block, Section
     from equipoise.results.result import Result
 
@@ -56,7 +56,7 @@ class Shown:
     @contextmanager
     def showing(self, of: Any = None) -> Iterator[None]:
         """Inside, values are shown in the units that are chosen, else in those of a file."""
-        from equipoise.mechanism.shown_units import units_of
+        from equipoise.mechanism.parts.shown_units import units_of
         from equipoise.quantities import showing, showing_by_default
 
         with showing(self.units or {}), showing_by_default(units_of(of)):

@@ -22,11 +22,11 @@ from equipoise.cli.options import (
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.balance import Balance, GearedWeight, Objective, Weight
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.balance import Balance, GearedWeight, Objective, Weight
+    from equipoise.mechanism.parts.machine import Machine
 
 MEASURES = ("rms", "ripple", "peak", "peak_to_peak", "area")
-"""As in `mechanism.balance`, which would bring NumPy into every start of the command line."""
+"""As in `mechanism.parts.balance`, which would bring NumPy into every start of the command line."""
 SHORT = {"shaking_energy": "area shaking_moment"}
 SPELT = {
     "peak to peak": "peak_to_peak",
@@ -137,8 +137,8 @@ class Freed:
     def plan(self, machine: Machine) -> Balance:
         """The file's plan, with what is free in the place of what the file says."""
         from equipoise.balancing.advice import pin_of
-        from equipoise.mechanism.balance import AddedMass, Balance, CenterMove, Phases
         from equipoise.mechanism.checks import unknown
+        from equipoise.mechanism.parts.balance import AddedMass, Balance, CenterMove, Phases
 
         plan = machine.balance or Balance()
         if not self.any:
@@ -169,8 +169,8 @@ class Freed:
     def weight(self, machine: Machine, link: str) -> Weight:
         """A weight of the given shape; in a room as large as the link where nothing else holds."""
         from equipoise.balancing.advice import reach_of
-        from equipoise.mechanism.balance import MATERIALS, Weight
         from equipoise.mechanism.checks import unknown
+        from equipoise.mechanism.parts.balance import MATERIALS, Weight
 
         names = ("shape", "radius", "mass", "at_most", "thickness")
         given: dict[str, Any] = {name: getattr(self, name) for name in names}
@@ -185,7 +185,7 @@ class Freed:
 
     def geared(self, machine: Machine) -> tuple[GearedWeight, ...]:
         """The counterweight on a shaft of its own, if there is one."""
-        from equipoise.mechanism.balance import GearedWeight
+        from equipoise.mechanism.parts.balance import GearedWeight
 
         driver = self.geared_counterweight
         if driver is None:
@@ -221,7 +221,7 @@ def plan_of(
 
 def read_objective(option: str, text: str) -> Objective:
     """Read an objective such as ``peak shaking_moment about D``."""
-    from equipoise.mechanism.balance import Objective
+    from equipoise.mechanism.parts.balance import Objective
 
     for short, long in SHORT.items():
         text = re.sub(rf"\b{short}\b", long, text)
@@ -263,8 +263,8 @@ def _read_word(option: str, word: str, value: str) -> dict[str, Any]:
 
 def _limited(machine: Machine, plan: Balance, text: str) -> Balance:
     """A plan with one more limit, such as ``peak joints.B <= 120 N``."""
-    from equipoise.mechanism.balance import Limit
-    from equipoise.mechanism.objectives import quantity_of
+    from equipoise.mechanism.parts.balance import Limit
+    from equipoise.mechanism.parts.objectives import quantity_of
     from equipoise.schema.numbers import parse_share
 
     head, sign, tail = (part.strip() for part in text.partition("<="))

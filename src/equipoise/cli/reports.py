@@ -34,7 +34,7 @@ from equipoise.cli.progress import counted
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.results.analysis import Analysis
     from equipoise.symbols.scene import Scene
 

@@ -23,7 +23,7 @@ from equipoise.cli import app
 from equipoise.cli.outputs import heard
 from equipoise.errors import UsageError, unknown
 from equipoise.fence import Fence, fenced
-from equipoise.mechanism.outputs import declared
+from equipoise.mechanism.outputs.declared import declared
 from equipoise.partial import together
 from equipoise.quantities import SI
 

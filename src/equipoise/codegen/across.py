@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterable, Sequence
 from itertools import chain
 
 from equipoise.codegen.source import Read, Sheet
-from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.planes import moments_across
-from equipoise.mechanism.statics import contacts, statics
+from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.mechanism.dynamics.statics import contacts, statics
+from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.planes import moments_across
 
 
 def write_across(
@@ -22,7 +23,8 @@ def write_across(
     moment`` and ``frame rocking moment`` of all of them.
 
     body : identifiers of a link's anchor and rotation, with their derivatives.
-    loads, springs : identifiers of the force that holds each, of springs at each end on a link.
+    loads, springs : identifiers of the force that holds each, of springs, and then of the tension
+        of belts, at each end on a link.
     """
     machine = linkage.machine
     needed: dict[str, list[str]] = {link: [] for link in machine.links}
@@ -50,9 +52,17 @@ def write_across(
     sheet.put("frame rocking moment", _about((*chain(*needed.values()), *outer)))
     for load, term in acting:
         needed[load.link].append(term)
-    ends = (end for spring in machine.springs for end in spring.ends)
-    for force, (link, point) in zip(springs, ends, strict=True):
-        needed[link].append(f"{_plane(sheet, link, point)} * {force}")
+    ends: list[tuple[str, str, str | None]]
+    ends = [(link, link, point) for spring in machine.springs for link, point in spring.ends]
+    strained = [belt for belt in machine.belts if belt.tension is not None]
+    ends += [
+        (link, belt.driven, None)
+        for belt in strained
+        for link in (belt.driver, belt.driven)
+        if link != FRAME
+    ]
+    for force, (link, on, point) in zip(springs, ends, strict=True):
+        needed[link].append(f"{_plane(sheet, on, point)} * {force}")
     for link, terms in needed.items():
         sheet.put(f"Q({link})", " + ".join(terms))
 

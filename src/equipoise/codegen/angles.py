@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.source import Sheet
-from equipoise.mechanism.cycle import Cycle
+from equipoise.mechanism.assembly.cycle import Cycle
 
 FARTHEST = 3.0
 """rad: less than half a turn, from where an angle is told by the rotation."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from equipoise.mechanism.joints import coupling_pins
-from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.loads import load_at
-from equipoise.mechanism.model import FRAME, Load, Spring
-from equipoise.mechanism.steps import planar
+from equipoise.mechanism.assembly.joints import coupling_pins
+from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.mechanism.assembly.steps import planar
+from equipoise.mechanism.dynamics.loads import load_at
+from equipoise.mechanism.parts.machine import FRAME, Load, Spring
 
 Held = tuple[str, str, str]
 """Link, and identifiers of force and moment that hold something against it."""

@@ -33,13 +33,13 @@ from equipoise.codegen.figures import (
 from equipoise.codegen.loops import STEPS, March
 from equipoise.codegen.source import Source
 from equipoise.errors import UsageError
-from equipoise.mechanism import cycle, full_turn
-from equipoise.mechanism.family import linkage_of, with_columns
-from equipoise.mechanism.linkage import Linkage, assemble
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.outputs import declared
-from equipoise.mechanism.refusing import wrong
-from equipoise.mechanism.steps import size_of_bodies
+from equipoise.mechanism.assembly import cycle, full_turn
+from equipoise.mechanism.assembly.family import linkage_of, with_columns
+from equipoise.mechanism.assembly.linkage import Linkage, assemble
+from equipoise.mechanism.assembly.refusing import wrong
+from equipoise.mechanism.assembly.steps import size_of_bodies
+from equipoise.mechanism.outputs.declared import declared
+from equipoise.mechanism.parts.machine import Machine
 
 Array = np.ndarray[Any, Any]
 

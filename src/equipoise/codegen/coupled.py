@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.writer import Writer
-from equipoise.mechanism import kernels
-from equipoise.mechanism.cams import Cam
-from equipoise.mechanism.couplings import Coupling, coupled
-from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.steps import Array, Call
+from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.mechanism.assembly.steps import Array, Call
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.cams import Cam
+from equipoise.mechanism.parts.couplings import Coupling, coupled
+from equipoise.mechanism.parts.machine import FRAME, Machine
 
 Turning = Callable[[Array], tuple[Any, Any, Any]]
 """Angle of a link at crank angles (N,), rad, and its two derivatives by them."""

@@ -17,14 +17,13 @@ from equipoise.codegen.loops import can_write
 from equipoise.codegen.source import Source, source_of
 from equipoise.codegen.writer import Writer
 from equipoise.errors import MassError, UsageError
+from equipoise.mechanism.assembly.family import can_vary
+from equipoise.mechanism.assembly.linkage import Linkage, assemble
+from equipoise.mechanism.assembly.newton import LoopGroup
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.family import can_vary
-from equipoise.mechanism.linkage import Linkage, assemble
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.newton import LoopGroup
-from equipoise.mechanism.outputs import DECLARED, Declared, declared
-from equipoise.mechanism.parts import JOINTS
-from equipoise.mechanism.planes import beside
+from equipoise.mechanism.outputs.declared import DECLARED, Declared, declared
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.sliders import JOINTS
 
 _LOOKED_UP = re.compile(r"\{([^}:]+)(:name)?\}")
 """Values in the expression of an output: of the machine, or of the member of a family."""
@@ -36,6 +35,8 @@ _OF_FORCES = re.compile(
 ORDERS = {"position": 0, "velocity": 1, "acceleration": 2}
 OF_CAMS = {"cam push": "T({})", "cam forth": "forth({})", "cam normal": "normal({})"}
 """Values of a state that tell of a cam."""
+OF_BELTS = {"belt pull": 0, "belt left": 1, "belt right": -1}
+"""Strands of a belt, by their side; 0 for what they differ by."""
 TURNING = {"angular velocity": 1, "angular acceleration": 2}
 """How often a position, or an angle, is differentiated by time."""
 
@@ -64,7 +65,7 @@ class _Missing(LookupError):
 
 def _known(writer: Writer) -> Sequence[str]:
     named = writer.linkage.named_reactions
-    families = {"gear": "gears", "cam": "cams"}
+    families = {"gear": "gears", "cam": "cams", "rack": "racks", "belt": "belts"}
     joints = [f"{families.get(r.kind, 'joints')}.{name}" for name, r in named]
     ones = (one for one in DECLARED.values() if one.loop and not one.is_family)
     bearings = [f"bearings.{name}" for name in writer.machine.bearings]
@@ -73,7 +74,7 @@ def _known(writer: Writer) -> Sequence[str]:
 
 def _has(writer: Writer, one: Declared) -> bool:
     """Whether the machine has what an output tells of, as far as that depends on no member."""
-    return one.needs != "planes" or beside(writer.machine)
+    return one.needs != "planes" or writer.machine.has_planes
 
 
 def _identified(writer: Writer, looked_up: re.Match[str], item: str) -> str:
@@ -104,6 +105,8 @@ def _reaction(writer: Writer, item: str, value: str) -> str:
         raise _Missing
     if value in OF_CAMS:
         return writer.name(OF_CAMS[value].format(item))
+    if value in OF_BELTS:
+        return _of_belt(writer, item, OF_BELTS[value])
     order = writer.linkage.joints.bodies.index
     told = reaction.kind not in JOINTS or order(reaction.on) > order(reaction.by)
     sign = 1.0 if told else -1.0
@@ -116,6 +119,20 @@ def _reaction(writer: Writer, item: str, value: str) -> str:
     to, *_ = writer.point(slider.link, slider.point)
     at = writer.name(f"p({reaction.at})")
     return f"{sign} * {writer.name(reaction.couple)} + cross({at} - {to}, {force})"
+
+
+def _of_belt(writer: Writer, item: str, side: int) -> str:
+    """Its pull, or the tension of a strand, as `Pass.belts` has it."""
+    belts, pull = writer.machine.belts, writer.name(f"T({item})")
+    if not side:
+        return pull
+    number = next(k for k, one in enumerate(belts) if one.name == item)
+    mean = f"0.5 * {writer.name(f'flank({item})')} * {pull}"
+    if belts[number].tension is not None:
+        what = f"tension of belt {number + 1}"
+        mean = writer.sheet.slot(what, lambda found: found.machine.belts[number].tension)
+    half = -0.5 * side if belts[number].crossed else 0.5 * side
+    return f"({mean} + {half!r} * {pull})"
 
 
 def _point(writer: Writer, name: str) -> list[str]:
@@ -171,7 +188,7 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]
     if any(one.is_of_row for one in wanted):
         write_demands(writer)
-    passed = ["{joint ", "{bearing ", "{cam push"]
+    passed = ["{joint ", "{bearing ", "{cam push", "{belt "]
     passed += [] if linkage.machine.has_crank else ["{drive torque"]
     if any(value in (one.loop or "") for one in wanted for value in passed):
         if linkage.shared is not None:

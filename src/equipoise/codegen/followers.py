@@ -14,10 +14,10 @@ import numpy as np
 
 from equipoise.codegen.coupled import Turning, told_by_crank
 from equipoise.codegen.writer import Writer
-from equipoise.mechanism.cam_groups import Displacement
-from equipoise.mechanism.curves import ROUNDING, Curve
-from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.steps import Array, Call, u
+from equipoise.mechanism.assembly.cam_groups import Displacement
+from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.mechanism.assembly.steps import Array, Call, u
+from equipoise.mechanism.formulas.curves import ROUNDING, Curve
 
 FEW = 12
 """Pieces of a curve that are told apart by comparing, which handles several angles at once."""

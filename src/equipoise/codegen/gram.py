@@ -1,9 +1,9 @@
 """Designs that differ in masses alone: mean squares without going round the cycle again.
 
-Every output is linear in the inertial parameters (`mechanism.parameters`).  So the mean square of
-one is a quadratic form in them, whose Gram matrix is the same for all designs.  It is kept as a
-factor, A = U S W', of which U is not needed: a sum of few squares loses no digits where outputs
-nearly cancel, as the Gram matrix itself would.
+Every output is linear in the inertial parameters (`mechanism.dynamics.parameters`).  So the mean
+square of one is a quadratic form in them, whose Gram matrix is the same for all designs.  It is
+kept as a factor, A = U S W', of which U is not needed: a sum of few squares loses no digits where
+outputs nearly cancel, as the Gram matrix itself would.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, MOST_ANGLES, NO_MACHINE, NOT_STILL, Figure
 from equipoise.errors import UsageError
-from equipoise.mechanism.dynamics import forces
-from equipoise.mechanism.family import can_vary, massive_link, with_columns
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine, size_of
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.outputs import Declared, Found, declared
-from equipoise.mechanism.parameters import (
+from equipoise.mechanism.assembly.family import can_vary, massive_link, with_columns
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.refusing import wrong
+from equipoise.mechanism.dynamics.forces import forces
+from equipoise.mechanism.dynamics.parameters import (
     parameter_names,
     parameter_values,
     parameters_of,
     regressor,
 )
-from equipoise.mechanism.refusing import wrong
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.outputs.declared import Declared, Found, declared
+from equipoise.mechanism.parts.machine import Machine, size_of
 from equipoise.quantities.units import HUGE, TINY
 
 Array = np.ndarray[Any, Any]

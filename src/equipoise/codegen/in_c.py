@@ -16,7 +16,7 @@ import numpy as np
 
 from equipoise.codegen.source import KERNELS, Row, Source
 from equipoise.errors import UsageError
-from equipoise.mechanism.linkage import Linkage
+from equipoise.mechanism.assembly.linkage import Linkage
 
 OPERATORS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 LIBRARY = {"abs": "cabs({})", "angle_of": "carg({})", "rotation": "cexp(_Complex_I * {})"}

@@ -20,15 +20,10 @@ from equipoise.codegen.loops import write_loops
 from equipoise.codegen.source import Read
 from equipoise.codegen.writer import Writer
 from equipoise.errors import MassError
-from equipoise.mechanism import cam_kernels, kernels
-from equipoise.mechanism.cam_groups import Displacement
-from equipoise.mechanism.couplings import coupled
-from equipoise.mechanism.dynamics import inertia_about, massless
-from equipoise.mechanism.gear_contacts import rolled
-from equipoise.mechanism.model import FRAME, Drive, FurtherDrive
-from equipoise.mechanism.newton import LoopGroup
-from equipoise.mechanism.planes import beside
-from equipoise.mechanism.steps import (
+from equipoise.mechanism.assembly.cam_groups import Displacement
+from equipoise.mechanism.assembly.gear_contacts import rolled
+from equipoise.mechanism.assembly.newton import LoopGroup
+from equipoise.mechanism.assembly.steps import (
     Call,
     Rotation,
     RunningAngle,
@@ -38,6 +33,10 @@ from equipoise.mechanism.steps import (
     size_of_bodies,
     u,
 )
+from equipoise.mechanism.dynamics.forces import inertia_about, massless
+from equipoise.mechanism.formulas import cam_kernels, kernels
+from equipoise.mechanism.parts.couplings import coupled
+from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive
 
 # -- motion ----------------------------------------------------------------------------------------
 
@@ -149,7 +148,7 @@ def write_demands(writer: Writer) -> None:
         held for k, one in enumerate(machine.springs) for held in write_spring(writer, k, one)
     ]
     springs += [held for k in range(len(machine.belts)) for held in write_tension(writer, k)]
-    if beside(machine):
+    if machine.has_planes:
         held = [[force for _, force, _ in each] for each in (loads, springs)]
         write_across(writer.sheet, writer.linkage, writer.body, *held)
     _write_frame(writer, "shaking", moving)

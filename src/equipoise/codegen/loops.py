@@ -20,12 +20,12 @@ import numpy as np
 from equipoise.codegen.figures import NO_FULL_TURN, NOT_COMPUTED
 from equipoise.codegen.source import MARCH, Read, Sheet, Source
 from equipoise.codegen.terms import Lines, Term
-from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.loopgroup import FAR
-from equipoise.mechanism.loops import Free, Pose, Poses
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.newton import JUMP, SETTLED, LoopGroup, poses_in
-from equipoise.mechanism.steps import p, planar, size_of_bodies, u
+from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.mechanism.assembly.loopgroup import FAR
+from equipoise.mechanism.assembly.loops import Free, Pose, Poses
+from equipoise.mechanism.assembly.newton import JUMP, SETTLED, LoopGroup, poses_in
+from equipoise.mechanism.assembly.steps import p, planar, size_of_bodies, u
+from equipoise.mechanism.parts.machine import FRAME
 
 Array = np.ndarray[Any, Any]
 

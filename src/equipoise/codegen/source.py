@@ -22,8 +22,8 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.figures import KINDS, Gathered
-from equipoise.mechanism import cam_kernels, curve_kernels, joint_kernels, kernels
-from equipoise.mechanism.linkage import Linkage
+from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.mechanism.formulas import cam_kernels, curve_kernels, joint_kernels, kernels
 from equipoise.signals import ROUNDING
 
 Array = np.ndarray[Any, Any]

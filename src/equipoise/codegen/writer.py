@@ -6,10 +6,10 @@ from typing import Any
 
 from equipoise.codegen.angles import turned
 from equipoise.codegen.source import Sheet
-from equipoise.mechanism import kernels
-from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.steps import Call, RunningAngle, Step, p, planar, u
+from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.mechanism.assembly.steps import Call, RunningAngle, Step, p, planar, u
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.machine import FRAME, Machine
 
 
 class Writer:

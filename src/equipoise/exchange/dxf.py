@@ -16,8 +16,8 @@ import numpy as np
 from equipoise.errors import UsageError, needed
 from equipoise.exchange.formats import Job
 from equipoise.exchange.parts import Part, parts
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.motion import move
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.machine import FRAME
 from equipoise.symbols.scene import Scene
 
 MM = 1e3
@@ -83,9 +83,12 @@ def _linkage(space: Any, scene: Scene) -> None:
                 1j * (scene.angles[wheel.link][0] if wheel.link in scene.angles else 0.0)
             )
             space.add_lwpolyline(_points(at[wheel.center] + turned), close=True, dxfattribs=layer)
-    for mark in (one for one in scene.marks if one.shape.role == "cam"):
-        corners = _points(corner[0] for corner in scene.spots(mark))
-        space.add_lwpolyline(corners, close=True, dxfattribs=_layer("cams", mark.body))
+    for mark in scene.marks:
+        table = mark.part[0] if mark.part else "cams" if mark.shape.role == "cam" else None
+        if table:
+            corners = _points(corner[0] for corner in scene.spots(mark))
+            layer = _layer(table, mark.body)
+            space.add_lwpolyline(corners, close=mark.shape.closed, dxfattribs=layer)
     for name, spot in zip(at, _points(at.values()), strict=True):
         held = FRAME if name in scene.frame else "points"
         space.add_point(spot, dxfattribs=_layer(held))

@@ -10,8 +10,8 @@ from equipoise.balancing.balanced import Balanced
 from equipoise.errors import ChangePointError, RangeError, UsageError, needed, unknown
 from equipoise.exchange.formats import CAM, FORMATS, RACK, VARYING, Format, Job
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.files import printable, write
 from equipoise.studies.selection import write_designs
 from equipoise.studies.store import Store
@@ -75,6 +75,10 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
         check_turning(machine, one.title)
     _check_joints(machine, one)
     job = Job(machine, crank_angle, changes)
+    if RACK in one.lacks:
+        for belt in machine.belts:
+            if belt.tension is not None:
+                job.leave_out(f"the tension of the belt {belt.name}, which its pins bear")
     if machine.pushers:
         job.leave_out("what pushes the machine, and its stroke")
     data: str | bytes = import_module(f"equipoise.exchange.{one.name}").made(job)
@@ -104,6 +108,10 @@ def check_turning(machine: Machine, title: str) -> None:
     refusal = to_say("a file of {title} turns the driven link evenly all the way round: {why}")
     if not machine.has_crank:
         why = Note("this drive has a motion of its own")
+        if machine.drives:
+            why = Note("this machine has several drives")
+        elif machine.pushers:
+            why = Note("this drive pushes")
         raise UsageError(Note(refusal, title=title, why=why))
     try:
         _ = assemble(machine).cycle

@@ -19,10 +19,10 @@ from equipoise.exchange.tree import (
     trees,
     weighed,
 )
-from equipoise.mechanism.joints import structure
-from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.support import PLANAR, Support, unit_vector
+from equipoise.mechanism.assembly.joints import structure
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.mechanism.parts.support import PLANAR, Support, unit_vector
 
 Data = dict[str, Any]
 End = tuple[str, list[float]]
@@ -128,7 +128,7 @@ def _geared(tree: Tree) -> list[Data]:
 
     Raises
     ------
-    UsageError : gears sit on three bodies of which none follows another or stands still.
+    UsageError : gears or belts sit on three bodies of which none follows another or stands still.
     """
     shares: dict[str, dict[str, float]] = {}
     for gear in (*tree.machine.gears, *tree.machine.belts):
@@ -141,8 +141,8 @@ def _geared(tree: Tree) -> list[Data]:
         shares[gear.driven] = {body: factor for body, factor in total.items() if factor}
         if len(shares[gear.driven]) > 1 or tree.machine.support is not None:
             raise UsageError(
-                f"the gears {gear.name} follow two bodies that move, which the file's format has "
-                "no joint for; give another format"
+                f"the {gear.kind} {gear.name} follows two bodies that move, which the file's "
+                "format has no joint for; give another format"
             )
     named = ((driven, by, one) for driven, follows in shares.items() for by, one in follows.items())
     return [

@@ -28,8 +28,8 @@ from equipoise.codegen.in_c import in_c
 from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import constant_loads
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.outputs import Output
 

@@ -7,13 +7,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.joints import Structure
-from equipoise.mechanism.planes import beside
+from equipoise.mechanism.assembly.joints import Structure
+from equipoise.mechanism.dynamics.forces import massless
 
 if TYPE_CHECKING:
     from equipoise.balancing.workshop import Change
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
 
 
 CAM, RACK, VARYING = "cam", "rack", "gears of varying ratio"
@@ -50,8 +49,8 @@ FORMATS: Mapping[str, Format] = {
             "mjcf",
             ".xml",
             "MuJoCo (MJCF)",
-            "bodies, pins, sliders, gears, springs, constant loads, rows, the support on its "
-            "mounts, the drive at constant speed",
+            "bodies, pins, sliders, gears, belts, springs, constant loads, rows, the support on "
+            "its mounts, the drive at constant speed",
             turns=True,
             lacks=(CAM, RACK, VARYING),
         ),
@@ -59,8 +58,8 @@ FORMATS: Mapping[str, Format] = {
             "exudyn",
             ".py",
             "Exudyn",
-            "a script that builds and runs bodies, pins, sliders, gears, springs, constant loads, "
-            "rows, the support on its mounts in the plane, the drive at constant speed",
+            "a script that builds and runs bodies, pins, sliders, gears, belts, springs, constant "
+            "loads, rows, the support on its mounts in the plane, the drive at constant speed",
             turns=True,
             lacks=(CAM, RACK, VARYING),
         ),
@@ -68,7 +67,8 @@ FORMATS: Mapping[str, Format] = {
             "urdf",
             ".urdf",
             "robots (URDF)",
-            "the tree: links with masses, hinges, slides, gears of two joints; loops are cut",
+            "the tree: links with masses, hinges, slides, gears and belts of two joints; loops are "
+            "cut",
             lacks=(CAM, RACK, VARYING),
         ),
         Format(
@@ -76,7 +76,8 @@ FORMATS: Mapping[str, Format] = {
             ".fmu",
             "co-simulation (FMI 2.0)",
             "motion and forces as outputs, speed and acceleration of the crank as inputs; gears, "
-            "springs, constant loads; C sources, and a library where a C compiler is found",
+            "belts, racks, springs, constant loads; C sources, and a library where a C compiler is "
+            "found",
             turns=True,
             lacks=(CAM, VARYING),
         ),
@@ -84,8 +85,8 @@ FORMATS: Mapping[str, Format] = {
             "modelica",
             ".mo",
             "Modelica",
-            "one flat model: equations of motion of each link, pins, sliders, gears, springs, "
-            "constant loads, the drive at constant speed",
+            "one flat model: equations of motion of each link, pins, sliders, gears, belts, "
+            "springs, constant loads, the drive at constant speed",
             turns=True,
             lacks=(CAM, RACK, VARYING),
         ),
@@ -93,8 +94,9 @@ FORMATS: Mapping[str, Format] = {
             "dxf",
             ".dxf",
             "drawing (DXF)",
-            "the linkage at a crank angle, paths of its points, pitch circles of gears, parts to "
-            "be cut: outlines and holes of links made of bodies, and of counterweights; in mm",
+            "the linkage at a crank angle, paths of its points, pitch circles of gears, strands of "
+            "belts, racks, parts to be cut: outlines and holes of links made of bodies, and of "
+            "counterweights; in mm",
             needs="ezdxf",
         ),
         Format(
@@ -171,7 +173,7 @@ class Job:
 
     def leave_out_planes(self) -> None:
         """Tell that everything lies in one plane."""
-        if beside(self.machine):
+        if self.machine.has_planes:
             self.leave_out("the planes of links beside each other, and their bearings")
 
     def leave_out_motor(self) -> None:

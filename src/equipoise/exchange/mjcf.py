@@ -25,12 +25,12 @@ from equipoise.exchange.tree import (
     trees,
     weighed,
 )
-from equipoise.mechanism.dynamics import forces
-from equipoise.mechanism.links import Link, size_of
-from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.steps import Array
-from equipoise.mechanism.support import FREEDOMS, Support, unit_vector
+from equipoise.mechanism.assembly.steps import Array
+from equipoise.mechanism.dynamics.forces import forces
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.links import Link, size_of
+from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.mechanism.parts.support import FREEDOMS, Support, unit_vector
 
 STEPS = 2000
 """Steps of the integration in a turn of the crank."""

@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 
 from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import constant_loads, mass_of, weighed
-from equipoise.mechanism.joints import structure
-from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.assembly.joints import structure
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.parts.machine import FRAME, Machine
 
 
 @dataclass

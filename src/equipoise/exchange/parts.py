@@ -16,8 +16,8 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
-from equipoise.mechanism.bodies import Body, Points, place_of
-from equipoise.mechanism.body_checks import outlines
+from equipoise.mechanism.parts.bodies import Body, Points, place_of
+from equipoise.mechanism.parts.body_checks import outlines
 from equipoise.quantities import told
 
 Edge = tuple[complex, float]

@@ -15,13 +15,13 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.exchange.formats import Job
-from equipoise.mechanism.bodies import inertia_of
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import FRAME, Link, Load, Machine, Slider, Vector
-from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.steps import Array
-from equipoise.mechanism.support import Row, Support
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.steps import Array
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.parts.bodies import inertia_of
+from equipoise.mechanism.parts.machine import FRAME, Link, Load, Machine, Slider, Vector
+from equipoise.mechanism.parts.support import Row, Support
 from equipoise.vibration.free import modes
 from equipoise.vibration.linkages import rows_of
 

@@ -13,9 +13,9 @@ import numpy as np
 
 from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import Hung, Tree, tensor_of, trees, weighed
-from equipoise.mechanism.links import size_of
-from equipoise.mechanism.model import FRAME, Machine, Vector
-from equipoise.mechanism.motion import move
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.links import size_of
+from equipoise.mechanism.parts.machine import FRAME, Machine, Vector
 
 EFFORT = 1e6
 """N or N m: URDF wants a limit of what slides."""

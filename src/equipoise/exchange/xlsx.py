@@ -16,7 +16,7 @@ from typing import Any
 from equipoise.balancing.workshop import sentences
 from equipoise.errors import needed
 from equipoise.exchange.formats import Job
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.outputs import Output
 

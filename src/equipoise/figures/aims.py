@@ -17,9 +17,9 @@ from equipoise.figures.forces import Read, last_order, order_panel
 from equipoise.figures.pairs import Pair, changed, compare, keys, paired
 from equipoise.figures.shared import GAUGES, continued, groups, told_speed
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.balance import Objective
-from equipoise.mechanism.objectives import output_of
-from equipoise.mechanism.outputs import Declared
+from equipoise.mechanism.outputs.declared import Declared
+from equipoise.mechanism.parts.balance import Objective
+from equipoise.mechanism.parts.objectives import output_of
 from equipoise.results.analysis import analyze
 from equipoise.results.charts import Axis, Chart, Line, Panel
 from equipoise.results.outputs import MEASURES, objective_named, shown_in
@@ -27,7 +27,7 @@ from equipoise.signals import Periodic
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
 
 SAMPLES, MOST_AIMS = 360, 4
 """Crank angles in a turn from which it is told what is rounding; aims below each other."""

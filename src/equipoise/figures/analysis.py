@@ -23,7 +23,7 @@ from equipoise.figures.shared import (
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
-from equipoise.mechanism.reactions import JointForce, SliderForce
+from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
 from equipoise.results.charts import DEGREES, Array, Axis, Chart, Curve, Mark, Panel, quantity
 
 if TYPE_CHECKING:

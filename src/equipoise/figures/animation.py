@@ -20,7 +20,7 @@ from equipoise.errors import UsageError
 from equipoise.figures.captions import Label, captions, ruler_ends
 from equipoise.figures.stage import Arrow, Moves, Stage, check_seconds, check_width
 from equipoise.i18n import said, say
-from equipoise.mechanism.model import unknown
+from equipoise.mechanism.parts.machine import unknown
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, pixels
 from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene

@@ -25,7 +25,7 @@ from equipoise.figures.pairs import (
 from equipoise.figures.shared import by_name, extent, numbers, told_angles, told_speed
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.balance import Objective
+from equipoise.mechanism.parts.balance import Objective
 from equipoise.results.analysis import analyze
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
 from equipoise.results.outputs import objective_named, shown_in
@@ -34,7 +34,7 @@ from equipoise.signals import Periodic
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
 
 SIGNALS = {
     "moment": (

@@ -14,7 +14,7 @@ import numpy as np
 from equipoise.figures.linkage import drawn, joint_names, plane_axes, told_angle
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.results.charts import Array, Arrow, Chart, Curve, Mark, Outline, Panel, quantity
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
@@ -23,8 +23,8 @@ from equipoise.symbols.wheels import called
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.workshop import Change
-    from equipoise.mechanism.balance import Balance
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.balance import Balance
+    from equipoise.mechanism.parts.machine import Machine
 
 MM = 1000.0
 SHORT = 16

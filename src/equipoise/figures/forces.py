@@ -30,7 +30,6 @@ from equipoise.figures.shared import (
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
-from equipoise.mechanism.planes import beside
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Arrow, Axis, Bars, Chart, Curve, Line, Mark, Panel
 from equipoise.results.outputs import CAUSES, output_named
@@ -102,7 +101,7 @@ def moment(analysis: Analysis) -> Chart:
     what = title(analysis, say("Shaking moment about {point}", point=about(analysis)))
     signals = each(analysis, "shaking_moment")
     panels: list[Signals] = [(say("shaking moment"), "torque", signals)]
-    if beside(analysis.machine):
+    if analysis.machine.has_planes:
         rocking, role = analysis.forces.across.rocking_moment, ONE if analysis.together else ALL
         parts = {f"rocking_moment.{axis}": getattr(rocking, axis) for axis in "xy"}
         least = rounding(analysis)[1]

@@ -13,8 +13,8 @@ from equipoise.figures.stage import beyond, rows_named, rows_told
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.mechanism.checks import FRAME
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.poles import instant_center, pairs, pinned
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.outputs.poles import instant_center, pairs, pinned
 from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, shown
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.pieces import GROUND, pieces, placed
@@ -23,8 +23,8 @@ from equipoise.symbols.shapes import Shape, line
 from equipoise.symbols.wheels import called
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.motion import Motion
-    from equipoise.mechanism.support import Support
+    from equipoise.mechanism.kinematics.motion import Motion
+    from equipoise.mechanism.parts.support import Support
     from equipoise.results.analysis import Analysis
 
 

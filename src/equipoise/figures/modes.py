@@ -14,8 +14,8 @@ from equipoise.figures.curves import UNIT
 from equipoise.figures.linkage import support_keys
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.support import AXES, Gauge, Mount, unit_vector
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.support import AXES, Gauge, Mount, unit_vector
 from equipoise.quantities import typeset
 from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, shown
 from equipoise.symbols import carrier, shapes
@@ -24,7 +24,7 @@ from equipoise.symbols.shapes import Shape, hull
 from equipoise.vibration.linkages import rows_of
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.support import Support
+    from equipoise.mechanism.parts.support import Support
     from equipoise.vibration.free import FreeVibration
     from equipoise.vibration.response import Mode
 

@@ -11,7 +11,7 @@ from equipoise.figures.analysis import settled
 from equipoise.figures.shared import closed, compared, crank_axis
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.model import Drive
+from equipoise.mechanism.parts.machine import Drive
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Panel
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
     from equipoise.balancing.phasing import Phasing
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
     from equipoise.vibration.free import FreeVibration
@@ -70,10 +70,9 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
     from equipoise.figures.analysis import joint_polars, joints
     from equipoise.figures.linkage import centrodes, linkage, rolling
     from equipoise.figures.side import side
-    from equipoise.mechanism.planes import beside
 
     found: Pictures = {"linkage": linkage(analysis, at)}
-    if beside(analysis.machine):
+    if analysis.machine.has_planes:
         found["side"] = side(analysis, at)
     if len(analysis.crank_angle) < 2:
         return found

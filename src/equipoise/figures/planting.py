@@ -20,7 +20,7 @@ from equipoise.figures.shared import (
 )
 from equipoise.figures.style import free_name, short
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.tip import largest, smallest
+from equipoise.mechanism.kinematics.tip import largest, smallest
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Axis, Band, Chart, Curve, Flag, Line, Mark, Panel
 

@@ -19,13 +19,13 @@ from equipoise.figures.shared import (
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
-from equipoise.mechanism.poles import guided, pinned
-from equipoise.mechanism.spoken import joint_named
+from equipoise.mechanism.outputs.poles import guided, pinned
+from equipoise.mechanism.outputs.spoken import joint_named
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.motion import Motion
+    from equipoise.mechanism.kinematics.motion import Motion
     from equipoise.results.analysis import Analysis
     from equipoise.results.outputs import Output
 

@@ -10,16 +10,16 @@ import numpy as np
 from equipoise.figures.linkage import told_angle
 from equipoise.figures.style import short
 from equipoise.i18n import say
-from equipoise.mechanism.body_checks import outlines
 from equipoise.mechanism.checks import FRAME
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.planes import masses_of
-from equipoise.mechanism.statics import contacts
+from equipoise.mechanism.dynamics.statics import contacts
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.body_checks import outlines
+from equipoise.mechanism.parts.planes import masses_of
 from equipoise.results.charts import Array, Axis, Chart, Mark, Panel
 from equipoise.symbols.shapes import PIN, Shape, block, circle, line, mass, pivot
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.motion import Motion
+    from equipoise.mechanism.kinematics.motion import Motion
     from equipoise.results.analysis import Analysis
 
 ROOM = 0.06

@@ -12,8 +12,8 @@ import numpy as np
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.figures.modes import described
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.support import AXES, FREEDOMS, PLANAR
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.support import AXES, FREEDOMS, PLANAR
 from equipoise.results.charts import quantity, shown
 from equipoise.symbols.carrier import Swing
 from equipoise.symbols.clear import clear_angle

@@ -12,8 +12,8 @@ import numpy as np
 
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.tip import TipCurve
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.planting.ground import GroundPath
 from equipoise.results.charts import Array, Curve
 from equipoise.symbols.scene import Scene

@@ -21,7 +21,7 @@ from equipoise.figures.shared import (
 )
 from equipoise.figures.style import free_name, short
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.support import AXES
+from equipoise.mechanism.parts.support import AXES
 from equipoise.results.charts import (
     Array,
     Axis,

@@ -48,8 +48,8 @@ from equipoise.keys import (
     wrong_values,
 )
 from equipoise.mechanism.checks import numbered, too_many, unknown, wrong_speeds, wrong_text
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.shown_units import ShownUnits
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.shown_units import ShownUnits
 
 __all__ = [
     "NOTHING",

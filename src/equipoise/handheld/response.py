@@ -14,9 +14,9 @@ from equipoise.handheld.chain import Pair, carry, solve
 from equipoise.handheld.layout import Field, Layout, Line, check_coverage
 from equipoise.handheld.model import Excitation, Tool
 from equipoise.i18n import Note
-from equipoise.mechanism.dynamics import forces, massless
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import move
+from equipoise.mechanism.dynamics.forces import forces, massless
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.result import Result
 from equipoise.signals import Array, Periodic
 
@@ -99,7 +99,7 @@ def unit_shaking_force(machine: Machine) -> Periodic:
     """Shaking force over speed squared (vertical, lateral), N s2, of a linkage at steady speed."""
     if lacking := massless(machine):
         raise MassError(lacking)
-    from equipoise.mechanism.linkage import assemble
+    from equipoise.mechanism.assembly.linkage import assemble
 
     force = forces(move(machine, ANGLES, 1.0, 0.0)).shaking_force
     return Periodic.of(np.array([force.y, force.x]), assemble(machine).cycle.turns)

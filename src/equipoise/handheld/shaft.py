@@ -27,8 +27,8 @@ from equipoise.keys import (
     inside,
     key,
 )
-from equipoise.mechanism.balance import MATERIALS as DENSITIES
 from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.parts.balance import MATERIALS as DENSITIES
 from equipoise.quantities import Dimension
 
 Theory = Literal["euler-bernoulli", "timoshenko"]

@@ -7,7 +7,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from equipoise.mechanism.tip import TipCurve
+from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.planting.figures import tip_figures
 from equipoise.planting.names import SHAKEN
 from equipoise.planting.shaking import shaking

@@ -9,7 +9,7 @@ from math import pi
 from typing import TYPE_CHECKING, Any
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.spoken import joint_named
+from equipoise.mechanism.outputs.spoken import joint_named
 from equipoise.planting.arms import SHARED
 from equipoise.planting.names import (
     EXTREMES,

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism.tip import Signal, TipCurve, lowest_within
+from equipoise.mechanism.kinematics.tip import Signal, TipCurve, lowest_within
 from equipoise.planting.stroke import Figures, distance, pick_up, to_line, whole_cycle, wrapped
 from equipoise.signals import Array
 

@@ -9,8 +9,8 @@ from typing import Literal
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.mechanism.gears import closed
-from equipoise.mechanism.model import FRAME, Machine, Vector, unknown
+from equipoise.mechanism.parts.gears import closed
+from equipoise.mechanism.parts.machine import FRAME, Machine, Vector, unknown
 from equipoise.planting.twins import kept_alike, twins_of
 from equipoise.planting.variables import Draft, Variable, joined, usual, variables
 from equipoise.signals import Array

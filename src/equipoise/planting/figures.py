@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism.kernels import cross, dot
-from equipoise.mechanism.tip import (
+from equipoise.mechanism.formulas.kernels import cross, dot
+from equipoise.mechanism.kinematics.tip import (
     STEP,
     Signal,
     TipCurve,

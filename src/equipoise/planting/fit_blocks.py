@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from equipoise.i18n import Note, say, to_say
-from equipoise.mechanism.assessment import remarks
-from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.planting.blocks import quantity
 from equipoise.planting.names import FIGURES, OTHERS, dimension_of, figure_named
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value

@@ -12,10 +12,10 @@ from typing import Literal
 import numpy as np
 
 from equipoise.errors import EquipoiseError, UsageError
-from equipoise.mechanism.family import Family
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine, unknown
-from equipoise.mechanism.tip import TipCurve
+from equipoise.mechanism.assembly.family import Family
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.kinematics.tip import TipCurve
+from equipoise.mechanism.parts.machine import Machine, unknown
 from equipoise.planting.arms import machine_figures
 from equipoise.planting.designs import Designs
 from equipoise.planting.names import TURNING, dimension_of

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism import kernels
-from equipoise.mechanism.tip import TipCurve, crossings, integral, lowest_within
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.tip import TipCurve, crossings, integral, lowest_within
 from equipoise.planting.stroke import wrapped
 from equipoise.signals import Array
 

@@ -15,9 +15,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.errors import EquipoiseError, UsageError
-from equipoise.mechanism.family import Family
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.assembly.family import Family
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.designs import Designs, Sense
 from equipoise.planting.goals import LIMITS, Goal, Problem
 from equipoise.planting.summary import PlantingFigures, plant

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism import kernels
-from equipoise.mechanism.dynamics import inertia_about, massless
-from equipoise.mechanism.family import column
-from equipoise.mechanism.steps import State, p, u
-from equipoise.mechanism.tip import TipCurve, lowest_within
+from equipoise.mechanism.assembly.family import column
+from equipoise.mechanism.assembly.steps import State, p, u
+from equipoise.mechanism.dynamics.forces import inertia_about, massless
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.tip import TipCurve, lowest_within
 from equipoise.planting.stroke import Figures, acceleration_of_drive, whole_cycle
 from equipoise.signals import Array
 

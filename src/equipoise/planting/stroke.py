@@ -9,9 +9,9 @@ import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
-from equipoise.mechanism import kernels
-from equipoise.mechanism.family import column
-from equipoise.mechanism.tip import TipCurve, crossings, roots
+from equipoise.mechanism.assembly.family import column
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.tip import TipCurve, crossings, roots
 from equipoise.signals import EQUAL, Array, highest_at, within_period
 
 Figures = dict[str, Array]

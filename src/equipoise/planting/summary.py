@@ -13,12 +13,12 @@ import numpy as np
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.checks import Named
-from equipoise.mechanism.dynamics import Forces, forces, massless
-from equipoise.mechanism.field import Planting
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import MOST_ANGLES, Motion, move
-from equipoise.mechanism.rates import PointMotion
-from equipoise.mechanism.tip import TipCurve
+from equipoise.mechanism.dynamics.forces import Forces, forces, massless
+from equipoise.mechanism.kinematics.motion import MOST_ANGLES, Motion, move
+from equipoise.mechanism.kinematics.rates import PointMotion
+from equipoise.mechanism.kinematics.tip import TipCurve
+from equipoise.mechanism.parts.field import Planting
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.arms import SHARED, hills, of_arm
 from equipoise.planting.figures import tip_figures
 from equipoise.planting.ground import GroundPath, Loop

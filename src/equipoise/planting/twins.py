@@ -13,10 +13,10 @@ from math import degrees
 import numpy as np
 
 from equipoise.i18n import Note
-from equipoise.mechanism.family import Family
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.tip import planting_of, tip_link
+from equipoise.mechanism.assembly.family import Family
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.kinematics.tip import planting_of, tip_link
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array
 
 ALIKE, NEARLY = 1e-5, 0.35

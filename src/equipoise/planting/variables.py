@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from equipoise.keys import changed, keys_of
-from equipoise.mechanism.gears import Gear
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import FRAME, Machine, size_of
-from equipoise.mechanism.tip import planting_of, tip_link
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.kinematics.tip import planting_of, tip_link
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import FRAME, Machine, size_of
 from equipoise.quantities import Dimension
 
 SHORTEST, LONGEST = 0.4, 2.5

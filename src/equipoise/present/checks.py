@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from equipoise.errors import ModelError
 from equipoise.handheld.design_plan import OUTPUTS
 from equipoise.handheld.hand_blocks import varied_named
-from equipoise.mechanism.assessment import remarks
-from equipoise.mechanism.cycle import turns_given
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.loads import work_in_cycle
-from equipoise.mechanism.support import idle_parts
+from equipoise.mechanism.assembly.cycle import turns_given
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.dynamics.assessment import remarks
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.dynamics.loads import work_in_cycle
+from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import PER_RPM, SI, Dimension, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import cams_told, where_lost
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
     from equipoise.handheld.design_plan import DesignPlan
     from equipoise.handheld.model import Both, Excitation, Hand, Operation, Station, Tool
     from equipoise.handheld.shaft import Section, Shaft
-    from equipoise.mechanism.force_elements import Motor
-    from equipoise.mechanism.linkage import Linkage
-    from equipoise.mechanism.model import Machine
-    from equipoise.mechanism.support import Gauge, Mount
+    from equipoise.mechanism.assembly.linkage import Linkage
+    from equipoise.mechanism.parts.force_elements import Motor
+    from equipoise.mechanism.parts.machine import Machine
+    from equipoise.mechanism.parts.support import Gauge, Mount
 
 
 # -- linkages --------------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from equipoise.errors import UsageError
 from equipoise.handheld import blocks as of_tools
 from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
 from equipoise.i18n import LANGUAGES, said, say, speaking, to_say
-from equipoise.mechanism.shown_units import units_of
+from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.planting.blocks import planting_blocks
 from equipoise.present.drawing import drawings
 from equipoise.present.findings import Findings, ToolFindings, find

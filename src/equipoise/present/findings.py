@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
     from equipoise.handheld.sweep import ToolSweep, Transmissions
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
     from equipoise.vibration.free import FreeVibration
@@ -230,7 +230,7 @@ def find(
     ModelError : the file is wrong, or a study.
     UsageError : the tool has no speed that could be another.
     """
-    from equipoise.mechanism.swings import swing
+    from equipoise.mechanism.kinematics.swings import swing
     from equipoise.schema.models import loads_linkage, loads_tool
     from equipoise.schema.opening import kind_of_text, opened
 

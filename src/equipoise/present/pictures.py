@@ -73,12 +73,11 @@ def each(
 def _model(found: Findings, at: Sequence[float] | None) -> Iterator[Entry]:
     from equipoise.figures.linkage import linkage
     from equipoise.figures.side import side
-    from equipoise.mechanism.planes import beside
 
     caption = to_say("The linkage to scale, with its joints, links and centres of mass.")
     draw = partial(linkage, found.analysis, at)
     yield Entry("linkage", caption, draw, partial(seen.heaviest, found.analysis))
-    if beside(found.analysis.machine):
+    if found.analysis.machine.has_planes:
         caption = to_say("The planes of links, masses and bearings, from the side and to scale.")
         yield Entry("side", caption, partial(side, found.analysis, at))
 

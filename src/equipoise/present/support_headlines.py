@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say
-from equipoise.mechanism.spoken import named
+from equipoise.mechanism.outputs.spoken import named
 from equipoise.present.shaking import largest_of
 from equipoise.quantities import PER_RPM, brief, percent, told
 from equipoise.results.outputs import shown_in

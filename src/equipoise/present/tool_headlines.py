@@ -9,7 +9,7 @@ import numpy as np
 from equipoise.exposure.blocks import VERDICTS
 from equipoise.handheld.exposed import WORKING
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.spoken import named
+from equipoise.mechanism.outputs.spoken import named
 from equipoise.quantities import PER_RPM, brief, change, percent
 from equipoise.signals import highest_at
 

@@ -10,20 +10,20 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from equipoise.errors import MassError, UsageError
-from equipoise.mechanism import kernels
-from equipoise.mechanism.assessment import FourBar, four_bar
+from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.checks import Named
-from equipoise.mechanism.dwell import Dwell
-from equipoise.mechanism.dynamics import Forces, forces, massless, place_of
-from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.model import Machine, Vector
-from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.outputs import DECLARED, Found
-from equipoise.mechanism.planes import beside
-from equipoise.mechanism.shares import CAUSES
-from equipoise.mechanism.stroke_figures import Stroke
-from equipoise.mechanism.strokes import dwell, strokes
-from equipoise.mechanism.undecided import undecided
+from equipoise.mechanism.dynamics.assessment import FourBar, four_bar
+from equipoise.mechanism.dynamics.forces import Forces, forces, massless
+from equipoise.mechanism.dynamics.shares import CAUSES
+from equipoise.mechanism.dynamics.undecided import undecided
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.dwell import Dwell
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.kinematics.stroke_figures import Stroke
+from equipoise.mechanism.kinematics.strokes import dwell, strokes
+from equipoise.mechanism.outputs.declared import DECLARED, Found
+from equipoise.mechanism.parts.machine import Machine, Vector
+from equipoise.mechanism.parts.places import in_frame
 from equipoise.quantities import Dimension
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
@@ -85,7 +85,7 @@ class Analysis(Result):
 
     def dwell(self, name: str, tolerance: float | None = None) -> Dwell:
         """Longest crank angle over which a slider, link or point moves by no more than a tolerance
-        (m, of a link rad), see `mechanism.strokes.dwell`.
+        (m, of a link rad), see `mechanism.kinematics.strokes.dwell`.
         """
         return dwell(self.motion.linkage, name, tolerance)
 
@@ -128,7 +128,7 @@ class Analysis(Result):
         effort = self.machine.drive.effort
         exerted = getattr(found, effort)
         signals = np.array([force.x, force.y, found.shaking_moment, exerted])
-        rocking = found.across.rocking_moment.value if beside(self.machine) else np.zeros(count)
+        rocking = found.across.rocking_moment.value if self.machine.has_planes else np.zeros(count)
         signals = np.vstack([signals, np.real(rocking), np.imag(rocking)])
         one = Periodic.of(signals, self.motion.turns)
         whole = {"shaking_force": np.zeros(count, complex)}
@@ -337,7 +337,7 @@ def analyze(
     """
     motion = move(machine, angles, speed, acceleration)
     if about is not None:
-        place_of(machine, about)  # a wrong point is told of a model without masses too
+        in_frame(machine.frame, about)  # a wrong point is told of a model without masses too
     if massless(machine):
         return Analysis(motion, None)
     return Analysis(motion, forces(motion, about))

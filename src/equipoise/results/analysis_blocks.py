@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say
-from equipoise.mechanism.dwell import Dwell
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.spoken import joint_named
-from equipoise.mechanism.strokes import SHARE
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.kinematics.dwell import Dwell
+from equipoise.mechanism.kinematics.strokes import SHARE
+from equipoise.mechanism.outputs.spoken import joint_named
 from equipoise.quantities import Dimension, angle, percent
+from equipoise.quantities.numbers import ROUNDING
 from equipoise.results.belt_blocks import belt_blocks
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import cam_blocks
@@ -141,13 +142,19 @@ def advantages_table(analysis: Analysis) -> Table:
 # -- forces ----------------------------------------------------------------------------------------
 
 
+def _beside(analysis: Analysis, kind: Dimension | None) -> float:
+    """The largest of all forces, moments or torques on frame and drive."""
+    ones = (one for one in analysis.outputs.summed if one.group in ("forces", "drives"))
+    return max((one.figures.peak for one in ones if one.dimension == kind), default=0.0)
+
+
 def force_blocks(analysis: Analysis) -> Iterator[Block]:
     """Forces on frame and drive; what they come from; their orders."""
     ones = [one for one in analysis.outputs.summed if one.group in ("forces", "drives")]
     rows: list[tuple[Cell, ...]] = []
     for one in ones:
         found, kind = one.figures, one.dimension
-        scale = max(other.figures.peak for other in ones if other.dimension == kind)
+        scale = _beside(analysis, kind)
         mean, rms, swing = (
             Value(value, scale, dimension=kind)
             for value in (found.mean, found.rms, found.peak_to_peak)
@@ -185,10 +192,14 @@ def _by_link(analysis: Analysis) -> Table:
 def shares(parts: Mapping[str, Array]) -> dict[str, float]:
     """Share of each part in the mean square of their sum, the largest first.
 
-    One below 0 works against the others.  parts : signals (N,), real or complex.
+    One below 0 works against the others, and all are 0 where they cancel but for rounding.
+    parts : signals (N,), real or complex.
     """
-    whole = np.sum(list(parts.values()), axis=0)
-    square = float(np.mean(np.abs(whole) ** 2)) or 1.0
+    signals = np.array(list(parts.values()))
+    whole, beside = np.sum(signals, axis=0), np.max(np.abs(signals), initial=0.0)
+    if np.max(np.abs(whole)) <= ROUNDING * beside:
+        return dict.fromkeys(parts, 0.0)
+    square = float(np.mean(np.abs(whole) ** 2))
     found = {
         name: float(np.mean((part * np.conj(whole)).real)) / square for name, part in parts.items()
     }
@@ -198,7 +209,7 @@ def shares(parts: Mapping[str, Array]) -> dict[str, float]:
 def _causes(analysis: Analysis) -> Table:
     drive, forces = analysis.machine.drive, analysis.forces
     scale = analysis.summary[drive.effort].peak
-    given = {"load": forces.loads, "spring": forces.springs}
+    given = {"load": forces.loads, "spring": analysis.machine.springs}
     rows: list[tuple[Cell, ...]] = []
     for cause, values in forces.split.by_cause(drive.effort).items():
         if given.get(cause, True):
@@ -218,7 +229,8 @@ def orders_table(analysis: Analysis) -> Table:
     count = max(len(signal.amplitudes) for signal in signals)
     sizes = [np.pad(signal.sizes, (0, count - len(signal.sizes))) for signal in signals]
     tops = tops_of(zip(ones, (size[1:] for size in sizes), strict=True))
-    scales = [1e3 * tops[one.dimension] for one in ones]
+    kinds = [one.dimension for one in ones]
+    scales = [max(1e3 * tops[kind], _beside(analysis, kind)) for kind in kinds]
     turns = analysis.motion.turns
     per_order = abs(analysis.motion.speed) / (2 * np.pi)
     rows = (

@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import Note, all_of, say
-from equipoise.mechanism.cam_contacts import LetGo, let_go
-from equipoise.mechanism.cam_fits import fits_of, sharpest
-from equipoise.mechanism.dynamics import forces, massless
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.spoken import body_named
+from equipoise.mechanism.assembly.cam_fits import fits_of, sharpest
+from equipoise.mechanism.dynamics.cam_contacts import LetGo, let_go
+from equipoise.mechanism.dynamics.forces import forces, massless
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.outputs.spoken import body_named
 from equipoise.quantities import PER_RPM, angle, told
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest
 from equipoise.signals import figures
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.joints import Structure
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.assembly.joints import Structure
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.results.analysis import Analysis
 
 

@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from equipoise.i18n import say
-from equipoise.mechanism.drives import Drive, FurtherDrive
-from equipoise.mechanism.laws import Law
-from equipoise.mechanism.spoken import joint_named
+from equipoise.mechanism.outputs.spoken import joint_named
+from equipoise.mechanism.parts.drives import Drive, FurtherDrive
+from equipoise.mechanism.parts.laws import Law
 from equipoise.quantities import PER_RPM, angle, display, number
 from equipoise.results.blocks import Column, Table, Value
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.results.analysis import Analysis
 
 

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.planes import beside
-from equipoise.mechanism.reactions import JointForce, SliderForce
-from equipoise.mechanism.spoken import body_named, joint_named
-from equipoise.mechanism.undecided import undecided
+from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
+from equipoise.mechanism.dynamics.undecided import undecided
+from equipoise.mechanism.outputs.spoken import body_named, joint_named
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest
 from equipoise.signals import figures
@@ -25,7 +24,7 @@ def joint_blocks(analysis: Analysis) -> Iterator[Block]:
     if analysis.forces.joints or analysis.forces.gears:
         yield joint_table(analysis)
     told = [*undecided(analysis.motion.linkage).told()]
-    if beside(analysis.machine):
+    if analysis.machine.has_planes:
         told += analysis.forces.across.statics.told()
     if told:
         yield Notes(tuple(told))
@@ -35,7 +34,7 @@ def joint_table(analysis: Analysis) -> Table:
     """The force in every joint, mesh and bearing."""
     forces = analysis.forces
     joints: dict[str, JointForce] = forces.solved.contacts
-    across = forces.across if beside(analysis.machine) else None
+    across = forces.across if analysis.machine.has_planes else None
     tilting = {} if across is None else across.tilting_moments
     scale = analysis.summary["frame_moment"].peak
     rows: list[tuple[Cell, ...]] = []

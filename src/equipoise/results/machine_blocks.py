@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.bodies import inertia_of, together
-from equipoise.mechanism.spoken import body_named
+from equipoise.mechanism.outputs.spoken import body_named
+from equipoise.mechanism.parts.bodies import inertia_of, together
 from equipoise.quantities import Dimension, Display, angle, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
 from equipoise.signals import Array, Figures, figures
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.assessment import FourBar
-    from equipoise.mechanism.bodies import Body
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.dynamics.assessment import FourBar
+    from equipoise.mechanism.parts.bodies import Body
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.results.analysis import Analysis
 
 FOUR_BARS = (

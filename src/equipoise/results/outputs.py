@@ -1,4 +1,4 @@
-"""The outputs of an analysis, as `mechanism.outputs` declares them, and what they are called."""
+"""The outputs of an analysis: as `mechanism.outputs` declares them, and what they are called."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.outputs import DECLARED, GROUPS, Declared, declared
-from equipoise.mechanism.stroke_figures import DeadPosition, Stroke, declared_figures
-from equipoise.mechanism.undecided import refuse_unbounded
+from equipoise.mechanism.dynamics.undecided import refuse_unbounded
+from equipoise.mechanism.kinematics.stroke_figures import DeadPosition, Stroke, declared_figures
+from equipoise.mechanism.outputs.declared import DECLARED, GROUPS, Declared, declared
 from equipoise.quantities import SI, Dimension, Display, display
 from equipoise.signals import Array, Figures, Periodic, figures
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.balance import Objective
+    from equipoise.mechanism.parts.balance import Objective
 
 FAR = 5.0
 """Over what three quarters of the values of an output are below: beyond it nothing is drawn."""

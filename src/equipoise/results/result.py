@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 
-from equipoise.mechanism.shown_units import units_of
+from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import showing_by_default
 from equipoise.signals import Array
 

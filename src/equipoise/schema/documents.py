@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from equipoise.keys import Frozen
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.files import write
 from equipoise.schema.models import dumped, loads_linkage, loads_tool, save_model
 from equipoise.schema.opening import Folder, Opened, kind_of_text, opened

@@ -17,7 +17,7 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.keys import Frozen, Key, Named, Table, Tables, Whole, all_keys, innermost, keys_of
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.files import printable
 from equipoise.schema.models import Beside, machine_of, plain_of
 from equipoise.schema.places import Context, Place, written_place

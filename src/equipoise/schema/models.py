@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.keys import Frozen
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.shown_units import units_of
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import format_exact, parse, showing_by_default
 from equipoise.schema.files import printable, write
 from equipoise.schema.numbers import format_share, parse_share
@@ -69,7 +69,7 @@ def machine_of(content: Mapping[str, Any], reader: Beside) -> Machine:
     machine: Machine = read_table(Machine, rest, Context(reader.read))
     if balance is None:
         return machine
-    from equipoise.mechanism.balance import Balance, Limit
+    from equipoise.mechanism.parts.balance import Balance, Limit
 
     context = Context(reader.read, {Limit: partial(_limit, machine)})
     return machine.with_balance(read_table(Balance, balance, context, ("balance",)))
@@ -85,8 +85,8 @@ def tool_of(content: Mapping[str, Any], reader: Beside) -> Tool:
 
 def _limit(machine: Machine, given: dict[str, Any]) -> Any:
     """A limit of an output, whose text is a share or in a unit of what the output is."""
-    from equipoise.mechanism.balance import Limit
-    from equipoise.mechanism.objectives import quantity_of, wrong_limit
+    from equipoise.mechanism.parts.balance import Limit
+    from equipoise.mechanism.parts.objectives import quantity_of, wrong_limit
 
     text, objective = given["at_most"], given["objective"]
     try:
@@ -127,8 +127,8 @@ class Beside:
 
     def linkage(self, file: str) -> Machine:
         """The linkage of another model file, or a bundled one; it has masses and turns fully."""
-        from equipoise.mechanism.dynamics import massless
-        from equipoise.mechanism.linkage import assemble
+        from equipoise.mechanism.assembly.linkage import assemble
+        from equipoise.mechanism.dynamics.forces import massless
 
         found = self._opened(file)
         try:
@@ -176,7 +176,7 @@ def plain_of(model: Machine | Tool, names: Mapping[str, str]) -> dict[str, Any]:
     """
     makers: dict[type[Frozen], Callable[[Any], dict[str, Any]]] = {}
     if isinstance(model, Machine) and model.balance is not None:
-        from equipoise.mechanism.balance import Limit
+        from equipoise.mechanism.parts.balance import Limit
 
         makers[Limit] = partial(_limit_table, model)
     with showing_by_default(units_of(model)):
@@ -184,7 +184,7 @@ def plain_of(model: Machine | Tool, names: Mapping[str, str]) -> dict[str, Any]:
 
 
 def _limit_table(machine: Machine, limit: Any) -> dict[str, Any]:
-    from equipoise.mechanism.objectives import quantity_of
+    from equipoise.mechanism.parts.objectives import quantity_of
 
     if limit.ratio is not None:
         at_most = format_share(limit.ratio)
@@ -243,7 +243,7 @@ class Part:
     """A table or linkage that has a file of its own.
 
     where : key that names the file.
-    sort : ``load``, ``soil``, ``motor``, ``impedance`` or ``linkage``.
+    sort : of `tables.TABLES`, or ``linkage``.
     file : name of the one that it came from.
     number : in the name of a new one; 0 for none.
     """

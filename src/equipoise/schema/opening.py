@@ -157,7 +157,7 @@ def document_of(kind: FileKind) -> type[Frozen]:
         from equipoise.schema.study_keys import StudyTable
 
         return StudyTable
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
 
     return Machine
 

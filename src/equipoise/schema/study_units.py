@@ -22,7 +22,7 @@ from equipoise.studies.blocks import Unit
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.studies.design_space import Output, Vary
     from equipoise.studies.run import OnProgress
     from equipoise.studies.store import Store

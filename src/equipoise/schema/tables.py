@@ -1,4 +1,4 @@
-"""CSV files with units in the header: tables of loads, of soil, of a motor and of impedance.
+"""CSV files with units in the header: tables of loads, laws, soil, a motor and impedance.
 
 ::
 
@@ -19,9 +19,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.model import Impedance
-from equipoise.mechanism.field import SoilTable
-from equipoise.mechanism.force_elements import MotorTable
-from equipoise.mechanism.model import LoadTable
+from equipoise.mechanism.parts.field import SoilTable
+from equipoise.mechanism.parts.force_elements import MotorTable
+from equipoise.mechanism.parts.laws import AngleTable, LengthTable
+from equipoise.mechanism.parts.machine import LoadTable
 from equipoise.quantities import (
     FACTORS,
     HUGE,
@@ -57,6 +58,7 @@ COLUMNS: dict[str, tuple[Dimension, str]] = {
     "time": ("time", "s"),
     "displacement": ("length", "mm"),
     "angle": ("angle", "deg"),
+    "length": ("length", "mm"),
     "frequency": ("frequency", "Hz"),
     "x": ("acceleration", "m/s^2"),
     "y": ("acceleration", "m/s^2"),
@@ -208,7 +210,16 @@ def _is_number(cell: str) -> bool:
 
 # -- tables beside a model -------------------------------------------------------------------------
 
-Table = LoadTable | SoilTable | MotorTable | Impedance
+Table = LoadTable | AngleTable | LengthTable | SoilTable | MotorTable | Impedance
+TABLES: dict[str, Any] = {
+    "load": LoadTable,
+    "angles": AngleTable,
+    "lengths": LengthTable,
+    "soil": SoilTable,
+    "motor": MotorTable,
+    "impedance": Impedance,
+}
+"""The class of each sort of table; but for a load's, its fields are the columns."""
 FORMS: dict[str, Forms] = {
     "load": (
         ("crank_angle", "force_x", "force_y"),
@@ -216,6 +227,8 @@ FORMS: dict[str, Forms] = {
         ("crank_angle", "force_x"),
         ("crank_angle", "force_y"),
     ),
+    "angles": (("crank_angle", "angle"),),
+    "lengths": (("crank_angle", "length"),),
     "soil": (("depth", "resistance"),),
     "motor": (("speed", "torque"),),
     "impedance": (("frequency", "resistance", "reactance"), ("frequency", "magnitude", "phase")),
@@ -225,7 +238,7 @@ OF_TIME = (
     "a load goes with the crank, at whatever speed that turns; give crank_angle [deg] instead, "
     "of which 100 rpm make 600 in a second"
 )
-HANDY = {"crank_angle": "deg", "speed": "rpm"}
+HANDY = {"crank_angle": "deg", "angle": "deg", "length": "mm", "speed": "rpm"}
 """Units of columns that are written in them where they are exact, else in SI units."""
 
 
@@ -246,10 +259,6 @@ def read_beside(sort: str, file: str, folder: Path) -> Table:
 def parse_table(sort: str, text: str, file: str = "") -> Table:
     """Read the text of a table; errors begin with the number of the line."""
     columns = columns_of(text, FORMS[sort])
-    if sort == "soil":
-        return SoilTable(columns["depth"], columns["resistance"], file)
-    if sort == "motor":
-        return MotorTable(columns["speed"], columns["torque"], file)
     if sort == "load":
         angles = columns.pop("crank_angle")
         if "torque" in columns:
@@ -261,7 +270,8 @@ def parse_table(sort: str, text: str, file: str = "") -> Table:
         pairs = zip(columns["magnitude"], columns["phase"], strict=True)
         resistance, reactance = zip(*(from_polar(*pair) for pair in pairs), strict=True)
         return Impedance(columns["frequency"], resistance, reactance, file)
-    return Impedance(columns["frequency"], columns["resistance"], columns["reactance"], file)
+    found: Table = TABLES[sort](**columns, file=file)
+    return found
 
 
 def format_table(table: Table) -> str:
@@ -269,8 +279,7 @@ def format_table(table: Table) -> str:
     if isinstance(table, LoadTable):
         form = FORMS["load"][0 if len(table.values) == 2 else 1]
         return _text(form, [table.crank_angle, *table.values])
-    sort = {SoilTable: "soil", MotorTable: "motor", Impedance: "impedance"}[type(table)]
-    form = FORMS[sort][0]
+    form = next(FORMS[sort][0] for sort, of in TABLES.items() if of is type(table))
     return _text(form, [getattr(table, name) for name in form])
 
 

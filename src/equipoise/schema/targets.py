@@ -24,7 +24,7 @@ from equipoise.keys import (
     declared,
     key,
 )
-from equipoise.mechanism.model import unknown
+from equipoise.mechanism.parts.machine import unknown
 from equipoise.planting.designs import Sense
 from equipoise.planting.goals import Goal
 from equipoise.planting.names import dimension_of

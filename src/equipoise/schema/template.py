@@ -16,29 +16,22 @@ from pathlib import Path
 from typing import Any
 
 from equipoise.errors import MobilityError, ModelError, MotionError
-from equipoise.handheld.model import Impedance, Tool
+from equipoise.handheld.model import Tool
 from equipoise.i18n import Note
-from equipoise.mechanism.field import SoilTable
-from equipoise.mechanism.force_elements import MotorTable
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import LoadTable, Machine
-from equipoise.mechanism.swings import SWUNG, swing
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.kinematics.swings import SWUNG, swing
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.finding import Found, all_numbers, find, replaced, unit_in, with_changes
 from equipoise.schema.models import Beside, machine_of, parts_of, plain_of, text_of, tool_of
 from equipoise.schema.numbers import Number
 from equipoise.schema.opening import Kind, Opened, in_file, kind_of, model_content, opened
 from equipoise.schema.places import Place, written_place
+from equipoise.schema.tables import TABLES
 from equipoise.schema.words import words_of
 from equipoise.schema.writing import toml_text
 
 Known = dict[tuple[str, str], Any]
 """What lies beside a model file, by sort and name: tables, and linkages as templates."""
-TABLES: dict[str, Any] = {
-    "load": LoadTable,
-    "soil": SoilTable,
-    "motor": MotorTable,
-    "impedance": Impedance,
-}
 
 
 class Template:

@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from equipoise.errors import EquipoiseError, ModelError, UsageError
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.steps import Call
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.steps import Call
 from equipoise.studies.figures import ABSCISSAE, PLACES, Step, figure_name, resolve
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
     from equipoise.studies.design_space import Output
     from equipoise.studies.study import Study
 

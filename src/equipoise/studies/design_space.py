@@ -18,7 +18,7 @@ from equipoise.errors import UsageError
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.i18n import Note
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
 
 Array = np.ndarray[Any, Any]
 

@@ -27,8 +27,8 @@ from equipoise.codegen.figures import (
     figure_of,
 )
 from equipoise.errors import ChangePointError, EquipoiseError, ModelError, MotionError, RangeError
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.studies.commands import ANGLES, COMMANDS, Request, analyzed, find_outputs
 from equipoise.studies.figures import PLACES, Step, figure_name, read, scale
 from equipoise.studies.outcomes import Evaluator, Outcome
@@ -292,7 +292,7 @@ def _sizes(table: Any) -> Iterator[float]:
 
 def planting_figures(machines: Sequence[Machine], steps: Sequence[Sequence[Step]]) -> Array:
     """Figures (P, m) of machines of one build whose cranks turn fully; NaN where one is missing."""
-    from equipoise.mechanism.tip import TipCurve
+    from equipoise.mechanism.kinematics.tip import TipCurve
     from equipoise.planting.arms import machine_figures
     from equipoise.planting.stroke import both_sides
 

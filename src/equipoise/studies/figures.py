@@ -17,15 +17,15 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.outputs import declared
-from equipoise.mechanism.stroke_figures import dimension_of as of_stroke
+from equipoise.mechanism.kinematics.stroke_figures import dimension_of as of_stroke
+from equipoise.mechanism.outputs.declared import declared
 from equipoise.planting.names import dimension_of as of_planting
 from equipoise.signals import figures
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
-    from equipoise.mechanism.model import Machine
-    from equipoise.mechanism.support import Support
+    from equipoise.mechanism.parts.machine import Machine
+    from equipoise.mechanism.parts.support import Support
 
 Array = np.ndarray[Any, Any]
 Values = Mapping[str, Any]

@@ -24,11 +24,11 @@ from equipoise.balancing.objectives import Near, measured, signals_of, unit_of
 from equipoise.balancing.problem import Problem
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.parameters import parameter_values
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.dynamics.parameters import parameter_values
+from equipoise.mechanism.parts.balance import Balance, Objective
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.result import Result
 from equipoise.signals import highest_at
 from equipoise.studies.design_space import Model

@@ -37,7 +37,7 @@ from equipoise.studies.study import Study
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
-    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.parts.machine import Machine
 
 Array = np.ndarray[Any, Any]
 

@@ -210,6 +210,10 @@ def open_store(path: str | os.PathLike[str], *, write: bool = False) -> Store:
     clear_left_over(folder.parent)
     if not os.path.lexists(folder):
         raise UsageError(f"{folder}: there is no such store; make it by: equipoise sweep")
+    if folder.is_file():
+        raise UsageError(
+            f"{folder}: a store is a folder; of a study file it is made by: equipoise sweep"
+        )
     try:
         group = zarr.open_group(folder, mode="r+" if write else "r", zarr_format=3)
         layout = group.attrs[MARK]

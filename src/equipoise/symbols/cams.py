@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from equipoise.mechanism.cam_fits import Fit, fits_of
-from equipoise.mechanism.cam_shapes import Shape
-from equipoise.mechanism.kernels import cross
-from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.assembly.cam_fits import Fit, fits_of
+from equipoise.mechanism.assembly.cam_shapes import Shape
+from equipoise.mechanism.formulas.kernels import cross
+from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.symbols.shapes import Array, Mark, circle, line
 
 CORNERS = 360

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from equipoise.mechanism.kernels import dot
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.support import Gauge, Mount, Support, unit_vector
+from equipoise.mechanism.formulas.kernels import dot
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import Gauge, Mount, Support, unit_vector
 from equipoise.symbols.shapes import PIN, Array, Shape, circle, hatching, hull, sign
 
 MOUNT = 40.0, 7.0

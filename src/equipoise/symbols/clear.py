@@ -7,7 +7,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from equipoise.mechanism.kernels import cross
+from equipoise.mechanism.formulas.kernels import cross
 from equipoise.symbols.carrier import MOUNT
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Array, off_outline

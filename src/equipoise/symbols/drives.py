@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from equipoise.mechanism.model import Drive as Driving
-from equipoise.mechanism.model import FurtherDrive
-from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.machine import Drive as Driving
+from equipoise.mechanism.parts.machine import FurtherDrive
 
 
 @dataclass(frozen=True)

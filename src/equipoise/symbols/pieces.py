@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.support import Mount, unit_vector
+from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.support import Mount, unit_vector
 from equipoise.symbols.carrier import foot, gauge, ground, strut, turning
 from equipoise.symbols.drives import Drive
 from equipoise.symbols.scene import WIDE, Body, Guide, Scene
@@ -63,7 +63,7 @@ class Piece:
     layer : ``field``, ``support``, ``rows``, ``wheels``, ``guides``, ``stands``, ``links``,
         ``springs``, ``pivots``, ``blocks``, ``riders``, ``joints``, ``tray`` or ``drive``.
     link : whose plate or bar it is, if any.
-    part : ``slider`` or ``gears``, and the name of that which it tells, if any.
+    part : ``slider``, ``gears``, ``belts`` or ``racks``, and the name of that which it tells.
     still : whether it stands on the ground, and not on the support.
     """
 
@@ -173,14 +173,15 @@ def _wheels(scene: Scene) -> Iterator[Piece]:
         if gear.curve is None and key in seen:
             continue
         seen.add(key)
-        part = ("gears", gear.pair) if gear.pair else None
         if gear.link == FRAME:
             still = complex(scene.places[gear.center][0])
-            yield Piece("wheels", (rim(still, gear.radius, gear.curve),), part=part)
+            shape = rim(still, gear.radius, gear.curve)
+            yield Piece("wheels", (shape,), part=gear.part)
             continue
         body = bodies[gear.link]
         center = scene.local(body, scene.places[gear.center])
-        yield Piece("wheels", tuple(wheel(center, gear.radius, gear.curve)), _with(body), part=part)
+        shapes = tuple(wheel(center, gear.radius, gear.curve))
+        yield Piece("wheels", shapes, _with(body), part=gear.part)
     yield from _drawn(scene, "wheels")
 
 
@@ -196,7 +197,7 @@ def _drawn(scene: Scene, layer: str) -> Iterator[Piece]:
             start = scene.local(bodies[mark.body], scene.places[mark.point])
             hold = _with(bodies[mark.body])
         moved = replace(mark.shape, role=role, places=mark.shape.places + start)
-        yield Piece(layer, (moved,), hold)
+        yield Piece(layer, (moved,), hold, part=mark.part)
 
 
 def _stands(scene: Scene) -> Iterator[Piece]:

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.mechanism.motion import move
+from equipoise.mechanism.kinematics.motion import move
 from equipoise.symbols.shapes import Array
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.motion import Motion
+    from equipoise.mechanism.kinematics.motion import Motion
 
 CLOSE = 1e-9
 """rad and m within which rows cover each other."""

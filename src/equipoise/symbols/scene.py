@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import EquipoiseError
-from equipoise.mechanism.bodies import place_of
-from equipoise.mechanism.body_checks import Outline, outlines
-from equipoise.mechanism.model import FRAME, Link
-from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.tip import surface_of
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.tip import surface_of
+from equipoise.mechanism.parts.bodies import place_of
+from equipoise.mechanism.parts.body_checks import Outline, outlines
+from equipoise.mechanism.parts.machine import FRAME, Link
 from equipoise.symbols.cams import cams_of
 from equipoise.symbols.carrier import MOUNT, Carrier, Swing
 from equipoise.symbols.drives import Drive
@@ -146,7 +146,11 @@ class Scene:
             tuple((one.point, one.to) for one in planned if (one.point, one.to) not in springs),
             _field(motion),
             Carrier.of(machine),
-            marks=(*cams_of(motion), *strands_of(joints, machine.bodies), *racks_of(motion)),
+            marks=(
+                *cams_of(motion),
+                *strands_of(joints, machine.bodies),
+                *racks_of(joints, machine.bodies, lambda one: motion.sliders[one.name].travel),
+            ),
         )
 
     def with_rows(self, motion: Motion) -> Scene:

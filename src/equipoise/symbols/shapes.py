@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism.kernels import cross
+from equipoise.mechanism.formulas.kernels import cross
 
 Array = np.ndarray[Any, Any]
 
@@ -58,11 +58,15 @@ class Shape:
 
 @dataclass(frozen=True, eq=False)
 class Mark:
-    """A shape that moves with a body, maybe the frame: from a point of that, in the body's axes."""
+    """A shape that moves with a body, maybe the frame: from a point of that, in the body's axes.
+
+    part : list and name of what it tells, if a page can have that deleted by it.
+    """
 
     body: str
     point: str
     shape: Shape
+    part: tuple[str, str] | None = None
 
 
 def runs(shapes: Iterable[Shape]) -> Iterator[list[Shape]]:

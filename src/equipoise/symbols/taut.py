@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from math import pi, radians, tan
 
 import numpy as np
 
-from equipoise.mechanism.builder import Guide
+from equipoise.mechanism.assembly.builder import Guide
+from equipoise.mechanism.assembly.joints import Structure, coupling_pins
 from equipoise.mechanism.checks import Bodies
-from equipoise.mechanism.joints import Structure, coupling_pins
-from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.strands import LEFT, RIGHT
+from equipoise.mechanism.formulas.strands import LEFT, RIGHT
+from equipoise.mechanism.parts.machine import Slider
+from equipoise.mechanism.parts.racks import Rack
 from equipoise.symbols.shapes import Array, Mark, line
 
 MOST_TEETH = 80
@@ -27,25 +28,31 @@ def strands_of(joints: Structure, bodies: Bodies) -> Iterator[Mark]:
         points = bodies[belt.carrier]
         strands = belt.strands(complex(*points[driven]) - complex(*points[driver]))  # type: ignore[attr-defined]
         for side in (LEFT, RIGHT):
-            yield Mark(belt.carrier, driver, line("strand", *strands.ends(side)))
+            strand = line("strand", *strands.ends(side))
+            yield Mark(belt.carrier, driver, strand, (belt.table, belt.name))
 
 
-def racks_of(motion: Motion) -> Iterator[Mark]:
-    """Every rack, as far as its pinion rolls on it, and a radius more."""
-    machine, joints = motion.machine, motion.linkage.joints
-    for rack in machine.racks:
+def racks_of(
+    joints: Structure, bodies: Bodies, travel: Callable[[Slider], Array | float]
+) -> Iterator[Mark]:
+    """Every rack, as far as its pinion rolls on it, and a radius more.
+
+    travel : of a slider along its guide, m.
+    """
+    for rack in (one for one in joints.couplings if isinstance(one, Rack)):
         pair = (rack.rack, rack.carrier)
-        slider = next(one for one in machine.sliders if (one.link, one.on) == pair)
+        slider = next(one for one in joints.sliders if (one.link, one.on) == pair)
         guide = Guide.seen_from(slider, rack.carrier)
-        points = machine.points_of(rack.carrier)
+        points = bodies[rack.carrier]
         (pin,) = joints.pins_between(rack.pinion, rack.carrier)
         foot = (complex(*points[pin]) - complex(*points[guide.base])) / guide.along
         foot -= 1j * rack.left * rack.radius
-        reach = foot.real - motion.sliders[slider.name].travel
+        reach = foot.real - travel(slider)
         low, high = float(np.min(reach)) - rack.radius, float(np.max(reach)) + rack.radius
         toward = 1j * rack.left  # the pinion, of a bar along the x axis
         corners = low + 1j * foot.imag + _bar(high - low, rack.radius, toward)
-        yield Mark(rack.rack, guide.point, line("wheel", *(corners / guide.turn), closed=True))
+        bar = line("wheel", *(corners / guide.turn), closed=True)
+        yield Mark(rack.rack, guide.point, bar, (rack.table, rack.name))
 
 
 def _bar(length: float, radius: float, toward: complex) -> Array:

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from equipoise.i18n import say
-from equipoise.mechanism.belts import Belt
+from equipoise.mechanism.assembly.joints import Structure, coupling_pins
 from equipoise.mechanism.checks import Bodies
-from equipoise.mechanism.couplings import Law
-from equipoise.mechanism.gears import Gear
-from equipoise.mechanism.joints import Structure, coupling_pins
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.racks import Rack
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.couplings import Law
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.racks import Rack
 from equipoise.symbols.shapes import Array
 
 CORNERS = 180
@@ -27,14 +27,14 @@ class Wheel:
     """The pitch curve of a gear.
 
     link : what turns with it, maybe the frame.  center : the point on its axis.
-    radius : of a circle, or the largest, m.  pair : name of the gears that it is one of, if any.
+    radius : of a circle, or the largest, m.  part : list and name of the coupling that has it.
     curve : (n,) of what is no circle: from the center, in the link's axes, complex, m.
     """
 
     link: str
     center: str
     radius: float
-    pair: str
+    part: tuple[str, str]
     curve: Array | None = None
 
 
@@ -42,7 +42,7 @@ def called(wheels: Sequence[Wheel]) -> str:
     """What these are called together."""
     if any(wheel.curve is not None for wheel in wheels):
         return say("pitch curves of gears")
-    if any(wheel.pair for wheel in wheels):
+    if any(wheel.part[0] == Gear.table for wheel in wheels):
         return say("pitch circles of gears")
     return say("pitch circles of pulleys and pinions")
 
@@ -53,13 +53,14 @@ def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) ->
     angles : of the links in one pose, rad, which tell how curves lie that are no circles.
     """
     for gear in joints.couplings:
+        part = gear.table, gear.name
         if isinstance(gear, Belt):
             links = zip((gear.driver, gear.driven), coupling_pins(joints, gear), strict=True)
             for (link, pin), radius in zip(links, gear.pitch_radii, strict=True):
-                yield Wheel(link, pin, radius, "")
+                yield Wheel(link, pin, radius, part)
         elif isinstance(gear, Rack):
             for pin in joints.pins_between(gear.pinion, gear.carrier):
-                yield Wheel(gear.pinion, pin, gear.radius, "")
+                yield Wheel(gear.pinion, pin, gear.radius, part)
         if not isinstance(gear, Gear):
             continue
         pins = coupling_pins(joints, gear)
@@ -68,11 +69,11 @@ def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) ->
         if gear.law is not None:
             curves = _curves(gear, gear.law, driver - driven, angles)
             for (link, pin), curve in zip(links, curves, strict=True):
-                yield Wheel(link, pin, float(np.max(np.abs(curve))), gear.name, curve)
+                yield Wheel(link, pin, float(np.max(np.abs(curve))), part, curve)
             continue
         radius = abs(driver - driven) / abs(1 - gear.speed_ratio)
         for (link, pin), share in zip(links, (abs(gear.speed_ratio), 1.0), strict=True):
-            yield Wheel(link, pin, radius * share, gear.name)
+            yield Wheel(link, pin, radius * share, part)
 
 
 def _curves(gear: Gear, law: Law, centres: complex, angles: Mapping[str, float]) -> Curves:

@@ -18,8 +18,8 @@ import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.support import AXES, FREEDOMS, Gauge, Mount, Support, unit_vector
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import AXES, FREEDOMS, Gauge, Mount, Support, unit_vector
 from equipoise.signals import Array, Periodic
 
 MISSING = Note(

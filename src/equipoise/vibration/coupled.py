@@ -24,9 +24,9 @@ import numpy as np
 
 from equipoise.errors import ResponseError
 from equipoise.i18n import Note
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.steps import size_of_bodies
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.steps import size_of_bodies
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array
 from equipoise.vibration.body import IN_PLANE, PITCH, Body, Contact, Rest, contacts_of
 from equipoise.vibration.collocation import Rates

@@ -15,11 +15,11 @@ import numpy as np
 
 from equipoise.errors import ResponseError
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.dynamics import forces
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.reactions import Pass
-from equipoise.mechanism.support import FREEDOMS
+from equipoise.mechanism.dynamics.forces import forces
+from equipoise.mechanism.dynamics.reactions import Pass
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import FREEDOMS
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import IN_PLANE, PITCH, Body, Reading
 from equipoise.vibration.coupled import Coupled, settled

@@ -14,10 +14,9 @@ from typing import cast, get_args
 
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.planes import beside
-from equipoise.mechanism.support import idle_parts
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities.units import HUGE
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.exact import solve_exact
@@ -62,14 +61,14 @@ def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
             return "exact"
         raise ModelError("support", MISSING)
     if not support.planar and (drive or model in {"coupled", "exact"}):
-        others = [name for name in support.coordinates if name in {"sway", "roll", "yaw"}]
+        *others, last = (name for name in support.coordinates if name in {"sway", "roll", "yaw"})
         raise ModelError(
             "support.freedoms",
             Note(
                 "the model {value} is for motion in the plane of the drawing; leave out "
                 "{names}, or choose moment",
                 value=model or "exact",
-                names=" and ".join(others),
+                names=" and ".join([*filter(None, [", ".join(others)]), last]),
             ),
         )
     if model in WITH_CRANK and not machine.has_crank:
@@ -118,7 +117,7 @@ def left_out(machine: Machine) -> list[Note | str]:
     if machine.drive.acceleration:
         said = to_say("the drive's acceleration is left out: a steady vibration has a steady crank")
         found.append(Note(said))
-    if machine.support is not None and machine.support.planar and beside(machine):
+    if machine.support is not None and machine.support.planar and machine.has_planes:
         said = to_say("rocking moments do nothing: the support can neither roll nor yaw")
         found.append(Note(said))
     return found

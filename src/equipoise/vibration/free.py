@@ -10,8 +10,8 @@ from typing import ClassVar
 import numpy as np
 
 from equipoise.errors import MassError, ModelError
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.result import Result
 from equipoise.signals import Array
 from equipoise.vibration.body import MISSING

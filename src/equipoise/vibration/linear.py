@@ -18,12 +18,12 @@ from typing import Literal
 import numpy as np
 
 from equipoise.errors import ModelError, ResponseError
-from equipoise.mechanism.dynamics import Forces, forces
-from equipoise.mechanism.kernels import cross
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.planes import beside, moments_across
-from equipoise.mechanism.support import AXES, FREEDOMS, Gauge, Row
+from equipoise.mechanism.dynamics.forces import Forces, forces
+from equipoise.mechanism.formulas.kernels import cross
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.planes import moments_across
+from equipoise.mechanism.parts.support import AXES, FREEDOMS, Gauge, Row
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import (
     Body,
@@ -185,7 +185,7 @@ class Excitation:
         found = forces(motion, self.pivot).outer
         force = found.frame_force.value - found.weight.value
         rocking = np.zeros(len(force), complex)
-        if self.step == "moment" and beside(self.machine):
+        if self.step == "moment" and self.machine.has_planes:
             gravity = complex(*self.machine.gravity)
             rocking = found.across.frame_rocking_moment.value - 1j * self.across * gravity
         moment = self._moment(found)

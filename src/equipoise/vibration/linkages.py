@@ -24,15 +24,20 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import MassError
-from equipoise.mechanism.acting import inner_demands, load_demands, outer_loads, spring_demands
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.kernels import cross, dot
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.planes import beside, masses_of, moments_across
-from equipoise.mechanism.reactions import Demand, Pass, demands_of, reactions
-from equipoise.mechanism.steps import p, u
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.assembly.steps import p, u
+from equipoise.mechanism.dynamics.acting import (
+    inner_demands,
+    load_demands,
+    outer_loads,
+    spring_demands,
+)
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.dynamics.reactions import Demand, Pass, demands_of, reactions
+from equipoise.mechanism.formulas.kernels import cross, dot
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.planes import masses_of, moments_across
+from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Array
 from equipoise.vibration.body import PITCH
 
@@ -175,7 +180,7 @@ def spread(machine: Machine, theta: Array) -> Array:
         total[3:, 3:] += np.array(
             [[yy + own / 2, -xy, 0], [-xy, xx + own / 2, 0], [0, 0, xx + yy + own]]
         )
-    if beside(machine):
+    if machine.has_planes:
         total += _spread_across(motion)
     total[3:, :3] = total[:3, 3:].T
     return total

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.model import Drive
+from equipoise.mechanism.parts.machine import Drive
 from equipoise.quantities import PER_RPM, brief
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.response import Mode

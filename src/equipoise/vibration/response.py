@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.result import Result
 from equipoise.signals import Array, Periodic
 

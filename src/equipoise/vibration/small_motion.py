@@ -17,8 +17,8 @@ from operator import add
 import numpy as np
 
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.dynamics import forces
-from equipoise.mechanism.motion import move
+from equipoise.mechanism.dynamics.forces import forces
+from equipoise.mechanism.kinematics.motion import move
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import IN_PLANE, PITCH
 from equipoise.vibration.collocation import Conditions, Rates

@@ -10,11 +10,11 @@ import numpy as np
 
 from equipoise.errors import ResponseError
 from equipoise.i18n import Note
-from equipoise.mechanism.dynamics import forces
-from equipoise.mechanism.force_elements import Motor
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Drive, Machine
-from equipoise.mechanism.motion import move
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.dynamics.forces import forces
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.machine import Drive, Machine
 from equipoise.signals import Array
 from equipoise.vibration.collocation import NOTHING, RULE, Conditions, Orbit, System, solve
 from equipoise.vibration.coupled import Coupled, Torque

@@ -12,8 +12,8 @@ import numpy as np
 
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.result import Result
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import MISSING

@@ -1,4 +1,4 @@
-"""What is added to a machine that is made: points, links, sliders, gears, the drive.
+"""What is added to a machine that is made: points, links, sliders, the drive.
 
 Each function takes a sketch to another one, or refuses in a `UsageError`.
 """
@@ -14,8 +14,8 @@ from string import ascii_uppercase
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.model import FRAME, Drive, Gear, Link, Slider
-from equipoise.mechanism.outline import Pose, length_between, pose_between
+from equipoise.mechanism.kinematics.outline import Pose, length_between, pose_between
+from equipoise.mechanism.parts.machine import FRAME, Drive, Link, Slider
 from equipoise.quantities import clean
 from equipoise.web.messages import Spot
 from equipoise.web.sketch import Sketch
@@ -198,25 +198,3 @@ def with_drive(sketch: Sketch, link: str) -> Sketch:
         )
     drive = sketch.drive or Drive(link, USUAL_SPEED)
     return replace(sketch, drive=replace(drive, link=link))
-
-
-def with_gears(
-    sketch: Sketch, driver: str, driven: str, teeth: tuple[int, int], carrier: str = FRAME
-) -> Sketch:
-    """A pair of gears in external mesh; their links keep the places in which they are drawn."""
-    for body in (driver, driven, carrier):
-        check_body(sketch, body)
-    for body in (driver, driven):
-        shared = len(sketch.bodies[body].keys() & sketch.bodies[carrier].keys())
-        if body == carrier or shared != 1:
-            raise UsageError(
-                Note(
-                    "{body} shares {shared} points with {carrier}; each gear turns about exactly "
-                    "one point of it",
-                    body=the(body),
-                    shared=shared,
-                    carrier=the(carrier),
-                )
-            )
-    gear = Gear(driver, driven, teeth=teeth, carrier=carrier)
-    return replace(sketch, gears=(*sketch.gears, gear))

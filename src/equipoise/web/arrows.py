@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from equipoise.i18n import say
-from equipoise.mechanism.spoken import body_named
+from equipoise.mechanism.outputs.spoken import body_named
 from equipoise.quantities import Dimension, display
 from equipoise.results.analysis import Analysis
 from equipoise.web.block import Array, Block, Values

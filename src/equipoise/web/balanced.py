@@ -27,9 +27,9 @@ from equipoise.balancing.told import (
 from equipoise.balancing.workshop import SPREAD, sentences
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, said, say
-from equipoise.mechanism.balance import Balance, Limit, Objective
-from equipoise.mechanism.model import Link, Machine
-from equipoise.mechanism.outputs import declared
+from equipoise.mechanism.outputs.declared import declared
+from equipoise.mechanism.parts.balance import Balance, Limit, Objective
+from equipoise.mechanism.parts.machine import Link, Machine
 from equipoise.quantities import clean, display, told
 from equipoise.results.outputs import objective_named, shown_in
 from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin

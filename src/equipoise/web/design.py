@@ -13,10 +13,10 @@ from typing import Any
 from equipoise.balancing.advice import reach_of
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.balance import Balance
-from equipoise.mechanism.links import MASS_FIELDS
-from equipoise.mechanism.model import Link, Machine
-from equipoise.mechanism.shown_units import ShownUnits
+from equipoise.mechanism.parts.balance import Balance
+from equipoise.mechanism.parts.links import MASS_FIELDS
+from equipoise.mechanism.parts.machine import Link, Machine
+from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.quantities import clean, clean_place
 
 DRAGGED = 7

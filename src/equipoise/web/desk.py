@@ -10,8 +10,8 @@ from pathlib import Path
 
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note, speaking
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.shown_units import units_of
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import showing_by_default
 from equipoise.schema.files import printable
 from equipoise.schema.opening import kind_of_text, opened

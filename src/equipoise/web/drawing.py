@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism.tip import surface_of
+from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.symbols.carrier import MOUNT
 from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.pieces import Piece, pieces

@@ -11,12 +11,12 @@ import numpy as np
 from equipoise.errors import EquipoiseError, MobilityError, UsageError, to_paste
 from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.model import FRAME, Machine
+from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import DIGITS, display
 from equipoise.symbols.drives import Drive
 from equipoise.symbols.scene import Guide, Scene, bodies_of
 from equipoise.symbols.shapes import Mark
-from equipoise.symbols.taut import strands_of
+from equipoise.symbols.taut import racks_of, strands_of
 from equipoise.symbols.wheels import Wheel, wheels_of
 from equipoise.web.block import Block, Values
 from equipoise.web.design import Design
@@ -245,7 +245,7 @@ def scene_of(sketch: Sketch) -> Scene:
         springs,
         {name: pose.angle * one for name, pose in sketch.poses.items()},
         (drive,),
-        marks=tuple(_strands(sketch)),
+        marks=tuple(_taut(sketch)),
         room=() if sketch.links else EMPTY,
     )
 
@@ -259,11 +259,12 @@ def _wheels(sketch: Sketch) -> list[Wheel]:
         return []
 
 
-def _strands(sketch: Sketch) -> list[Mark]:
-    """Strands of belts, as far as these have their pins by now."""
+def _taut(sketch: Sketch) -> list[Mark]:
+    """Strands of belts, and racks, as far as these have their pins by now."""
     try:
-        return [*strands_of(sketch.joints, sketch.bodies)]
-    except EquipoiseError:
+        racks = racks_of(sketch.joints, sketch.bodies, sketch.travel)
+        return [*strands_of(sketch.joints, sketch.bodies), *racks]
+    except (EquipoiseError, StopIteration, ValueError):  # a rack without its guide, or its pin
         return []
 
 

@@ -14,11 +14,11 @@ import numpy as np
 
 from equipoise.errors import EquipoiseError, MobilityError, ModelError, MotionError, UsageError
 from equipoise.i18n import Note
+from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import ALTERNATIVES, unknown
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine, Position, Vector
-from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.swings import SWUNG, swing
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.swings import SWUNG, swing
+from equipoise.mechanism.parts.machine import Machine, Position, Vector
 from equipoise.quantities import clean, clean_place
 from equipoise.results.analysis import LEAST_ANGLES, Analysis, analyze
 from equipoise.symbols.scene import Scene

@@ -11,9 +11,9 @@ from typing import Any
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import say, to_say
 from equipoise.keys import Frozen, Quantity, quantities_of
-from equipoise.mechanism.links import MASS_FIELDS
-from equipoise.mechanism.model import FRAME, Link, Machine, Vector, size_of
-from equipoise.mechanism.mounts import OF_AXIS, OF_POINT
+from equipoise.mechanism.parts.links import MASS_FIELDS
+from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector, size_of
+from equipoise.mechanism.parts.mounts import OF_AXIS, OF_POINT
 from equipoise.quantities import (
     Display,
     chosen_unit,

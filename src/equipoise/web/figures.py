@@ -13,9 +13,8 @@ from typing import Any
 import numpy as np
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.outputs import DECLARED, Declared
-from equipoise.mechanism.planes import beside
+from equipoise.mechanism.outputs.declared import DECLARED, Declared
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import Display, change, display, number, typeset
 from equipoise.quantities.numbers import SAME
 from equipoise.results.analysis import Analysis
@@ -32,7 +31,7 @@ def signals_of(analysis: Analysis) -> Signals:
     if found is None:
         return {}
     signals = {"shaking_force": found.shaking_force.value}
-    if beside(analysis.machine):
+    if analysis.machine.has_planes:
         signals["rocking_moment"] = found.across.rocking_moment.value
     signals |= {
         name: analysis.outputs[name].values

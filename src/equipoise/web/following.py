@@ -16,9 +16,9 @@ from itertools import combinations, count, product
 import numpy as np
 
 from equipoise.i18n import Note, all_of
-from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.steps import Array, planar
+from equipoise.mechanism.assembly.steps import Array, planar
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import clean_place
 from equipoise.web.design import DRAGGED
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.joints import Structure, held_too_often, undetermined
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.assembly.joints import Structure, held_too_often, undetermined
+from equipoise.mechanism.parts.machine import FRAME
 from equipoise.web.sketch import Sketch
 
 AND = to_say("{names} and {last}")

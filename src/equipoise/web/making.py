@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.model import FRAME
-from equipoise.web.adding import with_drive, with_gears, with_link, with_point, with_slider
+from equipoise.mechanism.parts.machine import FRAME
+from equipoise.web.adding import with_drive, with_link, with_point, with_slider
+from equipoise.web.coupling import with_belt, with_gears, with_rack
 from equipoise.web.messages import Message
 from equipoise.web.remaking import (
+    COUPLED,
     TABLES,
     freed,
     grounded,
     pinned,
     renamed,
     separated,
-    without_gears,
+    without_coupling,
     without_link,
     without_point,
     without_slider,
@@ -43,8 +46,20 @@ def _slider(sketch: Sketch, asked: Message) -> Sketch:
 
 def _gears(sketch: Sketch, asked: Message) -> Sketch:
     teeth = asked.whole("teeth"), asked.whole("driven_teeth")
-    links = asked.text("driver"), asked.text("driven")
-    return with_gears(sketch, *links, teeth, asked.text("carrier", FRAME))
+    return with_gears(sketch, *_ends(asked), teeth, asked.optional("carrier"))
+
+
+def _belt(sketch: Sketch, asked: Message) -> Sketch:
+    teeth = asked.whole("teeth"), asked.whole("driven_teeth")
+    return with_belt(sketch, *_ends(asked), teeth, asked.optional("carrier"))
+
+
+def _rack(sketch: Sketch, asked: Message) -> Sketch:
+    return with_rack(sketch, *_ends(asked))
+
+
+def _ends(asked: Message) -> tuple[str, str]:
+    return asked.text("driver"), asked.text("driven")
 
 
 def _pin(sketch: Sketch, asked: Message) -> Sketch:
@@ -59,7 +74,7 @@ DELETED: Mapping[str, Callable[[Sketch, str], Sketch]] = {
     "point": without_point,
     "link": without_link,
     "slider": without_slider,
-    "gears": without_gears,
+    **{table: partial(without_coupling, table) for table in COUPLED},
 }
 """What can be taken away, by its name."""
 
@@ -83,6 +98,8 @@ OPERATIONS: Mapping[str, tuple[str, Operation]] = {
     "link": (to_say("add a link"), _link),
     "slider": (to_say("add a slider"), _slider),
     "gears": (to_say("add a pair of gears"), _gears),
+    "belt": (to_say("add a belt"), _belt),
+    "rack": (to_say("add a rack"), _rack),
     "drive": (
         to_say("set the drive"),
         lambda sketch, asked: with_drive(sketch, asked.text("link")),

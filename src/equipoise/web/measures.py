@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of, say
-from equipoise.mechanism.model import Vector
+from equipoise.mechanism.parts.machine import Vector
 from equipoise.web.messages import Drag
 
 MOST = 4

@@ -10,8 +10,8 @@ from typing import Any
 
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of
-from equipoise.mechanism.model import FRAME, Slider
-from equipoise.mechanism.outline import Pose, length_between, pose_between
+from equipoise.mechanism.kinematics.outline import Pose, length_between, pose_between
+from equipoise.mechanism.parts.machine import FRAME, Slider
 from equipoise.quantities import DIGITS, clean, clean_place
 from equipoise.web.adding import TOGETHER, check_point
 from equipoise.web.design import DRAGGED

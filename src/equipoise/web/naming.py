@@ -7,17 +7,19 @@ from dataclasses import replace
 from typing import Any, Literal
 
 from equipoise.keys import Frozen, Kind, Point, Text, innermost, keys_of
-from equipoise.mechanism.gears import Gear
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.objectives import JOINTS
+from equipoise.mechanism.parts.couplings import Turning, name_of
+from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.objectives import JOINTS, WITHIN
 
 What = Literal["point", "link"]
 NAMING = {"point": {"point"}, "link": {"link", "body"}}
 """What a text has to be the name of, as its key declares it."""
+COUPLED = tuple(table for table in WITHIN if table != JOINTS)
+"""How outputs of couplings begin, which are called after both their links."""
 SLIDING = " on "
 """In the name of a sliding joint."""
 MESHING = ("driver", "driven")
-"""Of a pair of gears, whose file has both in one list."""
+"""Of gears and of a belt, whose file has both in one list."""
 
 
 def named_in(value: Any, what: What) -> set[str]:
@@ -40,6 +42,8 @@ def _names(value: Any, kind: Kind | None, what: What) -> Iterator[tuple[str, str
     elif isinstance(value, str) and value.startswith(JOINTS) and what == "point":
         name = value.removeprefix(JOINTS).partition("/")[0]
         yield from [] if SLIDING in name else [(what, name)]
+    elif isinstance(value, str) and value.startswith(COUPLED) and what == "link":
+        yield from ((what, name) for name in _ends(value)[1:3])
 
 
 def renamed_in(value: Any, what: What, old: str, new: str) -> Any:
@@ -59,7 +63,19 @@ def _renamed(value: Any, kind: Kind | None, what: What, names: tuple[str, str]) 
     if isinstance(value, str) and value.startswith(JOINTS) and what == "point":
         point, bar, link = value.removeprefix(JOINTS).partition("/")
         return f"{JOINTS}{names[1]}{bar}{link}" if point == names[0] else value
+    if isinstance(value, str) and value.startswith(COUPLED) and what == "link":
+        table, *ends, part = _ends(value)
+        driver, driven = (names[1] if end == names[0] else end for end in ends)
+        return f"{table}.{name_of(driver, driven)}{part}"
     return names[1] if value == names[0] and _is_name(kind, what) else value
+
+
+def _ends(output: str) -> tuple[str, str, str, str]:
+    """Of a coupling's output: its list, driver and driven link, and what follows, with its dot."""
+    table, _, rest = output.partition(".")
+    driver, _, rest = rest.partition(name_of("", ""))
+    driven, dot, part = rest.partition(".")
+    return table, driver, driven, dot + part
 
 
 def _fields(value: Frozen) -> Iterator[tuple[str, Kind]]:
@@ -67,7 +83,7 @@ def _fields(value: Frozen) -> Iterator[tuple[str, Kind]]:
     for key in keys_of(type(value)).values():
         if hasattr(value, key.field):
             yield key.field, key.kind
-    if isinstance(value, Gear):
+    if isinstance(value, Turning):
         yield from ((field, Text(of="link")) for field in MESHING)
 
 

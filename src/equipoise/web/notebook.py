@@ -5,7 +5,7 @@ from __future__ import annotations
 import anywidget
 import traitlets
 
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.web.answers import answers
 from equipoise.web.assets import assets
 from equipoise.web.session import Session

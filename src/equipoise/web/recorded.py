@@ -20,7 +20,7 @@ import numpy as np
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import say
-from equipoise.mechanism.outputs import DECLARED
+from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.quantities import FACTORS, KINDS, Dimension, plain_unit, told, typeset
 from equipoise.results.analysis import Analysis
 from equipoise.schema.csv_rows import check_width, rows_of, shortened, wrong

@@ -9,9 +9,10 @@ from dataclasses import replace
 from typing import Any
 
 from equipoise.errors import UsageError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.checks import Bodies, unknown
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.parts.balance import Balance
+from equipoise.mechanism.parts.machine import FRAME
 from equipoise.web.adding import (
     check_body,
     check_link,
@@ -25,6 +26,8 @@ from equipoise.web.moving import straight
 from equipoise.web.naming import What, named_in, renamed_in
 from equipoise.web.sketch import Sketch
 
+COUPLED = {"gears": to_say("pair of gears"), "belts": to_say("belt"), "racks": to_say("rack")}
+"""Lists of couplings, with what one of each is called."""
 TABLES = ("planting", "balance")
 """Tables of which there is one, and which go with a point or link that they name."""
 
@@ -124,13 +127,20 @@ def without_slider(sketch: Sketch, name: str) -> Sketch:
     return _tidied(sketch)
 
 
-def without_gears(sketch: Sketch, name: str) -> Sketch:
-    """One pair of gears less."""
-    names = [one.name for one in sketch.gears]
-    if name not in names:
-        raise UsageError(unknown(name, names, "pair of gears"))
-    first = names.index(name)
-    return replace(sketch, gears=sketch.gears[:first] + sketch.gears[first + 1 :])
+def without_coupling(table: str, sketch: Sketch, name: str) -> Sketch:
+    """One pair of gears, one belt or one rack less."""
+    entries = [*sketch.entries()]
+    found = [k for k, (key, one) in enumerate(entries) if key == table and one.name == name]
+    if not found:
+        names = [one.name for key, one in entries if key == table]
+        raise UsageError(unknown(name, names, COUPLED[table]))
+    sketch = sketch.with_entries(entries[: found[0]] + entries[found[0] + 1 :])
+    plan: Balance | None = sketch.rest.get("balance")
+    outputs = [] if plan is None else [one.output for one in plan.asked]
+    own = f"{table}.{name}"
+    if any(output == own or output.startswith(f"{own}.") for output in outputs):
+        sketch = replace(sketch, rest={**sketch.rest, "balance": None})
+    return sketch
 
 
 def _tidied(sketch: Sketch) -> Sketch:
@@ -153,7 +163,7 @@ def _tidied(sketch: Sketch) -> Sketch:
 
 def _held(key: str, entry: Any, bodies: Bodies) -> bool:
     """Whether all that an entry names is there."""
-    if key == "gears":
+    if key in COUPLED:
         return {entry.driver, entry.driven, entry.carrier} <= bodies.keys()
     points = [(entry.link, entry.point)] if entry.point is not None else []
     if key == "sliders":

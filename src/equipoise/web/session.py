@@ -13,8 +13,8 @@ from threading import Lock
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
 from equipoise.i18n import Note, said, speaking
-from equipoise.mechanism.outline import USUAL_SIZE
-from equipoise.mechanism.shown_units import units_of
+from equipoise.mechanism.kinematics.outline import USUAL_SIZE
+from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
 from equipoise.schema.files import LARGEST
 from equipoise.web import balanced, entering, kept

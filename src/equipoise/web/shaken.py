@@ -12,12 +12,11 @@ from equipoise.figures import render
 from equipoise.figures.side import side
 from equipoise.figures.swing import ModeSwing, swinging
 from equipoise.i18n import said, say
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.planes import beside
-from equipoise.mechanism.spoken import joint_named
-from equipoise.mechanism.stroke_figures import declared_figures, dimension_of
-from equipoise.mechanism.support import FREEDOMS, PLANAR
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.kinematics.stroke_figures import declared_figures, dimension_of
+from equipoise.mechanism.outputs.spoken import joint_named
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import FREEDOMS, PLANAR
 from equipoise.planting.blocks import cell
 from equipoise.planting.names import FIGURES, figure_named, of_all_arms
 from equipoise.planting.summary import PlantingFigures, plant
@@ -160,7 +159,7 @@ def more(
     sweep : whether the response is wanted.
     outdated : tells when the design is no longer shown, so that the rest is not wanted.
     """
-    if beside(found.analysis.machine) and not outdated():
+    if found.analysis.machine.has_planes and not outdated():
         yield {"type": "side", "svg": render(side(found.analysis)).decode()}, b""
     if found.analysis.strokes and not outdated():
         yield _told_against("strokes", _strokes, found, against), b""

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from equipoise.mechanism.model import FRAME, Link, Machine, Vector
-from equipoise.mechanism.outline import STILL, Outline, Pose
-from equipoise.mechanism.shown_units import ShownUnits
+from equipoise.mechanism.kinematics.outline import STILL, Outline, Pose
+from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector
+from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.quantities import clean_place
 from equipoise.web.design import Counterweight, Design
 from equipoise.web.edits import Solved, solved

@@ -8,11 +8,10 @@ import numpy as np
 
 from equipoise.figures.points import traced
 from equipoise.i18n import said, say
-from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.outputs import GROUPS
-from equipoise.mechanism.planes import beside
-from equipoise.mechanism.poles import guided, pinned
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.outputs.declared import GROUPS
+from equipoise.mechanism.outputs.poles import guided, pinned
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import display
 from equipoise.results.analysis import Analysis
 from equipoise.results.drive_blocks import driven
@@ -86,7 +85,7 @@ def state_of(
         "before": before is not None,
         "status": status_of(found),
         "compared": against is not None,
-        "beside": beside(machine),
+        "beside": machine.has_planes,
         "points": points_of(analysis),
         "record": measured_told(record, found, block),
         "arrows_at": arrows_at,

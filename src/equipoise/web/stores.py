@@ -16,7 +16,7 @@ from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.handheld.model import Tool
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.study_units import machine_of, owner_of, units_in
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import kept

@@ -9,7 +9,7 @@ from typing import Any
 
 from equipoise.i18n import Worded, say, to_say
 from equipoise.keys import Frozen, Key, Named, Tables, Wording
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import told
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
 from equipoise.schema.places import Place, written_place

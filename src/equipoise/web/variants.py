@@ -11,7 +11,7 @@ from typing import Any
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.outputs import DECLARED
+from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.quantities import Dimension, display
 from equipoise.quantities.numbers import SAME
 from equipoise.web.edits import Solved

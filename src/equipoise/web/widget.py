@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.web.design import Design
 from equipoise.web.openings import opened_file
 from equipoise.web.session import Session

@@ -14,7 +14,7 @@ from equipoise.errors import UsageError
 from equipoise.figures.animation import Moving, Part, animated_svg, laid_out
 from equipoise.figures.stage import beyond
 from equipoise.figures.swing import SEEN, in_mode, swinging
-from equipoise.mechanism.support import unit_vector
+from equipoise.mechanism.parts.support import unit_vector
 from equipoise.symbols.carrier import MOUNT
 from equipoise.symbols.scene import Scene
 from equipoise.vibration.body import Body

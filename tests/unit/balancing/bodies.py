@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from equipoise.balancing.weights import AddedWeight
-from equipoise.mechanism.balance import Shape, Weight
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.balance import Shape, Weight
+from equipoise.mechanism.parts.machine import Machine
 from unit.mechanism.build import crank_rocker
 
 Array = np.ndarray[Any, Any]

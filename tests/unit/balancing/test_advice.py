@@ -13,8 +13,8 @@ from equipoise.balancing.advice import advise, counterweight_on, plate_of, runni
 from equipoise.balancing.blocks import outcome_blocks
 from equipoise.balancing.told import aims_told, proof_told, worse_told
 from equipoise.errors import EquipoiseError, MassError, UsageError
-from equipoise.mechanism.balance import AddedMass, Balance, Objective, Phases, Weight
-from equipoise.mechanism.support import Gauge
+from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Phases, Weight
+from equipoise.mechanism.parts.support import Gauge
 from equipoise.vibration.linear import Linear
 from unit.vibration.build import cart
 

@@ -13,8 +13,8 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.compared import figures_of, worse_of
-from equipoise.mechanism.balance import AddedMass, Balance, Limit, Objective, Weight
-from equipoise.mechanism.outputs import DECLARED
+from equipoise.mechanism.outputs.declared import DECLARED
+from equipoise.mechanism.parts.balance import AddedMass, Balance, Limit, Objective, Weight
 
 MACHINE = eq.load("yamashita-1")
 CRANK = AddedMass("crank", "A", Weight("any", 0.06, at_most=0.8))

@@ -16,9 +16,9 @@ from equipoise.balancing.design_variables import FreeSpring, with_parameters
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.objectives import measured
 from equipoise.balancing.program import Affine, NoSolutionError, Program
-from equipoise.mechanism.balance import Balance, Objective, SpringChoice
-from equipoise.mechanism.parameters import parameter_values
-from equipoise.mechanism.springs import Spring
+from equipoise.mechanism.dynamics.parameters import parameter_values
+from equipoise.mechanism.parts.balance import Balance, Objective, SpringChoice
+from equipoise.mechanism.parts.springs import Spring
 from support.machines import make
 from unit.mechanism.build import crank_rocker
 

@@ -27,7 +27,7 @@ from equipoise.balancing.objectives import (
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.program import Affine, Program
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.balance import (
+from equipoise.mechanism.parts.balance import (
     MEASURES,
     AddedMass,
     Balance,

@@ -11,7 +11,13 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.geared import Gearing, nearest, with_shafts
 from equipoise.errors import UsageError
-from equipoise.mechanism.balance import Balance, BalanceShafts, GearedWeight, Objective, Weight
+from equipoise.mechanism.parts.balance import (
+    Balance,
+    BalanceShafts,
+    GearedWeight,
+    Objective,
+    Weight,
+)
 from unit.mechanism.build import crank_rocker, slider_crank
 
 MACHINE = crank_rocker()  # its rocker turns about D, 1 m to the right of A

@@ -284,6 +284,12 @@ def test_conditions() -> None:
     assert "The shaking force can be made zero, with every mass as it is." in text
 
 
+def test_a_swing_is_no_crank() -> None:
+    """Order 1 is that of the cycle, of two cranks that swing."""
+    text = words(conditions_blocks(conditions(eq.load("pick-and-place"), "sine")))
+    assert "Conditions for shaking force to be a pure sine, once a cycle" in text
+
+
 def test_nothing_to_meet() -> None:
     yoke = eq.load("scotch-yoke")
     text = words(conditions_blocks(conditions(yoke, "sine"), conditions(yoke)))

@@ -19,8 +19,8 @@ from equipoise.balancing.phase_bound import CLOSE
 from equipoise.balancing.phasing import choose_phases
 from equipoise.balancing.problem import Problem
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.balance import AddedMass, Balance, Limit, Objective, Phases, Weight
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.parts.balance import AddedMass, Balance, Limit, Objective, Phases, Weight
+from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Periodic
 
 Array = np.ndarray[Any, Any]

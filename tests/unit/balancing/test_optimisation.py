@@ -14,7 +14,7 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.pareto import trade_off
 from equipoise.errors import UsageError
-from equipoise.mechanism.balance import (
+from equipoise.mechanism.parts.balance import (
     AddedMass,
     Balance,
     CenterMove,

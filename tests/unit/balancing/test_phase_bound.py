@@ -14,7 +14,7 @@ from equipoise.balancing.multi_row import Combine, Cost, Rows, RowSignals, Term
 from equipoise.balancing.phase_bound import CLOSE, Improve, prove
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import choose_phases
-from equipoise.mechanism.balance import MEASURES, Objective, Phases
+from equipoise.mechanism.parts.balance import MEASURES, Objective, Phases
 from support.rows_in_time import side_by_side
 
 TYPE_II = eq.load("yamashita-2")

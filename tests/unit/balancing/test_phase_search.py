@@ -25,9 +25,9 @@ from equipoise.balancing.phase_grid import Grid, alike, coarsened, distinct, sor
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import choose_phases
 from equipoise.errors import EquipoiseError, UsageError
-from equipoise.mechanism.balance import Objective, Phases
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.parts.balance import Objective, Phases
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import Row
 from support.printing import printed, words
 
 MACHINE = eq.load("yamashita-2")

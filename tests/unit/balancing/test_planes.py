@@ -12,15 +12,16 @@ import equipoise as eq
 from equipoise.balancing.multi_row import Rows
 from equipoise.balancing.objectives import signals_of
 from equipoise.balancing.problem import Problem
+from equipoise.balancing.told import freedoms
 from equipoise.errors import ModelError
-from equipoise.mechanism.assessment import remarks
-from equipoise.mechanism.balance import AddedMass, Balance, Objective, Weight
-from equipoise.mechanism.bodies import Body
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Drive, Link, Machine
-from equipoise.mechanism.parts import Bearing
-from equipoise.mechanism.statics import statics
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.dynamics.assessment import remarks
+from equipoise.mechanism.dynamics.statics import statics
+from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
+from equipoise.mechanism.parts.bodies import Body
+from equipoise.mechanism.parts.machine import Drive, Link, Machine
+from equipoise.mechanism.parts.sliders import Bearing
+from equipoise.mechanism.parts.support import Row
 from equipoise.vibration.forced import respond
 from unit.vibration.build import cart
 
@@ -160,3 +161,12 @@ def test_what_statics_leaves_open_is_told() -> None:
     bent = machine.with_link("rocker", planes={"C": 0.05})
     assert statics(assemble(bent)).open == ("B", "C")
     assert any("tilting moments" in str(one) for one in remarks(assemble(bent)))
+
+
+def test_a_plan_tells_two_counterweights_on_one_shaft_apart() -> None:
+    masses = tuple(AddedMass("shaft", "A", Weight(plane=plane)) for plane in (None, *PLANES))
+    assert list(freedoms(Balance(masses=masses))) == [
+        "any mass on shaft about A",
+        "any mass on shaft about A, in the plane z = 100.0 mm",
+        "any mass on shaft about A, in the plane z = 800.0 mm",
+    ]

@@ -15,7 +15,7 @@ import pytest
 import equipoise as eq
 from equipoise.balancing import choose_phases
 from equipoise.balancing.rows_and_masses import CLOSE
-from equipoise.mechanism.balance import (
+from equipoise.mechanism.parts.balance import (
     AddedMass,
     Balance,
     CenterMove,
@@ -25,8 +25,8 @@ from equipoise.mechanism.balance import (
     Phases,
     Weight,
 )
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import Row
 from support.rows_in_time import in_time, side_by_side
 
 TYPE_II = eq.load("yamashita-2")

@@ -18,7 +18,7 @@ from equipoise.balancing.problem import Problem
 from equipoise.balancing.program import Affine
 from equipoise.balancing.solution import closed_form
 from equipoise.errors import MassError, ModelError, UsageError
-from equipoise.mechanism.balance import (
+from equipoise.mechanism.parts.balance import (
     AddedMass,
     Balance,
     CenterMove,

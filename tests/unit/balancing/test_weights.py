@@ -16,7 +16,7 @@ from equipoise.balancing.design_variables import MovedCenter
 from equipoise.balancing.program import Affine, NoSolutionError, Program
 from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import pieces_of
-from equipoise.mechanism.balance import SHAPES, CenterMove, Shape, Weight, largest_mass
+from equipoise.mechanism.parts.balance import SHAPES, CenterMove, Shape, Weight, largest_mass
 from unit.balancing.bodies import (
     PLATE,
     ROOMS,

@@ -23,9 +23,9 @@ from equipoise.codegen.batch import Batch, all_angles, designs_of, grid_of
 from equipoise.codegen.emit import emit
 from equipoise.codegen.figures import Gathered
 from equipoise.codegen.source import Source
-from equipoise.mechanism import kernels
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.machine import Machine
 from support.batches import by_numpy, every_dyad, wanted_of
 from support.designs import Array, drawn, numbers_of, paths_of
 from unit.mechanism.build import four_bar, machine

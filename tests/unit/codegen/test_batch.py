@@ -17,8 +17,8 @@ from equipoise.codegen.batch import Batch
 from equipoise.codegen.emit import can_compute
 from equipoise.codegen.figures import GATHERED, PLACES, Figure, Gathered, figure_of
 from equipoise.errors import ChangePointError, RangeError, UsageError
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Gear, Load, LoadTable, Machine, Slider
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.parts.machine import Gear, Load, LoadTable, Machine, Slider
 from support.batches import WRITTEN, by_numpy, known_of, wanted_of
 from support.designs import (
     Array,

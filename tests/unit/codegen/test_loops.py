@@ -21,8 +21,8 @@ from equipoise.codegen.emit import can_emit
 from equipoise.codegen.figures import COMPUTED, NO_FULL_TURN, NOT_COMPUTED, Figure
 from equipoise.codegen.terms import Lines, Term
 from equipoise.errors import ModelError, MotionError
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.studies.evaluate import Routes, evaluator
 from support.batches import by_numpy
 from support.designs import Array, Number, design, drawn, geometry_of, named, paths_of

@@ -17,8 +17,8 @@ from equipoise.codegen.emit import can_emit, emit
 from equipoise.codegen.figures import Figure, Gathered
 from equipoise.codegen.source import CALLED, RESERVED, Sheet, Source
 from equipoise.errors import MassError, UsageError
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import FRAME, Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.parts.machine import FRAME, Machine
 from laws.transforms import renamed
 from support.batches import WRITTEN, by_numpy, every_dyad, known_of, same_figures, signals_of
 from support.designs import design, drawn, numbers_of, paths_of

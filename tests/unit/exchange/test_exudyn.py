@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.support import unit_vector
+from equipoise.mechanism.parts.support import unit_vector
 from support.conformance import compared
+from support.machines import make
 from support.sources import EXUDYN
 
 pytestmark = pytest.mark.skipif(find_spec("exudyn") is None, reason="not for this computer")
@@ -86,4 +87,7 @@ def test_what_a_planar_model_cannot_hold(tmp_path: Path) -> None:
         eq.export(eq.load("riding-transplanter"), path)
     with pytest.raises(eq.EquipoiseError, match="the drive stands still"):
         eq.export(eq.load("yamashita-1").with_drive(speed=0.0), path)
+    belted = make("belted_coupler", 1).machine
+    with pytest.raises(eq.EquipoiseError, match="the belt crank to wheel follows two bodies"):
+        eq.export(belted, path)
     assert not path.exists()

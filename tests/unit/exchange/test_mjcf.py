@@ -11,7 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.exchange.mjcf import STEPS
-from equipoise.mechanism.support import unit_vector
+from equipoise.mechanism.parts.support import unit_vector
 from support.conformance import compared
 from support.sources import MUJOCO
 
@@ -55,7 +55,7 @@ def test_a_turn_of_the_crank(name: str, tmp_path: Path) -> None:
     assert data.qpos[crank] == pytest.approx(turned, rel=1e-3)
     mujoco.mj_forward(model, data)
     points = eq.move(machine, [START + data.qpos[crank]]).points
-    size = max(eq.mechanism.model.size_of(body) for body in machine.bodies.values())
+    size = max(eq.mechanism.parts.machine.size_of(body) for body in machine.bodies.values())
     for link, body in machine.links.items():
         for point in body.points:
             place = complex(*data.site(f"{link}{row} {point}").xpos[:2])

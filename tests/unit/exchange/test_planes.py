@@ -10,8 +10,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.exchange.tree import tensor_of
-from equipoise.mechanism.bodies import Body
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.bodies import Body
+from equipoise.mechanism.parts.machine import Machine
 from support.machines import make
 from support.machines_planes import set_apart
 

@@ -11,8 +11,8 @@ from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.pareto import Front, trade_off
 from equipoise.balancing.phasing import Phasing, choose_phases
 from equipoise.figures.pictures import balance_pictures
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import Row
 from equipoise.results.charts import Chart
 
 MM, STEEL = 1e3, 7850.0

@@ -8,8 +8,8 @@ from functools import cache
 import equipoise as eq
 from equipoise.figures.layout import lay_out
 from equipoise.figures.planting import charts
-from equipoise.mechanism.field import Soil
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.field import Soil
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.summary import PlantingFigures, plant
 from equipoise.results.charts import Chart
 

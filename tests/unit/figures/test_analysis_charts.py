@@ -17,9 +17,9 @@ from equipoise.figures import analysis as view
 from equipoise.figures import forces, planting, points
 from equipoise.figures.pictures import analysis_pictures, planting_pictures
 from equipoise.figures.shared import angle_step
-from equipoise.mechanism.balance import Objective
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.parts.balance import Objective
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import Row
 from equipoise.planting.summary import plant
 from equipoise.results.analysis import Analysis
 from equipoise.results.charts import Chart, Panel

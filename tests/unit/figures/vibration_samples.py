@@ -10,8 +10,8 @@ import numpy as np
 
 import equipoise as eq
 from equipoise.figures.pictures import pictures_of
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.support import Gauge, Mount, Row
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import Gauge, Mount, Row
 from equipoise.results.charts import Chart
 from equipoise.vibration.forced import respond
 from equipoise.vibration.sweep import Sweep, sweep_speed

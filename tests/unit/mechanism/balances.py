@@ -6,7 +6,7 @@ from dataclasses import replace
 from math import pi
 
 import equipoise as eq
-from equipoise.mechanism.balance import (
+from equipoise.mechanism.parts.balance import (
     MATERIALS,
     Balance,
     BalanceShafts,
@@ -14,7 +14,7 @@ from equipoise.mechanism.balance import (
     SpringChoice,
     Weight,
 )
-from equipoise.mechanism.support import Gauge, Row, Support
+from equipoise.mechanism.parts.support import Gauge, Row, Support
 from unit.mechanism import build
 from unit.mechanism.build import crank_rocker
 

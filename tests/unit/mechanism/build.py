@@ -9,7 +9,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.mechanism.model import FRAME, Vector
+from equipoise.mechanism.parts.machine import FRAME, Vector
 
 ORIGIN: Vector = (0.0, 0.0)
 

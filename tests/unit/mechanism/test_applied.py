@@ -10,11 +10,11 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, MotionError
-from equipoise.mechanism.acting import resistance, soil_force, spring_force
-from equipoise.mechanism.assessment import remarks
-from equipoise.mechanism.field import Planting, Soil, SoilTable
-from equipoise.mechanism.parameters import spring_units
-from equipoise.mechanism.tip import surface_of
+from equipoise.mechanism.dynamics.acting import resistance, soil_force, spring_force
+from equipoise.mechanism.dynamics.assessment import remarks
+from equipoise.mechanism.dynamics.parameters import spring_units
+from equipoise.mechanism.kinematics.tip import surface_of
+from equipoise.mechanism.parts.field import Planting, Soil, SoilTable
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, refused
 
 EXAMPLES = ("kim-chung-a", "kim-chung-b")

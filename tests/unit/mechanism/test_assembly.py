@@ -12,9 +12,9 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MobilityError, ModelError, RangeError
-from equipoise.mechanism import kernels
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.steps import Call
+from equipoise.mechanism.assembly.steps import Call
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.machine import FRAME
 from laws.transforms import with_axes
 from support.machines import KINDS, make
 from unit.mechanism.build import (

@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.balance import (
+from equipoise.mechanism.outputs.spoken import joint_names
+from equipoise.mechanism.parts.balance import (
     LISTS,
     MOST,
     AddedMass,
@@ -25,9 +26,8 @@ from equipoise.mechanism.balance import (
     Weight,
     largest_mass,
 )
-from equipoise.mechanism.objectives import output_of, quantity_of
-from equipoise.mechanism.spoken import joint_names
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.parts.objectives import output_of, quantity_of
+from equipoise.mechanism.parts.support import Row
 from unit.mechanism.balances import ALONE, DISC, FOUR, GEARED, ROOM, SHAFTS, SPRING, STEEL, refused
 from unit.mechanism.build import ORIGIN, body, slider_crank
 
@@ -300,8 +300,16 @@ def test_phases_need_rows() -> None:
     ("output", "words"),
     [
         ("gauges.g", "there is no gauge; give a support with gauges"),
-        ("roll_moment", "roll_moment comes from linkages side by side; give [[rows]]"),
-        ("yaw_moment", "yaw_moment comes from linkages side by side; give [[rows]]"),
+        (
+            "roll_moment",
+            "roll_moment comes from linkages side by side; give [[rows]], or ask for "
+            "rocking_moment of links in planes",
+        ),
+        (
+            "yaw_moment",
+            "yaw_moment comes from linkages side by side; give [[rows]], or ask for "
+            "rocking_moment of links in planes",
+        ),
     ],
 )
 def test_outputs_of_support_and_rows(output: str, words: str) -> None:

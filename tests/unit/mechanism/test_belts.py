@@ -13,7 +13,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError, MotionError, UsageError
 from equipoise.mechanism import Belt, Position, Rack
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.parts.machine import FRAME
 from equipoise.results.analysis_blocks import analysis_blocks
 from equipoise.results.belt_blocks import slack
 from equipoise.results.blocks import Notes
@@ -127,6 +127,12 @@ def test_a_slack_strand_is_told() -> None:
         "to push with 5.000 N; give it a tension of more than 15.00 N"
     )
     assert any(isinstance(block, Notes) for block in analysis_blocks(found))
+    causes = next(
+        one
+        for one in analysis_blocks(found)
+        if str(getattr(one, "title", "")) == "Drive torque by cause"
+    )
+    assert "springs" not in [str(row[0]) for row in causes.rows]
     chain = eq.analyze(replace(given, belts=(belt(),)), 12)
     assert not any(isinstance(block, Notes) for block in analysis_blocks(chain))
 
@@ -282,5 +288,9 @@ def test_a_file_without_racks_refuses_them(tmp_path: Path) -> None:
     given = racked(Rack("rocker", "ram", 0.07, "left"))
     with pytest.raises(UsageError, match=r"racks\[1\]: a file of MuJoCo .* has no rack"):
         eq.export(given, tmp_path / "a.xml", format="mjcf")
-    eq.export(belted(belt()), tmp_path / "b.xml", format="mjcf")
+    left = eq.export(belted(belt(tension=9.0)), tmp_path / "b.xml", format="mjcf")
+    assert left == ("the tension of the belt crank to wheel, which its pins bear",)
+    pytest.importorskip("ezdxf")
+    eq.export(belted(belt()), tmp_path / "b.dxf")
+    assert (tmp_path / "b.dxf").read_text(encoding="utf-8").count("LWPOLYLINE\n") == 2
     assert "crank to wheel" in (tmp_path / "b.xml").read_text(encoding="utf-8")

@@ -20,12 +20,12 @@ from equipoise.balancing.design_variables import with_parameters
 from equipoise.codegen.figures import Figure
 from equipoise.codegen.gram import MassBatch, can_use
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.bodies import Body, Hole, inertia_of, polygon
-from equipoise.mechanism.family import can_vary, linkage_of, with_columns
-from equipoise.mechanism.linkage import Linkage, assemble
-from equipoise.mechanism.model import Link, Machine
-from equipoise.mechanism.parameters import parameters_of
-from equipoise.mechanism.refusing import wrong
+from equipoise.mechanism.assembly.family import can_vary, linkage_of, with_columns
+from equipoise.mechanism.assembly.linkage import Linkage, assemble
+from equipoise.mechanism.assembly.refusing import wrong
+from equipoise.mechanism.dynamics.parameters import parameters_of
+from equipoise.mechanism.parts.bodies import Body, Hole, inertia_of, polygon
+from equipoise.mechanism.parts.machine import Link, Machine
 from equipoise.schema import dumps, loads
 from equipoise.web.design import Counterweight, Design
 from equipoise.web.fields import fields_of

@@ -7,9 +7,9 @@ from math import pi
 import numpy as np
 import pytest
 
-from equipoise.mechanism import kernels
-from equipoise.mechanism.cam_shapes import Array, Shape, Sliding, Swinging, lowest
-from equipoise.mechanism.curves import NORMAL, joined, sine
+from equipoise.mechanism.assembly.cam_shapes import Array, Shape, Sliding, Swinging, lowest
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.formulas.curves import NORMAL, joined, sine
 
 TURN = np.linspace(0, 2 * pi, 97)
 RADIUS, ECCENTRIC, ROLLER = 0.03, 0.008, 0.006

@@ -12,10 +12,10 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.mechanism import assemble
-from equipoise.mechanism.cam_contacts import let_go
-from equipoise.mechanism.cams import Cam
-from equipoise.mechanism.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.dynamics.cam_contacts import let_go
+from equipoise.mechanism.parts.cams import Cam
+from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment
+from equipoise.mechanism.parts.machine import FRAME
 from unit.mechanism.build import ORIGIN, heavy, machine, refused
 
 MASS, HIGH, GRAVITY = 0.5, 0.02, 9.80665

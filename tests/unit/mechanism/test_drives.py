@@ -11,11 +11,11 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.sensitivity import sensitivities
 from equipoise.errors import MobilityError, ModelError, MotionError, UsageError
-from equipoise.mechanism.assessment import remarks
-from equipoise.mechanism.force_elements import Motor
-from equipoise.mechanism.laws import AngleLaw, AngleSegment
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Drive, FurtherDrive, Link, Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.dynamics.assessment import remarks
+from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment
+from equipoise.mechanism.parts.machine import Drive, FurtherDrive, Link, Machine
 from equipoise.web.design import Design
 from equipoise.web.edits import solved
 from equipoise.web.sketch import Sketch

@@ -12,12 +12,12 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.mechanism.family import Family, _beside, can_vary, linkage_of, with_columns
-from equipoise.mechanism.gear_shapes import GearShape
-from equipoise.mechanism.linkage import Linkage, assemble
-from equipoise.mechanism.model import Gear, Machine
-from equipoise.mechanism.pitch_curves import law_of
-from equipoise.mechanism.refusing import wrong
+from equipoise.mechanism.assembly.family import Family, _beside, can_vary, linkage_of, with_columns
+from equipoise.mechanism.assembly.linkage import Linkage, assemble
+from equipoise.mechanism.assembly.refusing import wrong
+from equipoise.mechanism.parts.gear_shapes import GearShape
+from equipoise.mechanism.parts.machine import Gear, Machine
+from equipoise.mechanism.parts.pitch_curves import law_of
 from support.batches import every_dyad
 from support.designs import Array, Number, design, drawn, named, numbers_of, plain_of, reason_of
 from support.machines import KINDS, make

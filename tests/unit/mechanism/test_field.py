@@ -11,8 +11,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.mechanism.field import Planting, Soil, SoilTable
-from equipoise.mechanism.tip import TipCurve, planting_of, surface_of, tip_link
+from equipoise.mechanism.kinematics.tip import TipCurve, planting_of, surface_of, tip_link
+from equipoise.mechanism.parts.field import Planting, Soil, SoilTable
 from unit.mechanism.build import crank_rocker, refused
 
 FOUR = crank_rocker()

@@ -11,9 +11,9 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MassError, ModelError, UsageError
-from equipoise.mechanism.assessment import remarks
-from equipoise.mechanism.loads import load_at, work_in_cycle
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.dynamics.assessment import remarks
+from equipoise.mechanism.dynamics.loads import load_at, work_in_cycle
+from equipoise.mechanism.parts.machine import FRAME
 from laws.transforms import renamed
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.gear_shapes import GearShape
+from equipoise.mechanism.parts.gear_shapes import GearShape
 from unit.mechanism.build import refused, two_gears
 
 

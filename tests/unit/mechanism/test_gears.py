@@ -10,7 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, MotionError
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.parts.machine import FRAME
 from unit.mechanism.build import ORIGIN, body, crank_rocker, heavy, machine, two_gears
 
 

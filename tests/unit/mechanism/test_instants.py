@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from equipoise.mechanism.tip import crossings, largest, lowest_within, roots, smallest
+from equipoise.mechanism.kinematics.tip import crossings, largest, lowest_within, roots, smallest
 
 Array = np.ndarray[Any, Any]
 

@@ -8,8 +8,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MobilityError, ModelError
-from equipoise.mechanism.joints import structure
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.assembly.joints import structure
+from equipoise.mechanism.parts.machine import FRAME
 from unit.mechanism.build import ORIGIN, body, crank_rocker, machine, slider_crank, two_gears
 
 

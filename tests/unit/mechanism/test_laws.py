@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 
-from equipoise.mechanism.curves import NORMAL, spline
-from equipoise.mechanism.laws import (
+from equipoise.mechanism.formulas.curves import NORMAL, spline
+from equipoise.mechanism.parts.laws import (
     LAWS,
     AngleLaw,
     AngleSegment,
@@ -147,6 +147,7 @@ WRONG = {
     "speed jumps at crank angle 0 deg": AngleLaw(
         segments=tuple(AngleSegment(*radian(180, to), "linear") for to in (50, 0))
     ),
+    "goes with segments": LengthLaw(between=(0.0, 1.0), start=0.003),
     "got 3 values at 2 crank angles": AngleLaw(crank_angles=(0, 1), values=(0, 1, 2)),
     "must rise from row to row": AngleLaw(crank_angles=(0, 2, 1), values=(0, 1, 2)),
     "over 401.07 deg, more than the 360 deg": AngleLaw(crank_angles=(0, 2, 7), values=(0, 1, 2)),

@@ -15,7 +15,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.mechanism.model import FRAME, size_of
+from equipoise.mechanism.parts.machine import FRAME, size_of
 from unit.mechanism.build import (
     ORIGIN,
     body,

@@ -12,8 +12,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError, ModelError, MotionError
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.newton import LoopGroup
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.newton import LoopGroup
 from laws.subjects import family_of, is_force, outputs, sizes
 from laws.transforms import shifted, turned
 from support.machines import make
@@ -31,7 +31,7 @@ def only_loops() -> Iterator[None]:
     """Let Newton's method solve every group."""
     with pytest.MonkeyPatch.context() as patch:
         for solver in ("_dyad", "_coupled"):
-            patch.setattr(f"equipoise.mechanism.ordering.{solver}", lambda *_: None)
+            patch.setattr(f"equipoise.mechanism.assembly.ordering.{solver}", lambda *_: None)
         yield
 
 
@@ -146,7 +146,7 @@ def test_wide_steps_lead_where_narrow_ones_do(
     strides: tuple[float, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wide = eq.move(eq.load("class-three"), 48)
-    monkeypatch.setattr("equipoise.mechanism.newton.STRIDES", strides)
+    monkeypatch.setattr("equipoise.mechanism.assembly.newton.STRIDES", strides)
     narrow = eq.move(eq.load("class-three"), 48)
     for name, point in wide.points.items():
         for part in ("place", "place_1", "place_2"):

@@ -10,7 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ChangePointError, EquipoiseError, MotionError, RangeError, UsageError
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.parts.machine import FRAME
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
 
 

@@ -10,10 +10,10 @@ import pytest
 import equipoise as eq
 from equipoise.errors import RangeError
 from equipoise.figures.linkage import linkage
-from equipoise.mechanism.laws import AngleLaw
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.reach import Reach, reach
-from equipoise.mechanism.swings import swing
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.kinematics.reach import Reach, reach
+from equipoise.mechanism.kinematics.swings import swing
+from equipoise.mechanism.parts.laws import AngleLaw
 from unit.mechanism.build import crank_rocker, four_bar, heavy
 
 

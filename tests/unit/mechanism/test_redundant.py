@@ -12,9 +12,9 @@ import equipoise as eq
 from equipoise.errors import EquipoiseError, MobilityError, ModelError, UsageError
 from equipoise.exchange import mjcf, modelica
 from equipoise.exchange.formats import Job
-from equipoise.mechanism.model import FRAME, Link, Slider, Vector
-from equipoise.mechanism.parts import JointStiffness
-from equipoise.mechanism.undecided import undecided
+from equipoise.mechanism.dynamics.undecided import undecided
+from equipoise.mechanism.parts.machine import FRAME, Link, Slider, Vector
+from equipoise.mechanism.parts.sliders import JointStiffness
 from unit.mechanism.build import ORIGIN, four_bar, heavy, machine
 
 CRANK, PIVOTS = 0.1, ((0.0, 0.0), (1.0, 0.0), (0.4, 0.3))

@@ -10,10 +10,10 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.mechanism.dwell import Path, longest_dwell
-from equipoise.mechanism.laws import AngleLaw, AngleSegment
-from equipoise.mechanism.stroke_figures import DeadPosition
-from equipoise.mechanism.strokes import _turning
+from equipoise.mechanism.kinematics.dwell import Path, longest_dwell
+from equipoise.mechanism.kinematics.stroke_figures import DeadPosition
+from equipoise.mechanism.kinematics.strokes import _turning
+from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment
 from support.conformance import compared
 from support.sources import CLOSED_FORMS
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank

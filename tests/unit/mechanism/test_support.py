@@ -11,7 +11,16 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.mechanism.support import FREEDOMS, MOST, UP, Gauge, Mount, Row, Support, unit_vector
+from equipoise.mechanism.parts.support import (
+    FREEDOMS,
+    MOST,
+    UP,
+    Gauge,
+    Mount,
+    Row,
+    Support,
+    unit_vector,
+)
 from unit.mechanism.build import crank_rocker, refused
 
 FOUR = crank_rocker()

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import equipoise as eq
-from equipoise.mechanism.field import Planting, PlantingArm
-from equipoise.mechanism.rates import PointMotion
+from equipoise.mechanism.kinematics.rates import PointMotion
+from equipoise.mechanism.parts.field import Planting, PlantingArm
 from equipoise.planting.summary import PlantingFigures
 
 Array = NDArray[Any]

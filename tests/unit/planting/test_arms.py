@@ -13,8 +13,8 @@ import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.figures.planting import charts, tips
 from equipoise.figures.tip_paths import Paths
-from equipoise.mechanism.field import PlantingArm, Soil
-from equipoise.mechanism.tip import TipCurve
+from equipoise.mechanism.kinematics.tip import TipCurve
+from equipoise.mechanism.parts.field import PlantingArm, Soil
 from equipoise.planting.arms import machine_figures
 from equipoise.planting.names import TURNING, dimension_of, figure_named
 from equipoise.planting.summary import PlantingFigures, plant, table

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.tip import TipCurve, surface_of
+from equipoise.mechanism.kinematics.tip import TipCurve, surface_of
 from equipoise.planting.figures import clearances, tip_figures
 from equipoise.planting.names import TURNING, dimension_of
 from equipoise.planting.stroke import distance, soil_crossings

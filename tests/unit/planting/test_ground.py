@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import brentq
 
 import equipoise as eq
-from equipoise.mechanism.tip import TipCurve
+from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.planting.ground import GroundPath, Loop
 from equipoise.planting.summary import plant
 from unit.planting.build import Array, apart, over_ground, planetary, spinner, tip_at, twice

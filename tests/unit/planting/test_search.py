@@ -9,10 +9,10 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.mechanism.gear_shapes import GearShape
-from equipoise.mechanism.gears import closed
-from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.mechanism.parts.gear_shapes import GearShape
+from equipoise.mechanism.parts.gears import closed
+from equipoise.mechanism.parts.machine import FRAME
 from equipoise.planting.designs import Designs
 from equipoise.planting.goals import Goal, Problem
 from equipoise.planting.search import Fit, fit_planting

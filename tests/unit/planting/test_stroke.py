@@ -10,7 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.mechanism.tip import TipCurve
+from equipoise.mechanism.kinematics.tip import TipCurve
 from equipoise.planting.stroke import Visit, direction, visits
 from equipoise.planting.summary import PlantingFigures, plant
 from unit.planting.build import (

@@ -13,7 +13,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, MotionError, UsageError
-from equipoise.mechanism.field import Planting, Soil
+from equipoise.mechanism.parts.field import Planting, Soil
 from equipoise.planting.summary import PlantingFigures, plant, soil_forces, table
 from unit.mechanism.build import four_bar
 from unit.planting.build import EXAMPLES, TURN, planetary, spinner, twice

@@ -24,7 +24,7 @@ from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import vary_tool
 from equipoise.handheld.sweep import sweep_tool
 from equipoise.i18n import speaking
-from equipoise.mechanism.balance import Objective
+from equipoise.mechanism.parts.balance import Objective
 from equipoise.planting.summary import plant
 from equipoise.present import html_of, terminal
 from equipoise.present.cells import grid, printed

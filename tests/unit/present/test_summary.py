@@ -44,6 +44,13 @@ def test_shares_of_links_follow_from_masses_and_accelerations():
     assert sum(by_link.values()) == pytest.approx(1)
 
 
+def test_parts_that_cancel_but_for_rounding_have_no_shares() -> None:
+    turning = np.exp(1j * np.arange(8))
+    parts = {"one": turning, "other": -turning * (1 + 1e-15)}
+    assert shares(parts) == {"one": 0.0, "other": 0.0}
+    assert shares({"one": turning, "other": 0 * turning}) == {"one": pytest.approx(1), "other": 0.0}
+
+
 def test_rows_shake_together_as_they_do_one_by_one():
     found = found_of("riding-transplanter")
     rows = found.machine.rows

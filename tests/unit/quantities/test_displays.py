@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.shown_units import ShownUnits, read_units
+from equipoise.mechanism.parts.shown_units import ShownUnits, read_units
 from equipoise.quantities import (
     KINDS,
     Dimension,

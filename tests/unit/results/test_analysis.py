@@ -11,7 +11,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.figures.forces import torque
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.parts.support import Row
 from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import unit_of
 

@@ -15,8 +15,8 @@ from equipoise.errors import EquipoiseError
 from equipoise.figures import render
 from equipoise.figures.points import kinematics, outputs_chart
 from equipoise.i18n import speaking
-from equipoise.mechanism.balance import AddedMass, Balance, Objective, Weight
-from equipoise.mechanism.outputs import DECLARED, declaring, output
+from equipoise.mechanism.outputs.declared import DECLARED, declaring, output
+from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
 from equipoise.present.composition import report_page
 from equipoise.present.findings import Findings
 from equipoise.results.blocks import Column, Table

@@ -7,7 +7,7 @@ from typing import Any
 
 from jsonschema import Draft202012Validator
 
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema import dumps, json_schema, loads
 
 VALIDATOR = Draft202012Validator(json_schema())

@@ -11,7 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from equipoise.mechanism.balance import (
+from equipoise.mechanism.outputs.declared import DECLARED
+from equipoise.mechanism.parts.balance import (
     MATERIALS,
     MEASURES,
     SHAPES,
@@ -26,8 +27,7 @@ from equipoise.mechanism.balance import (
     SpringChoice,
     Weight,
 )
-from equipoise.mechanism.objectives import MEASURED_IN
-from equipoise.mechanism.outputs import DECLARED
+from equipoise.mechanism.parts.objectives import MEASURED_IN
 from equipoise.schema import dumps, loads
 from unit.schema.samples import BALANCE, FOUR_BAR, ROWS, SUPPORT, VALIDATOR, survives
 

@@ -14,7 +14,7 @@ from equipoise.errors import ModelError
 from equipoise.handheld import design_plan, shaft, station
 from equipoise.handheld import model as tool
 from equipoise.keys import Frozen, Number, Table, Tables, Text, declared, key, wrong_values
-from equipoise.mechanism import (
+from equipoise.mechanism.parts import (
     balance,
     bodies,
     cams,
@@ -23,19 +23,20 @@ from equipoise.mechanism import (
     field,
     force_elements,
     gear_shapes,
+    gears,
     laws,
     links,
     mounts,
     objectives,
-    parts,
     shown_units,
+    sliders,
     support,
     weights,
 )
-from equipoise.mechanism.belts import Belt
-from equipoise.mechanism.model import Frame, Machine, Position
-from equipoise.mechanism.racks import Rack
-from equipoise.mechanism.springs import Spring
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.machine import Frame, Machine, Position
+from equipoise.mechanism.parts.racks import Rack
+from equipoise.mechanism.parts.springs import Spring
 from equipoise.schema import finding, models, schemas
 from equipoise.schema.documents import dumps, loads
 from equipoise.schema.places import Context
@@ -54,11 +55,11 @@ PAGE = Path(__file__).parents[3] / "docs" / "model-file.md"
 DOCUMENTED: dict[str, type[Frozen]] = {
     of.__name__: of
     for of in (
-        Machine, shown_units.ShownUnits, parts.Drive, drives.FurtherDrive, laws.AngleLaw,
+        Machine, shown_units.ShownUnits, drives.Drive, drives.FurtherDrive, laws.AngleLaw,
         laws.AngleSegment, laws.LengthLaw, laws.LengthSegment, force_elements.Motor, Frame,
         links.Link,
-        bodies.Body, bodies.Hole, parts.Bearing, parts.Slider, parts.Gear,
-        parts.JointStiffness,
+        bodies.Body, bodies.Hole, sliders.Bearing, sliders.Slider, gears.Gear,
+        sliders.JointStiffness,
         gear_shapes.GearShape, Belt, Rack, cams.Cam,
         force_elements.Load, Spring, Position, field.Planting, field.PlantingArm,
         field.Soil, support.Support,

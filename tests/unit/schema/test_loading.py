@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from equipoise.errors import EquipoiseError, ModelError
-from equipoise.mechanism.model import STANDARD_GRAVITY, Gear
+from equipoise.mechanism.parts.machine import STANDARD_GRAVITY, Gear
 from equipoise.schema import examples, load, loads, opening
 from unit.schema.samples import EVERYTHING, FOUR_BAR
 

@@ -10,8 +10,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.model import Drive, Link, Machine, Position
-from equipoise.mechanism.support import UP
+from equipoise.mechanism.parts.machine import Drive, Link, Machine, Position
+from equipoise.mechanism.parts.support import UP
 from equipoise.schema import dumps, examples, load, loads, save
 from unit.schema.samples import EVERYTHING, FOUR_BAR, changed_machine, survives
 

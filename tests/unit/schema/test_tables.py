@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi
+from math import pi, radians
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from equipoise import move
 from equipoise.errors import ModelError
 from equipoise.handheld.model import Impedance
-from equipoise.mechanism.field import Soil, SoilTable
-from equipoise.mechanism.force_elements import Motor, MotorTable
-from equipoise.mechanism.model import Load, LoadTable, Machine
+from equipoise.mechanism.parts.field import Soil, SoilTable
+from equipoise.mechanism.parts.force_elements import Motor, MotorTable
+from equipoise.mechanism.parts.laws import AngleLaw, AngleTable
+from equipoise.mechanism.parts.machine import Load, LoadTable, Machine
 from equipoise.schema import dumps, load, loads, save
 from equipoise.schema.models import files_of, parts_of
+from equipoise.schema.opening import opened_example
 from equipoise.schema.tables import format_table, parse_table, read_beside
+from equipoise.schema.template import Template
 from unit.schema.samples import FOUR_BAR, PLANTING
 from unit.schema.tool_samples import TOOL
 
@@ -74,10 +79,13 @@ SORTS = {
     "soil": (FOUR_BAR + PLANTING + 'soil.table = "soil.csv"\n', "soil.csv", "planting.soil.table"),
     "motor": (f'{FOUR_BAR}\n[drive.motor]\ntable = "motor.csv"\n', "motor.csv",
               "drive.motor.table"),
+    "angles": (f'{FOUR_BAR}\n[drive.motion]\ntable = "law.csv"\n', "law.csv",
+               "drive.motion.table"),
     "impedance": (TOOL.replace('hand.stiffness = "8000 N/m"', 'hand.impedance = "hand.csv"'),
                   "hand.csv", "shaft.stations[2].hand.impedance"),
 }  # fmt: skip
 TURNS = "speed [rpm],torque [N m]"
+SWINGS = "crank_angle [deg],angle [deg]"
 HAND = "frequency [Hz],resistance [N s/m],reactance [N s/m]"
 BAD: dict[str, list[tuple[str | None, str]]] = {
     # text of the table, what is said
@@ -131,6 +139,14 @@ BAD: dict[str, list[tuple[str | None, str]]] = {
             "line 3, column speed: the speeds must rise from row to row",
         ),
     ],
+    "angles": [
+        (None, "law.csv: there is no such file"),
+        ("crank_angle [deg],length [mm]\n", "the header is crank_angle [deg],angle [deg]"),
+        (f"{SWINGS}\n0,1\n180,2\n", "got 2 values at 2 crank angles; give 3 to 720 of each"),
+        (f"{SWINGS}\n0,1\n180,2\n90,2\n", "line 4, column crank_angle: the angles must rise"),
+        (f"{SWINGS}\n0,1\n180,2\n400,1\n", "got crank angles over 400 deg, more than the 360"),
+        (f"{SWINGS}\n0,1\n180,2\n360,5\n", "begins at 1 deg and ends at 5 deg; let it come b"),
+    ],
     "impedance": [
         (None, "hand.csv: there is no such file"),
         (
@@ -168,6 +184,8 @@ def test_bad_tables(sort: str, text: str | None, said: str, tmp_path: Path) -> N
 SOIL_CSV = "depth [mm],resistance [N]\n0,1\n10,2.5\n40,1.5\n"
 MOTOR_CSV = "speed [rpm],torque [N m]\n0,2\n1500,1.9\n3000,-0.5\n"
 SOIL = SoilTable((0.0, 0.01, 0.04), (1.0, 2.5, 1.5), "soil.csv")
+LAW_CSV = "crank_angle [deg],angle [deg]\n0,45\n90,90\n180,0\n"
+LAW = AngleTable((0.0, *map(radians, (90, 180))), (radians(45), pi / 2, 0.0), "law.csv")
 CURVE = MotorTable((0.0, 1500 * RPM, 3000 * RPM), (2.0, 1.9, -0.5), "motor.csv")
 PUSH = LoadTable((0.0, 1.0, 2.5), ((1.0, 0.1, -3.0), (0.5, 1e-7, 1 / 3)), "f.csv")
 
@@ -178,7 +196,8 @@ def table_of(machine: Machine, sort: str) -> Any:
 
 
 @pytest.mark.parametrize(
-    ("sort", "text", "table"), [("soil", SOIL_CSV, SOIL), ("motor", MOTOR_CSV, CURVE)]
+    ("sort", "text", "table"),
+    [("soil", SOIL_CSV, SOIL), ("motor", MOTOR_CSV, CURVE), ("angles", LAW_CSV, LAW)],
 )
 def test_a_table_is_read_beside_the_model(sort: str, text: str, table: Any, tmp_path: Path) -> None:
     model, name, _ = SORTS[sort]
@@ -197,6 +216,34 @@ def with_tables(file: str | None = None) -> Machine:
         loads(FOUR_BAR + PLANTING), loads=(Load("coupler", "C", table=push, outside="hold"),)
     )
     return machine.with_planting(soil=Soil(3.0, table=soil)).with_drive(motor=Motor(table=curve))
+
+
+def test_a_motion_law_follows_its_table(tmp_path: Path) -> None:
+    """As the same rows in the file itself, saved and carried along in studies."""
+    (tmp_path / "law.csv").write_text(LAW_CSV)
+    (tmp_path / "a.toml").write_text(SORTS["angles"][0])
+    machine = load(tmp_path / "a.toml")
+    given = AngleLaw(crank_angles=LAW.crank_angle, values=LAW.angle)
+    assert machine.drive.motion is not None
+    np.testing.assert_array_equal(machine.drive.motion.value(1.0), given.value(1.0))
+    save(machine, tmp_path / "b.toml")
+    assert (tmp_path / "b.angles-1.csv").read_text().splitlines()[2] == "90,90"
+    assert load(tmp_path / "b.toml") == machine
+    carried = Template.restored(Template.load(tmp_path / "a.toml").texts())
+    assert carried.base() == machine
+
+
+def test_a_stroke_follows_its_table(tmp_path: Path) -> None:
+    text = opened_example("hydraulic-loader").text
+    start, end = text.index("[drive.stroke]"), text.index("[frame]")
+    (tmp_path / "a.toml").write_text(f'{text[:start]}[drive.stroke]\ntable = "s.csv"\n{text[end:]}')
+    (tmp_path / "s.csv").write_text("crank_angle [deg],length [mm]\n0,600\n150,1050\n210,1040\n")
+    machine = load(tmp_path / "a.toml")
+    places = move(machine, np.radians([0, 150, 210])).points
+    lengths = np.abs(places["B"].place - places["A"].place)
+    np.testing.assert_allclose(lengths, [0.6, 1.05, 1.04], rtol=1e-12)
+    save(machine, tmp_path / "b.toml")
+    assert load(tmp_path / "b.toml") == machine
 
 
 def test_tables_are_saved_beside_the_model(tmp_path: Path) -> None:

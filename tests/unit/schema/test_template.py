@@ -17,7 +17,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError, MotionError
 from equipoise.handheld.model import Tool
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities.units import KINDS
 from equipoise.schema.finding import is_whole
 from equipoise.schema.numbers import OF_UNIT, from_polar

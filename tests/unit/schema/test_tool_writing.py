@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.model import Hand, Impedance, Tool
 from equipoise.handheld.shaft import Section
-from equipoise.mechanism.model import LoadTable, Machine
+from equipoise.mechanism.parts.machine import LoadTable, Machine
 from equipoise.schema import examples, load
 from equipoise.schema.documents import dumps, save
 from equipoise.schema.models import files_of, load_tool, loads_tool

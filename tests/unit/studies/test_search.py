@@ -11,7 +11,7 @@ import pytest
 
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_MACHINE
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.studies.design_space import Choices, Correlation, Make, Normal, Output, Range, Vary
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Evaluator, Outcome, kept, non_dominated

@@ -166,7 +166,7 @@ def incomplete(path: Path) -> None:
     ("make", "told"),
     [
         (lambda path: None, "there is no such store; make it by: equipoise sweep"),
-        (Path.touch, "is no store of Equipoise"),
+        (Path.touch, "a store is a folder; of a study file it is made by: equipoise sweep"),
         (Path.mkdir, "is no store of Equipoise"),
         (other_group, "is no store of Equipoise"),
         (torn, "is no store of Equipoise"),

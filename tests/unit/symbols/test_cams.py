@@ -10,7 +10,7 @@ import pytest
 import equipoise as eq
 from equipoise.figures.linkage import keys_of
 from equipoise.mechanism import Motion
-from equipoise.mechanism.kernels import cross
+from equipoise.mechanism.formulas.kernels import cross
 from equipoise.symbols.pieces import pieces, placed
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape

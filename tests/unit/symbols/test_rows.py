@@ -12,7 +12,7 @@ import equipoise as eq
 from equipoise.figures.animation import animated_svg
 from equipoise.figures.linkage import linkage
 from equipoise.figures.stage import rows_told
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.parts.support import Row
 from equipoise.symbols.pieces import pieces, placed
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape

@@ -7,7 +7,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.figures.animation import laid_out
-from equipoise.mechanism import Body, Hole, kernels
+from equipoise.mechanism import Body, Hole
+from equipoise.mechanism.formulas import kernels
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS
 from equipoise.symbols.pieces import Piece, pieces

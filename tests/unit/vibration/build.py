@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import equipoise as eq
-from equipoise.mechanism.support import Gauge, Mount
+from equipoise.mechanism.parts.support import Gauge, Mount
 from equipoise.vibration.body import Body
 
 Array = np.ndarray[Any, Any]

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.mechanism.support import unit_vector
+from equipoise.mechanism.parts.support import unit_vector
 from equipoise.vibration.body import (
     Body,
     Contact,

@@ -11,8 +11,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError
-from equipoise.mechanism.force_elements import Motor, MotorTable
-from equipoise.mechanism.support import UP
+from equipoise.mechanism.parts.force_elements import Motor, MotorTable
+from equipoise.mechanism.parts.support import UP
 from equipoise.present.findings import Findings, find
 from equipoise.present.summary import vibration_told
 from equipoise.vibration.exact import solve_exact
@@ -31,7 +31,7 @@ GROUND = ModelError(
 )
 MOTORLESS = ModelError("drive.motor", "missing; give its no_load_speed and stall_torque")
 SPACE = (
-    "the model {} is for motion in the plane of the drawing; leave out sway and roll and yaw, or "
+    "the model {} is for motion in the plane of the drawing; leave out sway, roll and yaw, or "
     "choose moment"
 )
 

@@ -10,8 +10,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.force_elements import Motor
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.support import Row
 from equipoise.vibration.eigen import find_modes
 from equipoise.vibration.forced import respond
 from equipoise.vibration.linear import Linear

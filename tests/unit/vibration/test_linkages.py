@@ -9,10 +9,10 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MassError
-from equipoise.mechanism.force_elements import Motor
-from equipoise.mechanism.model import Load
-from equipoise.mechanism.reactions import Pass
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.dynamics.reactions import Pass
+from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.machine import Load
+from equipoise.mechanism.parts.support import Row
 from equipoise.vibration.exact import ExactSolution, solve_exact
 from equipoise.vibration.linkages import BaseMotion, Sums, joint_forces, rows_of, spread, sums
 from support.machines import make

@@ -7,7 +7,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ResponseError
-from equipoise.mechanism.force_elements import Motor, MotorTable
+from equipoise.mechanism.parts.force_elements import Motor, MotorTable
 from equipoise.vibration.steady import speed_at, torque_on_crank
 from unit.vibration.build import Array
 

@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 
 import equipoise as eq
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.force_elements import Motor
-from equipoise.mechanism.support import Row
+from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.support import Row
 from equipoise.vibration.forced import respond
 from equipoise.vibration.transient import Transient
 from unit.vibration.build import DAMPING, PIVOT, SPEED, STIFFNESS, Mount, block, cart, rig

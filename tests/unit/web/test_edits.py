@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.newton import LoopGroup
+from equipoise.mechanism.assembly.newton import LoopGroup
 from equipoise.quantities import clean, format_exact, showing
 from equipoise.web.edits import edited, movable
 from equipoise.web.messages import Drag

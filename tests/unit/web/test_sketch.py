@@ -298,6 +298,41 @@ def test_one_slider_or_pair_of_gears_is_deleted() -> None:
     assert len(maker.session.base().design.gears) == count - 1
 
 
+def test_a_belt_and_a_rack_are_added_as_they_are_drawn() -> None:
+    """Pulley and rack start so that they come to where they are at another crank angle."""
+    like = eq.load("knife-drive")
+    maker = Maker(opened("knife-drive")[0])
+    maker.do("rename", what="link", name="crank", to="disc")
+    assert maker.machine.belts[0].name == "shaft to disc"
+    assert maker.machine.balance.objectives[0].output == "belts.shaft to disc.pull"
+    maker.do("rename", what="link", name="disc", to="crank")
+    names = {"racks": "sector to knife", "belts": "shaft to crank"}
+    for table, name in names.items():
+        maker.do("delete", what=table, name=name, at=77)
+        assert (maker.session.base().design.rest["balance"] is None) == (table == "belts")
+        assert not maker.session.base().design.rest[table]
+        told = f"no {table[:-1]} is called 'x to y'"
+        assert told in maker.refused("delete", what=table, name="x to y")
+    told = "neither shaft nor crank slides on a body about one point of which the other turns;"
+    assert told in maker.refused("rack", driver="shaft", driven="crank")
+    maker.do("belt", driver="shaft", driven="crank", teeth=34, driven_teeth=34)
+    assert maker.do("rack", driver="sector", driven="knife") == "1 free motion; shaft turns fully"
+    made = maker.machine
+    (belt,), (rack,) = made.belts, made.racks
+    assert (belt.pitch, belt.start) == (0.014, pytest.approx(0.0, abs=1e-9))
+    assert (rack.side, rack.drives, rack.radius) == ("right", "pinion", 0.145)
+    at = maker.seen.content["status"]["stand"]
+    assert at > 10
+    travel, first = (
+        eq.move(one, np.radians(at + np.arange(360))).sliders["knife on frame"].travel
+        for one in (made, like)
+    )
+    assert travel[0] == pytest.approx(first[0], abs=1e-9)
+    assert np.ptp(travel) == pytest.approx(np.ptp(first) * 145 / 120, rel=1e-9)
+    maker.do("delete", what="link", name="knife")
+    assert maker.machine.racks == ()
+
+
 def test_a_bare_block_goes_with_its_slider() -> None:
     maker = Maker()
     maker.do("new")

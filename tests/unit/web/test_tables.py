@@ -9,7 +9,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.keys import Frozen, Named, Quantity, Tables
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import parse, showing
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
 from equipoise.web.forms import forms_of

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from math import pi, remainder
 
 from equipoise.errors import EquipoiseError, ModelError, UsageError, unknown
-from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import FRAME, Drive, Link, Machine
-from equipoise.mechanism.motion import move
-from equipoise.mechanism.outline import Outline
-from equipoise.mechanism.shown_units import ShownUnits
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.kinematics.outline import Outline
+from equipoise.mechanism.parts.machine import FRAME, Drive, Link, Machine
+from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.quantities import Dimension
 from equipoise.results.blocks import Block, Column, Notes, Table, Text, Value
 

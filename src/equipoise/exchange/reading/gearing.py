@@ -9,8 +9,8 @@ import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.exchange.reading.spatial import Array, Space
-from equipoise.mechanism.model import FRAME, Gear
-from equipoise.mechanism.outline import Outline
+from equipoise.mechanism.kinematics.outline import Outline
+from equipoise.mechanism.parts.machine import FRAME, Gear
 
 EXACT = 1e-9
 """Share of a factor by which another may differ from it: rounding."""

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import count
 
-from equipoise.mechanism.model import FRAME, Link, Slider
-from equipoise.mechanism.outline import STILL, Outline, Pose, pose_between
+from equipoise.mechanism.kinematics.outline import STILL, Outline, Pose, pose_between
+from equipoise.mechanism.parts.machine import FRAME, Link, Slider
 from equipoise.quantities import clean, clean_place
 
 

@@ -15,7 +15,7 @@ from equipoise.errors import ModelError
 from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.joined import Slot, free, outline_of
 from equipoise.exchange.reading.markup import called, number
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.parts.machine import FRAME
 
 UNIT = 0.0254 / 96
 """m, of its coordinates."""

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from itertools import chain, count
 
 from equipoise.errors import ModelError
-from equipoise.mechanism.model import FRAME, Vector
-from equipoise.mechanism.outline import STILL, Pose
+from equipoise.mechanism.kinematics.outline import STILL, Pose
+from equipoise.mechanism.parts.machine import FRAME, Vector
 
 SAME = 1e-9
 """Distance over the size of the machine below which two places are one."""

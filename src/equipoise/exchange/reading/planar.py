@@ -23,8 +23,8 @@ from equipoise.exchange.reading.spatial import (
     Told,
     together,
 )
-from equipoise.mechanism.model import FRAME, Link, Slider, Spring
-from equipoise.mechanism.outline import Outline, Pose
+from equipoise.mechanism.kinematics.outline import Outline, Pose
+from equipoise.mechanism.parts.machine import FRAME, Link, Slider, Spring
 
 SKEW = 1e-6
 """Of the sine of an angle between axes that are to be parallel: files have six digits at least."""

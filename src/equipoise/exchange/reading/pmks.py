@@ -16,7 +16,7 @@ from urllib.parse import unquote
 from equipoise.errors import ModelError
 from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.joined import Slot, free, outline_of
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.parts.machine import FRAME
 
 PLAIN = digits + ascii_uppercase + ascii_lowercase
 DIGITS = f"{PLAIN}_-"

@@ -12,7 +12,7 @@ from string import ascii_uppercase
 from equipoise.errors import ModelError, unknown
 from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.joined import Slot, free, outline_of
-from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.parts.machine import FRAME
 
 MOST = 1000
 """Corners of lines, and circles, beyond which a drawing is none of a skeleton."""

@@ -14,8 +14,8 @@ from equipoise.errors import EquipoiseError
 from equipoise.exchange.export import export
 from equipoise.exchange.reading.formats import import_machine
 from equipoise.exchange.reading.found import Imported
-from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.motion import move
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.results.blocks import Table
 from equipoise.schema.models import load_linkage, loads_linkage
 

@@ -10,8 +10,8 @@ import pytest
 from equipoise.errors import EquipoiseError
 from equipoise.exchange.reading.formats import import_machine
 from equipoise.exchange.reading.pmks import DIGITS, PLAIN
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.motion import move
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.machine import FRAME
 from equipoise.schema.models import loads_linkage
 
 PLACES = {

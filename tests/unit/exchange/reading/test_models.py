@@ -19,10 +19,10 @@ from equipoise.errors import EquipoiseError
 from equipoise.exchange.export import export
 from equipoise.exchange.reading.formats import import_machine
 from equipoise.exchange.reading.found import Imported
-from equipoise.mechanism.dynamics import forces
-from equipoise.mechanism.links import size_of
-from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.dynamics.forces import forces
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.parts.links import size_of
+from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.schema.models import load_linkage, loads_linkage
 
 FOUR_BAR = """

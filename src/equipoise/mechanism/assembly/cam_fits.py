@@ -1,0 +1,318 @@
+"""A cam in its place: how its follower moves in the carrier, and whether it can be made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from math import degrees, pi, radians
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note
+from equipoise.mechanism.assembly.builder import Guide
+from equipoise.mechanism.assembly.cam_shapes import (
+    BESIDE,
+    Array,
+    Path,
+    Shape,
+    Sliding,
+    Swinging,
+    design,
+    lowest,
+)
+from equipoise.mechanism.assembly.joints import Structure, place_in_file
+from equipoise.mechanism.assembly.steps import State, planar
+from equipoise.mechanism.formulas.kernels import cross, dot
+from equipoise.mechanism.parts.cams import Cam
+from equipoise.mechanism.parts.machine import Machine
+
+STEEPEST = 1e-6
+"""Cosine of the pressure angle at which the follower jams."""
+NEAR, FEWEST, WIDEST = 0.1, 8, radians(3)
+"""Of a value's size: what is lower may be below 0 between angles of a cam that are this far apart,
+and so many in each piece of its law."""
+AT_ONCE = 128
+"""Designs that are looked at together, so that their values stay in the processor's cache."""
+BOTH = {(1, 0), (0, 1)}
+"""Numbers of sliding joints and pins between follower and carrier: one of them."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A cam between its carrier and its follower.
+
+    cam_pin : point of the carrier about which the cam turns.
+    pin : point about which a pinned follower turns; guide : of a sliding one.
+    rest : where the displacement is 0, the way along the guide (m) or the angle (rad) of the
+        follower in the carrier.
+    sense : by what the displacement is multiplied to add to that.
+    face : normal of a flat face in the follower's axes, else None.
+    """
+
+    cam: Cam
+    cam_pin: str
+    pin: str
+    guide: Guide | None
+    rest: Any
+    sense: float
+    face: Any
+    path: Path
+
+    @property
+    def joint(self) -> str:
+        """The point of the follower about which its joint's moments are taken."""
+        return self.pin if self.guide is None else self.guide.point
+
+    def shape(self, angle: Array) -> Shape:
+        """The cam under its follower at angles (N,), rad, by which it has turned."""
+        return Shape(angle, self.path, self.cam.law.value, self.cam.roller_radius)
+
+
+def fitted(machine: Machine, joints: Structure, cam: Cam) -> Fit:
+    """Place a cam.
+
+    Raises
+    ------
+    ModelError : it is not joined to its carrier as it has to be, or cannot touch its follower.
+    """
+    where = place_in_file(joints, cam)
+    pivots = joints.pins_between(cam.driver, cam.carrier)
+    if len(pivots) != 1:
+        raise ModelError(
+            where,
+            Note(
+                "{body!r} shares {shared} points with the carrier {carrier!r}; the cam turns about "
+                "exactly one point of it",
+                body=cam.driver,
+                shared=len(pivots),
+                carrier=cam.carrier,
+            ),
+        )
+    ends = {cam.driven, cam.carrier}
+    guides = [one for one in joints.sliders if {one.link, one.on} == ends]
+    pins = joints.pins_between(cam.driven, cam.carrier)
+    wanted = {(1, 0)} if cam.lift is not None else {(0, 1)} if cam.swing is not None else BOTH
+    if (len(guides), len(pins)) not in wanted:
+        raise ModelError(
+            where,
+            Note(
+                "lift goes with one sliding joint between {follower!r} and its carrier "
+                "{carrier!r}, and swing with one pin; these have {guides} and {pins}",
+                follower=cam.driven,
+                carrier=cam.carrier,
+                guides=len(guides),
+                pins=len(pins),
+            ),
+        )
+    if guides:
+        guide = Guide.seen_from(guides[0], cam.carrier)
+        return _on_guide(machine, cam, pivots[0], guide, where)
+    return _on_pin(machine, cam, pivots[0], pins[0], where)
+
+
+def _is(flag: Any) -> bool:
+    """Whether it is so of one machine; of columns of designs `can_be_made` tells."""
+    return np.ndim(flag) == 0 and bool(flag)
+
+
+def _place(machine: Machine, body: str, point: str) -> complex:
+    return planar(machine.points_of(body)[point])
+
+
+def _on_guide(machine: Machine, cam: Cam, cam_pin: str, guide: Guide, where: str) -> Fit:
+    """A sliding follower; all in axes along the guide first, from the cam's axis."""
+    n = guide.along
+    arm = _place(machine, cam.driven, cam.point) - _place(machine, cam.driven, guide.point)
+    base = _place(machine, cam.carrier, guide.base) - _place(machine, cam.carrier, cam_pin)
+    shift = base / n + arm * guide.turn
+    face = normal = None
+    if cam.rides == "flat":
+        face = 1 / guide.turn if cam.normal is None else np.exp(1j * cam.normal)
+        way = face * guide.turn
+        if _is(way.real < STEEPEST):
+            told = Note("the face does not look along the guide; turn it by 180 deg, or less")
+            raise ModelError(f"{where}.normal", told)
+        reach = np.where(way.real < STEEPEST, np.nan, way.real)[()]
+        rest = (cam.base_radius - dot(way, shift)) / reach
+        normal = way * n
+    else:
+        height2 = cam.radius**2 - shift.imag**2
+        if _is(height2 <= 0):
+            raise ModelError(
+                f"{where}.base_radius",
+                Note(
+                    "the way of {point!r} passes the cam's axis at {offset:.4g} mm, and a radius "
+                    "of {radius:.4g} mm does not reach that; give more than that",
+                    point=cam.point,
+                    offset=abs(shift.imag) * 1e3,
+                    radius=cam.radius * 1e3,
+                ),
+            )
+        rest = height2**0.5 - shift.real
+    path = Sliding(n, n * (shift + rest), normal)
+    return Fit(cam, cam_pin, "", guide, rest, 1.0, face, path)
+
+
+def _on_pin(machine: Machine, cam: Cam, cam_pin: str, pin: str, where: str) -> Fit:
+    """A pinned follower; `apart` is the angle from the line of centres to roller or normal."""
+    pivot = _place(machine, cam.carrier, pin) - _place(machine, cam.carrier, cam_pin)
+    arm = _place(machine, cam.driven, cam.point) - _place(machine, cam.driven, pin)
+    distance = abs(pivot)
+    face = None if cam.normal is None else np.exp(1j * cam.normal)
+    if face is None:
+        cosine = (distance**2 + cam.radius**2 - abs(arm) ** 2) / (2 * distance * cam.radius)
+    else:
+        cosine = (cam.base_radius - dot(face, arm)) / distance
+    if _is(abs(cosine) >= 1):
+        raise ModelError(
+            f"{where}.base_radius",
+            Note(
+                "{point!r}, {arm:.4g} mm from its pivot, does not reach the base circle, which "
+                "has its centre {distance:.4g} mm from that; change one of these",
+                point=cam.point,
+                arm=abs(arm) * 1e3,
+                distance=distance * 1e3,
+            ),
+        )
+    sense = -1.0 if cam.side == "left" else 1.0
+    towards = pivot / distance * np.exp(-1j * sense * np.arccos(cosine))
+    turn = (cam.radius * towards - pivot) / arm if face is None else towards / face
+    turn = turn / abs(turn)
+    normal = None if face is None else towards
+    path = Swinging(pivot, arm * turn, sense, normal)
+    return Fit(cam, cam_pin, pin, None, np.angle(turn), sense, face, path)
+
+
+def fits_of(machine: Machine, joints: Structure) -> tuple[Fit, ...]:
+    """All cams of a machine."""
+    return tuple(fitted(machine, joints, cam) for cam in machine.cams)
+
+
+def pressure_angle(cam: Cam, state: State) -> Array:
+    """From the way in which a follower rises to the common normal, rad, as of a motion's state."""
+    forth, normal = state[f"forth({cam.name})"], state[f"normal({cam.name})"]
+    slant: Array = np.arctan2(cross(forth, normal), dot(forth, normal))
+    return slant
+
+
+def sharpest(fit: Fit) -> tuple[float, float]:
+    """Least radius of curvature of a cam's surface, m, and the cam angle, rad, of it."""
+    knots = _knots(fit)
+    return lowest(fit.shape(knots), lambda one: abs(one.radius_of_curvature), knots)
+
+
+def _knots(fit: Fit) -> Array:
+    """Cam angles (K,), rad, at which the law changes."""
+    law = fit.cam.law
+    return law.curve.knots[:-1] + law.origin
+
+
+# -- what cannot be made ---------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Demand:
+    """Something (N,) that has to be above 0 all over a cam.
+
+    told : what is said where it is not, of its least value and the cam angle of that, deg.
+    size : that it has far from 0.
+    """
+
+    value: Callable[[Shape], Array]
+    told: Callable[[float, float], Note]
+    size: Any = 1.0
+
+
+def check_shape(fit: Fit, where: str) -> None:
+    """Raise an error where the follower jams or the cam is undercut."""
+    knots = _knots(fit)
+    for demand in _demands(fit.cam):
+        least, angle = lowest(fit.shape(knots), demand.value, knots)
+        if least <= 0:
+            raise ModelError(where, demand.told(least, degrees(angle % (2 * pi))))
+
+
+def can_be_made(fit: Fit) -> Array:
+    """Of which designs (P, 1), whose numbers are columns, the cam can be made."""
+    cam = fit.cam
+    made: Array = np.isfinite(fit.rest) & (np.asarray(cam.base_radius) > 0)
+    if cam.rides == "roller":
+        made = made & (np.asarray(cam.roller_radius) > 0)
+    count, knots = np.size(fit.rest), _knots(fit)
+    shape = fit.shape(_spread(knots))
+    with np.errstate(all="ignore"):
+        for begin in range(0, count, AT_ONCE):
+            some = slice(begin, begin + AT_ONCE)
+            for demand in _demands(cam):
+                least = np.min(demand.value(shape.of(some)), axis=-1, keepdims=True)
+                made[some] &= least > 0
+                near = made[some] & (least < NEAR * design(demand.size, some))
+                for k in begin + np.flatnonzero(near):
+                    made[k] = lowest(shape.of(k), demand.value, knots)[0] > 0
+    return made
+
+
+def _spread(knots: Array) -> Array:
+    """Cam angles, rad, between which no value is lower by as much as `NEAR`."""
+    ends = np.append(knots, knots[0] + 2 * pi)
+    counts = np.maximum(FEWEST, np.ceil(np.diff(ends) / WIDEST)).astype(int)
+    pairs = zip(ends + BESIDE, ends[1:] - BESIDE, counts, strict=False)
+    return np.concatenate([np.linspace(*one) for one in pairs])
+
+
+def _demands(cam: Cam) -> Iterator[Demand]:
+    if cam.rides == "flat":
+        yield Demand(
+            lambda one: 1 - STEEPEST - one.ride.turn_1,
+            lambda _, angle: Note(
+                "at cam angle {angle:.4g} deg the follower turns as fast as the cam, which no flat "
+                "face can do; give it less swing there, or more time",
+                angle=angle,
+            ),
+        )
+    yield Demand(
+        lambda one: np.cos(one.pressure_angle) - STEEPEST,
+        lambda _, angle: Note(
+            "the follower jams at cam angle {angle:.4g} deg, where the pressure angle is 90 "
+            "deg; give a larger base_radius, or another place of the follower",
+            angle=angle,
+        ),
+    )
+    if cam.rides == "flat":
+        yield Demand(lambda one: one.radius_of_curvature, _undercut_flat, cam.base_radius)
+        return
+    # the curve of a roller's centre bends less than the roller, outward and in a groove inward
+    for sign in (1.0, -1.0) if cam.closed_by == "groove" else (1.0,):
+        yield Demand(
+            partial(_blunt, sign),
+            partial(_undercut_round, cam.roller_radius),
+        )
+
+
+def _blunt(sign: float, shape: Shape) -> Array:
+    return 1 - sign * shape.curvature * shape.radius
+
+
+def _undercut_flat(least: float, angle: float) -> Note:
+    return Note(
+        "the cam is undercut at cam angle {angle:.4g} deg, where its radius of curvature "
+        "would be {radius:.4g} mm; a flat face needs more than 0: give a larger "
+        "base_radius, or more time there",
+        angle=angle,
+        radius=least * 1e3,
+    )
+
+
+def _undercut_round(roller: float, least: float, angle: float) -> Note:
+    return Note(
+        "the cam is undercut at cam angle {angle:.4g} deg, where the curve of the "
+        "roller's centre has a radius of {radius:.4g} mm, and the roller one of "
+        "{roller:.4g} mm; give a larger base_radius, a smaller roller, or more time "
+        "there",
+        angle=angle,
+        radius=1e3 * roller / (1 - least),
+        roller=roller * 1e3,
+    )

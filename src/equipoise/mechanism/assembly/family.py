@@ -1,0 +1,309 @@
+"""Machines of the same build side by side: designs whose numbers are columns, one row a design.
+
+Their steps differ in nothing but parameters.  With the parameters stacked, one run of the steps
+solves all machines at all their crank angles.
+
+Everything that puts a linkage together from numbers (`mechanism.assembly.linkage`) works on columns
+as well as on numbers.  So the steps of all designs are made in one go.  What a single machine is
+refused for is here a design of which `refusing.wrong` is true.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence, Set
+from contextlib import suppress
+from dataclasses import replace
+from functools import partial
+from typing import Any, TypeVar
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.keys import Frozen, changed, quantities_of
+from equipoise.mechanism.assembly.joints import Structure
+from equipoise.mechanism.assembly.linkage import Linkage, ordered
+from equipoise.mechanism.assembly.steps import (
+    Array,
+    Call,
+    Rotation,
+    RunningAngle,
+    State,
+    Step,
+    p,
+    run,
+    u,
+)
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.formulas.rolling import beside
+from equipoise.mechanism.parts.bodies import Body
+from equipoise.mechanism.parts.body_checks import outlined_by_columns
+from equipoise.mechanism.parts.machine import FRAME, Machine, Vector
+
+Triple = tuple[Array, Array, Array]
+
+
+class Family:
+    """P linkages with the same links, joints and assembly.
+
+    Their values in a state are (P, K), or broadcast to that.
+    """
+
+    def __init__(self, linkages: Sequence[Linkage]) -> None:
+        self.linkages = tuple(linkages)
+        self.first = self.linkages[0]
+        self._arms: dict[tuple[str, str], Array] = {}
+        self._frame = {
+            name: column(complex(*k.machine.frame[name]) for k in self.linkages)
+            for name in self.first.machine.frame
+        }
+        self.steps = self._side_by_side()
+
+    def _side_by_side(self) -> list[Step] | None:
+        """Steps that solve all machines at once; None where a running angle has to be counted on
+        from a machine's own cycle.
+        """
+        if any(one.machine.pushers for one in self.linkages):
+            return None
+        known = (FRAME, self.first.machine.drive.link)
+        steps: list[Step] = []
+        for same in zip(*(k.motion for k in self.linkages), strict=True):
+            match same[0]:
+                case Call():
+                    steps.append(_stacked(same))
+                case Rotation() as turned:
+                    steps.append(turned)
+                case RunningAngle(link) if link in known:
+                    pass  # that of the frame and of the drive is there from the start
+                case _:
+                    return None
+        return steps
+
+    def solve(self, theta: Array) -> State:
+        """Every link known at crank angles (P, K), rad."""
+        if self.steps is None:
+            return self._one_by_one(theta)
+        with np.errstate(all="ignore"):
+            return run(self.steps, self._start(theta))
+
+    def point(self, state: State, link: str, point: str) -> Triple:
+        """A point of a link and its derivatives by crank angle, (P, K)."""
+        given = [state[name] for name in (*p(self.first.anchors[link]), *u(link))]
+        values: Triple = kernels.point(*given, self._arm(link, point))  # type: ignore[call-arg]
+        shape = np.shape(state["theta"])
+        place, first, second = (np.broadcast_to(value, shape) for value in values)
+        return place, first, second
+
+    def _arm(self, link: str, point: str) -> Array:
+        """Vector from a link's anchor to a point of it, in the link's axes, (P, 1)."""
+        if (link, point) not in self._arms:
+            bodies = (k.machine.points_of(link) for k in self.linkages)
+            anchor = self.first.anchors[link]
+            arms = (complex(*body[point]) - complex(*body[anchor]) for body in bodies)
+            self._arms[link, point] = column(arms)
+        return self._arms[link, point]
+
+    def rates(self, state: State, link: str) -> tuple[Array, Array]:
+        """First and second derivative of a link's angle by crank angle, (P, K)."""
+        shape = np.shape(state["theta"])
+        _, first, second = (np.broadcast_to(state[name], shape) for name in u(link))
+        return first, second
+
+    def margins(self, state: State) -> Array:
+        """Smallest assembly margin of any dyad at each crank angle, (P, K); below 0 it is open."""
+        names = [group.margin for group in self.first.groups if group.margin is not None]
+        values = [np.broadcast_to(state[name], np.shape(state["theta"])) for name in names]
+        smallest: Array = np.min([np.ones(np.shape(state["theta"])), *values], axis=0)
+        return smallest
+
+    def _start(self, theta: Array) -> State:
+        state: State = {"theta": theta}
+        for name, places in self._frame.items():
+            state.update({f"p({name})": places, f"p1({name})": 0j, f"p2({name})": 0j})
+        state.update(zip(u(FRAME), (1 + 0j, 0.0, 0.0), strict=True))
+        state[f"phi({FRAME})"] = np.zeros_like(theta)
+        for alike in zip(*(k.machine.driven for k in self.linkages), strict=True):
+            angle, w, a = alike[0].turned(theta)
+            if any(drive != alike[0] for drive in alike):
+                each = (drive.turned(row) for drive, row in zip(alike, theta, strict=True))
+                rows = [np.broadcast_arrays(*values) for values in each]
+                angle, w, a = map(np.array, zip(*rows, strict=True))
+            state.update(zip(u(alike[0].link), (np.exp(1j * angle), w, a), strict=True))
+            state[f"phi({alike[0].link})"] = angle
+        return state
+
+    def _one_by_one(self, theta: Array) -> State:
+        """Some couplings and loops follow their own cycle, which stacked parameters do not tell."""
+        rows = [k.solve(row) for k, row in zip(self.linkages, theta, strict=True)]
+        names = [name for name, value in rows[0].items() if np.ndim(value) < 2]
+        return {
+            name: np.array(
+                [np.broadcast_to(row[name], t.shape) for row, t in zip(rows, theta, strict=True)]
+            )
+            for name in names
+        }
+
+
+def _stacked(calls: Sequence[Any]) -> Call:
+    """The same call of all machines, with columns (P, 1) for parameters."""
+    first = calls[0]
+    columns = (_beside(values) for values in zip(*(c.parameters for c in calls), strict=True))
+    return Call(first.kernel, first.inputs, tuple(columns), first.outputs)
+
+
+def _beside(values: tuple[Any, ...]) -> Any:
+    """Numbers as a column (P, 1); laws as one that takes angles (P, K), a row for each machine."""
+    if not callable(values[0]):
+        return column(values)
+    with suppress(ValueError):
+        return beside(values)
+
+    def law(angles: Any) -> tuple[Array, ...]:
+        rows = (one(row) for one, row in zip(values, angles, strict=True))
+        return tuple(map(np.array, zip(*rows, strict=True)))
+
+    return law
+
+
+def column(values: Iterable[Any]) -> Array:
+    """One value for each machine, (P, 1)."""
+    return np.array(list(values))[:, None]
+
+
+# -- columns ---------------------------------------------------------------------------------------
+
+Columns = Mapping[str, Array]
+"""Path of a number -> its values (P, 1), SI units."""
+Value = TypeVar("Value")
+
+PAIR = {"x", "y", "distance", "direction"}
+HOLDERS = {
+    r"(drive)": {"speed", "acceleration"},
+    r"(gravity)": PAIR,
+    r"(frame)\.(points)\.(.+)": PAIR,
+    r"(links)\.(.+?)\.(points)\.(.+)": PAIR,
+    r"(links)\.(.+)\.(center_of_mass)": PAIR,
+    r"(links)\.(.+)\.(bodies)\[([1-9]\d*)\]\.(at)": PAIR,
+    r"(links)\.(.+)\.(bodies)\[([1-9]\d*)\]": {*quantities_of(Body)},
+    r"(links)\.(.+)\.(sides)": None,
+    r"(links)\.(.+)\.(planes)": None,
+    r"(links)\.(.+)": {"mass", "inertia", "length", "plane"},
+    r"(bearings)\.(.+)": {"plane"},
+    r"(sliders)\[([1-9]\d*)\]": {"direction", "angle"},
+    r"(gears)\[([1-9]\d*)\]": {"start", "pressure_angle"},
+    r"(belts)\[([1-9]\d*)\]": {"start", "tension"},
+    r"(racks)\[([1-9]\d*)\]": {"angle", "travel", "pressure_angle"},
+    r"(cams)\[([1-9]\d*)\]": {"base_radius", "roller_radius", "normal"},
+    r"(springs)\[([1-9]\d*)\]": {"stiffness", "free_length"},
+}
+"""What has numbers that may be columns, by its path in the model file, and their keys; None where
+these are names."""
+
+
+def _holder(whole: str, parts: Set[str]) -> tuple[str, ...]:
+    """The steps to what has these numbers; a `KeyError` where they may be no columns."""
+    for pattern, keys in HOLDERS.items():
+        found = re.fullmatch(pattern, whole)
+        if found is not None and (keys is None or parts <= keys):
+            return found.groups()
+    raise KeyError(whole)
+
+
+def can_vary(machine: Machine, path: str) -> bool:
+    """Whether a number of a machine, by its path in the model file, may be a column."""
+    try:
+        with_columns(machine, {path: np.ones((1, 1))})
+    except UsageError:
+        return False
+    return True
+
+
+def with_columns(machine: Machine, columns: Columns) -> Machine:
+    """A machine some of whose numbers are columns.
+
+    It passes no checks and serves `linkage_of` alone.
+
+    Raises
+    ------
+    UsageError : there is no such number, or it cannot be a column.
+    """
+    parts: dict[str, dict[str, Array]] = {}
+    for path, column in columns.items():
+        whole, _, part = path.rpartition(".")
+        parts.setdefault(whole, {})[part] = column
+    for whole, found in parts.items():
+        try:
+            steps = _holder(whole, found.keys())
+            machine = changed(machine, steps, partial(_filled, found), _with)
+            _check_outlines(machine)
+        except (KeyError, IndexError):
+            told = " and ".join(f"{whole}.{part}".lstrip(".") for part in found)
+            raise UsageError(
+                f"got {told}; the machine has no such number that can be a column"
+            ) from None
+    return machine
+
+
+def _filled(parts: Mapping[str, Array], held: Any) -> Any:
+    """What holds numbers with columns for some of them, which have to be given."""
+    if isinstance(held, tuple):
+        return _pair(held, parts)
+    if isinstance(held, Mapping) and parts.keys() <= held.keys():
+        return {**held, **parts}
+    if not isinstance(held, Frozen) or any(getattr(held, name) is None for name in parts):
+        raise KeyError
+    return _with(held, **held.following(dict(parts)))
+
+
+def _check_outlines(machine: Machine) -> None:
+    """Whether plates keep their shape, and their holes the places, is only told of numbers."""
+    for link in machine.links.values():
+        if any(outlined_by_columns(body, link.points) for body in link.bodies):
+            raise KeyError
+
+
+def _pair(place: Vector, parts: Mapping[str, Array]) -> tuple[Any, Any]:
+    """A pair with coordinates, or polar coordinates, replaced; x and y go by what is there then."""
+    x: Any
+    y: Any
+    x, y = place
+    if parts.keys() & {"distance", "direction"}:
+        distance = parts.get("distance", np.hypot(x, y))
+        direction = parts.get("direction", np.arctan2(y, x))
+        x, y = distance * np.cos(direction), distance * np.sin(direction)
+    return parts.get("x", x), parts.get("y", y)
+
+
+def _with(value: Value, **changes: Any) -> Value:
+    """A frozen value with fields changed, unchecked; what was kept with it is left behind."""
+    result = object.__new__(type(value))
+    kept = {key: item for key, item in vars(value).items() if not key.startswith("_")}
+    result.__dict__.update(kept, **changes)
+    if isinstance(result, Frozen):
+        result.follow()
+    return result
+
+
+def linkage_of(machine: Machine, base: Linkage) -> Linkage:
+    """The linkage of a machine with columns, in the order in which its base is solved."""
+    needed = base.needed_references
+    start = {f"reference({name})": base.cycle.reference(name, np.zeros(1)) for name in needed}
+    with np.errstate(all="ignore"):
+        return ordered(machine, joints_of(machine, base), start)
+
+
+def joints_of(machine: Machine, base: Linkage) -> Structure:
+    """The joints of a machine with columns, those of its base but for their numbers."""
+    return replace(base.joints, sliders=machine.sliders, couplings=machine.couplings)
+
+
+def massive_link(path: str) -> str | None:
+    """The link whose mass, centre of mass or moment of inertia a path leads to."""
+    whole, _, part = path.rpartition(".")
+    with suppress(KeyError):
+        match _holder(whole, {part}):
+            case ("links", link) if part not in ("length", "plane"):
+                return link
+            case ("links", link, "center_of_mass" | "bodies", *_):
+                return link
+    return None

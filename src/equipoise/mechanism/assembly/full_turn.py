@@ -1,0 +1,169 @@
+"""Whether a crank can turn fully: the margins of dyads, which must stay above zero over a cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import degrees, pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ChangePointError, RangeError
+from equipoise.i18n import Note, all_of
+from equipoise.mechanism.assembly.builder import Group
+from equipoise.mechanism.assembly.steps import Array, initial_state, needed_references, run
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.signals import EQUAL, highest_at
+
+MOST_DIPS = 6
+"""Lowest dips of a dyad's margin that are looked at between the points of the grid."""
+CHANGE_POINT = 1e-10
+"""Squared sine of a transmission angle below which a dyad counts as stretched out or folded."""
+
+
+@dataclass(frozen=True)
+class FullTurn:
+    """What is known of a cycle while groups are looked at, one after the other.
+
+    theta : grid of crank angles over so many turns, rad.
+    reference : values near those at any crank angles, by name.
+    done : the groups so far, the one that is looked at among them.
+    """
+
+    machine: Machine
+    turns: int
+    theta: Array
+    reference: Callable[[str, Array], Array]
+    done: Sequence[Group]
+
+    def weakest(self, group: Group, margin: Any) -> tuple[float, float]:
+        """Smallest margin of a group, and its crank angle, where that stays above zero.
+
+        margin : at the crank angles of the grid.
+
+        Raises
+        ------
+        RangeError, ChangePointError : it does not.
+        """
+        margin = np.broadcast_to(margin, self.theta.shape)
+        margin = np.where(np.isfinite(margin), margin, -np.inf)
+        smallest, at = self.smallest(group, margin)
+        names = all_of([repr(link) for link in group.links])
+        if smallest < -CHANGE_POINT:
+            raise self.range_error(group, margin, at, names)
+        if smallest < CHANGE_POINT and not group.through:
+            raise ChangePointError(
+                Note(
+                    "change point at crank angle {angle}: {dead} there, and nothing "
+                    "decides how they go on; change a length or direction so that they do not",
+                    angle=_in_degrees(at),
+                    dead=group.dead,
+                ),
+                at,
+            )
+        return smallest, at
+
+    def smallest(self, group: Group, margin: Array) -> tuple[float, float]:
+        """Smallest value of a dyad's margin between the points of the grid, and its angle."""
+        inner = margin[1:-1]
+        dips = 1 + np.flatnonzero((inner <= margin[:-2]) & (inner <= margin[2:]))
+        ends = [0] if margin[0] <= margin[1] else []
+        least = float(np.min(margin))
+        lowest = sorted([*ends, *dips], key=lambda k: max(margin[k], least + EQUAL))[:MOST_DIPS]
+        found = self.zoom(group, self.theta[lowest]) if lowest else []
+        found.append((float(self.theta[highest_at(-margin)]), least))
+        angles, values = np.array(sorted(found)).T
+        k = highest_at(-values, smooth=False)
+        return float(np.min(values)), float(angles[k])
+
+    def zoom(self, group: Group, angles: Array) -> list[tuple[float, float]]:
+        """Close in on dips of a dyad's margin, near crank angles (D,): the angle and the value."""
+        values, width = angles, self.theta[1]
+        for _ in range(4):
+            near = angles[:, None] + np.linspace(-width, width, 41)
+            found = self.margin(group, near.ravel()).reshape(near.shape)
+            best = np.arange(len(near)), np.argmin(found, axis=1)
+            angles, values, width = near[best], found[best], width / 18
+        return [*zip(angles.tolist(), values.tolist(), strict=True)]
+
+    def margin(self, group: Group, theta: Array) -> Array:
+        """A dyad's margin at any crank angles."""
+        state = initial_state(self.machine, theta)
+        for earlier in self.done:
+            for name in needed_references(earlier.motion):
+                state[f"reference({name})"] = self.reference(name, theta)
+        with np.errstate(all="ignore"):
+            for earlier in self.done:
+                run(earlier.motion, state)
+        assert group.margin is not None
+        return np.broadcast_to(state[group.margin], theta.shape)
+
+    def range_error(self, group: Group, margin: Array, dip: float, names: Note | str) -> RangeError:
+        """Tell between which crank angles a dyad can be closed; not at the angle `dip`."""
+        if not np.any(margin > 0):
+            return RangeError(
+                Note(
+                    "{names} cannot be joined at any crank angle; check their lengths and "
+                    "where their pins are",
+                    names=names,
+                )
+            )
+        period = 2 * pi * self.turns
+        theta, where = np.unique([*self.theta[:-1], dip % period], return_index=True)
+        good = np.append(margin[:-1] > 0, False)[where]
+        before = np.roll(theta, 1)
+        before[0] -= period
+        rising = np.flatnonzero(good & ~np.roll(good, 1))
+        falling = np.flatnonzero(~good & np.roll(good, 1))
+        starts = [self.crossing(group, before[k], theta[k]) for k in rising]
+        stops = [self.crossing(group, before[k], theta[k]) for k in falling]
+        ranges = []
+        for begin in starts:
+            later = [stop for stop in stops if stop > begin]
+            ranges.append((begin, min(later)) if later else (begin - period, min(stops)))
+        if self.machine.drive.pushes or self.machine.drive.motion is not None:
+            return RangeError(self.beyond(dip, names), tuple(ranges))
+        told = all_of(
+            [
+                Note("from {low} to {high}", low=_in_degrees(a), high=_in_degrees(b))
+                for a, b in ranges
+            ]
+        )
+        return RangeError(
+            Note(
+                "the crank cannot turn fully: {names} reach each other only {told} of crank angle; "
+                "let it swing there by a motion in [drive]",
+                names=names,
+                told=told,
+            ),
+            tuple(ranges),
+        )
+
+    def beyond(self, dip: float, names: Note | str) -> Note:
+        """Tell that the drive's own motion leads where a dyad cannot be closed."""
+        link = self.machine.drive.link
+        moved, *_ = self.machine.moved(np.array([dip]))[link]
+        return Note(
+            "{names} do not reach each other with {link!r} at {angle}, to which it is moved at "
+            "crank angle {at}; let it move less",
+            names=names,
+            link=link,
+            angle=_in_degrees(float(np.ravel(moved)[0])),
+            at=_in_degrees(dip),
+        )
+
+    def crossing(self, group: Group, low: float, high: float) -> float:
+        """Crank angle between two others at which a dyad's margin passes zero."""
+        for _ in range(5):
+            near = np.linspace(low, high, 41)
+            sign = self.margin(group, near) > 0
+            k = int(np.argmax(sign != sign[0]))
+            if k == 0:
+                break
+            low, high = float(near[k - 1]), float(near[k])
+        return 0.5 * (low + high)
+
+
+def _in_degrees(angle: float) -> str:
+    return f"{degrees(angle):.2f} deg"

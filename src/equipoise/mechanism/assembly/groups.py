@@ -1,0 +1,238 @@
+"""Groups of links that are solved in closed form: dyads.
+
+A dyad is two links with three joints, R (pin) or P (sliding); the outer joints join it to known
+bodies.  There is one builder for each sequence of joints: it says which kernels solve it, and with
+which numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note
+from equipoise.mechanism.assembly import parallels
+from equipoise.mechanism.assembly.builder import (
+    Builder,
+    Group,
+    Guide,
+    Outer,
+    guide_reaction,
+    outer_joints,
+)
+from equipoise.mechanism.assembly.joints import Structure
+from equipoise.mechanism.assembly.steps import (
+    Call,
+    Kernel,
+    Reaction,
+    demand_names,
+    p,
+    pin_reaction,
+    u,
+)
+from equipoise.mechanism.checks import MODES
+from equipoise.mechanism.formulas import joint_kernels, kernels
+from equipoise.mechanism.parts.machine import Slider
+
+AHEAD = ("forward", "backward")
+NEAR = 1e-3
+"""Distance, over the size of the machine, at which a block counts as near its guide's pivot."""
+
+
+def _dyad(
+    builder: Builder,
+    outers: tuple[Outer, Outer],
+    reactions: tuple[Reaction, Reaction, Reaction],
+    motion: tuple[Kernel, tuple[Any, ...]],
+    forces: tuple[Kernel, tuple[str, ...], tuple[Any, ...]],
+    *,
+    joint: str,
+    point: str = "",
+    dead: Note | str = "",
+    more: tuple[str, ...] = (),
+) -> Group:
+    """Two links of which the outer joints are known, and that are known afterwards.
+
+    reactions : of the outer joints, whose places are the links' anchors, and of the inner one.
+    motion : kernel and its numbers; it goes on from the outer joints.
+    forces : kernel, the places and rotations that it takes before the demands, and its numbers.
+    joint, dead : as in `Group`.  point : where the inner joint is, if the kernel finds that.
+    more : names of what the kernel of the motion takes beside the outer joints.
+    """
+    first, second = (outer.link for outer in outers)
+    margin = f"s({reactions[2].name})"
+    known = [*(name for outer in outers for name in outer.inputs), *more]
+    found = (*u(first), *u(second), *(p(point) if point else ()), margin)
+    reach = [step for outer in outers for step in builder.reach(outer.body, outer.point)]
+    builder.add({first: reactions[0].at, second: reactions[1].at}, [point] if point else [])
+    kernel, places, numbers = forces
+    demands = (*demand_names(first), *demand_names(second))
+    results = tuple(name for reaction in reactions for name in reaction.outputs)
+    return Group(
+        "dyad",
+        (first, second),
+        (*reach, Call(motion[0], (*known,), motion[1], found)),
+        (
+            Call(kernel, (*places, *demands), numbers, results),
+            *(builder.hand_over(reaction) for reaction in reactions[:2]),
+        ),
+        reactions,
+        margin,
+        joint,
+        dead,
+    )
+
+
+def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
+    """Two links and three pins."""
+    link, other = first.link, second.link
+    if closed := parallels.parallel_by(builder, first, second, pin):
+        return _through(builder, first, second, pin, closed)
+    meaning = f"{pin} lies left or right of the line from {first.point} to {second.point}"
+    side = builder.side(pin, ("left", "right"), meaning)
+    arms = (builder.arm(link, first.point, pin), builder.arm(other, second.point, pin))
+    places = (f"p({first.point})", f"p({second.point})", f"p({pin})")
+    return _dyad(
+        builder,
+        (first, second),
+        (first.reaction(), second.reaction(), pin_reaction(pin, other, link)),
+        (kernels.rrr, (*arms, side)),
+        (joint_kernels.rrr_forces, places, ()),
+        joint=pin,
+        point=pin,
+        dead=Note("{link!r} and {other!r} lie in line", link=link, other=other),
+    )
+
+
+def _through(
+    builder: Builder, first: Outer, second: Outer, pin: str, closed: parallels.Closed
+) -> Group:
+    """Two links and three pins that close a four-bar of equal opposite sides."""
+    link, other, pivot = first.link, second.link, closed.pivot
+    meaning = f"opposite links at {pin} stay parallel, or the four-bar is crossed"
+    side = builder.side(pin, MODES, meaning)
+    arms = (builder.arm(link, first.point, pin), builder.arm(other, second.point, pin))
+    reach = builder.reach(closed.here, pivot)
+    places = (f"p({first.point})", f"p({second.point})", f"p({pin})")
+    found = _dyad(
+        builder,
+        (first, second),
+        (first.reaction(), second.reaction(), pin_reaction(pin, other, link)),
+        (kernels.parallelogram, (*arms, side)),
+        (joint_kernels.rrr_forces, places, ()),
+        joint=pin,
+        point=pin,
+        more=(*p(pivot), *u(closed.here)[1:], *u(closed.there)[1:]),
+    )
+    return replace(found, motion=(*reach, *found.motion), through=True)
+
+
+def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
+    """A pinned link and a link on a known guide, joined by a pin."""
+    link, other, guide = pinned.link, sliding.link, sliding.rail
+    meaning = f"{pin} lies ahead of or behind {pinned.point}, seen along the guide's direction"
+    side = builder.side(pin, AHEAD, meaning)
+    arm = builder.arm(link, pinned.point, pin)
+    shift = guide.turn * builder.arm(other, guide.point, pin)
+    places = (f"p({pinned.point})", f"p({pin})", f"u({sliding.body})")
+    return _dyad(
+        builder,
+        (pinned, sliding),
+        (pinned.reaction(), sliding.reaction(pin), pin_reaction(pin, other, link)),
+        (kernels.rrp, (arm, guide.along, shift, guide.turn, side)),
+        (joint_kernels.rrp_forces, places, (guide.along,)),
+        joint=pin,
+        point=pin,
+        dead=Note("{link!r} stands square to the line of {guide!r}", link=link, guide=guide.name),
+    )
+
+
+def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
+    """Two pinned links, of which the first slides on the second."""
+    link, on = block.link, other.link
+    guide = Guide.seen_from(slider, on)
+    meaning = f"{block.point} lies ahead of or behind {other.point}, along the guide's direction"
+    side = builder.side(slider.point, AHEAD, meaning)
+    from_pivot = builder.arm(on, other.point, guide.base) / guide.along
+    from_point = builder.arm(link, guide.point, block.point) * guide.turn
+    offset, back = (from_pivot + from_point).imag, guide.along.conjugate()
+    places = (f"p({block.point})", f"p({other.point})", f"u({link})")
+    return _dyad(
+        builder,
+        (block, other),
+        (block.reaction(), other.reaction(), guide_reaction(guide, link, on, block.point)),
+        (kernels.rpr, (offset, guide.turn, back, (NEAR * builder.size()) ** 2, side)),
+        (joint_kernels.rpr_forces, places, (guide.turn.conjugate(),)),
+        joint=slider.point,
+        dead=Note(
+            "{point} comes to {other}, or square to it across {slider!r}",
+            point=block.point,
+            other=other.point,
+            slider=slider.name,
+        ),
+    )
+
+
+def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
+    """Two links on known guides, joined by a pin; there is only one way to assemble them."""
+    near, far = first.rail, second.rail
+    shapes: list[complex] = []
+    for outer, guide in ((first, near), (second, far)):
+        shift = guide.turn * builder.arm(outer.link, guide.point, pin)
+        shapes += (guide.along, shift, guide.turn)
+    turns = (f"u({first.body})", f"u({second.body})")
+    return _dyad(
+        builder,
+        (first, second),
+        (first.reaction(pin), second.reaction(pin), pin_reaction(pin, second.link, first.link)),
+        (kernels.prp, tuple(shapes)),
+        (joint_kernels.prp_forces, turns, (near.along, far.along)),
+        joint=pin,
+        point=pin,
+        dead=Note("the lines of {near!r} and {far!r} are parallel", near=near.name, far=far.name),
+    )
+
+
+def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Group:
+    """A pinned link that slides on (or carries) a link on a known guide: a yoke."""
+    link, other, guide = pinned.link, sliding.link, sliding.rail
+    inner = Guide.seen_from(slider, other)
+    line = guide.turn * inner.along
+    if np.all(abs(line.imag) < 1e-9):
+        raise ModelError(
+            f"sliders[{builder.machine.sliders.index(slider) + 1}]",
+            f"its line is parallel to that of {guide.name!r}, which leaves {other!r} free to "
+            "slide; turn one of them",
+        )
+    turn = line * inner.turn
+    shift = turn * builder.arm(link, pinned.point, inner.point) - guide.turn * builder.arm(
+        other, guide.point, inner.base
+    )
+    places = (f"p({pinned.point})", f"p({guide.point})", f"u({sliding.body})")
+    on_inner = guide_reaction(inner, link, other, pinned.point)
+    return _dyad(
+        builder,
+        (pinned, sliding),
+        (pinned.reaction(), sliding.reaction(guide.point), on_inner),
+        (kernels.rpp, (guide.along, guide.turn, line, turn, shift)),
+        (joint_kernels.rpp_forces, places, (guide.along, line)),
+        joint=slider.point,
+        point=guide.point,
+    )
+
+
+def hung(builder: Builder, joints: Structure, links: Iterable[str]) -> Group | None:
+    """The first of links, pushed to angles that are known, that is pinned to a known link."""
+    outers = (one for link in links for one in outer_joints(builder, joints, link))
+    pin = next((one for one in outers if one.guide is None), None)
+    if pin is None:
+        return None
+    ground = replace(pin.reaction(), force=demand_names(pin.link)[0])  # which is all that it needs
+    motion = tuple(builder.reach(pin.body, pin.point))
+    builder.add({pin.link: pin.point}, [pin.point])
+    builder.running.add(pin.link)
+    return Group("hung", (pin.link,), motion, (builder.hand_over(ground),), (ground,))

@@ -1,0 +1,298 @@
+"""Joints of a machine, and the count of its free motions."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+
+from equipoise.errors import MobilityError, ModelError
+from equipoise.i18n import Note, all_of, to_say
+from equipoise.mechanism.assembly.steps import Reaction
+from equipoise.mechanism.checks import Bodies, bodies_at, form_of
+from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.machine import FRAME, Machine, Slider
+
+MOST_SUBSETS = 10_000
+
+
+@dataclass(frozen=True)
+class Structure:
+    """Which bodies are joined, and how; nothing about sizes.
+
+    bodies : the frame, then the links in file order.
+    pins : point -> bodies that share it, in the order of `bodies`; two at least.
+    """
+
+    bodies: tuple[str, ...]
+    pins: Mapping[str, tuple[str, ...]]
+    sliders: tuple[Slider, ...]
+    couplings: tuple[Coupling, ...]
+
+    def freedom(self, links: Iterable[str], known: Iterable[str]) -> int:
+        """Free motions of some links when the known bodies move as they must."""
+        free, fixed = set(links), set(known)
+        both = free | fixed
+        count = 3 * len(free)
+        for bodies in self.pins.values():
+            members = sum(body in free for body in bodies)
+            held = any(body in fixed for body in bodies)
+            count -= 2 * max(members - (not held), 0)
+        for slider in self.sliders:
+            ends = {slider.link, slider.on}
+            count -= 2 * (ends <= both and bool(ends & free))
+        for one in self.couplings:
+            ends = {one.driver, one.driven, one.carrier}
+            count -= ends <= both and bool(ends & free)
+        return count
+
+    @property
+    def mobility(self) -> int:
+        """Count of free motions; each drive commands one of them."""
+        return self.freedom(self.bodies[1:], [FRAME])
+
+    @property
+    def needed(self) -> Structure:
+        """The same without all but the first of the sliding joints between two bodies."""
+        first = {frozenset((one.link, one.on)): one for one in reversed(self.sliders)}
+        return replace(self, sliders=tuple(s for s in self.sliders if s in first.values()))
+
+    def pins_between(self, a: str, b: str) -> list[str]:
+        return [point for point, bodies in self.pins.items() if a in bodies and b in bodies]
+
+
+def structure(machine: Machine) -> Structure:
+    """Read joints off the names that bodies share."""
+    result = joined(machine.bodies, machine.sliders, machine.couplings)
+    _check_apart(machine, result.pins)
+    drives = [drive.link for drive in machine.driven]
+    _check_mobility(result, drives, _alike(machine.bodies, result.pins))
+    return result
+
+
+def name_in_outputs(joints: Structure, joint: Reaction) -> str:
+    """A pin of several bodies goes by its point and by the link it holds."""
+    several = joint.kind == "pin" and len(joints.pins[joint.name]) > 2
+    return f"{joint.name}/{joint.on}" if several else joint.name
+
+
+def joined(
+    bodies: Bodies, sliders: tuple[Slider, ...], couplings: tuple[Coupling, ...]
+) -> Structure:
+    """Joints of bodies, the frame first, whether or not they make a linkage."""
+    pins = {point: tuple(names) for point, names in bodies_at(bodies).items() if len(names) > 1}
+    return Structure((*bodies,), pins, sliders, couplings)
+
+
+def undetermined(joints: Structure, drives: Sequence[str]) -> list[str]:
+    """Links that do not follow from the motion of those that are driven."""
+    known = [FRAME, *drives]
+    others = [link for link in joints.bodies[1:] if link not in drives]
+    while others:
+        found = (group for group in subsets(joints, others) if joints.freedom(group, known) <= 0)
+        if not (group := next(found, ())):
+            break
+        known += group
+        others = [link for link in others if link not in group]
+    return others
+
+
+def held_too_often(joints: Structure, drives: Sequence[str]) -> tuple[str, ...]:
+    """The links that too many joints hold; those that are driven where none but they are."""
+    known = [FRAME, *drives]
+    others = [link for link in joints.bodies[1:] if link not in drives]
+    held = (group for group in subsets(joints, others) if joints.freedom(group, known) < 0)
+    return next(held, tuple(drives))
+
+
+def _check_apart(machine: Machine, pins: Mapping[str, tuple[str, ...]]) -> None:
+    """Two pins of one body at the same place make a length of 0."""
+    for body in (FRAME, *machine.links):
+        seen: dict[tuple[float, float], str] = {}
+        for point, place in machine.points_of(body).items():
+            if point not in pins:
+                continue
+            if place in seen:
+                where = "frame" if body == FRAME else f"links.{body}"
+                raise ModelError(
+                    f"{where}.points",
+                    Note(
+                        "{seen} and {point} lie at the same place; set them apart, or give them "
+                        "one name if they are one pin",
+                        seen=seen[place],
+                        point=point,
+                    ),
+                )
+            seen[place] = point
+
+
+def drive_pivot(joints: Structure, drive: str, where: str = "drive.link") -> str:
+    """Return the point at which a driven link turns in the frame."""
+    pivots = joints.pins_between(FRAME, drive)
+    if len(pivots) != 1:
+        raise ModelError(
+            where,
+            Note(
+                "{drive!r} shares {pivots} points with the frame; the drive link turns "
+                "about exactly one point of the frame",
+                drive=drive,
+                pivots=len(pivots),
+            ),
+        )
+    return pivots[0]
+
+
+def place_in_file(joints: Structure, coupling: Coupling) -> str:
+    """Where a coupling stands in the model file, such as ``gears[2]``."""
+    alike = [one for one in joints.couplings if one.table == coupling.table]
+    return f"{coupling.table}[{alike.index(coupling) + 1}]"
+
+
+def coupling_pins(joints: Structure, coupling: Coupling) -> tuple[str, str]:
+    """Points of the carrier about which driver and driven body turn.
+
+    Raises
+    ------
+    ModelError : one of them turns about none, or several.
+    """
+    pins = []
+    for body in (coupling.driver, coupling.driven):
+        shared = joints.pins_between(body, coupling.carrier)
+        if len(shared) != 1:
+            raise ModelError(
+                place_in_file(joints, coupling),
+                Note(
+                    "{body!r} shares {shared} points with the carrier {carrier!r}; driver and "
+                    "driven link turn about exactly one point of the carrier each",
+                    body=body,
+                    shared=len(shared),
+                    carrier=coupling.carrier,
+                ),
+            )
+        pins += shared
+    return pins[0], pins[1]
+
+
+def _alike(bodies: Bodies, pins: Iterable[str]) -> Note | str:
+    """Ask after a point that is no pin, but would be one if its name had the case of another."""
+    seen: dict[str, tuple[str, str]] = {}
+    for body, points in bodies.items():
+        for point in points:
+            first, at = seen.setdefault(form_of(point), (point, body))
+            if point != first and body != at and point not in pins:
+                name = min(first, point)
+                return Note(
+                    "; {first!r} of {at} is no pin with {point!r} of {body}: "
+                    "did you mean {name!r}?",
+                    first=first,
+                    at=at,
+                    point=point,
+                    body=body,
+                    name=name,
+                )
+    return ""
+
+
+def _check_mobility(joints: Structure, drives: Sequence[str], alike: Note | str) -> None:
+    mobility = joints.mobility
+    if mobility == len(drives) or (mobility < 1 and len(drives) == 1):
+        return  # whether joints hold too much, lengths decide
+    if len(drives) > 1:
+        raise MobilityError(
+            Note(
+                "the linkage has {mobility} free motions ({count}), and {drives} drives command as "
+                "many as they are; give it as many drives as free motions{alike}",
+                mobility=mobility,
+                count=_count(joints),
+                drives=len(drives),
+                alike=alike,
+            )
+        )
+    raise MobilityError(
+        Note(
+            "the linkage has {mobility} free motions ({count}), and one drive can "
+            "command only one; the drive leaves {names} undetermined{alike}",
+            mobility=mobility,
+            count=_count(joints),
+            names=_names(undetermined(joints, drives)),
+            alike=alike,
+        )
+    )
+
+
+def _count(joints: Structure) -> Note | str:
+    coupled = Counter(one.table for one in joints.couplings)
+    parts = [
+        _number(len(joints.bodies) - 1, MOVING_LINKS),
+        _number(sum(len(bodies) - 1 for bodies in joints.pins.values()), PINS),
+        _number(len(joints.sliders), SLIDING_JOINTS),
+        *(_number(coupled[table], words) for table, words in COUPLINGS.items()
+          if coupled[table] or table == "gears"),
+    ]  # fmt: skip
+    return all_of(parts, commas=True)
+
+
+def no_motion(joints: Structure) -> Note:
+    """Say that the joints hold the links, as far as counting tells."""
+    return Note(
+        "the linkage has no free motion (count {mobility}: {count})",
+        mobility=joints.mobility,
+        count=_count(joints),
+    )
+
+
+def held_fast(joints: Structure, drives: Sequence[str]) -> MobilityError:
+    """An error for joints that hold links whatever the lengths."""
+    names = _names(held_too_often(joints, drives))
+    return MobilityError(
+        Note("{held}; too many joints hold {names}", held=no_motion(joints), names=names)
+    )
+
+
+def subsets(joints: Structure, links: list[str]) -> Iterator[tuple[str, ...]]:
+    """Sets of links that hang together, small ones first, each in file order.
+
+    What is coupled counts as hanging together with its carrier.  The search ends after a number
+    of sets that no real machine needs.
+    """
+    touching: dict[str, set[str]] = {link: set() for link in links}
+    groups = [*joints.pins.values(), *((s.link, s.on) for s in joints.sliders)]
+    groups += [(one.driver, one.driven, one.carrier) for one in joints.couplings]
+    for bodies in groups:
+        members = [body for body in bodies if body in touching]
+        for member in members:
+            touching[member].update(members)
+    order = {link: k for k, link in enumerate(links)}
+    level: list[tuple[str, ...]] = [(link,) for link in links]
+    budget = MOST_SUBSETS
+    while level and budget > 0:
+        yield from level
+        budget -= len(level)
+        larger = (
+            tuple(sorted((*group, new), key=order.__getitem__))
+            for group in level
+            for new in set().union(*(touching[link] for link in group)).difference(group)
+        )
+        level = sorted(
+            set(islice(larger, budget)), key=lambda group: [order[link] for link in group]
+        )
+
+
+MOVING_LINKS = (to_say("{count} moving link"), to_say("{count} moving links"))
+PINS = (to_say("{count} pin"), to_say("{count} pins"))
+SLIDING_JOINTS = (to_say("{count} sliding joint"), to_say("{count} sliding joints"))
+COUPLINGS = {
+    "gears": (to_say("{count} gear"), to_say("{count} gears")),
+    "belts": (to_say("{count} belt"), to_say("{count} belts")),
+    "racks": (to_say("{count} rack"), to_say("{count} racks")),
+    "cams": (to_say("{count} cam"), to_say("{count} cams")),
+}
+
+
+def _number(count: int, words: tuple[str, str]) -> Note:
+    return Note(words[count != 1], count=count)
+
+
+def _names(links: Sequence[str]) -> Note | str:
+    return all_of([repr(link) for link in links], commas=True) or Note("the drive link")

@@ -1,0 +1,260 @@
+"""From a machine to its steps: the drive first, then whatever the known bodies determine next.
+
+Links are taken in the smallest groups that can be solved: a coupled link, a dyad, and only where
+neither fits a group for Newton's method.  Each group becomes steps for motion and, in reverse
+order, steps for forces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note
+from equipoise.keys.kinds import choice
+from equipoise.mechanism.assembly.builder import Builder, Group
+from equipoise.mechanism.assembly.cycle import Cycle, close
+from equipoise.mechanism.assembly.groups import hung
+from equipoise.mechanism.assembly.joints import Structure, drive_pivot, name_in_outputs, structure
+from equipoise.mechanism.assembly.ordering import held, next_group
+from equipoise.mechanism.assembly.parallels import surplus_cranks
+from equipoise.mechanism.assembly.shared import Shared, shared
+from equipoise.mechanism.assembly.steps import (
+    Reaction,
+    State,
+    Step,
+    initial_state,
+    needed_references,
+    pin_reaction,
+    run,
+)
+from equipoise.mechanism.checks import MODE, MODES, meant
+from equipoise.mechanism.parts.machine import FRAME, Machine
+
+NO_PARALLELS = Note(
+    "no two links of this linkage close a four-bar of equal opposite sides with known ones, so "
+    "that there are no change points to go on through; leave it out"
+)
+NOTHING: Mapping[str, tuple[int, str]] = {}
+
+
+@dataclass(frozen=True)
+class Linkage:
+    """A machine in the order in which it is computed.
+
+    pivot : the drive link's point in the frame.
+    anchors : body -> point about which its moments are taken.
+    groups : what is solved after the drive, in order.
+    near : motion of a machine that differs by little, from which loops are followed sooner.
+    shared : all joints at once, where groups cannot tell their forces one after the other.
+    """
+
+    machine: Machine
+    joints: Structure
+    pivot: str
+    anchors: Mapping[str, str]
+    groups: tuple[Group, ...]
+    near: Cycle | None = None
+    shared: Shared | None = None
+
+    @cached_property
+    def grounded(self) -> tuple[str, ...]:
+        """Driven links that turn about points of the frame."""
+        hung = {link for group in self.groups if group.kind == "hung" for link in group.links}
+        return tuple(one.link for one in self.machine.driven if one.link not in hung)
+
+    @cached_property
+    def motion(self) -> tuple[Step, ...]:
+        """Steps from the drive's rotation to that of every link."""
+        return tuple(step for group in self.groups for step in group.motion)
+
+    @cached_property
+    def needed_references(self) -> list[str]:
+        return needed_references(self.motion)
+
+    @cached_property
+    def forces(self) -> tuple[Step, ...]:
+        """Steps from what each link needs to every joint force; the drive link comes last."""
+        if self.shared is not None:
+            decided = self.shared.decided
+            return (*(step for group in decided for step in group.forces), self.shared)
+        return tuple(step for group in reversed(self.groups) for step in group.forces)
+
+    @cached_property
+    def reactions(self) -> tuple[Reaction, ...]:
+        """Every joint, the pins of the drives first."""
+        if self.shared is not None:
+            decided = self.shared.decided
+            return (*self.shared.reactions, *(one for group in decided for one in group.reactions))
+        drives = (pin_reaction(self.anchors[link], link, FRAME) for link in self.grounded)
+        return (*drives, *(reaction for group in self.groups for reaction in group.reactions))
+
+    @cached_property
+    def named_reactions(self) -> tuple[tuple[str, Reaction], ...]:
+        """Joints by their names in outputs."""
+        return tuple((name_in_outputs(self.joints, one), one) for one in self.reactions)
+
+    @cached_property
+    def cycle(self) -> Cycle:
+        """The closed motion; raises a `MotionError` where the crank cannot turn fully."""
+        check = None if self.shared is None else self.shared.check
+        return close(self.machine, self.groups, self.near, check)
+
+    def of(self, machine: Machine) -> Linkage:
+        """The same linkage for a machine that differs in nothing but masses, speed or gravity."""
+        same = replace(self, machine=machine)
+        same.__dict__.update({k: v for k, v in self.__dict__.items() if k not in same.__dict__})
+        return same
+
+    def start(self, theta: np.ndarray) -> State:
+        """State in which only the frame and the driven links are known."""
+        return initial_state(self.machine, theta)
+
+    def solve(self, theta: np.ndarray) -> State:
+        """State with every link known at the crank angles theta (N,), rad."""
+        state = self.start(theta)
+        cycle = self.cycle
+        for name in self.needed_references:
+            state[f"reference({name})"] = cycle.reference(name, theta)
+        return run(self.motion, state)
+
+
+def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
+    """Order the links of a machine into steps.  The result is kept with the machine.
+
+    near : motion of a machine of the same build that differs by little, if one is known.
+
+    Raises
+    ------
+    MobilityError : the free motions are none, or two and more.
+    ModelError : an assembly side is missing or idle, two pins coincide.
+    """
+    kept = machine.__dict__.get("_linkage")
+    if kept is None:
+        kept = replace(ordered(machine, structure(machine)), near=near)
+        names = [name for name, _ in kept.named_reactions]
+        for name in names:
+            if names.count(name) > 1:  # outputs go by the names of joints
+                raise ModelError(
+                    "links",
+                    f"two joints would be called {name!r} in the output; rename one, or give a "
+                    "second guide a label",
+                )
+        machine.__dict__["_linkage"] = kept
+    return kept
+
+
+def ordered(
+    machine: Machine,
+    joints: Structure,
+    start: State | None = None,
+    assumed: Mapping[str, tuple[int, str]] = NOTHING,
+) -> Linkage:
+    """Order the links into steps, whose numbers are columns where those of the machine are.
+
+    start : references at crank angle 0, so that running angles begin in the same turn as those.
+    assumed : of joints, which of two sides to take where the file leaves it out, and why.
+    """
+    from equipoise.mechanism.assembly import sides
+
+    builder, groups, choices = _grouped(machine, joints, start or {}, assumed)
+    held_kinds = ("pointed", "loops") if joints.mobility < 1 else ("pointed",)
+    held_at = {point for group in groups if group.kind in held_kinds
+               for link in group.links for point in machine.links[link].points}  # fmt: skip
+    asked = builder.sides | held_at  # of links that more joints hold lengths decide the side
+    idle = [joint for joint in machine.assembly if joint not in asked]
+    if choices:
+        if not assumed and (decided := sides.decided(machine, choices, _turns)):
+            return ordered(machine, joints, start, decided)
+        raise sides.missing(machine, choices, idle)
+    for joint in idle:
+        if joint == MODE and machine.assembly[joint] in MODES:
+            raise ModelError(f"assembly.{joint}", NO_PARALLELS)
+        dyads = ", ".join(sorted(builder.sides - {MODE})) or "no point"
+        hint = meant(joint, [*builder.sides]) or f"the dyads of this linkage meet at {dyads}"
+        raise ModelError(
+            f"assembly.{joint}",
+            Note(
+                "no dyad has its inner joint there that could be assembled on two sides; {hint}",
+                hint=hint,
+            ),
+        )
+    pivot, order = builder.anchors[FRAME], tuple(groups)
+    whole = shared(builder, joints, pivot, order)
+    return Linkage(machine, joints, pivot, builder.anchors, order, shared=whole)
+
+
+def sides_at_position(machine: Machine) -> dict[str, str]:
+    """The side of each dyad that has two, as the machine's rough position has it; what its table
+    of sides says is left aside.
+
+    Raises
+    ------
+    MobilityError, ModelError : as of `assemble`.
+    """
+    bare = replace(machine, assembly={})
+    joints = structure(bare)
+    _, _, choices = _grouped(bare, joints, {}, NOTHING)
+    return {one.joint: one.words[one.side] for one in choices}
+
+
+def _grouped(
+    machine: Machine,
+    joints: Structure,
+    start: State,
+    assumed: Mapping[str, tuple[int, str]],
+) -> tuple[Builder, list[Group], list[Any]]:
+    """What the drives determine, group by group, and the sides that the file leaves out."""
+    from equipoise.mechanism.assembly import sides
+
+    mode = machine.assembly.get(MODE)
+    if mode not in (None, *MODES) and MODE not in joints.pins:  # else it is the side of that pin
+        told = Note("got {leaf!r}; give {choice}", leaf=mode, choice=choice(MODES))
+        raise ModelError(f"assembly.{MODE}", told)
+    if mode not in MODES:
+        mode = MODES[0] if joints.mobility < 1 else None
+    drives = {machine.drive.link: drive_pivot(joints, machine.drive.link)}
+    pushed = []
+    for number, one in enumerate(machine.drives, 1):
+        if one.pushes and not joints.pins_between(FRAME, one.link):
+            pushed.append(one.link)
+        else:
+            drives[one.link] = drive_pivot(joints, one.link, f"drives[{number}].link")
+    points, running = set(machine.frame), {FRAME, *drives}
+    builder = Builder(machine, points=points, running=running, told=start, mode=mode)
+    surplus: frozenset[str] = frozenset()
+    if joints.mobility < 1:
+        surplus, joints = surplus_cranks(machine, joints), joints.needed
+    builder.add({FRAME: drives[machine.drive.link], **drives})
+    unknown = [link for link in machine.links if link not in drives]
+    groups: list[Group] = []
+    choices: list[sides.Choice] = []
+    while unknown:
+        try:
+            ready = [
+                link
+                for link in unknown
+                if link not in pushed and (link not in surplus or held(builder, joints, link))
+            ]
+            waiting = [link for link in pushed if link in unknown]
+            group = hung(builder, joints, waiting) or next_group(builder, joints, ready)
+        except ModelError:
+            if choices:  # sides come first: on a wrong one what hangs on it cannot be right
+                raise sides.missing(machine, choices) from None
+            raise
+        if group.joint in builder.missing:
+            choices.append(sides.chosen(builder, group, assumed))
+            group = choices[-1].group
+        groups.append(group)
+        builder.motion += group.motion
+        unknown = [link for link in unknown if link not in group.links]
+    return builder, groups, choices
+
+
+def _turns(machine: Machine) -> Cycle:
+    return ordered(machine, structure(machine)).cycle

@@ -1,0 +1,289 @@
+"""Loop equations: what vanishes where a joint holds two bodies together, and where it may be.
+
+Each joint says of two bodies that something vanishes: the gap of a pin (2 equations), turn and
+offset of a slider (2), the mismatch of a gear (1).  The same expressions in velocities and
+accelerations are linear in them, and the force in the joint acts where and as the gap is measured.
+
+All of it is arithmetic on poses, so that it runs on arrays, and can be written out for loops.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar, Protocol
+
+from equipoise.i18n import Note
+from equipoise.mechanism.assembly.steps import Step
+from equipoise.mechanism.formulas import kernels
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Place of a body's anchor, and its rotation, with two derivatives each, of shape (..., N).
+
+    angle : running angle, which only gears ask for.
+    """
+
+    place: tuple[Any, Any, Any]
+    turn: tuple[Any, Any, Any]
+    angle: Any = 0.0
+
+    def point(self, arm: Any) -> tuple[Any, Any, Any]:
+        p, p1, p2 = kernels.point(*self.place, *self.turn, arm)
+        return p, p1, p2
+
+    def pick(self, part: Any) -> Pose:
+        """The pose at one or some of the crank angles."""
+        place, turn = (tuple(value[part] for value in values) for values in (self.place, self.turn))
+        return Pose(place, turn, self.angle[part])
+
+    @property
+    def still(self) -> Pose:
+        """The same without its rates."""
+        return Pose((self.place[0], 0.0, 0.0), (self.turn[0], 0.0, 0.0), self.angle)
+
+
+@dataclass(frozen=True)
+class End:
+    """A point of a body: `arm` from the body's anchor."""
+
+    body: str
+    point: str
+    arm: Any
+
+
+Poses = dict[str, Pose]
+Wrench = tuple[Any, float]
+
+
+class Contact(Protocol):
+    """How the driver's push reaches the driven body, and how this is solved.
+
+    couples : whether it pushes with a couple, too.
+    """
+
+    couples: ClassVar[bool]
+
+    def group(self, builder: Any, joints: Any, coupling: Any) -> Any:
+        """The driven link, where driver and carrier are known."""
+
+    def loop(self, coupling: Any, end: Callable[[str, str], End]) -> CouplingLoop:
+        """The same as an equation; `end` finds points of bodies from their anchors."""
+
+    def backwards(self, coupling: Any) -> Note:
+        """What is said where the driven link is known and the driver is not."""
+
+
+class Pushing(Contact, Protocol):
+    """A contact whose place and line of action its loop asks for."""
+
+    def place(self, poses: Poses, on: End, carrier: str) -> Any:
+        """Where the push acts, complex, m; `on` is the driven body's pin."""
+
+    def wrenches(self, poses: Poses, on: End, carrier: str, sense: Any) -> list[tuple[Any, float]]:
+        """Force and couple on the driven body, at that place, for a push of 1.
+
+        sense : sign of the push that is asked for without any slant of its line; see
+            `joint_kernels.flank`.
+        """
+
+
+@dataclass(frozen=True)
+class PinLoop:
+    """Two points stay together; `on` carries the force that `by` exerts."""
+
+    name: str
+    on: End
+    by: End
+
+    unknowns: ClassVar[int] = 2
+
+    def gaps(self, poses: Poses, level: int) -> list[Any]:
+        """What vanishes (level 0), and its first and second derivative."""
+        here, there = (poses[end.body].point(end.arm)[level] for end in (self.on, self.by))
+        gap = here - there
+        return [gap.real, gap.imag]
+
+    def place(self, poses: Poses) -> Any:
+        """Where its force acts."""
+        return poses[self.on.body].point(self.on.arm)[0]
+
+    def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
+        """Force and couple on `on`, at that place, for a unit of each unknown."""
+        return [(1 + 0j, 0.0), (1j, 0.0)]
+
+
+@dataclass(frozen=True)
+class SlideLoop:
+    """A link's point stays on a line of the body `by`, and the link does not turn in it.
+
+    along : unit vector of the line in that body's axes; turn : of the link's x axis in axes along
+    the line.
+    """
+
+    name: str
+    on: End
+    by: End
+    along: Any
+    turn: Any
+
+    unknowns: ClassVar[int] = 2
+
+    def gaps(self, poses: Poses, level: int) -> list[Any]:
+        link, guide = poses[self.on.body], poses[self.by.body]
+        (u, w, a), (n, w_n, a_n) = link.turn, guide.turn
+        n = n * self.along
+        off = (n * self.turn).conjugate() * u
+        twice_tangent = 2 * off.imag / (1 + off.real)  # of half the angle, which is to vanish
+        turned = (twice_tangent, w - w_n, a - a_n)[level]
+        ends = zip(link.point(self.on.arm), guide.point(self.by.arm), strict=True)
+        d, d1, d2 = (a - b for a, b in ends)
+        return [turned, kernels.along_line(d, d1, d2, n, w_n, a_n)[level].imag]
+
+    def place(self, poses: Poses) -> Any:
+        return poses[self.on.body].point(self.on.arm)[0]
+
+    def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
+        return [(0j, 1.0), (1j * poses[self.by.body].turn[0] * self.along, 0.0)]
+
+
+@dataclass(frozen=True)
+class CouplingLoop:
+    """Angles of driven link, driver and carrier in a fixed relation.
+
+    kind : of its `Reaction`.  kernel, numbers : as of `couplings.Relation`.
+    """
+
+    name: str
+    kind: str
+    on: End
+    by: End
+    carrier: str
+    kernel: Callable[..., tuple[Any, ...]]
+    numbers: tuple[Any, ...]
+    offset: Any
+    contact: Pushing
+
+    unknowns: ClassVar[int] = 1
+    starts: ClassVar[bool] = True
+    """Whether the file says at which angle the driven link starts."""
+
+    @property
+    def at(self) -> str:
+        """The point at which the push acts."""
+        return f"pitch({self.name})"
+
+    def after(self, builder: Any) -> list[Step]:
+        """Steps that outputs ask for, once the bodies are known."""
+        return []
+
+    def gaps(self, poses: Poses, level: int) -> list[Any]:
+        bodies = (self.on.body, self.by.body, self.carrier)
+        driven, driver, carrier = (self.coordinate(poses, body) for body in bodies)
+        wanted = self.kernel(*driver, *carrier, *self.numbers, self.offset)
+        return [driven[level] - wanted[level]]
+
+    def coordinate(self, poses: Poses, body: str) -> tuple[Any, Any, Any]:
+        """By which the relation knows a body: its angle, with both derivatives."""
+        pose = poses[body]
+        return pose.angle, pose.turn[1], pose.turn[2]
+
+    def place(self, poses: Poses) -> Any:
+        return self.contact.place(poses, self.on, self.carrier)
+
+    def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
+        return self.contact.wrenches(poses, self.on, self.carrier, sense)
+
+
+@dataclass(frozen=True)
+class RackLoop(CouplingLoop):
+    """Angle of a pinion and travel of its rack in a fixed relation.
+
+    rack : its point.  base : that of its guide.  along : unit vector of this in its body's axes.
+    """
+
+    rack: End
+    base: End
+    along: Any
+
+    def coordinate(self, poses: Poses, body: str) -> tuple[Any, Any, Any]:
+        """Of the rack how far it is along its guide, with both derivatives."""
+        if body != self.rack.body:
+            return super().coordinate(poses, body)
+        guide = poses[self.base.body]
+        ends = (*poses[body].point(self.rack.arm), *guide.point(self.base.arm))
+        t, t1, t2 = kernels.travelled(*ends, *guide.turn, self.along)
+        return t, t1, t2
+
+
+Loop = PinLoop | SlideLoop | CouplingLoop
+
+
+@dataclass(frozen=True)
+class Hinge:
+    """A link whose anchor is on a pin of another body, so that its angle alone is unknown."""
+
+    link: str
+    to: End
+
+    turning: ClassVar[tuple[bool, ...]] = (True,)
+
+    def pose(self, poses: Poses, value: Any, w: Any, a: Any) -> Pose:
+        """value : rotation and angle, w, a : derivatives of the angle."""
+        turn, angle = value
+        return Pose(poses[self.to.body].point(self.to.arm), (turn, w, a), angle)
+
+    def values(self, poses: Poses) -> list[Any]:
+        """The unknowns, of a link whose pose is known."""
+        return [poses[self.link].angle]
+
+
+@dataclass(frozen=True)
+class Rail:
+    """A link whose anchor is on a guide of another body, so that its way along it is unknown.
+
+    along, turn : as in `SlideLoop`.  angle : of the link's x axis in the other body's axes.
+    """
+
+    link: str
+    to: End
+    along: Any
+    turn: Any
+    angle: Any
+
+    turning: ClassVar[tuple[bool, ...]] = (False,)
+
+    def pose(self, poses: Poses, value: Any, s1: Any, s2: Any) -> Pose:
+        """value : the way, s1, s2 : its derivatives."""
+        guide = poses[self.to.body]
+        turn, w, a = guide.turn
+        n = turn * self.along
+        place = kernels.slid(*guide.point(self.to.arm), n, w, a, value, s1, s2)
+        return Pose(place, (n * self.turn, w, a), guide.angle + self.angle)
+
+    def values(self, poses: Poses) -> list[Any]:
+        guide = poses[self.to.body]
+        way = poses[self.link].place[0] - guide.point(self.to.arm)[0]
+        return [kernels.dot(guide.turn[0] * self.along, way)]
+
+
+@dataclass(frozen=True)
+class Free:
+    """A link of which place and angle are unknown."""
+
+    link: str
+
+    turning: ClassVar[tuple[bool, ...]] = (False, False, True)
+
+    def pose(self, poses: Poses, value: Any, q1: Any, q2: Any) -> Pose:
+        x, y, (turn, angle) = value
+        place = (x + 1j * y, q1[0] + 1j * q1[1], q2[0] + 1j * q2[1])
+        return Pose(place, (turn, q1[2], q2[2]), angle)
+
+    def values(self, poses: Poses) -> list[Any]:
+        pose = poses[self.link]
+        return [pose.place[0].real, pose.place[0].imag, pose.angle]
+
+
+Place = Hinge | Rail | Free

@@ -1,0 +1,298 @@
+"""Forces that statics alone does not decide: all joints of a machine at once, by a stated rule.
+
+Where joints hold links more often than they need be held, the free bodies have fewer equations than
+unknowns.  Of all joint forces that hold the machine in balance, those are taken whose squares sum
+up to the least, or, where the file gives joints a stiffness, that store the least energy in them.
+The same free bodies serve a linkage that goes on through change points.  Links that hang on those,
+and that statics decides, are left to their own steps, which hand on what their joints ask for.
+
+Drive torque, and force and moment on the frame as a whole, follow from the demands alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import MobilityError, ModelError
+from equipoise.i18n import Note, all_of
+from equipoise.mechanism.assembly.builder import Builder, Group
+from equipoise.mechanism.assembly.joints import Structure, name_in_outputs, no_motion
+from equipoise.mechanism.assembly.loop_forces import LoopForces
+from equipoise.mechanism.assembly.loopgroup import Maker
+from equipoise.mechanism.assembly.loops import Poses, SlideLoop
+from equipoise.mechanism.assembly.misfits import AGREES, Fit
+from equipoise.mechanism.assembly.newton import LoopGroup, poses_in
+from equipoise.mechanism.assembly.steps import Array, State, planar
+from equipoise.mechanism.checks import numbered, unknown
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.mechanism.parts.sliders import OF_FORCES
+
+OPEN = 1e-9
+"""Share of a joint in forces that hold each other, up to which it has none."""
+ROUNDING = 1e-11
+"""Share of a singular value in the largest that rounding explains."""
+CLEAR = 1e-8
+"""The same of rows that clearly do not depend on each other."""
+WEAK = 1e-6
+"""Smallest over largest stiffness against motion, up to which joints do not hold the machine."""
+BESIDE = 1e-3
+"""rad: how far from a change point it is looked at which forces grow without bound there."""
+
+
+@dataclass(frozen=True)
+class Shared(LoopForces):
+    """The free bodies of links whose joints share what statics leaves open.
+
+    group : these links and their joints.  pivot : the drive's.
+    count : says that the joints hold too much; empty where they do not.
+    names : joints as outputs call them, each with the name of its force.
+    compliance : of each joint, m/N, by name of its force; empty where none is given.
+    fit : what has to fit.  decided : groups whose forces are found before, by their own steps.
+    """
+
+    pivot: str
+    count: Note | str
+    names: Mapping[str, str]
+    compliance: Mapping[str, float]
+    fit: Fit
+    decided: tuple[Group, ...]
+
+    def run(self, state: State) -> None:
+        drive = self.group.links[0]
+        force, moment = self.demanded(state)
+        by_work = sum(
+            kernels.drive_torque(state[f"p1({anchor})"], state[f"w({link})"],
+                                 state[f"F({link})"], state[f"M({link})"])
+            for link, anchor in zip(self.group.links, self.group.anchors, strict=True)
+        )  # fmt: skip
+        super().run(state)
+        turns_evenly = np.ndim(state[f"w({drive})"]) == 0  # else it may stand still, doing no work
+        torque = by_work if turns_evenly else state["drive torque"]
+        state[f"F({drive})"], state[f"M({drive})"] = state[self.reactions[0].force], torque
+        state[f"F({FRAME})"] = state[f"F({FRAME})"] + force - state[f"F({drive})"]
+        state[f"M({FRAME})"] = state[f"M({FRAME})"] + moment - torque
+        poses = self.poses(state)
+        for loop, reaction in zip(self.loops, self.reactions, strict=True):
+            state.setdefault(f"p({reaction.at})", loop.place(poses))
+
+    def demanded(self, state: State) -> tuple[Any, Any]:
+        """Force and moment about the pivot that these links together need."""
+        force, moment, pivot = 0j, 0.0, state[f"p({self.pivot})"]
+        for link, anchor in zip(self.group.links, self.group.anchors, strict=True):
+            force = force + state[f"F({link})"]
+            lever = state[f"p({anchor})"] - pivot
+            moment = moment + state[f"M({link})"] + kernels.cross(lever, state[f"F({link})"])
+        return force, moment
+
+    def poses(self, state: State) -> Poses:
+        group = self.group
+        return poses_in(state, (*group.known, *zip(group.links, group.anchors, strict=True)))
+
+    def solve(self, state: State, poses: Poses, senses: Sequence[Any]) -> list[list[Array]]:
+        matrix, rows, units = self.balance(state, poses, senses)
+        demand = self.demand(state) / rows
+        right = np.moveaxis(demand.reshape(-1, *demand.shape[-2:]), 0, -1)
+        if self.compliance:
+            told = self.by_stiffness(*_parts(matrix)) @ right
+        else:
+            told = _least(matrix, right)
+        found = np.moveaxis(told, (-1, 1), (1, 0)).reshape(len(units), *demand.shape[:-1])
+        found = found * units.reshape(-1, *np.ones(demand.ndim - 1, int))
+        state["drive torque"], strengths = found[-1], iter(found)
+        return [[next(strengths) for _ in range(loop.unknowns)] for loop in self.loops]
+
+    def balance(
+        self, state: State, poses: Poses, senses: Sequence[Any]
+    ) -> tuple[Array, Array, Array]:
+        """Equations (N, 3 n, m) of all free bodies without dimension, and the units (3 n,) of rows
+        and (m,) of unknowns: moments are counted as forces at the largest distance
+        of two points of a body.
+
+        The last unknown is the torque of the drive.
+        """
+        size = self.group.size
+        couples = [
+            not force
+            for loop in self.loops
+            for force in ([1, 0] if isinstance(loop, SlideLoop) else [0] * loop.unknowns)
+        ]
+        units = np.where([not one for one in [*couples, False]], size, 1.0)
+        rows = np.tile([1.0, 1.0, size], len(self.group.links))
+        matrix = self.matrix(state, poses, senses)
+        torque = np.zeros((*matrix.shape[:2], 1))
+        torque[:, 2] = 1.0
+        return np.concatenate([matrix, torque], axis=-1) / rows[:, None] * units, rows, units
+
+    def check(self, state: State) -> None:
+        """Raise an error where a joint that is not needed for the motion does not fit, or where
+        stiffness leaves forces open.
+        """
+        if not self.count:
+            return
+        if told := self.fit.misfit(state, self.poses(state)):
+            raise MobilityError(Note("{count}: {told}", count=self.count, told=told))
+        if self.compliance:
+            self.check_stiffness(state)
+
+    def check_stiffness(self, state: State) -> None:
+        """Raise a `ModelError` where the stiffness of joints leaves forces open."""
+        _, loose = _parts(self.unsensed(state))
+        _, energy = self.energy(loose)
+        sizes, ways = np.linalg.eigh(energy)
+        if np.any(sizes[..., 0] < AGREES * max(self.compliance.values())):
+            left = np.max(np.abs(loose @ ways[..., :1]), axis=(0, -1))
+            rigid = self.those(left > OPEN).difference(self.compliance)
+            names = [name for name, force in self.names.items() if force in rigid]
+            raise ModelError(
+                "joints",
+                Note(
+                    "the stiffness given leaves forces in {names} open; give that of one of "
+                    "these, or of no joint at all",
+                    names=all_of(names, commas=True),
+                ),
+            )
+
+    def by_stiffness(self, inverse: Array, loose: Array) -> Array:
+        """Of solutions that differ by `loose` forces (N, m, k), the one of least energy."""
+        weighed, energy = self.energy(loose)
+        return np.asarray(inverse - loose @ np.linalg.solve(energy, weighed @ inverse))
+
+    def energy(self, loose: Array) -> tuple[Array, Array]:
+        """What unknowns (N, k, m), and loose forces themselves (N, k, k), store with loose ones."""
+        soft = np.array([
+            self.compliance.get(reaction.force, 0.0)
+            for loop, reaction in zip(self.loops, self.reactions, strict=True)
+            for _ in range(loop.unknowns)
+        ] + [0.0])  # fmt: skip
+        weighed = np.swapaxes(loose * soft[:, None], -1, -2)
+        return weighed, weighed @ loose
+
+    # -- what statics decides ----------------------------------------------------------------------
+
+    def open_joints(self, state: State) -> frozenset[str]:
+        """Names of forces that statics leaves open at some crank angle."""
+        _, loose = _parts(self.unsensed(state))
+        if not loose.shape[-1]:
+            return frozenset()
+        share = np.max(np.abs(loose), axis=(0, -1))
+        return self.those(share > OPEN)
+
+    def strength(self, state: State) -> Array:
+        """How well the joints hold the machine (N,): 0 where a force in them has no bound."""
+        sizes = np.linalg.svd(self.unsensed(state), compute_uv=False)
+        return np.asarray(sizes[:, -1] / sizes[:, 0])
+
+    def growing_joints(self, state: State) -> frozenset[str]:
+        """Names of forces that grow without bound towards where the joints do not hold it."""
+        _, _, unknowns = np.linalg.svd(self.unsensed(state), full_matrices=False)
+        return self.those(np.max(np.abs(unknowns[:, -1]), axis=0) > BESIDE)
+
+    def unsensed(self, state: State) -> Array:
+        """The equations, for whatever flank of gears."""
+        return self.balance(state, self.poses(state), [0.0] * len(self.loops))[0]
+
+    def those(self, told: Array) -> frozenset[str]:
+        """Names of forces by flags of the unknowns."""
+        flags = iter(told)
+        owners = [
+            (reaction.force, [next(flags) for _ in range(loop.unknowns)])
+            for loop, reaction in zip(self.loops, self.reactions, strict=True)
+        ]
+        return frozenset(force for force, some in owners if any(some))
+
+
+def _least(matrix: Array, right: Array) -> Array:
+    """Least solutions (N, m, k) of equations (N, n, m) with right sides (N, n, k): by QR, and by
+    singular values where rows nearly depend on each other.
+    """
+    across, triangle = np.linalg.qr(np.swapaxes(matrix, -1, -2))
+    sizes = np.abs(np.diagonal(triangle, axis1=-2, axis2=-1))
+    clear = np.min(sizes, axis=-1) > CLEAR * np.max(sizes, axis=-1)
+    triangle[~clear] = np.eye(triangle.shape[-1])
+    found = across @ np.linalg.solve(np.swapaxes(triangle, -1, -2), right)
+    if not np.all(clear):
+        found[~clear] = _parts(matrix[~clear])[0] @ right[~clear]
+    return np.asarray(found)
+
+
+def _parts(matrix: Array) -> tuple[Array, Array]:
+    """Least-squares inverse of matrices (N, n, m), and unknowns (N, m, k) that they make nothing
+    of.
+    """
+    left, sizes, right = np.linalg.svd(matrix, full_matrices=True)
+    rank = sizes.shape[-1]
+    kept = sizes > ROUNDING * sizes[:, :1]
+    over = np.where(kept, 1 / np.where(kept, sizes, 1.0), 0.0)
+    right = np.swapaxes(right, -1, -2)
+    return right[..., :rank] * over[:, None] @ np.swapaxes(left, -1, -2), right[..., rank:]
+
+
+def _largest_distance(machine: Machine) -> float:
+    """Between two points of a body, m, however its axes lie; 1 where all bodies are points."""
+    bodies = [[planar(place) for place in points.values()] for points in machine.bodies.values()]
+    return max(abs(a - b) for places in bodies for a in places for b in places) or 1.0
+
+
+def shared(
+    builder: Builder, joints: Structure, pivot: str, groups: tuple[Group, ...]
+) -> Shared | None:
+    """The free bodies of a machine whose groups cannot tell the forces one after the other."""
+    count = no_motion(joints) if joints.mobility < 1 else ""
+    if not count and builder.machine.joints:
+        raise ModelError(
+            "joints", "statics decides all joint forces of this linkage; leave their stiffness out"
+        )
+    if not count and not any(group.through for group in groups):
+        return None
+    if builder.machine.drives:
+        told = Note("parallel linkages go on through their change points with one drive only")
+        raise ModelError("drives", told)
+    decided = _decided(builder, joints, groups)
+    apart = {link for group in decided for link in group.links}
+    links = tuple(body for body in builder.rank if body not in (FRAME, *apart))
+    maker = Maker(builder, joints, links)
+    maker.anchors = {link: builder.anchors[link] for link in links}
+    loops = [loop for loop in maker.pinned_and_sliding()
+             if apart.isdisjoint((loop.on.body, loop.by.body))]  # fmt: skip
+    loops += [maker.coupling(one) for one in joints.couplings if one.driven in links]
+    loops.sort(key=lambda loop: (loop.name, loop.on.body) != (pivot, links[0]))
+    anchors = tuple(maker.anchors.values())
+    size = _largest_distance(builder.machine)
+    whole = LoopGroup(links, anchors, ((FRAME, pivot),), (), tuple(loops), (), size)
+    reactions = tuple(map(maker.reaction, loops))
+    every = (*reactions, *(one for group in decided for one in group.reactions))
+    named = {OF_FORCES[one.kind] + name_in_outputs(joints, one): one.force for one in every}
+    compliance = dict(_compliances(builder.machine, named))
+    starts = {one.name: one.start for one in joints.couplings}
+    fit = Fit(whole.equations, groups, size, starts)
+    return Shared(whole, whole.equations, reactions, pivot, count, named, compliance, fit, decided)
+
+
+def _decided(builder: Builder, joints: Structure, groups: tuple[Group, ...]) -> tuple[Group, ...]:
+    """Groups on which none of the others hangs, and which no joint more holds than they need."""
+    left, found = set(builder.rank), []
+    for group in reversed(groups):
+        others = left.difference(group.links)
+        own = group.kind != "pointed" and not group.through
+        if own and joints.freedom(group.links, others) == 0:
+            found.append(group)
+            left = others
+    return tuple(found)
+
+
+def _compliances(machine: Machine, named: Mapping[str, str]) -> Iterator[tuple[str, float]]:
+    """Of joints by the name of their force, m/N."""
+    given: set[str] = set()
+    for where, one in numbered("joints", machine.joints):
+        if one.joint not in named:
+            raise ModelError(f"{where}.joint", unknown(one.joint, named, "joint"))
+        if one.joint in given:
+            told = Note("{joint!r} has its stiffness already; leave one out", joint=one.joint)
+            raise ModelError(f"{where}.joint", told)
+        given.add(one.joint)
+        yield named[one.joint], 1 / one.stiffness

@@ -1,0 +1,226 @@
+"""Sides on which dyads are assembled where the file leaves them out: which of the two fits.
+
+A side fits that brings the links where ``[position]`` has them, or where their own axes have them:
+whoever draws all links in the frame's axes has drawn crank angle 0.  Where neither tells, a side
+without which the crank cannot turn fully does.  All of it becomes one error, with lines that can be
+pasted into the file.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from math import ceil, degrees, pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import PASTE, EquipoiseError, ModelError
+from equipoise.mechanism.assembly.builder import Builder, Group
+from equipoise.mechanism.assembly.steps import Call, State, initial_state, run
+from equipoise.mechanism.checks import meant
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.quantities import number
+
+STEPS_PER_TURN = 360
+"""Crank angles in a turn, on the way from 0 to that of the position in the file."""
+ROUGH, CLEARER = 0.25, 0.5
+"""Largest distance, in sizes of the machine, from a place that a side fits; and its greatest share
+of the other side's."""
+MOST_TRIED = 4
+"""Open sides of which every combination is tried."""
+ANGLES = tuple(np.radians(np.arange(0.0, 360.0, 30.0)).tolist())
+"""Crank angles at which it is tried to join links whose side nothing tells."""
+STRETCHED = 1e-6
+"""Squared sine of a transmission angle up to which both sides are the same."""
+SMALL = 1e4
+"""Sizes of the machine beside which rounding of coordinates is seen as such."""
+BARE = re.compile("[A-Za-z0-9_-]+")
+
+TURNS = "the crank turns fully with this side alone"
+
+
+@dataclass
+class Choice:
+    """A side that the file leaves out, or gives in words of another dyad.
+
+    words : of the two sides.  meaning : what they say.  given : what the file has.
+    side : the number of the word that is taken.  why : what tells, empty where nothing does.
+    gives : what each side leads to, empty where the links cannot be joined.
+    group : with the side that is taken.
+    """
+
+    joint: str
+    words: tuple[str, str]
+    meaning: str
+    given: str | None
+    side: int
+    why: str
+    gives: tuple[str, ...]
+    group: Group
+
+    @property
+    def wrong(self) -> str:
+        return "missing" if self.given is None else f"got {self.given!r}"
+
+    def lines(self, taken: str) -> Iterator[str]:
+        """For the table of sides; both of them where nothing tells which.
+
+        taken : entries of earlier joints on which what these sides give depends.
+        """
+        yield f"# {self.meaning}"
+        for k in (self.side,) if self.why else (0, 1):
+            given = self.gives[k] and f"{self.gives[k]}{taken and f', with {taken}'}"
+            told = "; ".join(filter(None, [given, self.why]))
+            yield f"{'' if k == self.side else '# or '}{self.entry(k)}{told and f'  # {told}'}"
+
+    def entry(self, k: int) -> str:
+        """In the table of sides, with one of the words."""
+        return f'{_key(self.joint)} = "{self.words[k]}"'
+
+
+def _key(name: str) -> str:
+    return name if BARE.fullmatch(name) else json.dumps(name, ensure_ascii=False)
+
+
+def chosen(builder: Builder, group: Group, assumed: Mapping[str, tuple[int, str]]) -> Choice:
+    """The side of a group that fits, and else the one that is assumed, or the first."""
+    both = [_with_side(group, word) for word in (1.0, -1.0)]
+    side, why = assumed.get(group.joint, (0, ""))
+    position = builder.machine.position
+    evidence = (
+        [] if position is None else [(position.crank_angle, "as in [position]", _in_position)]
+    )
+    for theta, told, distances in (*evidence, (0.0, "as drawn", _as_drawn)):
+        states = [_state(builder, one, theta) for one in both]
+        gives = tuple(_given_by(builder, group, state, theta) for state in states)
+        off = [max(distances(builder, group, state), default=np.inf) for state in states]
+        best = int(off[1] < off[0])
+        if all(gives) and off[best] <= min(ROUGH * float(builder.size()), CLEARER * off[1 - best]):
+            side, why = best, told
+            break
+    else:
+        for theta in ANGLES:  # the first at which the links can be joined
+            gives = tuple(
+                _given_by(builder, group, _state(builder, one, theta), theta) for one in both
+            )
+            if all(gives):
+                break
+    return Choice(group.joint, *builder.missing[group.joint], side, why, gives, both[side])
+
+
+def _with_side(group: Group, side: float) -> Group:
+    """A dyad's kernel takes its side as the last of its numbers."""
+    *before, call = group.motion
+    assert isinstance(call, Call)
+    call = replace(call, parameters=(*call.parameters[:-1], side))
+    return replace(group, motion=(*before, call))
+
+
+def _state(builder: Builder, group: Group, theta: float) -> State:
+    """State at one crank angle, to which the links before are followed from 0."""
+    path = np.linspace(0.0, theta, max(2, ceil(abs(theta) / (2 * pi) * STEPS_PER_TURN)))
+    with np.errstate(all="ignore"):
+        state = run([*builder.motion, *group.motion], initial_state(builder.machine, path))
+    return {name: np.ravel(value)[-1] for name, value in state.items()}
+
+
+def _given_by(builder: Builder, group: Group, state: State, theta: float) -> str:
+    """Where the joint is, or how a guide stands; nothing where the links cannot be joined."""
+    assert group.margin is not None
+    if not state[group.margin] > STRETCHED:
+        return ""
+    at = f"at crank angle {number(degrees(theta))} deg"
+    name = f"p({group.joint})"
+    if name in group.motion[-1].outputs:  # type: ignore[attr-defined]
+        x, y = (number(1e3 * part, SMALL * 1e3 * builder.size()) for part in _parts(state[name]))
+        return f"at ({x}, {y}) mm {at}"
+    turn = degrees(np.angle(state[f"u({group.links[-1]})"]))
+    return f"{group.links[-1]} at {number(turn, 360.0)} deg {at}"
+
+
+def _parts(place: complex) -> tuple[float, float]:
+    return float(np.real(place)), float(np.imag(place))
+
+
+def _places(builder: Builder, link: str, state: State) -> dict[str, complex]:
+    """Places of a link's points."""
+    anchor = builder.anchors[link]
+    start, turn = state[f"p({anchor})"], state[f"u({link})"]
+    points = builder.machine.links[link].points
+    return {name: start + turn * builder.arm(link, anchor, name) for name in points}
+
+
+def _in_position(builder: Builder, group: Group, state: State) -> Iterator[float]:
+    """Distances of points, and of ends of links that turn, from where the file has them, m."""
+    position = builder.machine.position
+    assert position is not None
+    for link in group.links:
+        for name, place in _places(builder, link, state).items():
+            if name in position.points:
+                yield float(abs(place - complex(*position.points[name])))
+        if link in position.angles:
+            turn = np.exp(1j * position.angles[link])
+            yield float(abs(state[f"u({link})"] - turn) * builder.size())
+
+
+def _as_drawn(builder: Builder, group: Group, state: State) -> Iterator[float]:
+    """Distances of points from where the links' own axes have them, m."""
+    for link in group.links:
+        own = builder.machine.links[link].points
+        for name, place in _places(builder, link, state).items():
+            yield float(abs(place - complex(*own[name])))
+
+
+def decided(
+    machine: Machine, choices: Sequence[Choice], turns_fully: Callable[[Machine], Any]
+) -> dict[str, tuple[int, str]]:
+    """By joint, the sides without which the crank cannot turn fully, where nothing else tells.
+
+    turns_fully : raises an `EquipoiseError` for a machine whose crank does not.
+    """
+    known = {one.joint: one.words[one.side] for one in choices}
+    undecided = [one for one in choices if not one.why]
+    if not 0 < len(undecided) <= MOST_TRIED:
+        return {}
+    good: list[tuple[int, ...]] = []
+    for numbers in product((0, 1), repeat=len(undecided)):
+        taken = {one.joint: one.words[k] for one, k in zip(undecided, numbers, strict=True)}
+        try:
+            turns_fully(replace(machine, assembly={**machine.assembly, **known, **taken}))
+        except EquipoiseError:
+            continue
+        good.append(numbers)
+    found = {}
+    for one, taken_sides in zip(undecided, zip(*good, strict=True), strict=False):
+        alone = len(set(taken_sides)) == 1 and len(good) < 2 ** len(undecided)
+        found[one.joint] = (taken_sides[0], TURNS if alone else "")
+    return found
+
+
+def missing(machine: Machine, choices: Sequence[Choice], idle: Iterable[str] = ()) -> ModelError:
+    """One error for all sides that are missing; `idle` are entries of joints that have none."""
+    # one entry is that of all dyads whose inner joint has its name
+    choices = [*{one.joint: one for one in (*choices, *choices[::-1])}.values()]
+    first = choices[0]
+    if len(choices) == 1:
+        where = f"assembly.{first.joint}"
+        what = f'{first.wrong}; give "{first.words[0]}" or "{first.words[1]}": {first.meaning}'
+    else:
+        given = [f"{one.joint} {one.wrong.replace('missing', 'is missing')}" for one in choices]
+        where, what = "assembly", f"{', '.join(given)}; give each its side in [assembly]"
+    joints = [one.joint for one in choices]
+    for name in idle:
+        hint = "; ".join(filter(None, ("is no inner joint of a dyad", meant(name, joints))))
+        what += f" ({name!r} {hint})"
+    table = [] if machine.assembly else ["[assembly]"]
+    taken: list[str] = []
+    for one in choices:
+        table += one.lines(", ".join(taken))
+        if not one.why:
+            taken.append(one.entry(one.side))
+    paste = "\n".join(table)
+    return ModelError(where, f"{what}, such as{PASTE}{paste}")

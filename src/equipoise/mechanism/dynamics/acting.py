@@ -1,0 +1,161 @@
+"""What acts on links from outside of their joints: loads, soil, springs, the tension of belts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain
+from math import degrees
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.mechanism.assembly.joints import coupling_pins
+from equipoise.mechanism.assembly.steps import Array
+from equipoise.mechanism.dynamics.loads import load_at
+from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.tip import surface_of, tip_link
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.field import Soil
+from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.springs import Spring
+
+MEETING = 1e-12
+"""Of the coordinates of its ends: where they are closer, rounding decides where a spring points."""
+
+
+def load_demands(motion: Motion) -> dict[str, Demand]:
+    """What holds the loads, for every link that has one."""
+    return demands_of(motion, acting_loads(motion))
+
+
+def spring_demands(motion: Motion) -> dict[str, Demand]:
+    """What holds the springs and the tension of belts, for every link that has one.
+
+    Raises
+    ------
+    ModelError : the ends of a spring with a free length meet.
+    """
+    strands = (one for _, ends in acting_strands(motion) for one in ends)
+    return demands_of(motion, chain(acting_springs(motion), strands))
+
+
+def acting_springs(motion: Motion) -> Iterator[Acting]:
+    """Link, point and force of each end of a spring on a link; they have no torque.
+
+    Raises
+    ------
+    ModelError : the ends of a spring with a free length meet.
+    """
+    for spring in motion.machine.springs:
+        force = spring_force(motion, spring)
+        for (link, point), pull in zip(spring.ends, (force, -force), strict=False):
+            yield link, point, pull, 0.0
+
+
+def acting_strands(motion: Motion) -> Iterator[tuple[Belt, list[Acting]]]:
+    """Belts with what their tension does to their links, whether or not they pass a torque on."""
+    for belt in motion.machine.belts:
+        if belt.tension is not None:
+            driver, driven = coupling_pins(motion.linkage.joints, belt)
+            apart = motion.points[driven].place - motion.points[driver].place
+            pull = belt.tension * belt.strands(apart).toward
+            ends = (belt.driver, driver, pull), (belt.driven, driven, -pull)
+            yield belt, [(*end, 0.0) for end in ends if end[0] != FRAME]
+
+
+def inner_demands(motion: Motion) -> dict[str, Demand]:
+    """What holds those of the loads whose opposite the frame bears."""
+    return demands_of(motion, _acting(motion, "frame"))
+
+
+def acting_loads(motion: Motion) -> Iterator[Acting]:
+    """Link, point, force and torque of each load."""
+    yield from _acting(motion, "frame")
+    yield from outer_loads(motion)
+
+
+def outer_loads(motion: Motion) -> Iterator[Acting]:
+    """The same of loads from outside, and of the soil."""
+    yield from _acting(motion, None)
+    machine = motion.machine
+    if machine.planting is not None and machine.planting.soil is not None:
+        for arm in machine.planting.every_arm:
+            yield tip_link(machine, arm.tip), arm.tip, soil_force(motion, arm.tip), 0.0
+
+
+def _acting(motion: Motion, reaction: str | None) -> Iterator[Acting]:
+    for load in (one for one in motion.machine.loads if one.reaction == reaction):
+        yield load.link, load.point, *load_at(load, motion.crank_angle)
+
+
+def soil_force(motion: Motion, tip: str | None = None) -> Array:
+    """Force of the soil on a tip (N,), N, complex; 0 above the surface.
+
+    tip : of any arm; of the first where not given.
+
+    Raises
+    ------
+    ModelError : the machine has no `[planting]`.
+    MotionError : its crank cannot turn fully, so that no lowest point tells where the surface is.
+    """
+    planting = motion.machine.planting
+    if planting is None or planting.soil is None:
+        return np.zeros(len(motion.crank_angle), complex)
+    point = motion.points[tip or planting.tip]
+    depth = surface_of(motion.machine) - point.y
+    over_ground = point.velocity + planting.forward(motion.speed)
+    speed = np.abs(over_ground)
+    size = np.where(depth > 0, resistance(planting.soil, depth, speed), 0.0)
+    against = np.divide(-over_ground, speed, out=np.zeros_like(over_ground), where=speed > 0)
+    return size * against
+
+
+def resistance(soil: Soil, depth: Array, speed: Array) -> Array:
+    """Size of the force (N,), N, at depths (N,), m, and speeds over ground (N,), m/s."""
+    size = soil.resistance + soil.per_depth * depth + soil.per_speed * speed
+    size = size + soil.per_depth_and_speed * depth * speed
+    if soil.table is not None:
+        size = size + np.interp(depth, soil.table.depth, soil.table.resistance)
+    return size
+
+
+def spring_force(motion: Motion, spring: Spring) -> Any:
+    """Force of a spring on its link's point (N,), N, complex; minus this on its other end.
+
+    Raises
+    ------
+    ModelError : its ends meet, so that a spring with a free length points nowhere.
+    """
+    if spring.free_length:
+        spring_direction(motion, spring.link, spring.point, spring.to)
+    place, to = motion.points[spring.point].place, motion.points[spring.to].place
+    return kernels.spring(place, to, spring.stiffness, spring.free_length)
+
+
+def spring_vector(motion: Motion, point: str, to: str) -> Any:
+    """From a point to another, both ends of a spring (N,), m, complex."""
+    return motion.points[to].place - motion.points[point].place
+
+
+def spring_direction(motion: Motion, link: str, point: str, to: str) -> Any:
+    """Unit vector from a spring's end on a link to its other end (N,), complex.
+
+    Raises
+    ------
+    ModelError : they meet.
+    """
+    along = spring_vector(motion, point, to)
+    length = abs(along)
+    coordinates = abs(motion.points[point].place) + abs(motion.points[to].place)
+    meeting = length <= MEETING * coordinates
+    if meeting.any():
+        angle = degrees(motion.crank_angle[meeting.argmax()])
+        raise ModelError(
+            "springs",
+            f"{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a spring "
+            "with a free length points nowhere; give another point, or a free_length of 0",
+        )
+    return along / length

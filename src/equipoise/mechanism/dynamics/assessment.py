@@ -1,0 +1,246 @@
+"""What an engineer reads off a linkage: of a four-bar its class and type, of any what looks odd."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import acos, asin, degrees, isclose, pi, sqrt
+
+from equipoise.i18n import Note
+from equipoise.mechanism.assembly.linkage import Linkage, assemble
+from equipoise.mechanism.assembly.steps import Call
+from equipoise.mechanism.checks import numbered
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.dynamics.statics import statics
+from equipoise.mechanism.dynamics.undecided import undecided
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.machine import FRAME, Machine, size_of
+
+BARS = (kernels.rrr, kernels.parallelogram)
+"""Kernels of two links and three pins."""
+TYPES = {
+    "frame": "double-crank (drag link)",
+    "crank": "crank-rocker",
+    "coupler": "double-rocker",
+    "rocker": "rocker-crank",
+}
+"""Type of a Grashof four-bar by its shortest link."""
+
+
+@dataclass(frozen=True)
+class FourBar:
+    """The four-bar of drive link, coupler, rocker and frame.
+
+    Attributes
+    ----------
+    pins : its joints: of crank and frame, crank and coupler, coupler and rocker, rocker and frame.
+    a, b, c, d : lengths of frame, crank, coupler and rocker, m, named as by Yamashita, Ichikawa
+        and Mori.
+    grashof : "Grashof", "non-Grashof" or "change point": shortest plus longest length less than,
+        greater than or equal to the sum of the other two.
+    type : by the shortest link; "triple-rocker" for a non-Grashof four-bar.
+    transmission_min, transmission_max : extremes of the angle between coupler and rocker, rad.
+    swing : angle through which the rocker swings, rad; None unless a crank-rocker.
+    time_ratio : time of the rocker's slower swing over that of the faster, at constant crank
+        speed; None unless a crank-rocker.
+    condition_5 : the crank can turn and the rocker is determined at every crank angle: the paper's
+        |E_c / R_c| <= 1, |E_a / R_a| <= 1 and a != b.
+    condition_6 : it stays on its branch: a + b != c + d and b + c != a + d.
+    """
+
+    crank: str
+    coupler: str
+    rocker: str
+    pins: tuple[str, str, str, str]
+    a: float
+    b: float
+    c: float
+    d: float
+    grashof: str
+    type: str
+    transmission_min: float | None
+    transmission_max: float | None
+    swing: float | None
+    time_ratio: float | None
+    condition_5: bool
+    condition_6: bool
+
+
+def four_bar(machine: Machine) -> FourBar | None:
+    """Describe the four-bar at the crank of a machine, or return None if there is none."""
+    if machine.drive.pushes:
+        return None
+    linkage = assemble(machine)
+    drive, pivot = machine.drive.link, linkage.pivot
+    for group in linkage.groups:
+        if not any(isinstance(s, Call) and s.kernel in BARS for s in group.motion):
+            continue
+        first, second, inner = group.reactions
+        if first.by == FRAME:
+            first, second = second, first
+        if (first.by, second.by) == (drive, FRAME):
+            a = _distance(machine, FRAME, pivot, second.at)
+            b = _distance(machine, drive, pivot, first.at)
+            c = _distance(machine, first.on, first.at, inner.at)
+            d = _distance(machine, second.on, second.at, inner.at)
+            links, pins = (
+                (drive, first.on, second.on),
+                (pivot, first.at, inner.at, second.at),
+            )
+            return _described(links, pins, a, b, c, d)
+    return None
+
+
+def _described(
+    links: tuple[str, str, str],
+    pins: tuple[str, str, str, str],
+    a: float,
+    b: float,
+    c: float,
+    d: float,
+) -> FourBar:
+    grashof, kind = _class(a, b, c, d)
+    turns = _condition_5(a, b, c, d)
+    low = high = swing = ratio = None
+    if turns:  # the extremes lie where the crank is in line with the frame
+        low, high = (_opposite(c, d, s) for s in (abs(a - b), a + b))
+    if turns and kind == "crank-rocker":  # it turns back where crank and coupler are in line
+        stretched, folded = b + c, abs(c - b)
+        swing = abs(_opposite(a, d, stretched) - _opposite(a, d, folded))
+        lag = abs(_opposite(a, stretched, d) - _opposite(a, folded, d))
+        ratio = (pi + lag) / (pi - lag)
+    apart = not (isclose(a + b, c + d) or isclose(b + c, a + d))
+    return FourBar(*links, pins, a, b, c, d, grashof, kind, low, high, swing, ratio, turns, apart)
+
+
+def _distance(machine: Machine, body: str, one: str, other: str) -> float:
+    points = machine.points_of(body)
+    return abs(complex(*points[one]) - complex(*points[other]))
+
+
+def _class(a: float, b: float, c: float, d: float) -> tuple[str, str]:
+    lengths = {"frame": a, "crank": b, "coupler": c, "rocker": d}
+    shortest = min(lengths, key=lengths.__getitem__)
+    outer = min(lengths.values()) + max(lengths.values())
+    inner = a + b + c + d - outer
+    if isclose(outer, inner, rel_tol=1e-12):
+        return "change point", "change-point linkage"
+    if outer < inner:
+        return "Grashof", TYPES[shortest]
+    return "non-Grashof", "triple-rocker"
+
+
+def _condition_5(a: float, b: float, c: float, d: float) -> bool:
+    """Conditions (5) of Yamashita, Ichikawa and Mori.
+
+    |E_c / R_c| and |E_a / R_a| are convex or monotonic in the distance from crank pin to rocker
+    pivot, so their largest values lie at its extremes |a - b| and a + b.
+    """
+    if isclose(a, b):
+        return False
+    for s in (abs(a - b), a + b):
+        e_c = s * s + c * c - d * d
+        e_a = 2 * c * c - 2 * d * d - e_c
+        if abs(e_c) > 2 * c * s * (1 + 1e-12) or abs(e_a) > 2 * d * s * (1 + 1e-12):
+            return False
+    return True
+
+
+def _opposite(one: float, other: float, opposite: float) -> float:
+    """Angle of a triangle between two sides, from the side opposite."""
+    cosine = (one * one + other * other - opposite * opposite) / (2 * one * other)
+    return acos(min(1.0, max(-1.0, cosine)))
+
+
+MOST_JUMPS = 6
+"""Crank angles that are told at which an acceleration jumps."""
+POOR_TRANSMISSION = 30.0
+"""Degrees from stretched or folded below which force is transmitted badly."""
+
+WIDE_INERTIA, NARROW_INERTIA = 5.0, 0.02
+"""Radius of gyration over size of the link above and below which a slip of units is likely: a
+bar's is 0.29, and a factor of 1000 in its inertia makes 0.009 of that.  None is no slip."""
+
+
+LEVEL = 1e-6
+"""Degrees up to which axes are not turned."""
+
+
+def _jerks(machine: Machine) -> Iterator[Note]:
+    """Where laws of drives let accelerations jump, and with them all forces."""
+    for link, law in machine.laws.items():
+        angles = [f"{degrees(at):.4g}" for at in law.jumps(2)]
+        more = [] if len(angles) <= MOST_JUMPS else ["..."]
+        if angles:
+            yield Note(
+                "the acceleration that the drive of {link!r} commands jumps at crank angle "
+                "{angles} deg, an infinite jerk, and forces jump there; laws such as cycloidal, "
+                "3-4-5 or s-curve do not",
+                link=link,
+                angles=", ".join([*angles[:MOST_JUMPS], *more]),
+            )
+
+
+def remarks(linkage: Linkage) -> Iterator[Note | str]:
+    """Things worth a second look, each one sentence; none of them keeps a model from running."""
+    machine = linkage.machine
+    if missing := massless(machine):
+        yield missing
+    yield from undecided(linkage).told()
+    if machine.has_planes:
+        yield from statics(linkage).told()
+    yield from _jerks(machine)
+    through = {group.joint for group in linkage.groups if group.through}
+    for joint, (number, angle) in linkage.cycle.weakest.items():
+        if joint in through:
+            continue
+        transmission = degrees(asin(sqrt(min(number, 1.0))))
+        if transmission < POOR_TRANSMISSION:
+            yield (
+                f"the dyad at {joint} comes within {transmission:.1f} deg of its dead position, at "
+                f"crank angle {degrees(angle):.1f} deg; joint forces are large there"
+            )
+    for name, link in machine.links.items():
+        size = size_of(link.points)
+        if not link.mass or link.inertia is None or link.center_of_mass is None or not size:
+            continue
+        gyration = sqrt(link.inertia / link.mass)
+        if not NARROW_INERTIA * size < gyration < WIDE_INERTIA * size and gyration:
+            yield (
+                f"links.{name}.inertia gives a radius of gyration of {gyration * 1e3:.4g} mm, for "
+                f"a link of {size * 1e3:.4g} mm; check its unit"
+            )
+        x, y = link.center_of_mass
+        px, py = next(iter(link.points.values()))
+        if sqrt((x - px) ** 2 + (y - py) ** 2) > WIDE_INERTIA * size:
+            yield f"links.{name}.center_of_mass lies far outside the link; check its unit"
+    yield from _turned_axes(machine)
+    used = {slider.through for slider in machine.sliders if slider.on == FRAME}
+    used |= {spring.to for spring in machine.springs} | linkage.joints.pins.keys()
+    used |= {*(machine.drive.between or ())}
+    used |= {spring.to for spring in machine.balance.springs} if machine.balance else set()
+    for point in machine.frame:
+        if point not in used:
+            yield f"frame.points.{point} is not used by any joint or spring"
+
+
+def _turned_axes(machine: Machine) -> Iterator[str]:
+    """Of links that slide along a line which turns their axes, and that have further points or
+    their centre of mass off the line.
+
+    Only where no angle is given: whoever gives one knows of the axes.
+    """
+    for place, slider in numbered("sliders", machine.sliders):
+        link, turn = machine.links[slider.link], degrees(slider.direction) % 360
+        at, center = link.points[slider.point], link.center_of_mass
+        further = [name for name, other in link.points.items() if other != at]
+        if center is not None and center[1] != at[1]:
+            further.append("center_of_mass")
+        if slider.angle == 0 and further and min(turn, 360 - turn) > LEVEL:
+            axes = "the frame" if slider.on == FRAME else repr(slider.on)
+            yield (
+                f"{place}.direction turns the axes of {slider.link!r}: its x axis points along the "
+                f"line, at {turn:.4g} deg in {axes}, and its {', '.join(further)} "
+                f"{'is' if len(further) == 1 else 'are'} told in these axes; give angle = "
+                f'"{-turn % 360:.4g} deg" if they are meant along those of {axes}'
+            )

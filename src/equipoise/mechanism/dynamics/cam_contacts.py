@@ -1,0 +1,85 @@
+"""Contact of cams and followers that springs press together: where, and when, it is lost."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from equipoise.mechanism.assembly.steps import Array
+from equipoise.mechanism.dynamics.forces import Forces
+from equipoise.mechanism.dynamics.reactions import reactions
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.cams import Cam
+
+
+@dataclass(frozen=True, eq=False)
+class LetGo:
+    """A follower that its springs do not keep on the cam everywhere.
+
+    ranges : crank angles, rad, between which it would have to be pulled, at the speed analysed.
+    least : smallest normal force, N, and crank angle, rad, of it.
+    speed : size of the crank's speed, rad/s, from which on contact is lost; 0 where it is at rest,
+        and inf where it never is.
+    at : crank angle, rad, at which that happens.
+    """
+
+    cam: Cam
+    ranges: tuple[tuple[float, float], ...]
+    least: tuple[float, float]
+    speed: float
+    at: float
+
+
+def let_go(forces: Forces) -> tuple[LetGo, ...]:
+    """Of each cam that springs close, where and from which speed its follower lifts off.
+
+    The normal force is A + B times the square of the speed: B is what inertia asks for, A what
+    weight, loads and springs do, and what an acceleration of the crank adds at any speed.  Soil,
+    which resists faster fingers more, is taken as it is at the speed analysed.
+    """
+    machine, motion = forces.motion.machine, forces.motion
+    sprung = [cam for cam in machine.cams if cam.closed_by == "spring"]
+    if not sprung:
+        return ()
+    fast = forces.at(speed=1.0, acceleration=0.0).inertia
+    squared = reactions(motion, fast, forces.solved).cams
+    return tuple(
+        _let_go(cam, motion, forces.cams[cam.name].normal, squared[cam.name].normal)
+        for cam in sprung
+    )
+
+
+def _let_go(cam: Cam, motion: Motion, normal: Array, per_speed2: Array) -> LetGo:
+    """From the normal force, and the share of it that a speed of 1 rad/s asks for."""
+    theta, speed = motion.crank_angle, motion.speed
+    at_rest = normal - per_speed2 * speed**2
+    worst = int(np.argmin(at_rest))
+    if at_rest[worst] <= 0:
+        limit, place = 0.0, worst
+    else:
+        with np.errstate(divide="ignore"):
+            squares = np.where(per_speed2 < 0, -at_rest / per_speed2, np.inf)
+        place = int(np.argmin(squares))
+        limit = float(np.sqrt(squares[place]))
+    k = int(np.argmin(normal))
+    least = float(normal[k]), float(theta[k])
+    return LetGo(cam, _ranges(theta, normal), least, limit, float(theta[place]))
+
+
+def _ranges(theta: Array, normal: Array) -> tuple[tuple[float, float], ...]:
+    """Between which crank angles a force is negative, by straight lines between its samples."""
+    if len(theta) < 2 or not np.any(normal < 0):
+        return ()
+    period = theta[-1] - theta[0] + theta[1] - theta[0]
+    x = np.append(theta, theta[0] + period)
+    y = np.append(normal, normal[0])
+    if np.all(normal < 0):
+        return ((float(x[0]), float(x[-1])),)
+    k = np.flatnonzero(np.sign(y[:-1]) * np.sign(y[1:]) < 0)
+    crossings = x[k] - y[k] * (x[k + 1] - x[k]) / (y[k + 1] - y[k])
+    down = crossings[y[k] > 0]
+    up = crossings[y[k] < 0]
+    if up[0] < down[0]:
+        up = np.append(up[1:], up[0] + period)
+    return tuple((float(a), float(b)) for a, b in zip(down, up, strict=True))

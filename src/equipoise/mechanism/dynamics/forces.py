@@ -1,0 +1,338 @@
+"""What the motion does: shaking force and moment, drive torque, and the force in every joint.
+
+Each link's inertia, weight, loads and springs make a demand, a force and a moment about the link's
+anchor, that its joints must supply; `dynamics.reactions` turns demands into joint forces.  Because
+that pass is linear in the demands, causes, links or parameters are told apart by running it on a
+stack of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import MassError
+from equipoise.i18n import Note
+from equipoise.mechanism.assembly.steps import Array, p, planar, u
+from equipoise.mechanism.dynamics import acting
+from equipoise.mechanism.dynamics.across import (
+    Across,
+    apart,
+    masses_across,
+    pushes_across,
+    springs_across,
+)
+from equipoise.mechanism.dynamics.reactions import (
+    BeltForce,
+    CamForce,
+    Demand,
+    JointForce,
+    MeshForce,
+    Pass,
+    VectorSignal,
+    demands_of,
+    full,
+    pushed,
+    reactions,
+)
+from equipoise.mechanism.dynamics.shares import CAUSES, Split
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.machine import Link, Machine, Vector
+from equipoise.mechanism.parts.places import in_frame
+
+
+@dataclass(frozen=True, eq=False)
+class Forces:
+    """Forces of a machine in motion; arrays (N,), one value for each crank angle.
+
+    motion : what they belong to.
+    about : point of the frame's plane (m, complex) about which moments are taken.
+    inertia, weights, loads, springs : link -> its demand, by what makes it; loads and springs
+        only where there are.
+    inner : those of the loads whose opposite the frame bears.
+    """
+
+    motion: Motion
+    about: complex
+    inertia: Mapping[str, Demand]
+    weights: Mapping[str, Demand]
+    loads: Mapping[str, Demand]
+    springs: Mapping[str, Demand] = field(default_factory=dict)
+    inner: Mapping[str, Demand] = field(default_factory=dict)
+
+    @cached_property
+    def shaking_force(self) -> VectorSignal:
+        """Minus the rate of change of momentum, N."""
+        return self._force(self.inertia)
+
+    @cached_property
+    def shaking_moment(self) -> Array:
+        """Minus the rate of change of angular momentum about `about`, N m."""
+        return self.shaking_moment_about(self.about)
+
+    def shaking_moment_about(self, point: str | Vector | complex) -> Array:
+        """Shaking moment, N m, about a point of the frame (its name) or (x, y) in m."""
+        pole = in_frame(self.motion.machine.frame, point)
+        return full(self.motion, -self._moment(self.inertia, pole), float)
+
+    @cached_property
+    def weight(self) -> VectorSignal:
+        """Weight of all links, N: the same at every crank angle."""
+        return self._force(self.weights)
+
+    @cached_property
+    def weight_moment(self) -> Array:
+        """Moment of the weight about `about`, N m."""
+        return full(self.motion, -self._moment(self.weights, self.about), float)
+
+    @cached_property
+    def solved(self) -> Pass:
+        """The run over the joints that belongs to all demands together."""
+        return self.solved_like(None)
+
+    def solved_like(self, other: Pass | None) -> Pass:
+        """The same with the flanks of gears in contact that are so in another run."""
+        total = dict(self.inertia)
+        for more in (self.weights, self.loads, self.springs):
+            for link, (force, moment) in more.items():
+                total[link] = (total[link][0] + force, total[link][1] + moment)
+        return reactions(self.motion, total, other)
+
+    @property
+    def frame_force(self) -> VectorSignal:
+        """Of all joints, springs and reactions of loads, N: the sum of shaking force, weight and
+        loads from outside.
+        """
+        parts = (*self.springs.values(), *self.inner.values())
+        return VectorSignal(self.solved.frame_force + sum(force for force, _ in parts))
+
+    @property
+    def frame_moment(self) -> Array:
+        """Moment of all joints, springs, reactions of loads and of the drive on the frame about
+        `about`, N m.
+        """
+        parts = self._moment(self.springs, self.about) + self._moment(self.inner, self.about)
+        return np.asarray(self.solved.frame_moment(self.about) + parts)
+
+    @property
+    def outer(self) -> Forces:
+        """The same without what links and frame exert on each other: springs, and loads between."""
+        outside = demands_of(self.motion, acting.outer_loads(self.motion))
+        return replace(self, loads=outside, springs={}, inner={})
+
+    @property
+    def drive_torque(self) -> Array:
+        """Torque of the first drive on its link, N m; times that link's speed it is its power."""
+        return self.solved.drive_torque
+
+    @property
+    def drives(self) -> Mapping[str, Array]:
+        """Torque of each drive on its link, N m, or its force, N, by the name of the link."""
+        return self.solved.drives
+
+    @property
+    def drive_force(self) -> Array:
+        """Force with which a drive pushes its ends apart, N; of one that does."""
+        return self.solved.drive_force
+
+    @property
+    def power(self) -> Array:
+        """Power fed in by all drives, W."""
+        return np.asarray(sum(self._work_by_angle.values()) * self.motion.speed)
+
+    @property
+    def work(self) -> dict[str, float]:
+        """Work of each drive in a cycle, J; crank angles have to be those of a whole cycle."""
+        angle = 2 * np.pi * self.motion.turns * np.sign(self.motion.speed)
+        return {link: float(np.mean(one) * angle) for link, one in self._work_by_angle.items()}
+
+    @cached_property
+    def _work_by_angle(self) -> dict[str, Array]:
+        """Work of each drive by crank angle (N,), N m, by the name of its link."""
+        return {link: one * self.motion.way(link) for link, one in self.drives.items()}
+
+    @cached_property
+    def joints(self) -> Mapping[str, JointForce]:
+        """Force in each pin and slider, by name, on the later body by the earlier one."""
+        return self.solved.joints
+
+    @cached_property
+    def gears(self) -> Mapping[str, MeshForce]:
+        """Force between the teeth of each pair of gears, on the driven gear by the driver."""
+        return self.solved.gears
+
+    @cached_property
+    def racks(self) -> Mapping[str, MeshForce]:
+        """Force between the teeth of each rack and its pinion, on the driven of them."""
+        return self.solved.racks
+
+    @cached_property
+    def belts(self) -> Mapping[str, BeltForce]:
+        """Pull and tensions of each belt on its driven link."""
+        return self.solved.belts(lambda belt: belt.tension or 0.0)
+
+    @cached_property
+    def cams(self) -> Mapping[str, CamForce]:
+        """Force of each cam on its follower."""
+        return self.solved.cams
+
+    @cached_property
+    def across(self) -> Across:
+        """What links beside each other do across the plane."""
+        motion = self.motion
+        loads = pushes_across(motion, acting.acting_loads(motion))
+        springs = springs_across(motion)
+        outer = pushes_across(motion, acting.outer_loads(motion))
+        return Across(motion, *masses_across(motion), loads, springs, self.solved.exerted, outer)
+
+    @cached_property
+    def split(self) -> Split:
+        """Every output by cause and by link."""
+        return split(self)
+
+    def at(self, speed: float | None = None, acceleration: float | None = None) -> Forces:
+        """The same at another speed (rad/s) or acceleration (rad/s2), no position solved again."""
+        return forces(self.motion.at(speed, acceleration), self.about)
+
+    def _force(self, demands: Mapping[str, Demand]) -> VectorSignal:
+        whole = -sum(force for force, _ in demands.values())
+        return VectorSignal(full(self.motion, whole, complex))
+
+    def _moment(self, demands: Mapping[str, Demand], about: complex) -> Any:
+        return sum(
+            moment + kernels.cross(self.motion.state[f"p({self.anchor(link)})"] - about, force)
+            for link, (force, moment) in demands.items()
+        )
+
+    def anchor(self, link: str) -> str:
+        """The point of a link about which its demand's moment is taken."""
+        return self.motion.linkage.anchors[link]
+
+
+def forces(motion: Motion, about: str | Vector | complex | None = None) -> Forces:
+    """Forces of a machine in motion.
+
+    Parameters
+    ----------
+    about : point about which moments are taken, a name or (x, y) in m; the drive pivot if None.
+
+    Raises
+    ------
+    MassError : a link has no mass given.
+    ModelError : the ends of a spring with a free length meet.
+    UsageError : there is no such point.
+    """
+    machine = motion.machine
+    if missing := massless(machine):
+        raise MassError(missing)
+    pole = in_frame(machine.frame, motion.linkage.pivot if about is None else about)
+    speed2, gravity = motion.speed**2, complex(*machine.gravity)
+    inertia, weights = {}, {}
+    for link in machine.links:
+        mass, moment, turning = inertia_about(machine.links[link], motion.linkage.anchors[link])
+        inertia[link] = demand_of_inertia(motion, link, speed2, mass, moment, turning)
+        weights[link] = kernels.weight_demand(motion.state[f"u({link})"], mass, moment, gravity)
+    held = acting.load_demands(motion), acting.spring_demands(motion), acting.inner_demands(motion)
+    return Forces(motion, pole, inertia, weights, *held)
+
+
+def massless(machine: Machine) -> Note | str:
+    """Say which links lack masses; empty where none does."""
+    missing = [name for name, link in machine.links.items() if not link.has_mass]
+    if not missing:
+        return ""
+    return Note(
+        "forces need mass, center_of_mass and inertia of every link; missing for {links} (a link "
+        "to be neglected has mass 0)",
+        links=", ".join(missing),
+    )
+
+
+def inertia_about(body: Link, point: str) -> tuple[float, complex, float]:
+    """Mass, first moment (complex) and moment of inertia of a link about one of its points.
+
+    Columns where the numbers of the link are.
+    """
+    assert body.mass is not None and body.center_of_mass is not None and body.inertia is not None
+    shift = planar(body.points[point]) - planar(body.center_of_mass)
+    mass, moment, inertia = kernels.about(body.mass, 0.0, body.inertia, shift)
+    return mass, moment, inertia
+
+
+def demand_of_inertia(
+    motion: Motion, link: str, speed2: float, mass: Any, moment: Any, inertia: Any
+) -> Demand:
+    """What moves a link with these inertial parameters about its anchor."""
+    _, p1, p2 = (motion.state[name] for name in p(motion.linkage.anchors[link]))
+    rotation, w, a = (motion.state[name] for name in u(link))
+    force, turning = kernels.inertia_demand(
+        p1, p2, rotation, w, a, speed2, motion.acceleration, mass, moment, inertia
+    )
+    return force, turning
+
+
+def split(whole: Forces) -> Split:
+    """Run the joints once for every cause and link."""
+    motion, links = whole.motion, tuple(whole.inertia)
+    shape = (len(CAUSES), len(links), len(motion.crank_angle))
+    demands = {}
+    for k, link in enumerate(links):
+        force, moment = np.zeros(shape, complex), np.zeros(shape)
+        for c, (f, m) in enumerate(_causes(whole, link)):
+            force[c, k], moment[c, k] = f, m
+        demands[link] = (force, moment)
+    solved = reactions(motion, demands, whole.solved)
+
+    def tension_told(belt: Belt) -> Array:
+        """With the springs, and with the driven link."""
+        own = np.zeros(shape)
+        own[CAUSES.index("spring"), links.index(belt.driven)] = belt.tension or 0.0
+        return own
+
+    inertial = np.array([1, 1, 0, 0, 0])[:, None, None]
+    # A spring's pull on the frame and what it makes the joints bear there cancel.
+    on_frame = np.array([1, 1, 1, 1, 0])[:, None, None]
+    frame_force = np.broadcast_to(on_frame * solved.frame_force, shape).copy()
+    frame_moment = np.broadcast_to(on_frame * solved.frame_moment(whole.about), shape).copy()
+    for link, demand in whole.inner.items():
+        at = CAUSES.index("load"), links.index(link)
+        frame_force[at] += demand[0]
+        frame_moment[at] += whole._moment({link: demand}, whole.about)
+    return Split(
+        inertial * -sum(force for force, _ in demands.values()),
+        inertial * -whole._moment(demands, whole.about),
+        frame_force,
+        frame_moment,
+        solved.drive_torque,
+        solved.drives,
+        solved.joints,
+        solved.gears,
+        solved.racks,
+        solved.belts(tension_told),
+        solved.cams,
+        apart(whole.across, solved.exerted, shape) if motion.machine.has_planes else None,
+        links,
+        drive_force=pushed(solved),
+    )
+
+
+def _causes(whole: Forces, link: str) -> list[Demand]:
+    """Demands of a link in the order of `CAUSES`."""
+    motion = whole.motion
+    body = motion.machine.links[link]
+    mass, moment, _ = inertia_about(body, whole.anchor(link))
+    as_point = abs(moment) ** 2 / mass if mass else 0.0
+    speed2 = motion.speed**2
+    return [
+        demand_of_inertia(motion, link, speed2, mass, moment, as_point),
+        demand_of_inertia(motion, link, speed2, 0.0, 0.0, body.inertia),
+        whole.weights[link],
+        whole.loads.get(link, (0j, 0.0)),
+        whole.springs.get(link, (0j, 0.0)),
+    ]

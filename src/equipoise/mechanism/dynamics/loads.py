@@ -1,0 +1,104 @@
+"""Loads from outside at any crank angle, and their work in a cycle."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.steps import Array
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.machine import Load, LoadTable, Machine
+
+ROUNDING = 1e-9
+"""rad: a window includes its first crank angle and excludes its last, whatever their rounding."""
+
+
+def _interpolated(load: Load, table: LoadTable, crank_angle: Array) -> list[Array]:
+    """Each column of a table, linear between the rows and beyond the last one as it says."""
+    first, period = table.crank_angle[0], 2 * pi * table.turns
+    since = np.mod(crank_angle - first + ROUNDING, period) - ROUNDING
+    angles, columns = np.subtract(table.crank_angle, first), np.array(table.values)
+    if load.outside == "wrap" and not table.covers:
+        angles, columns = np.append(angles, period), np.append(columns, columns[:, :1], axis=1)
+    ends = 0.0 if load.outside == "zero" and not table.covers else None
+    since = np.where(abs(since - table.span) < ROUNDING, table.span, np.maximum(since, 0.0))
+    return [np.interp(since, angles, column, right=ends) for column in columns]
+
+
+def load_at(load: Load, crank_angle: Array) -> tuple[Array, Array]:
+    """Force (complex, N) and torque (N m) of a load at crank angles (N,)."""
+    zero = np.zeros(len(crank_angle))
+    if load.table is not None:
+        columns = _interpolated(load, load.table, crank_angle)
+    elif load.force is not None:
+        columns = [zero + load.force[0], zero + load.force[1]]
+    else:
+        columns = [zero + (load.torque or 0.0)]
+    if load.start is not None and load.stop is not None:
+        span = np.mod(load.stop - load.start, 2 * pi) or 2 * pi
+        acts = np.mod(crank_angle - load.start + ROUNDING, 2 * pi) < span
+        columns = [np.where(acts, column, 0.0) for column in columns]
+    if len(columns) == 2:
+        return columns[0] + 1j * columns[1], zero
+    return zero + 0j, columns[0]
+
+
+PIECE, NODES = pi / 12, 4
+"""Longest piece of a cycle, rad, over which work is summed, and crank angles in it."""
+
+
+class Work(NamedTuple):
+    """What a load does in a whole cycle.
+
+    net : its work, J.  both : work that it gives and that it takes, added up, J.
+    largest : its largest size, N or N m.
+    """
+
+    net: float
+    both: float
+    largest: float
+
+
+def work_in_cycle(machine: Machine, load: Load) -> Work:
+    """What a load does in a whole cycle.
+
+    Gauss's quadrature between its rows, its ends and the angles of a grid, so that what sets in or
+    ends suddenly is no trouble; from the motion alone, without masses.
+
+    Raises
+    ------
+    MotionError : the crank cannot turn fully.
+    """
+    edges = _edges(load, assemble(machine).cycle.turns)
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    half = 0.5 * np.diff(edges)
+    theta = (edges[:-1] + half + half * nodes[:, None]).ravel()
+    motion = move(machine, theta)
+    force, torque = load_at(load, theta)
+    by_angle = torque * motion.links[load.link].angle_1
+    if load.point is not None:
+        by_angle = by_angle + kernels.dot(force, motion.points[load.point].place_1)
+    parts = (half * weights[:, None]).ravel() * by_angle
+    # just behind and just before each edge, where what is linear between them is largest
+    ends = (load_at(load, at) for at in (edges, edges - 3 * ROUNDING))
+    sizes = [np.hypot(abs(force), torque) for force, torque in ends]
+    net = float(np.sum(parts)) * (1 if machine.drive.speed >= 0 else -1)
+    return Work(net, float(np.sum(np.abs(parts))), float(np.max(sizes)))
+
+
+def _edges(load: Load, turns: int) -> Array:
+    """Crank angles of a cycle between which a load and its motion are smooth, from 0 on."""
+    cycle = 2 * pi * turns
+    found = [np.arange(0.0, cycle, PIECE)]
+    if load.table is not None:
+        again = np.arange(0.0, cycle - 1.0, 2 * pi * load.table.turns)
+        found.append(np.add.outer(again, load.table.crank_angle).ravel())
+    if load.start is not None and load.stop is not None:
+        again = np.arange(0.0, cycle - 1.0, 2 * pi)
+        found.append(np.add.outer(again, [load.start, load.stop]).ravel())
+    angles = np.concatenate(found)
+    return np.unique(np.append(np.mod(angles, cycle), cycle))

@@ -1,0 +1,350 @@
+"""Joint forces: the pass that turns what each link needs into the force in every joint.
+
+The groups are run in reverse order; each hands what its outer joints must supply to the bodies
+that carry them, and the pass ends at drive and frame.  It is linear in the demands.  Loads, soil
+and springs make demands of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from equipoise.mechanism.assembly.steps import Array, Call, Reaction, State, Step, demand_names, run
+from equipoise.mechanism.checks import Named
+from equipoise.mechanism.dynamics.undecided import hidden
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.pushing import pushes
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.racks import Rack
+from equipoise.mechanism.parts.sliders import JOINTS
+
+PUSH, TORQUE = "push({})", "M({})"  # what drives exert on their links
+"""Name of the force of a drive that pushes, among the values of a pass."""
+Demand = tuple[Any, Any]
+"""Force (complex) and moment about a link's anchor, each (..., N) or the same at all angles."""
+
+
+@dataclass(frozen=True, eq=False)
+class VectorSignal:
+    """A planar vector against crank angle; `value` is complex, x + i y, (..., N)."""
+
+    value: Array
+
+    @property
+    def x(self) -> Array:
+        return self.value.real
+
+    @property
+    def y(self) -> Array:
+        return self.value.imag
+
+    @property
+    def size(self) -> Array:
+        """Length of the vector."""
+        return np.abs(self.value)
+
+    @property
+    def direction(self) -> Array:
+        """Angle of the vector from the x axis, rad."""
+        return np.angle(self.value)
+
+
+@dataclass(frozen=True, eq=False)
+class JointForce(VectorSignal):
+    """Force in a pin, N: exerted on body `on` by body `by`."""
+
+    on: str
+    by: str
+
+
+@dataclass(frozen=True, eq=False)
+class SliderForce(JointForce):
+    """Force in a sliding joint, N.
+
+    normal : its part across the line, positive to the left of the line's direction.
+    moment : couple about the slider's point, N m.
+    """
+
+    normal: Array
+    moment: Array
+
+
+@dataclass(frozen=True, eq=False)
+class MeshForce(JointForce):
+    """Force between teeth, N, along the line of action at the pitch point.
+
+    tangential : part that transmits torque, positive where it turns the gear `on`
+        counterclockwise, or moves a rack ahead.  radial : part along the line of centres, positive
+        towards the pin of the gear `on`; of racks, positive where it pushes them apart.
+    """
+
+    tangential: Array
+    radial: Array
+
+
+@dataclass(frozen=True, eq=False)
+class BeltForce:
+    """What a belt does to its driven link `on`; arrays (..., N), N.
+
+    pull : what turns the link, at the pitch radius; positive counterclockwise.
+    left, right : tension of the strands that leave the driver left and right of the way to the
+        driven link; below 0 where a belt would have to push.
+    """
+
+    on: str
+    by: str
+    pull: Array
+    left: Array
+    right: Array
+
+
+@dataclass(frozen=True, eq=False)
+class CamForce(JointForce):
+    """Force of a cam on its follower, N, along their common normal.
+
+    normal : it along the normal away from the cam; below 0 where the follower is held back.
+    """
+
+    normal: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Pass:
+    """Joint forces of one run over the groups, for one demand or a stack of them.
+
+    state : every value, by the names told in `mechanism.assembly.steps`; shapes (..., N).
+    """
+
+    motion: Motion
+    state: State
+
+    @cached_property
+    def drives(self) -> dict[str, Array]:
+        """What each drive exerts, by the name of its link: a torque on that, N m, or the force
+        with which it pushes its ends apart, or its sliding link ahead, N.
+        """
+        named = {one.link: PUSH if one.pushes else TORQUE for one in self.motion.machine.driven}
+        return {
+            link: full(self.motion, self.state[name.format(link)], float)
+            for link, name in named.items()
+        }
+
+    @cached_property
+    def drive_torque(self) -> Array:
+        """Torque of the first drive on its link, N m; none where that pushes."""
+        first = self.motion.machine.drive
+        return 0.0 * self.drives[first.link] if first.pushes else self.drives[first.link]
+
+    @property
+    def drive_force(self) -> Array:
+        """Force of the first drive, which pushes."""
+        return self.drives[self.motion.machine.drive.link]
+
+    @cached_property
+    def frame_force(self) -> Array:
+        """Sum of the forces of all joints on the frame, N, complex."""
+        grounded = self.motion.linkage.grounded
+        total = sum(self.state[f"F({body})"] for body in (FRAME, *grounded))
+        return full(self.motion, -total, complex)
+
+    def frame_moment(self, about: complex) -> Array:
+        """Moment of all joints and of the drives on the frame about a point, N m."""
+        anchors, total = self.motion.linkage.anchors, np.zeros(())
+        for body in (FRAME, *self.motion.linkage.grounded):
+            force, moment = (self.state[name] for name in demand_names(body))
+            arm = self.state[f"p({anchors[body]})"] - about
+            total = total - moment - kernels.cross(arm, force)
+        return total
+
+    @property
+    def joints(self) -> dict[str, JointForce]:
+        """Pins and sliders, by name, but those whose force has no bound."""
+        left_out = hidden(self.motion)
+        named = ((n, r) for n, r in self.motion.linkage.named_reactions if n not in left_out)
+        return Named("joint", ((n, self._joint(r)) for n, r in named if r.kind in JOINTS))
+
+    @property
+    def gears(self) -> dict[str, MeshForce]:
+        """Pairs of gears, by name; the force is on the driven gear."""
+        gears = (r for r in self.motion.linkage.reactions if r.kind == "gear")
+        return Named("pair of gears", ((r.name, self._mesh(r)) for r in gears))
+
+    @property
+    def racks(self) -> dict[str, MeshForce]:
+        """Racks, by name; the force is on the driven of rack and pinion."""
+        racks = self.motion.machine.racks
+        return Named("rack", ((rack.name, self._teeth(rack)) for rack in racks))
+
+    def belts(self, tension: Callable[[Belt], Any]) -> dict[str, BeltForce]:
+        """Belts, by name, with a tension in both strands beside what their pull makes."""
+        belts = self.motion.machine.belts
+        return Named("belt", ((belt.name, self._belt(belt, tension(belt))) for belt in belts))
+
+    @property
+    def contacts(self) -> dict[str, JointForce]:
+        """Force in every joint and between all teeth and of all cams, by name."""
+        return {**self.joints, **self.gears, **self.racks, **self.cams}
+
+    @property
+    def cams(self) -> dict[str, CamForce]:
+        """Cams, by name; the force is on the follower."""
+        cams = (r for r in self.motion.linkage.reactions if r.kind == "cam")
+        return Named("cam", ((r.name, self._pressed(r)) for r in cams))
+
+    @cached_property
+    def exerted(self) -> dict[str, JointForce]:
+        """All of these, and whatever else bodies push each other with, by name."""
+        named = self.motion.linkage.named_reactions
+        pushes = {name: one for name, one in named if one.kind not in JOINTS}
+        return self.joints | {name: self._push(one) for name, one in pushes.items()}
+
+    def _push(self, one: Reaction) -> JointForce:
+        return JointForce(full(self.motion, self.state[one.force], complex), one.on, one.by)
+
+    @property
+    def flanks(self) -> State:
+        """Which flank of each pair of gears is in contact, and which strand of each belt pulls, by
+        name in the state.
+        """
+        return {name: value for name, value in self.state.items() if name.startswith("flank(")}
+
+    def _joint(self, reaction: Reaction) -> JointForce:
+        order = self.motion.linkage.joints.bodies.index
+        on, by, sign = reaction.on, reaction.by, 1
+        if order(on) < order(by):
+            on, by, sign = by, on, -1
+        force = full(self.motion, sign * self.state[reaction.force], complex)
+        if reaction.couple is None:
+            return JointForce(force, on, by)
+        slider = next(s for s in self.motion.machine.sliders if s.name == reaction.name)
+        direction = self.state[f"u({slider.on})"] * np.exp(1j * slider.direction)
+        at = self.state[f"p({reaction.at})"] - self.motion.points[slider.point].place
+        moment = sign * self.state[reaction.couple] + kernels.cross(at, force)
+        normal = kernels.cross(direction, force)
+        return SliderForce(force, on, by, normal, full(self.motion, moment, float))
+
+    def _belt(self, belt: Belt, tension: Any) -> BeltForce:
+        pull = full(self.motion, self.state[f"T({belt.name})"], float)
+        half = 0.5 * pull
+        mean = tension + (0.0 if belt.tension else self.state[f"flank({belt.name})"]) * half
+        left = -half if belt.crossed else half
+        return BeltForce(belt.driven, belt.driver, pull, mean + left, mean - left)
+
+    def _teeth(self, rack: Rack) -> MeshForce:
+        force = full(self.motion, self.state[f"R({rack.name}/{rack.driven})"], complex)
+        push = full(self.motion, self.state[f"T({rack.name})"], float)
+        apart = np.tan(rack.pressure_angle) * self.state[f"flank({rack.name})"] * push
+        return MeshForce(force, rack.driven, rack.driver, push, apart)
+
+    def _mesh(self, reaction: Reaction) -> MeshForce:
+        force = full(self.motion, self.state[reaction.force], complex)
+        tangential = full(self.motion, self.state[f"T({reaction.name})"], float)
+        gear = next(g for g in self.motion.machine.gears if g.name == reaction.name)
+        pin = self.motion.linkage.joints.pins_between(gear.driven, gear.carrier)[0]
+        lever = self.state[f"p({reaction.at})"] - self.state[f"p({pin})"]
+        radial = -kernels.dot(lever, force) / abs(lever)
+        return MeshForce(force, reaction.on, reaction.by, tangential, radial)
+
+    def _pressed(self, reaction: Reaction) -> CamForce:
+        force = full(self.motion, self.state[reaction.force], complex)
+        normal = full(self.motion, self.state[f"T({reaction.name})"], float)
+        return CamForce(force, reaction.on, reaction.by, normal)
+
+
+def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None = None) -> Pass:
+    """Joint forces that meet the demands of all links.
+
+    demands : link -> force and moment about its anchor, of shapes (..., N).
+    like : a pass whose gears are in contact on the same flanks; without it the demands tell.
+    """
+    if motion.machine.pushers:
+        return _pushed(motion, demands, like)
+    return _passed(motion, demands, like)
+
+
+def _pushed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) -> Pass:
+    """The same where forces drive: as large as it takes for their links to need no torque."""
+    pushers = motion.machine.pushers
+    torques = [TORQUE.format(one.link) for one in pushers]
+
+    def needed(by: Mapping[str, Demand]) -> Array:
+        """Torques (..., N, P) that the links need."""
+        state = _passed(motion, by, like).state
+        return np.stack([full(motion, state[name], float) for name in torques], -1)
+
+    acting = [((body, at, way, 0.0) for body, at, way in pushes(motion, one)) for one in pushers]
+    units = [demands_of(motion, one) for one in acting]
+    none = dict.fromkeys(motion.machine.links, (0j, 0.0))
+    levers = np.stack([needed(none | unit) for unit in units], -1)
+    forces = np.linalg.solve(levers, -needed(demands)[..., None])[..., 0]
+    total = dict(demands)
+    for k, unit in enumerate(units):
+        for body, (push, turning) in unit.items():
+            own = total.get(body, (0j, 0.0))
+            total[body] = own[0] + forces[..., k] * push, own[1] + forces[..., k] * turning
+    found = _passed(motion, total, like)
+    for k, one in enumerate(pushers):
+        found.state[torques[k]] = 0.0 * forces[..., k]
+        found.state[PUSH.format(one.link)] = forces[..., k]
+    return found
+
+
+def _passed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) -> Pass:
+    """The run over the joints, which ends at a torque on the drive's link."""
+    state = dict(motion.state)
+    of_links = dict(demands)
+    on_frame = of_links.pop(FRAME, (0j, 0.0))
+    of_links[FRAME] = 0j, 0.0
+    for link, (force, moment) in of_links.items():
+        state[f"F({link})"], state[f"M({link})"] = force, moment
+    known = {} if like is None else like.flanks
+    state.update(known)
+
+    def is_known(step: Step) -> bool:
+        return isinstance(step, Call) and set(step.outputs) <= known.keys()
+
+    run([step for step in motion.linkage.forces if not is_known(step)], state)
+    for name, more in zip((f"F({FRAME})", f"M({FRAME})"), on_frame, strict=True):
+        state[name] = state[name] + more
+    for drive in motion.machine.driven:
+        state[f"R({motion.linkage.anchors[drive.link]}/{drive.link})"] = state[f"F({drive.link})"]
+    return Pass(motion, state)
+
+
+def pushed(found: Pass) -> Array | None:
+    """Force of a drive that pushes, None of any other."""
+    return found.drive_force if found.motion.machine.drive.pushes else None
+
+
+def full(motion: Motion, value: Any, kind: type) -> Array:
+    """Give a value that is the same at all crank angles its axis (N,)."""
+    count = len(motion.crank_angle)
+    if isinstance(value, np.ndarray) and value.ndim and value.shape[-1] == count:
+        return value
+    if np.ndim(value) == 0:
+        return np.full(count, value, dtype=kind)
+    return np.broadcast_to(value, (*np.shape(value)[:-1], count))
+
+
+Acting = tuple[str, Any, Array, Any]
+"""Link, its point, a place (N,) or None for a torque, force and torque."""
+
+
+def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
+    """What holds forces (complex, N) and torques (N m), for every link that has one."""
+    result: dict[str, Demand] = {}
+    for link, point, force, torque in acting:
+        anchor = motion.state[f"p({motion.linkage.anchors[link]})"]
+        named = isinstance(point, str)
+        at = anchor if point is None else motion.points[point].place if named else point
+        f, m = kernels.load_demand(anchor, at, force, torque)
+        before = result.get(link, (0.0, 0.0))
+        result[link] = (before[0] + f, before[1] + m)
+    return result

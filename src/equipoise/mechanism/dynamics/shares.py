@@ -1,0 +1,96 @@
+"""Outputs told apart: by cause and link, or by what they are linear in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.mechanism.assembly.steps import Array
+from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.dynamics.across import OF_FRAME, Across
+from equipoise.mechanism.dynamics.reactions import (
+    BeltForce,
+    CamForce,
+    JointForce,
+    MeshForce,
+    SliderForce,
+)
+
+CAUSES = ("translation", "rotation", "weight", "load", "spring")
+"""Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside, and
+springs and the tension of belts."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shares:
+    """Outputs told apart: arrays (..., N), whose first axes are what they are shares of.
+
+    drives : link -> torque of its drive, N m, of which `drive_torque` is the first.
+    shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
+    drive_force : N, of a drive that pushes.
+    joints, gears, racks, belts, cams : name -> force whose arrays have those axes.
+    across : what links beside each other do; None where they all lie in one plane.
+    """
+
+    shaking_force: Array
+    shaking_moment: Array
+    frame_force: Array
+    frame_moment: Array
+    drive_torque: Array
+    drives: Mapping[str, Array]
+    joints: Mapping[str, JointForce]
+    gears: Mapping[str, MeshForce]
+    racks: Mapping[str, MeshForce]
+    belts: Mapping[str, BeltForce]
+    cams: Mapping[str, CamForce]
+    across: Across | None
+    drive_force: Array | None = field(default=None, kw_only=True)
+
+    @property
+    def of_machine(self) -> dict[str, Array]:
+        """All but the forces in joints and couplings, by name."""
+        known = {one.name: getattr(self, one.name) for one in fields(Shares)}
+        if self.across is not None:
+            known |= {name: getattr(self.across, name).value for name in OF_FRAME}
+        return {name: value for name, value in known.items() if isinstance(value, np.ndarray)}
+
+
+@dataclass(frozen=True, eq=False)
+class Split(Shares):
+    """Outputs by cause and link: arrays (5, L, N), causes as in `CAUSES`, links in file order.
+
+    Gears are taken with the flank in contact that the whole load gives, and chains with the strand
+    that pulls.
+    """
+
+    links: tuple[str, ...]
+
+    def by_cause(self, output: str) -> dict[str, Array]:
+        """An output, such as ``drive_torque`` or ``joints.B``, summed over links."""
+        return dict(zip(CAUSES, self._array(output).sum(axis=1), strict=True))
+
+    def by_link(self, output: str) -> dict[str, Array]:
+        """An output, such as ``drive_torque`` or ``joints.B``, summed over causes."""
+        return dict(zip(self.links, self._array(output).sum(axis=0), strict=True))
+
+    def _array(self, output: str) -> Array:
+        found = self.of_machine
+        for name, joint in self.joints.items():
+            found[f"joints.{name}"] = joint.value
+            if isinstance(joint, SliderForce):
+                found[f"joints.{name}.moment"] = joint.moment
+        for name, effort in self.drives.items():
+            found |= {f"drives.{name}.{what}": effort for what in ("torque", "force")}
+        found |= {f"gears.{name}": mesh.value for name, mesh in self.gears.items()}
+        found |= {f"racks.{name}": mesh.value for name, mesh in self.racks.items()}
+        for name, belt in self.belts.items():
+            found |= {f"belts.{name}.{k}": getattr(belt, k) for k in ("pull", "left", "right")}
+        found |= {f"cams.{name}": pressed.value for name, pressed in self.cams.items()}
+        if self.across is not None:
+            found |= {f"bearings.{name}": one.value for name, one in self.across.bearings.items()}
+        if output not in found:
+            raise UsageError(unknown(output, found, "output"))
+        return found[output]

@@ -1,0 +1,205 @@
+"""Links beside each other: the plane of every joint, and which couples the joints then bear.
+
+With R the force and C the couple that a joint in the plane z exerts on a link, and Q the sum of
+z times the forces that the link needs, every link asks for sum(z R + C) = Q.  Forces are complex,
+x + i y, so that i times such a sum is the moment about x and y.
+
+A chain that closes has more couples than equations.  A pin in the frame is taken for as stiff as
+its bearings, which bear whatever its link needs; a link without one hands its couple on by its
+joints, in equal shares (least squares).  Where all that acts on such a link lies in one plane there
+is none to hand on, and nothing is open.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from equipoise.i18n import Note, all_of
+from equipoise.mechanism.checks import FRAME
+from equipoise.mechanism.parts.planes import masses_of
+from equipoise.mechanism.parts.sliders import JOINTS, Mechanism
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Where the body `by` exerts a force on the body `on`: in which plane (m), and whether it can
+    exert a couple across it, as pins and sliders can.
+    """
+
+    name: str
+    on: str
+    by: str
+    plane: float
+    bears: bool
+
+
+def contacts(linkage: Any) -> tuple[Contact, ...]:
+    """Every joint and push of a linkage, as `Pass.exerted` has them.
+
+    A joint lies in the plane of the link that no joint holds in the frame; one with the frame in
+    that of its link; one of two links that are alike midway between them.
+    """
+    machine, order = linkage.machine, linkage.joints.bodies.index
+    joints = [one for one in linkage.reactions if one.kind in JOINTS]
+    held = {end for one in joints for end in _ends(one) if FRAME in _ends(one)}
+    found = []
+    for name, one in linkage.named_reactions:
+        if one.kind not in JOINTS:
+            plane = machine.links[one.on].plane
+            found.append(Contact(name, one.on, one.by, plane, False))
+            continue
+        by, on = sorted(_ends(one), key=order)
+        points = {one.on: one.at, one.by: one.at}
+        if one.kind == "slider":
+            slider = next(s for s in machine.sliders if s.name == one.name)
+            points = {slider.link: slider.point, slider.on: slider.through}
+        found.append(Contact(name, on, by, _plane_between(machine, points, held), True))
+    return tuple(found)
+
+
+def _ends(reaction: Any) -> tuple[str, str]:
+    return reaction.on, reaction.by
+
+
+def _plane_between(machine: Mechanism, points: Mapping[str, str], held: set[str]) -> float:
+    """Plane of a joint of two bodies, each with its point there."""
+    ends = [(body, machine.links[body], point) for body, point in points.items() if body != FRAME]
+    told = [link.planes[point] for _, link, point in ends if point in link.planes]
+    loose = [link.plane for body, link, _ in ends if body not in held]
+    planes = told[:1] or (loose if len(loose) == 1 else [link.plane for _, link, _ in ends])
+    return sum(planes) / len(planes)
+
+
+@dataclass(frozen=True, eq=False)
+class Statics:
+    """Couples across the plane as sums of what the links need and of what the joints exert.
+
+    contacts : K of them, of which J bear couples.
+    by_needed : (J, L) of sums Q of each link.
+    by_plane : (J, K) of each contact's plane times force.
+    """
+
+    machine: Any
+    contacts: tuple[Contact, ...]
+    by_needed: Array
+    by_plane: Array
+
+    @property
+    def links(self) -> tuple[str, ...]:
+        return tuple(self.machine.links)
+
+    @cached_property
+    def bearing(self) -> tuple[Contact, ...]:
+        """Those that bear couples."""
+        return tuple(one for one in self.contacts if one.bears)
+
+    @cached_property
+    def open(self) -> tuple[str, ...]:
+        """Names of joints whose couples statics leaves open."""
+        held = {end for one in self.bearing for end in _ends(one) if FRAME in _ends(one)}
+        free = [link for link in self.links if link not in held]
+        return tuple(_open(self.machine, self.contacts, free))
+
+    def factors(self, number: int) -> tuple[dict[str, float], dict[str, float]]:
+        """Of the couple of one of `bearing`: those of what links need, and of planes of contacts
+        times their forces, by name.
+        """
+        needed = _used(self.by_needed[number], self.links)
+        return needed, _used(self.by_plane[number], [one.name for one in self.contacts])
+
+    def pin_of(self, link: str) -> tuple[int, Contact]:
+        """The joint by which a link turns in its bearings, and its number among `bearing`."""
+        return next(
+            (k, one) for k, one in enumerate(self.bearing) if (one.on, one.by) == (link, FRAME)
+        )
+
+    def couples(self, needed: Mapping[str, Array], exerted: Mapping[str, Array]) -> dict[str, Any]:
+        """Couple of each joint by name, as a sum of planes times forces, N m; of those that follow
+        from the forces that are told.
+        """
+        found, planes = {}, {one.name: one.plane for one in self.contacts}
+        for number, one in enumerate(self.bearing):
+            by_needed, by_plane = self.factors(number)
+            levers = {k: factor * planes[k] for k, factor in by_plane.items() if planes[k]}
+            if not {one.name, *levers} <= exerted.keys():
+                continue
+            terms = [factor * needed[link] for link, factor in by_needed.items()]
+            terms += [lever * exerted[name] for name, lever in levers.items()]
+            found[one.name] = sum(terms, start=0.0)
+        return found
+
+    def told(self) -> Iterator[Note]:
+        """A sentence on what is open."""
+        if self.open:
+            yield Note(
+                "statics leaves the tilting moments in {joints} open, as what acts on a link there "
+                "lies in several planes and no joint holds it in the frame: told are those of "
+                "least squares; rocking moments do not depend on that",
+                joints=all_of([*self.open], commas=True),
+            )
+
+
+def _used(row: Array, names: Sequence[str]) -> dict[str, float]:
+    """Factors that are not rounding, by what they belong to."""
+    least = 1e-12 * max(float(np.max(np.abs(row), initial=0.0)), 1e-300)
+    return {name: float(f) for f, name in zip(row, names, strict=True) if abs(f) > least}
+
+
+def _signs(links: Sequence[str], joints: Sequence[Contact]) -> Array:
+    """(L, K): 1 where a joint acts on a link, -1 where the link is what acts."""
+    return np.array([[(one.on == k) - (one.by == k) for one in joints] for k in links], dtype=float)
+
+
+def statics(linkage: Any) -> Statics:
+    """How couples go from link to link in a linkage."""
+    machine, all_of = linkage.machine, contacts(linkage)
+    links, bearing = tuple(machine.links), [one for one in all_of if one.bears]
+    signs = _signs(links, bearing)
+    fixed = np.array([FRAME in (one.on, one.by) for one in bearing])
+    held = np.any(signs[:, fixed] != 0, axis=1)
+    found = np.zeros((len(bearing), len(links)))
+    # first what links without a joint in the frame hand on, then what all others bear
+    found[np.ix_(~fixed, ~held)] = np.linalg.pinv(signs[np.ix_(~held, ~fixed)])
+    rest = np.eye(len(links)) - signs[:, ~fixed] @ found[~fixed]
+    found[fixed] = np.linalg.pinv(signs[np.ix_(held, fixed)]) @ rest[held]
+    return Statics(machine, all_of, found, -found @ _signs(links, all_of))
+
+
+def _open(machine: Any, joints: Sequence[Contact], free: Sequence[str]) -> Iterator[str]:
+    """Joints by which links hand couples on that could go another way as well."""
+    bearing = [one for one in joints if one.bears]
+    for group in _chains(free, bearing):
+        own = [one for one in bearing if group & {one.on, one.by}]
+        if len(own) > len(group) and not all(_flat(machine, link, joints) for link in group):
+            yield from (one.name for one in own)
+
+
+def _chains(links: Iterable[str], joints: Sequence[Contact]) -> list[set[str]]:
+    """Links in sets that hang together by joints among themselves."""
+    groups = [{link} for link in links]
+    for one in joints:
+        met = [group for group in groups if group & {one.on, one.by}]
+        if len(met) == 2:
+            met[0].update(met[1])
+            groups.remove(met[1])
+    return groups
+
+
+def _flat(machine: Any, link: str, joints: Sequence[Contact]) -> bool:
+    """Whether all that acts on a link lies in one plane."""
+    body = machine.links[link]
+    planes = {one.plane for one in joints if link in (one.on, one.by)}
+    planes |= {plane for mass, _, plane in masses_of(body) if mass}
+    planes |= {body.plane_of(one.point) for one in machine.loads if one.link == link and one.point}
+    planes |= {body.plane_of(one.point) for one in machine.springs if one.link == link}
+    planting = machine.planting
+    if planting is not None and planting.soil is not None:
+        planes |= {body.plane_of(arm.tip) for arm in planting.every_arm if arm.tip in body.points}
+    return len(planes) <= 1

@@ -1,0 +1,135 @@
+"""What statics does not tell of joints: forces that it leaves open, and forces without bound."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import degrees
+
+import numpy as np
+
+from equipoise.errors import RangeError, UsageError
+from equipoise.i18n import Note, all_of, to_say
+from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.mechanism.assembly.shared import BESIDE, WEAK
+from equipoise.mechanism.assembly.steps import State, run
+from equipoise.mechanism.kinematics.motion import Motion
+
+ANGLES = 7
+"""In a cycle, at which it is looked for forces that hold each other."""
+
+
+LEAST_SQUARES = to_say(
+    "statics leaves the forces in {joints} open, as joints hold more than the motion needs: told "
+    "are those of least squares; drive torque, shaking force and moment, and the load on the frame "
+    "as a whole do not depend on that"
+)
+WITH_GUIDES = to_say(
+    "statics leaves the forces in {joints} open, as joints hold more than the motion needs: told "
+    "are those of least squares, moments in guides counted as forces at {reach:.4g} mm; drive "
+    "torque, shaking force and moment, and the load on the frame as a whole do not depend on that"
+)
+LEAST_ENERGY = to_say(
+    "statics leaves the forces in {joints} open, as joints hold more than the motion needs: told "
+    "are those of least energy by the stiffness of joints; drive torque, shaking force and moment, "
+    "and the load on the frame as a whole do not depend on that"
+)
+
+
+@dataclass(frozen=True)
+class Undecided:
+    """Joints by name, in the order of outputs.
+
+    open : forces that statics leaves open.  unbounded : forces that grow without bound.
+    at : crank angle (rad) towards which they do.  links : that lie in line there.
+    by_stiffness : whether open forces are shared by the stiffness of joints, not by least squares.
+    reach : distance (m) at which a moment in a guide counts as a force; 0 without guides.
+    """
+
+    open: tuple[str, ...] = ()
+    unbounded: tuple[str, ...] = ()
+    at: float = 0.0
+    links: tuple[str, ...] = ()
+    by_stiffness: bool = False
+    reach: float = 0.0
+
+    def told(self) -> Iterator[Note]:
+        """A sentence on each."""
+        if self.open:
+            rule = LEAST_SQUARES if self.reach == 0 else WITH_GUIDES
+            rule = LEAST_ENERGY if self.by_stiffness else rule
+            yield Note(rule, joints=all_of([*self.open], commas=True), reach=self.reach * 1e3)
+        if self.unbounded:
+            yield Note(
+                "the forces in {joints} grow without bound towards crank angle {angle:.4g} deg, "
+                "where {links} lie in line and nothing else holds them, so that none is told; a "
+                "further crank or rod that is not in line there would hold them",
+                joints=all_of([*self.unbounded], commas=True),
+                angle=degrees(self.at),
+                links=all_of([repr(link) for link in self.links]),
+            )
+
+
+def undecided(linkage: Linkage) -> Undecided:
+    """What statics does not tell of the joints of a linkage; kept with it."""
+    found: Undecided | None = linkage.__dict__.get("_undecided")
+    if found is None:
+        found = linkage.__dict__["_undecided"] = _found(linkage)
+    return found
+
+
+def refuse_unbounded(linkage: Linkage, output: str) -> None:
+    """Raise a `UsageError` for an output of a joint whose force has no bound."""
+    found = undecided(linkage)
+    if any(output.partition(".")[2].startswith(name) for name in found.unbounded):
+        *_, told = found.told()
+        raise UsageError(told)
+
+
+def hidden(motion: Motion) -> tuple[str, ...]:
+    """Joints whose force has no bound at some of the crank angles of a motion, or between them."""
+    shared, found = motion.linkage.shared, undecided(motion.linkage)
+    if shared is None or not found.unbounded:
+        return ()
+    bounded = not motion.whole_cycle and np.all(shared.strength(motion.state) > WEAK)
+    return () if bounded else found.unbounded
+
+
+def _found(linkage: Linkage) -> Undecided:
+    shared = linkage.shared
+    if shared is None:
+        return Undecided()
+    open_ones = shared.open_joints(_somewhere(linkage)) if shared.count else frozenset()
+    found = Undecided(
+        _named(linkage, open_ones),
+        by_stiffness=bool(shared.compliance),
+        reach=shared.group.size if linkage.joints.sliders else 0.0,
+    )
+    for group in linkage.groups if _turns(linkage) else ():
+        _, at = linkage.cycle.weakest.get(group.joint, (0.0, 0.0))
+        if group.through and shared.strength(linkage.solve(np.array([at])))[0] < WEAK:
+            growing = shared.growing_joints(linkage.solve(np.array([at - BESIDE, at + BESIDE])))
+            names = _named(linkage, growing)
+            return replace(found, unbounded=names, at=at % (2 * np.pi), links=group.links)
+    return found
+
+
+def _named(linkage: Linkage, forces: frozenset[str]) -> tuple[str, ...]:
+    return tuple(name for name, one in linkage.named_reactions if one.force in forces)
+
+
+def _turns(linkage: Linkage) -> bool:
+    try:
+        return linkage.cycle.turns > 0
+    except RangeError:
+        return False
+
+
+def _somewhere(linkage: Linkage) -> State:
+    """The linkage at some crank angles of no meaning that it can reach."""
+    share = (np.arange(ANGLES) + 0.37) / ANGLES
+    try:
+        return linkage.solve(share * 2 * np.pi * linkage.cycle.turns)
+    except RangeError as error:
+        low, high = error.ranges[0]
+        return run(linkage.motion, linkage.start(low + share * (high - low)))

@@ -1,0 +1,135 @@
+"""The formulas of a cam and its follower, each written once, as in `mechanism.formulas.kernels`.
+
+`d` is the way from the cam's axis to what rides on the cam (a roller's centre, a knife's edge, or
+a point of a flat face), as seen from the cam's carrier, and d1, d2 its derivatives by the angle
+that the cam has turned against the carrier.  The common normal points from the cam to the
+follower.  Derived in ``docs/theory.md``.
+"""
+
+# mypy: disable-error-code="no-untyped-def, no-untyped-call"
+
+from equipoise.mechanism.formulas.kernels import cross, dot, length, slid
+
+
+def round_contact(d, d1, radius):
+    """Contact of a roller, or of an edge where the radius is 0, from the cam's axis; the normal."""
+    outward = d + 1j * d1
+    normal = outward * (1 / length(outward))
+    return d - radius * normal, normal
+
+
+def flat_contact(d, d1, turning, normal):
+    """Contact of a flat face, from the cam's axis; the face's normal.
+
+    turning : derivative of the follower's angle against the carrier.
+    """
+    reach = dot(normal, d1 - 1j * d) / (1 - turning)
+    return d - 1j * normal * reach, normal
+
+
+def round_curvature(d, d1, d2):
+    """Curvature of the curve that a roller's centre takes in the cam; positive where convex."""
+    q1 = d1 - 1j * d
+    q2 = d2 - 2j * d1 - d
+    return -cross(q1, q2) / length(q1) ** 3
+
+
+def flat_radius(d, d1, d2, turning, bending, normal):
+    """Radius of curvature of the cam under a flat face; negative where undercut.
+
+    bending : derivative of `turning`.
+    """
+    back = 1 / (1 - turning)
+    q1 = d1 - 1j * d
+    reach = dot(normal, q1) * back
+    change = dot(1j * turning * normal, q1) + dot(normal, d2 - 1j * d1) + bending * reach
+    return (dot(-1j * normal, q1) + change * back) * back
+
+
+# -- motion ----------------------------------------------------------------------------------------
+#
+# y, y1, y2 : displacement and its derivatives by the angle that the cam has turned against the
+# carrier.  w_r, a_r : of the cam; w, a : of the carrier; u : the carrier's rotation.
+
+
+def lifted(y, y1, y2, w_r, a_r, g, g1, g2, u, w, a, along, turn, rest):
+    """A follower that slides on the carrier, on a guide through g.
+
+    along : unit vector of the guide in the carrier's axes; turn : of the follower's x axis in axes
+    along it.  rest : way of its point where y is 0.
+    Returns its point on the guide and its rotation.
+    """
+    n, slip = u * along, w_r - w
+    way1, way2 = y1 * slip, y1 * (a_r - a) + y2 * slip * slip
+    return *slid(g, g1, g2, n, w, a, rest + y, way1, way2), n * turn, w, a
+
+
+def swung(y, y1, y2, w_r, a_r, angle, w, a, rest, sense):
+    """Angle of a follower that is pinned to the carrier, whose own is `angle`.
+
+    rest : angle in the carrier where y is 0; sense : +1 where it grows with y, else -1.
+    """
+    slip = w_r - w
+    bend = y1 * (a_r - a) + y2 * slip * slip
+    return angle + rest + sense * y, w + sense * y1 * slip, a + sense * bend
+
+
+def rate_lifted(u, y1, along):
+    """Derivative of a place on a sliding follower by the cam's turn, seen from the carrier."""
+    return (u * along * y1,)
+
+
+def rate_swung(p, pivot, y1, sense):
+    """The same on a pinned follower."""
+    return (1j * sense * y1 * (p - pivot),)
+
+
+def forth_lifted(u, along):
+    """Unit vector along which a sliding follower's material moves as it rises."""
+    return (u * along,)
+
+
+def forth_swung(p, pivot, sense):
+    """The same of a pinned follower, at p."""
+    arm = p - pivot
+    return (1j * sense * arm * (1 / length(arm)),)
+
+
+def touch_round(p, axis, rate, radius):
+    """Where a roller at p touches the cam, whose axis is at `axis`; the common normal."""
+    at, normal = round_contact(p - axis, rate, radius)
+    return axis + at, normal
+
+
+def touch_flat(p, axis, rate, u, y1, face, sense):
+    """The same of a flat face through p.
+
+    u : rotation of the follower; face : normal in its axes; sense : as of `swung`, 0 of one that
+    slides.
+    """
+    at, normal = flat_contact(p - axis, rate, sense * y1, u * face)
+    return axis + at, normal
+
+
+# -- forces ----------------------------------------------------------------------------------------
+
+
+def lifted_forces(force, moment, p, at, normal, u, along):
+    """Demand of a sliding follower about its point p on the guide; contact at `at`.
+
+    Returns the guide's force with its couple, the cam's force, and that along the normal.
+    """
+    n = u * along
+    push = dot(n, force) / dot(n, normal)
+    cam = push * normal
+    return force - cam, moment - cross(at - p, cam), cam, push
+
+
+def swung_forces(force, moment, pivot, at, normal):
+    """Demand of a pinned follower about its pin; contact at `at`.
+
+    Returns the pin's force, the cam's force, and that along the normal.
+    """
+    push = moment / cross(at - pivot, normal)
+    cam = push * normal
+    return force - cam, cam, push

@@ -1,0 +1,262 @@
+"""Gears whose ratio varies: how far the driven one turns for the driver, both against the carrier.
+
+A law takes the driver's angle x, counted on through the turns, and returns the driven gear's
+angle y with its first and second derivative by x.  The first is the ratio i; the pitch point
+divides the line of centres by it, and both pitch curves roll on each other there.  With the vector
+c from the driven gear's axis to the driver's, that point is at c / (1 - i) from the first and at
+c i / (1 - i) from the second: so the ratio tells both curves, and the driver's curve the ratio.
+A ratio is negative of gears that mesh from outside, from 0 to 1 of a ring that a gear in it drives,
+and above 1 of a ring that drives the gear in it.
+
+Numbers of a law may be columns (P, 1), one for each of P designs; it then takes angles (P, K).
+
+Formulas: ``docs/theory.md``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
+from itertools import zip_longest
+from typing import Any
+
+import numpy as np
+
+from equipoise.mechanism.formulas.curves import Array, Curve, Curves, spline
+
+Levels = tuple[Array, Array, Array]
+"""Value, first and second derivative."""
+Profile = Callable[[Array], Levels]
+"""What repeats with the lobes of a gear."""
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(5)
+FEW_NODES, FEW_WEIGHTS = np.polynomial.legendre.leggauss(3)
+"""Enough to rounding over a piece, and from the nearest of its ends."""
+
+
+@dataclass(frozen=True)
+class Waves:
+    """1 and a Fourier series: of the k-th cosine and sine there are k ``lobes`` waves in a turn."""
+
+    cosines: tuple[Any, ...]
+    sines: tuple[Any, ...]
+    lobes: int = 1
+
+    def __call__(self, x: Any) -> Levels:
+        return self.levels(x, 0)
+
+    def levels(self, x: Any, lowest: int) -> Levels:
+        """Derivatives of three orders, from `lowest` on; that of the order -1 is an integral."""
+        orders = range(lowest, lowest + 3)
+        levels = [x + 0.0 if order < 0 else 0.0 * x + (order == 0) for order in orders]
+        turn, wave = np.exp(1j * self.lobes * x), 1.0
+        for k, (cosine, sine) in enumerate(zip_longest(self.cosines, self.sines, fillvalue=0.0), 1):
+            wave = wave * turn
+            for place, order in enumerate(orders):
+                share = (cosine - 1j * sine) * wave * (1j * k * self.lobes) ** order
+                levels[place] = levels[place] + share.real
+        return levels[0], levels[1], levels[2]
+
+
+@dataclass(frozen=True)
+class EccentricCircle:
+    """Distance from a point inside of a circle of radius 1 to its edge, by direction.
+
+    eccentricity : of the point, below 1; direction 0 is the way to the nearest place of the edge.
+    """
+
+    eccentricity: Any
+
+    def __call__(self, x: Any) -> Levels:
+        e, cos, sin = self.eccentricity, np.cos(x), np.sin(x)
+        root = np.sqrt(1 - (e * sin) ** 2)
+        first = e * sin - e * e * sin * cos / root
+        bend = e * e * (cos * cos - sin * sin) / root + (e * e * sin * cos) ** 2 / root**3
+        return root - e * cos, first, e * cos - bend
+
+
+@dataclass(frozen=True, eq=False)
+class Tabled:
+    """The cubic spline through the rows of a table, whose first angle is `origin`."""
+
+    spline: Curve | Curves
+    origin: Any
+
+    @classmethod
+    def through(cls, angles: Sequence[float], values: Sequence[float], period: float) -> Tabled:
+        ways = np.append(np.subtract(angles, angles[0]), period)
+        return cls(spline(ways, np.append(values, values[0]), 3), angles[0])
+
+    def __call__(self, x: Any) -> Levels:
+        return self.spline.at(x - self.origin)
+
+
+@dataclass(frozen=True)
+class HalfAngle:
+    """y = mean x + (2 share / lobes) arg(1 + depth exp(i lobes x)), with x counted from zero.
+
+    Of a pair of ellipses that is the tangent of half an angle times a factor, as of anomalies.
+    """
+
+    mean: Any
+    share: Any
+    depth: Any
+    lobes: int
+    zero: Any = 0.0
+
+    @classmethod
+    def ellipses(cls, eccentricity: Any, mean: float, lobes: int) -> HalfAngle:
+        """The driver's radius is p / (1 + eccentricity cos(lobes angle)): about its focus, with
+        one lobe.
+        """
+        root = (1 - eccentricity**2 * (1 - mean * mean)) ** 0.5
+        depth = eccentricity * (1 - mean) / (1 + root)
+        return cls(mean, -mean, depth, lobes)
+
+    @classmethod
+    def limacon(cls, eccentricity: Any, mean: float, lobes: int) -> HalfAngle:
+        """The driver's radius is r (1 - eccentricity cos(lobes angle))."""
+        still = 1 - eccentricity**2
+        inner = 1 - 1 / (1 - mean) ** 2
+        root = (1 - still * inner) ** 0.5
+        # over the distance of the centres, counted towards the driven gear's axis
+        radius = inner / (1 + root) if mean < 1 else (1 + root) / still
+        wave = eccentricity * radius / (1 - radius)
+        return cls(mean, 1 - mean, wave / (1 + (1 - wave * wave) ** 0.5), lobes)
+
+    def __call__(self, x: Any) -> tuple[Any, Any, Any]:
+        x = x - self.zero
+        z = self.depth * np.exp(1j * self.lobes * x)
+        part = 1 / (1 + z)
+        y = self.mean * x + (2 / self.lobes) * self.share * np.angle(1 + z)
+        first = self.mean + 2 * self.share * (z * part).real
+        return y, first, -2 * self.lobes * self.share * (z * part * part).imag
+
+
+@dataclass(frozen=True)
+class RatioWaves:
+    """The ratio is its mean times 1 and a Fourier series; so is its sum."""
+
+    mean: Any
+    waves: Waves
+    zero: Any = 0.0
+
+    def __call__(self, x: Any) -> tuple[Any, Any, Any]:
+        y, first, second = self.waves.levels(x - self.zero, -1)
+        return self.mean * y, self.mean * first, self.mean * second
+
+
+@dataclass(frozen=True, eq=False)
+class RatioTable:
+    """The ratio is a factor times the spline through a table; `table` has what that sums up to."""
+
+    factor: Any
+    table: Tabled
+    zero: Any = 0.0
+
+    @classmethod
+    def closing(cls, table: Tabled, mean: float) -> RatioTable:
+        """The factor with which the ratio has its mean."""
+        assert isinstance(table.spline, Curve)
+        whole = table.spline.summed()
+        return cls(mean * whole.length / whole.rise, Tabled(whole, table.origin))
+
+    def __call__(self, x: Any) -> tuple[Any, Any, Any]:
+        y, first, second = self.table(x - self.zero)
+        return self.factor * y, self.factor * first, self.factor * second
+
+
+@dataclass(frozen=True, eq=False)
+class PitchCurve:
+    """The driver's radius is a curve over the direction in its axes, against which it turns.
+
+    factor : of the curve, over the distance of the centres; negative where the driver's axis and
+        the driven gear's lie on both sides of the pitch point, or the driver is a ring.
+    knots, sums : (K + 1,) angles of the driver over a period, and how far the driven gear has come
+        there, by Gauss's quadrature.
+    """
+
+    mean: Any
+    curve: Profile
+    factor: Any
+    knots: Array
+    sums: Array
+    zero: Any = 0.0
+
+    @classmethod
+    def closing(cls, curve: Profile, mean: float, knots: Array) -> PitchCurve:
+        """The factor with which the driven gear's curve closes after whole turns.
+
+        Up to where the driver's curve reaches the other axis, the mean ratio rises with it ever
+        less steeply, and beyond, of a ring, ever more: Newton's method comes from the far side.
+        """
+        period, half = knots[-1] - knots[0], 0.5 * np.diff(knots)[:, None]
+        at, weights = knots[:-1, None] + half * (1 + NODES), half * WEIGHTS / period
+        radius, _, _ = curve(-at)
+        ring = mean > 1
+        pole = -1 / float(np.min(radius) if ring else np.max(radius))
+
+        def missing(one: float) -> float:
+            return float(np.sum(weights * one * radius / (1 + one * radius)) - mean)
+
+        factor = float(mean / (1 - mean) / np.sum(weights * radius))
+        factor = min(factor, 2 * pole) if ring else max(factor, 0.5 * pole)
+        while missing(factor) < 0 if ring else missing(factor) > 0:
+            factor = 0.5 * (factor + pole)
+        for _ in range(60):
+            step = missing(factor) / float(np.sum(weights * radius / (1 + factor * radius) ** 2))
+            factor -= step
+            if abs(step) <= 1e-15 * abs(factor):
+                break
+        pieces = period * np.sum(weights * factor * radius / (1 + factor * radius), axis=1)
+        return cls(mean, curve, factor, knots, np.append(0.0, np.cumsum(pieces)))
+
+    def rate(self, x: Any) -> tuple[Any, Any]:
+        """The ratio and its derivative."""
+        radius, slope, _ = self.curve(-x)
+        rest = 1 / (1 + self.factor * radius)
+        return self.factor * radius * rest, -self.factor * slope * rest * rest
+
+    def __call__(self, x: Any) -> tuple[Any, Any, Any]:
+        x = np.asarray(x - self.zero)
+        begin, period = self.knots[0], self.knots[-1] - self.knots[0]
+        rounds = np.floor((x - begin) / period)
+        at = x - rounds * period
+        k = np.searchsorted(0.5 * (self.knots[1:] + self.knots[:-1]), at)
+        half = 0.5 * (at - self.knots[k])
+        ways = np.append(FEW_NODES, 1.0).reshape(-1, *(1 for _ in x.shape))  # the last is x itself
+        ratio, bend = self.rate(self.knots[k] + half * (1 + ways))
+        come = self.sums[k] if self.sums.ndim == 1 else np.take_along_axis(self.sums, k, axis=1)
+        way = half * np.tensordot(FEW_WEIGHTS, ratio[:-1], 1)
+        return self.mean * period * rounds + come + way, ratio[-1], bend[-1]
+
+
+Rolling = HalfAngle | RatioWaves | RatioTable | PitchCurve
+"""How far the driven gear turns by the driver's angle."""
+
+
+def beside(values: Sequence[Any]) -> Any:
+    """Laws of P designs as one, or parts of them; numbers that differ become columns (P, 1).
+
+    Raises
+    ------
+    ValueError : they differ in more than numbers.
+    """
+    first = values[0]
+    if any(type(one) is not type(first) for one in values):
+        raise ValueError(values)
+    if isinstance(first, Curve):
+        return Curves.of(values)
+    if is_dataclass(first) and not isinstance(first, type):
+        names = [field.name for field in fields(first)]
+        return replace(
+            first, **{name: beside([getattr(v, name) for v in values]) for name in names}
+        )
+    if isinstance(first, tuple):
+        return tuple(map(beside, zip(*values, strict=True)))
+    if all(np.array_equal(one, first) for one in values):
+        return first
+    if isinstance(first, np.ndarray):
+        return np.stack(values)
+    if isinstance(first, float):
+        return np.array(values)[:, None]
+    raise ValueError(values)

@@ -1,0 +1,1 @@
+"""How a machine moves: motion, strokes, dwells, how far a crank reaches."""

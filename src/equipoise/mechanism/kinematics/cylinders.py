@@ -1,0 +1,315 @@
+"""Drives that push: a cylinder between two points, or a driven sliding joint.
+
+The stroke is commanded, a length over the crank angle.  One link that turns about a point of the
+frame tells the pose of the whole machine, so that everything else is computed as if that link were
+driven: its angle is the one at which the length is as commanded, found by Newton's method on the
+length, of which the linkage tells both derivatives.  See `docs/theory.md`, "Drives that push".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import ceil, pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, all_of
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.steps import Array
+from equipoise.mechanism.kinematics.followed import Followed
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.pushing import ends_of
+from equipoise.mechanism.kinematics.reach import reach
+from equipoise.mechanism.parts.drives import Drive
+from equipoise.mechanism.parts.laws import LengthLaw
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.quantities import angle, format_exact
+
+STEP = pi / 360
+"""rad: between angles of the link at which the length is looked at."""
+Levels = tuple[Array, Array, Array]
+INSIDE = 1e-7
+"""rad: how far from where a dyad is stretched out."""
+ITERATIONS, SETTLED = 60, 1e-15
+"""Of Newton's method; the last change in the angle, rad."""
+SQUARED = 1e-9
+"""rad: a change of Newton's method after which only rounding is left, as errors square."""
+HALVINGS = 36
+"""Of the step in which a dead point lies."""
+AGREES = 1e-9
+"""Of the length: what rounding may miss."""
+DEAD = 1e-9
+"""Of the length's range: how near to its end the stroke may come."""
+
+
+@dataclass(frozen=True)
+class Shifted:
+    """A crank that stands at another angle than 0 at crank angle 0."""
+
+    link: str
+    by: float
+
+    def moved(self, crank_angle: Any) -> dict[str, tuple[Any, Any, Any]]:
+        """Angle of the link and its two derivatives."""
+        theta = np.asarray(crank_angle)
+        return {self.link: (theta + self.by, np.ones(theta.shape), np.zeros(theta.shape))}
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """Angles of the link (K,) over which the length (K,) rises or falls all the way."""
+
+    angles: Array
+    lengths: Array
+
+    @property
+    def low(self) -> float:
+        return float(np.min(self.lengths))
+
+    @property
+    def high(self) -> float:
+        return float(np.max(self.lengths))
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        return float(self.angles[0]), float(self.angles[-1])
+
+    def holds(self, low: float, high: float) -> bool:
+        """Whether it has all lengths between two."""
+        room = DEAD * (self.high - self.low)
+        return self.low + room < low and high < self.high - room
+
+
+@dataclass(frozen=True, eq=False)
+class Commanded:
+    """Angle of the drive's link, rad, that follows from the stroke."""
+
+    bare: Followed
+    drive: Drive
+    law: LengthLaw
+    shift: float
+    branch: Branch
+
+    def value(self, crank_angle: Any) -> tuple[Array, Array, Array]:
+        """The angle and its two derivatives by crank angle, at crank angles (...)."""
+        theta = np.asarray(crank_angle, dtype=float)
+        length, first, second = (np.ravel(part) for part in self.law.value(theta))
+        at = self._inverse(length)
+        _, slope, bend = self._lengths(at)
+        w = first / slope
+        found = at + self.shift, w, (second - bend * w * w) / slope
+        return tuple(part.reshape(theta.shape) for part in found)  # type: ignore[return-value]
+
+    def moved(self, crank_angle: Any) -> dict[str, tuple[Array, Array, Array]]:
+        """The same by the link's name."""
+        return {self.drive.link: self.value(crank_angle)}
+
+    @property
+    def windings(self) -> int:
+        """Whole turns of the link in a cycle."""
+        return 0
+
+    def _lengths(self, at: Array) -> Levels:
+        return _lengths(self.bare, at, self.drive)
+
+    def _inverse(self, length: Array) -> Array:
+        """Angles (N,) at which the length is as commanded: Newton's method between bounds."""
+        angles, known = self.branch.angles, self.branch.lengths
+        rising = known[-1] > known[0]
+        order = slice(None) if rising else slice(None, None, -1)
+        place = np.clip(np.searchsorted(known[order], length), 1, len(known) - 1)
+        place = place if rising else len(known) - place
+        low, high = angles[place - 1], angles[place]
+        share = (length - known[place - 1]) / (known[place] - known[place - 1])
+        at = low + np.clip(share, 0.0, 1.0) * (high - low)
+        for _ in range(ITERATIONS):
+            here, slope, _ = self._lengths(at)
+            over = (here > length) == rising
+            low, high = np.where(over, low, at), np.where(over, at, high)
+            with np.errstate(all="ignore"):
+                new = at - (here - length) / slope
+            new = np.where((new >= low) & (new <= high), new, 0.5 * (low + high))
+            change, at = np.max(np.abs(new - at), initial=0.0), new
+            if change <= SQUARED:
+                break
+        return np.asarray(at)
+
+
+def commanded(machine: Machine) -> Commanded:
+    """The angle of the drive's link that follows from its stroke.
+
+    Raises
+    ------
+    ModelError : the stroke cannot be had, or in several ways of which none is chosen.
+    MobilityError, MotionError : the linkage cannot be moved at all.
+    """
+    shift = _shift(machine)
+    found = _commanded(machine, shift)
+    if not machine.couplings:
+        return found
+    return _commanded(machine, _meshing(machine, float(found.value(0.0)[0])))
+
+
+def _meshing(machine: Machine, near: float) -> float:
+    """Angle of the link at crank angle 0, where couplings are as they start: by secants."""
+    drive, law = machine.drive, machine.drive.stroke
+    assert law is not None
+    wanted = float(law.value(0.0)[0])
+
+    def over(shift: float) -> float:
+        linkage = assemble(_turned(machine, shift))
+        at = Followed.over(linkage, -STEP, STEP, STEP, ends_of(machine, drive))
+        return float(_lengths(at, np.zeros(1), drive)[0][0]) - wanted
+
+    old, new = near, near + STEP
+    gap, there = over(old), over(new)
+    for _ in range(ITERATIONS):
+        if abs(gap - there) <= SETTLED * abs(wanted) or abs(new - old) <= SETTLED:
+            break
+        old, gap, new = new, there, new - there * (new - old) / (there - gap)
+        there = over(new)
+    if not abs(there) <= AGREES * abs(wanted + there):
+        raise ModelError(
+            "drive.stroke",
+            Note(
+                "it is {wanted} at crank angle 0, where couplings as they start make it {there}; "
+                "give these another start",
+                wanted=_shown(wanted),
+                there=_shown(wanted + there),
+            ),
+        )
+    return new
+
+
+def _shift(machine: Machine) -> float:
+    """Angle of the link, rad, from which the linkage is followed."""
+    drive, position = machine.drive, machine.position
+    if drive.start is not None:
+        return drive.start
+    if position is None:
+        return 0.0
+    if drive.link in position.angles:
+        return position.angles[drive.link]
+    points = machine.links[drive.link].points
+    known = {**machine.frame, **position.points}
+    ends = [(complex(*points[one]), complex(*known[one])) for one in points if one in known]
+    if len(ends) < 2:
+        return 0.0
+    return float(np.angle((ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0])))
+
+
+def _commanded(machine: Machine, shift: float) -> Commanded:
+    drive, law = machine.drive, machine.drive.stroke
+    assert law is not None
+    bare = _turned(machine, shift)
+    linkage = assemble(bare)
+    found = reach(linkage)
+    low, high = (-pi, pi) if found is None else (found.low + INSIDE, found.high - INSIDE)
+    far = high if found is not None else high + 2 * pi  # a turn may begin anywhere
+    followed = Followed.over(linkage, low, far, STEP, ends_of(bare, drive))
+    branches = _branches(lambda at: _lengths(followed, at, drive), low, high, found is None)
+    return Commanded(followed, drive, law, shift, _chosen(drive, law, branches, shift))
+
+
+def _turned(machine: Machine, shift: float) -> Machine:
+    """The machine as if its link were a crank, at an angle `shift` at crank angle 0."""
+    drive = Drive(machine.drive.link, machine.drive.speed)
+    position = machine.position and replace(machine.position, crank_angle=0.0)
+    bare = replace(machine, drive=drive, position=position, loads=(), planting=None, balance=None,
+                   support=None, rows=())  # fmt: skip
+    bare.__dict__["turning"] = Shifted(drive.link, shift)
+    return bare
+
+
+def _lengths(bare: Followed, theta: Array, drive: Drive) -> Levels:
+    with np.errstate(all="ignore"):  # other links may be infinitely fast, at ends of the way
+        return Motion(bare.linkage, theta, 1.0, 0.0, False, bare.solve(theta)).lengths(drive)
+
+
+def _branches(
+    known: Callable[[Array], Levels], low: float, high: float, whole: bool
+) -> list[Branch]:
+    """Parts of the way over which the length only rises or only falls.
+
+    known : length and its derivatives at angles (N,).
+    whole : whether the way is a turn, so that it may begin at any angle.
+    """
+    angles = np.linspace(low, high, max(3, round((high - low) / STEP) + 1))
+    turns = _dead_points(known, angles)
+    if whole and len(turns):
+        return _branches(known, float(turns[0]), float(turns[0]) + 2 * pi, whole=False)
+    ends = np.unique([low, *turns, high])
+    parts = [angles[(angles > one) & (angles < other)] for one, other in pairwise(ends)]
+    ways = [
+        np.array([one, *part, other])
+        for (one, other), part in zip(pairwise(ends), parts, strict=True)
+        if len(part)
+    ]
+    return [Branch(way, known(way)[0]) for way in ways]
+
+
+def _dead_points(known: Callable[[Array], Levels], angles: Array) -> Array:
+    """Angles at which the length turns back, (D,)."""
+    _, slope, _ = known(angles)
+    left = np.flatnonzero(np.sign(slope[:-1]) != np.sign(slope[1:]))
+    low, high = angles[left], angles[left + 1]
+    for _ in range(HALVINGS if len(left) else 0):
+        middle = 0.5 * (low + high)
+        before = np.sign(known(middle)[1]) == np.sign(slope[left])
+        low, high = np.where(before, middle, low), np.where(before, high, middle)
+    return np.asarray(high)
+
+
+def _chosen(drive: Drive, law: LengthLaw, branches: Sequence[Branch], shift: float) -> Branch:
+    """The branch in which the stroke lies."""
+    low, high = law.extremes
+    kept = [one for one in branches if one.holds(low, high)]
+    near = [one for one in kept if _has(one, 0.0)]
+    if drive.start is not None and len(kept) > 1:
+        kept = near or kept
+    if len(kept) == 1:
+        return kept[0]
+    if kept:
+        told = [_told(one.ends, shift) for one in kept]
+        raise ModelError(
+            "drive.start",
+            Note(
+                "the stroke can be had with {link!r} {told}; give its angle at crank angle 0, "
+                "roughly",
+                link=drive.link,
+                told=all_of(told),
+            ),
+        )
+    widest = max(branches, key=lambda one: one.high - one.low, default=None)
+    if drive.start is not None:
+        widest = next((one for one in branches if _has(one, 0.0)), widest)
+    assert widest is not None
+    ends = {"low": low, "high": high, "least": widest.low, "most": widest.high}
+    size = max(map(abs, ends.values()))  # of which rounding is left where a length is 0
+    raise ModelError(
+        "drive.stroke",
+        Note(
+            "it runs from {low} to {high}, and the linkage lets it be between {least} and {most} "
+            "only; stay within these, short of the dead points at both ends",
+            **{name: _shown(size * round(end / size, 9)) for name, end in ends.items()},
+        ),
+    )
+
+
+def _shown(length: float) -> str:
+    return format_exact(float(f"{length:.5g}"), "length")
+
+
+def _has(one: Branch, at: float) -> bool:
+    """Whether an angle, or the same some turns on, is in a branch."""
+    low, high = one.ends
+    return low <= at + 2 * pi * ceil((low - at) / (2 * pi)) <= high
+
+
+def _told(ends: tuple[float, float], shift: float) -> Note:
+    low, high = (angle(end + shift) for end in ends)
+    return Note("from {low} to {high}", low=low, high=high)

@@ -1,0 +1,276 @@
+"""How a linkage moves: rotations and points with their derivatives by crank angle (kinematic
+coefficients), and what they are in time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import pi
+from numbers import Real
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ChangePointError, RangeError, UsageError
+from equipoise.mechanism.assembly.builder import Group
+from equipoise.mechanism.assembly.cam_fits import pressure_angle
+from equipoise.mechanism.assembly.linkage import Linkage, assemble
+from equipoise.mechanism.assembly.steps import Array, State, p, plain_angle, running_angle, u
+from equipoise.mechanism.checks import Named, Vector, bodies_at
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.rates import LinkMotion, PointMotion, SliderMotion
+from equipoise.mechanism.kinematics.swinging import middle_angle, solve_swinging
+from equipoise.mechanism.parts.machine import Drive, FurtherDrive, Machine, Slider
+from equipoise.quantities.units import HUGE
+
+MOST_ANGLES = 400_000
+"""In one analysis; it takes about a kilobyte for each crank angle and link."""
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Motion of a machine at N crank angles.
+
+    crank_angle : (N,) rad.
+    speed, acceleration : of the crank, rad/s and rad/s2.
+    whole_cycle : whether the crank angles are equally spaced over the whole cycle, so that means
+        over them are means over time.
+    state : every value of the steps, by the names told in `mechanism.assembly.steps`.
+    """
+
+    linkage: Linkage
+    crank_angle: Array
+    speed: float
+    acceleration: float
+    whole_cycle: bool
+    state: State
+
+    @property
+    def machine(self) -> Machine:
+        return self.linkage.machine
+
+    @property
+    def turns(self) -> int:
+        """Turns of the crank in one cycle."""
+        return self.linkage.cycle.turns
+
+    def at(self, speed: float | None = None, acceleration: float | None = None) -> Motion:
+        """The same positions at another speed (rad/s) or acceleration (rad/s2) of the crank."""
+        w, a = _rates(self, speed, acceleration)
+        return replace(self, speed=w, acceleration=a)
+
+    def lengths(self, drive: Drive | FurtherDrive) -> tuple[Array, Array, Array]:
+        """Length between the points that a drive pushes apart, or travel of its sliding joint, m,
+        and both derivatives by crank angle, each (N,).
+        """
+        if drive.slider:
+            one = next(one for one in self.machine.sliders if one.name == drive.slider)
+            slid = self.slider(one)
+            return slid.travel, slid.travel_1, slid.travel_2
+        a, b = (self.point(name) for name in drive.between or ())
+        d, d1, d2 = b.place - a.place, b.place_1 - a.place_1, b.place_2 - a.place_2
+        length = np.abs(d)
+        first = kernels.dot(d, d1) / length
+        second = (np.abs(d1) ** 2 + kernels.dot(d, d2) - first**2) / length
+        return length, first, second
+
+    def way(self, link: str) -> Array:
+        """By crank angle (N,): what the drive of a link goes, m, or turns, rad."""
+        drive = next(one for one in self.machine.driven if one.link == link)
+        return self.lengths(drive)[1] if drive.pushes else self.links[link].angle_1
+
+    @cached_property
+    def links(self) -> Mapping[str, LinkMotion]:
+        """Motion of each link, by name."""
+        return Named("link", ((link, self._link(link)) for link in self.machine.links))
+
+    @cached_property
+    def points(self) -> Mapping[str, PointMotion]:
+        """Motion of each point, by name; the frame's points stand still."""
+        names = bodies_at(self.machine.bodies)
+        return Named("point", ((point, self.point(point)) for point in names))
+
+    @cached_property
+    def mass_centers(self) -> Mapping[str, PointMotion]:
+        """Motion of each link's centre of mass, for links whose mass is known."""
+        found = self.machine.links.items()
+        centers = ((name, link.center_of_mass) for name, link in found if link.center_of_mass)
+        return Named("link with mass", ((name, self._attached(name, at)) for name, at in centers))
+
+    @cached_property
+    def sliders(self) -> Mapping[str, SliderMotion]:
+        """Motion along the guide of each sliding joint, by name."""
+        sliders = self.machine.sliders
+        return Named("slider", ((slider.name, self.slider(slider)) for slider in sliders))
+
+    @cached_property
+    def transmission(self) -> Mapping[str, Array]:
+        """Transmission angle (N,) of each dyad, rad, by its inner joint.
+
+        Between two bars it is the angle at their pin, 0 to pi; where one of the links slides, that
+        between the other and the normal of the guide, or between the two guides, 0 to pi / 2 and
+        counted from where the dyad jams.
+        """
+        dyads = (group for group in self.linkage.groups if group.margin is not None)
+        return Named("dyad", ((group.joint, self._transmission(group)) for group in dyads))
+
+    @cached_property
+    def pressure_angles(self) -> Mapping[str, Array]:
+        """Angle (N,) of each cam, rad, from the way in which its follower rises to the normal."""
+        cams = self.machine.cams
+        return Named(
+            "cam", ((cam.name, self._full(pressure_angle(cam, self.state))) for cam in cams)
+        )
+
+    def slider(self, slider: Slider) -> SliderMotion:
+        """Motion of one of the sliding joints, likewise."""
+        point, base = self.point(slider.point), self.point(slider.through)
+        rotation, w, a = (self.state[name] for name in u(slider.on))
+        way = kernels.along_line(
+            point.place - base.place,
+            point.place_1 - base.place_1,
+            point.place_2 - base.place_2,
+            self._full(rotation * np.exp(1j * slider.direction), complex),
+            w,
+            a,
+        )
+        travel, first, second = (part.real for part in way)
+        return SliderMotion(travel, first, second, self.speed, self.acceleration)
+
+    def _transmission(self, group: Group) -> Array:
+        assert group.margin is not None
+        if all(reaction.kind == "pin" for reaction in group.reactions):
+            first, second, pin = (self.state[f"p({reaction.at})"] for reaction in group.reactions)
+            return self._full(np.abs(np.angle((first - pin) / (second - pin))))
+        margin = self.state[group.margin]
+        if [reaction.kind for reaction in group.reactions] == ["pin", "pin", "slider"]:
+            margin = self._of_block(group, margin)
+        return self._full(np.arcsin(np.sqrt(np.clip(margin, 0.0, 1.0))))
+
+    def _of_block(self, group: Group, margin: Any) -> Any:
+        """Squared sine of a block on a guide, but where the block comes to the guide's pivot.
+
+        There the dyad's margin has to be smooth, and is it by being a little too small.
+        """
+        block, pivot = (self.state[f"p({reaction.at})"] for reaction in group.reactions[:2])
+        slider = next(one for one in self.machine.sliders if one.name == group.reactions[2].name)
+        along = self.state[f"u({slider.on})"] * np.exp(1j * slider.direction)
+        way = block - pivot
+        apart = np.abs(way) ** 2
+        there = apart > 0
+        return np.where(there, kernels.dot(along, way) ** 2 / np.where(there, apart, 1.0), margin)
+
+    def _link(self, link: str) -> LinkMotion:
+        _, w, a = (self.state[name] for name in u(link))
+        angle = self.state.get(f"phi({link})")
+        if angle is None:
+            angle = self._running_angle(link)
+        angle, first, second = (self._full(value) for value in (angle, w, a))
+        return LinkMotion(angle, first, second, self.speed, self.acceleration)
+
+    def _running_angle(self, link: str) -> Array:
+        """Angle counted on through the turns; without a cycle, from the middle of the range."""
+        try:
+            cycle = self.linkage.cycle
+        except (RangeError, ChangePointError) as error:
+            middle = middle_angle(self.linkage, link, self.crank_angle, error)
+            return running_angle(self.state, link, middle)
+        if link in cycle.rocking:
+            return plain_angle(self.state, link)
+        return running_angle(self.state, link, cycle.reference(link, self.crank_angle))
+
+    def point(self, point: str) -> PointMotion:
+        """Motion of one of the points; of a state that is not whole, of one that it tells of."""
+        names = p(point)
+        if names[0] in self.state:
+            return self._moving(*(self.state[name] for name in names))
+        links = self.machine.links
+        link = next(
+            name for name in links if point in links[name].points and u(name)[0] in self.state
+        )
+        return self._attached(link, links[link].points[point])
+
+    def _attached(self, link: str, place: Vector) -> PointMotion:
+        """A point given in a link's axes."""
+        anchor = self.linkage.anchors[link]
+        arm = complex(*place) - complex(*self.machine.points_of(link)[anchor])
+        known = [self.state[name] for name in (*p(anchor), *u(link))]
+        return self._moving(*kernels.point(*known, arm))  # type: ignore[call-arg]
+
+    def _moving(self, *values: Any) -> PointMotion:
+        place, first, second = (self._full(value, complex) for value in values)
+        return PointMotion(place, first, second, self.speed, self.acceleration)
+
+    def _full(self, value: Any, kind: type = float) -> Array:
+        if isinstance(value, np.ndarray) and value.shape == self.crank_angle.shape:
+            return value
+        return np.full(self.crank_angle.shape, value, dtype=kind)
+
+
+def move(
+    machine: Machine,
+    angles: int | Sequence[float] | Array = 360,
+    speed: float | None = None,
+    acceleration: float | None = None,
+) -> Motion:
+    """Solve the motion of a machine.
+
+    Parameters
+    ----------
+    angles : number of crank angles in each turn, equally spaced from 0 over the whole cycle (which
+        takes several turns where gears or loops need them), or the crank angles themselves, rad.
+    speed, acceleration : of the crank, rad/s and rad/s2; those of the file where not given.
+
+    Raises
+    ------
+    MotionError : the linkage cannot reach the crank angles.
+    UsageError : the crank angles cannot be used.
+    """
+    linkage = assemble(machine)
+    if isinstance(angles, bool):
+        raise UsageError(f"got {angles}; give a number of crank angles, or angles")
+    whole_cycle = isinstance(angles, int | np.integer)
+    theta = _cycle_angles(linkage, int(angles)) if whole_cycle else _given_angles(angles)  # type: ignore[arg-type]
+    rates = _rates(machine.drive, speed, acceleration)
+    try:
+        state = linkage.solve(theta)
+    except (RangeError, ChangePointError) as error:
+        if whole_cycle:
+            raise
+        state = solve_swinging(linkage, theta, error)
+    return Motion(linkage, theta, *rates, whole_cycle, state)
+
+
+def _cycle_angles(linkage: Linkage, count: int) -> Array:
+    if count < 1:
+        raise UsageError(f"got {count} crank angles; give at least 1")
+    turns = linkage.cycle.turns
+    if count * turns > MOST_ANGLES:
+        raise UsageError(
+            f"got {count} crank angles in each of {turns} turns; give at most "
+            f"{MOST_ANGLES // turns}"
+        )
+    return np.arange(count * turns) * (2 * pi / count)
+
+
+def _given_angles(angles: Any) -> Array:
+    try:
+        theta = np.atleast_1d(np.asarray(angles, dtype=float))
+    except (TypeError, ValueError, OverflowError):
+        raise UsageError(f"got {angles!r}; give a number of crank angles, or angles") from None
+    if theta.ndim != 1 or theta.size == 0 or not np.all(np.isfinite(theta)):
+        raise UsageError("the crank angles must be one or more finite numbers, in a row")
+    return theta
+
+
+def _rates(usual: Drive | Motion, *given: float | None) -> tuple[float, float]:
+    """Speed and acceleration of the crank, the usual ones where they are not given."""
+    rates = []
+    for name, value in zip(("speed", "acceleration"), given, strict=True):
+        rate = getattr(usual, name) if value is None else value
+        if not isinstance(rate, Real) or not abs(rate) < HUGE:  # type: ignore[operator]
+            raise UsageError(f"got {rate!r} for {name}; give a finite number in SI units")
+        rates.append(float(rate))
+    return rates[0], rates[1]

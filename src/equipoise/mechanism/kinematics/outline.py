@@ -1,0 +1,255 @@
+"""A machine as it is drawn: where each of its links lies; it may lack anything.
+
+What is drawn is held by the pose of each link, so that whatever is still missing follows from the
+drawing: the sides of dyads, the start of gears, the rough position of loops.
+"""
+
+from __future__ import annotations
+
+from cmath import exp, phase
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from math import cos, hypot, pi, remainder, sin
+from typing import Any
+
+import numpy as np
+
+from equipoise.mechanism.assembly.joints import Structure, joined
+from equipoise.mechanism.assembly.linkage import assemble, sides_at_position
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.machine import (
+    FRAME,
+    Drive,
+    Gear,
+    Link,
+    Machine,
+    Position,
+    Slider,
+    Vector,
+)
+from equipoise.mechanism.parts.racks import Rack
+from equipoise.quantities import clean, clean_place
+
+TITLE = "Untitled machine"
+USUAL_SIZE = 0.1
+"""m, of a machine that has no points yet."""
+MESHING = 1e-9
+"""rad by which the start of a gear may differ from what is drawn: rounding."""
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Where a link is drawn.
+
+    origin : of its axes, in the frame, m.  angle : of its x axis in the frame, rad.
+    """
+
+    origin: complex = 0j
+    angle: float = 0.0
+
+    @property
+    def turn(self) -> complex:
+        return complex(cos(self.angle), sin(self.angle))
+
+    def out(self, place: Vector) -> complex:
+        """Where a place in the link's axes is in the frame, m."""
+        return self.origin + self.turn * complex(*place)
+
+    def into(self, place: complex) -> complex:
+        """Where a place in the frame is in the link's axes, m."""
+        return (place - self.origin) * self.turn.conjugate()
+
+
+STILL = Pose()
+"""Of the frame."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """A machine that may be unfinished.
+
+    poses : of every link.  drive : None where none has been chosen.
+    phase : crank angle at which it is drawn (rad), where the angle of no link tells it.
+    rest : what a machine has besides, by its field.
+    """
+
+    frame: Mapping[str, Vector] = field(default_factory=dict)
+    links: Mapping[str, Link] = field(default_factory=dict)
+    poses: Mapping[str, Pose] = field(default_factory=dict)
+    drive: Drive | None = None
+    sliders: tuple[Slider, ...] = ()
+    gears: tuple[Gear, ...] = ()
+    rest: Mapping[str, Any] = field(default_factory=lambda: {"title": TITLE})
+    phase: float = 0.0
+
+    @property
+    def crank_angle(self) -> float:
+        """At which it is drawn, rad; 0 without a drive."""
+        if self.drive is None:
+            return 0.0
+        return self.poses[self.drive.crank].angle if self.drive.crank else self.phase
+
+    @property
+    def bodies(self) -> dict[str, Mapping[str, Vector]]:
+        """Points of the frame and of every link, in their own axes."""
+        return {FRAME: self.frame} | {name: link.points for name, link in self.links.items()}
+
+    def pose(self, body: str) -> Pose:
+        """Where a link, or the frame, is drawn."""
+        return STILL if body == FRAME else self.poses[body]
+
+    @property
+    def places(self) -> dict[str, complex]:
+        """Every point in the frame, m; those of the frame first."""
+        found: dict[str, complex] = {}
+        for body, points in self.bodies.items():
+            for name, place in points.items():
+                found.setdefault(name, self.pose(body).out(place))
+        return found
+
+    def holders(self, point: str) -> list[str]:
+        """The bodies that have a point."""
+        return [body for body, points in self.bodies.items() if point in points]
+
+    @property
+    def joints(self) -> Structure:
+        coupled = (*self.gears, *self.rest.get("belts", ()), *self.rest.get("racks", ()))
+        return joined(self.bodies, self.sliders, coupled)
+
+    @property
+    def driven(self) -> list[str]:
+        """Links with a drive, as far as they are there."""
+        drives = (*([self.drive] if self.drive else ()), *self.rest.get("drives", ()))
+        return [drive.link for drive in drives]
+
+    @property
+    def mobility(self) -> int:
+        """Count of free motions; each drive commands one of them."""
+        return self.joints.freedom(self.links, [FRAME])
+
+    @property
+    def size(self) -> float:
+        """Largest distance of a place from the origin, m."""
+        return max(map(abs, self.places.values()), default=0.0) or USUAL_SIZE
+
+    @property
+    def extent(self) -> float:
+        """Size of what is drawn, m."""
+        places = [*self.places.values()]
+        if not places:
+            return USUAL_SIZE
+        parts = [z.real for z in places], [z.imag for z in places]
+        return max(max(part) - min(part) for part in parts) or USUAL_SIZE
+
+    def machine(self) -> Machine:
+        """What is drawn as a machine, with the place where it is drawn.
+
+        Raises
+        ------
+        ModelError : what it has contradicts itself, or it has no drive.
+        """
+        drive = self.drive or self._usual_drive()
+        turning = self._meshed(drive.link)
+        count = len(self.gears)
+        return Machine(
+            drive=drive,
+            frame=self.frame,
+            links=self.links,
+            sliders=self.sliders,
+            gears=turning[:count],
+            position=self._position(),
+            **{**self.rest, "belts": turning[count:]},
+        )
+
+    def settled(self) -> Machine:
+        """What is drawn as a machine that has the sides of its dyads as they are drawn.
+
+        Raises
+        ------
+        EquipoiseError : it does not make a linkage; the sentence says why.
+        """
+        machine = self.machine()
+        machine = replace(machine, assembly=sides_at_position(machine))
+        if machine.racks:
+            machine = replace(machine, racks=self._engaged(machine))
+        loops = any(group.kind == "loops" for group in assemble(machine).groups)
+        return machine if loops else replace(machine, position=None)
+
+    def _position(self) -> Position:
+        points = {name: clean_place(place, self.size) for name, place in self.places.items()
+                  if any(name in link.points for link in self.links.values())}  # fmt: skip
+        angles = {name: clean(pose.angle) for name, pose in self.poses.items()}
+        return Position(clean(self.crank_angle), points, angles)
+
+    def travel(self, slider: Slider) -> float:
+        """How far a slider is along its guide, m."""
+        way = self.places[slider.point] - self.places[slider.through]
+        return (way / exp(1j * (slider.direction + self.pose(slider.on).angle))).real
+
+    def _meshed(self, drive: str) -> tuple[Any, ...]:
+        """Gears, then belts, that start so that what they drive comes to where it is drawn, as far
+        as that is known.
+        """
+        angles = {FRAME: (0.0, 0.0)}  # at crank angle 0, and as drawn
+        if drive in self.links:
+            angles[drive] = 0.0, self.pose(drive).angle
+        found: list[Gear | Belt] = [*self.gears, *self.rest.get("belts", ())]
+        left = [*range(len(found))]
+        while ready := [k for k in left if _known(found[k], angles)]:
+            k = ready[0]
+            left.remove(k)
+            one, start = found[k], found[k].start
+            way = _way(one, angles[one.driver], angles[one.carrier])
+            drawn = self.pose(one.driven).angle - way
+            if abs(remainder(drawn - start, 2 * pi)) > MESHING:
+                start = clean(remainder(drawn, 2 * pi), "angle")
+                found[k] = replace(one, start=start)
+            angles[one.driven] = start, start + way
+        return tuple(found)
+
+    def _engaged(self, machine: Machine) -> tuple[Rack, ...]:
+        """Racks that start so that what they drive comes to where it is drawn."""
+        motion = move(machine, np.array([self.crank_angle]))
+        return tuple(self._put(rack, motion) for rack in machine.racks)
+
+    def _put(self, rack: Rack, motion: Motion) -> Rack:
+        if rack.drives == "pinion":
+            ends = (rack.rack, rack.carrier)
+            slider = next(one for one in self.sliders if (one.link, one.on) == ends)
+            off = self.travel(slider) - float(motion.sliders[slider.name].travel[0])
+            near = abs(off) <= MESHING * rack.radius
+            return rack if near else replace(rack, travel=clean(rack.travel + off, "length"))
+        turned = self.pose(rack.pinion).angle - float(motion.links[rack.pinion].angle[0])
+        off = remainder(turned, 2 * pi)
+        return rack if abs(off) <= MESHING else replace(rack, angle=clean(rack.angle + off))
+
+    def _usual_drive(self) -> Drive:
+        """In the place of one that has not been chosen."""
+        return Drive(next(iter(self.links), ""), 0.0)
+
+
+def _known(one: Gear | Belt, angles: Mapping[str, tuple[float, float]]) -> bool:
+    """Whether its driver and its carrier stand where it is known, and what it drives does not."""
+    return {one.driver, one.carrier} <= angles.keys() and one.driven not in angles
+
+
+def _way(gear: Gear | Belt, driver: tuple[float, float], carrier: tuple[float, float]) -> float:
+    """How far a driven gear turns while driver and carrier turn from one angle to another."""
+    kernel, numbers = gear.relation
+    before, after = (
+        float(kernel(one, 0.0, 0.0, other, 0.0, 0.0, *numbers, 0.0)[0])
+        for one, other in zip(driver, carrier, strict=True)
+    )
+    return after - before
+
+
+def pose_between(start: complex, end: complex) -> Pose:
+    """Of a link whose x axis points from one place of the frame (m) to another."""
+    return Pose(start, phase(end - start))
+
+
+def length_between(start: complex, end: complex) -> float:
+    """Distance of two places, m, as a file would tell it."""
+    way = end - start
+    return clean(hypot(way.real, way.imag), "length")

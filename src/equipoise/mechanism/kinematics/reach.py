@@ -1,0 +1,165 @@
+"""How far a crank can be turned that cannot turn fully: the crank angles from end to end.
+
+The linkage is followed from a crank angle at which it can be put together, to either side, until a
+dyad is stretched out or folded, or the loop equations of a group have no solution.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import degrees, pi
+
+import numpy as np
+
+from equipoise.errors import ChangePointError, MotionError, RangeError
+from equipoise.i18n import Note, all_of
+from equipoise.mechanism.assembly.builder import Group
+from equipoise.mechanism.assembly.full_turn import CHANGE_POINT
+from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.mechanism.assembly.steps import Array, run
+
+POINTS = 360
+"""Crank angles in a turn at which the linkage is looked at."""
+FINER, ROUNDS = 16, 6
+"""Into how many parts the step is parted in which an end lies, and how often."""
+
+
+@dataclass(frozen=True)
+class Reach:
+    """The crank angles between which a crank can swing.
+
+    low, high : rad, from less than a turn below 0 to more than 0.
+    stops : what the links do at either end that keeps the crank from going on.
+    others : how many more such ranges there are; in these other poses begin.
+    """
+
+    low: float
+    high: float
+    stops: tuple[Note | str, Note | str]
+    others: int = 0
+
+    @property
+    def note(self) -> Note:
+        """The range and what ends it."""
+        return Note(
+            "the crank swings between {low} ({first}) and {high} ({second})",
+            low=_told(self.low),
+            high=_told(self.high),
+            first=self.stops[0],
+            second=self.stops[1],
+        )
+
+
+def reach(linkage: Linkage) -> Reach | None:
+    """The range of a crank that cannot turn fully; None where it can.
+
+    It is that in which crank angle 0 lies, or else the nearest to that.
+
+    Raises
+    ------
+    RangeError : the linkage cannot be put together at any crank angle, or has gears and cannot at
+        crank angle 0, where these start.
+    MotionError : its motion does not repeat.
+    """
+    stuck: MotionError | None = None
+    try:
+        _ = linkage.cycle
+    except (RangeError, ChangePointError) as error:
+        stuck = error
+    except MotionError as error:
+        if not _has_loops(linkage):
+            raise
+        stuck = error
+    if stuck is None:
+        return None
+    start, others = _start(linkage, stuck)
+    low, first = _end(linkage, start, -1)
+    high, second = _end(linkage, start, 1)
+    return Reach(low, high, (first, second), others)
+
+
+def _has_loops(linkage: Linkage) -> bool:
+    return any(group.kind == "loops" for group in linkage.groups)
+
+
+def _start(linkage: Linkage, stuck: MotionError) -> tuple[float, int]:
+    """A crank angle of the range, and how many other ranges there are."""
+    if _has_loops(linkage):
+        return 0.0, 0
+    theta = np.linspace(0.0, 2 * pi, POINTS, endpoint=False)
+    good = _closed(linkage, theta)
+    begins = int(np.sum(good & ~np.roll(good, 1)))
+    if good[0]:
+        return 0.0, begins - 1
+    if not begins or linkage.needed_references:
+        raise stuck
+    apart = np.round(np.minimum(theta, 2 * pi - theta)[good], 9)
+    nearest = float(theta[good][np.argmin(apart)])
+    return (nearest if nearest <= pi else nearest - 2 * pi), begins - 1
+
+
+def _closed(linkage: Linkage, theta: Array) -> Array:
+    """At which crank angles (N,) all dyads can be closed."""
+    with np.errstate(all="ignore"):
+        state = run(linkage.motion, linkage.start(theta))
+    margins = [state[group.margin] for group in linkage.groups if group.margin is not None]
+    good = [np.broadcast_to(margin > CHANGE_POINT, theta.shape) for margin in margins]
+    return np.all(good, axis=0) if good else np.ones(theta.shape, bool)
+
+
+def _end(linkage: Linkage, start: float, side: int) -> tuple[float, Note | str]:
+    """The crank angle up to which the linkage follows from a start, and what it does there."""
+    way = start + side * np.linspace(0.0, 2 * pi, POINTS + 1)
+    good = _followed(linkage, way)
+    for _ in range(ROUNDS if good < len(way) else 0):
+        last = way[good - 1]
+        way = np.append(way[: good - 1], np.linspace(last, way[good], FINER + 1))
+        good = _followed(linkage, way)
+    return float(way[good - 1]), _stop(linkage, way[: good + 1])
+
+
+def _followed(linkage: Linkage, way: Array) -> int:
+    """How many of the crank angles (N,) can be reached, one after the other."""
+    count = _solvable(linkage, way) if _has_loops(linkage) else len(way)
+    bad = np.flatnonzero(~_closed(linkage, way[:count]))
+    return max(int(bad[0]), 1) if len(bad) else count
+
+
+def _solvable(linkage: Linkage, way: Array) -> int:
+    """The same, as far as groups of loops are concerned."""
+    low, high = 1, len(way)
+    while low < high:
+        middle = (low + high + 1) // 2
+        try:
+            _closed(linkage, way[:middle])
+            low = middle
+        except MotionError:
+            high = middle - 1
+    return low
+
+
+def _stop(linkage: Linkage, way: Array) -> Note | str:
+    """What keeps the crank from the last of some crank angles (N,)."""
+    group = _stopping(linkage, way)
+    if group.margin is not None:
+        return group.dead
+    links = [repr(link) for link in group.links]
+    return Note("{links} can be moved no further", links=all_of(links))
+
+
+def _stopping(linkage: Linkage, way: Array) -> Group:
+    """The first group that cannot be had there; the last where rounding lets all be."""
+    state = linkage.start(way)
+    for group in linkage.groups:
+        try:
+            with np.errstate(all="ignore"):
+                run(group.motion, state)
+        except MotionError:
+            return group
+        if group.margin is not None and not np.ravel(state[group.margin])[-1] > CHANGE_POINT:
+            return group
+    return linkage.groups[-1]
+
+
+def _told(angle: float) -> str:
+    return f"{degrees(angle):.2f} deg"

@@ -1,0 +1,281 @@
+"""What designers read off a slider or rocker: stroke, dead positions, time ratio, dwell.
+
+All is found on the continuous motion: samples only say between which crank angles to look.  A
+rocker is a link that is pinned to the frame and swings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import isfinite, pi
+
+import numpy as np
+
+from equipoise.errors import ChangePointError, RangeError, UsageError
+from equipoise.mechanism.assembly.cycle import FEWER_POINTS, MANY_TURNS, POINTS_PER_TURN
+from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.mechanism.assembly.steps import Array
+from equipoise.mechanism.checks import Named, unknown
+from equipoise.mechanism.kinematics.dwell import Dwell, Path, longest_dwell, rests
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.stroke_figures import DeadPosition, Kind, Stroke
+from equipoise.mechanism.kinematics.tip import largest, roots
+from equipoise.mechanism.outputs.poles import guided, pinned
+from equipoise.signals import EQUAL, highest_at
+
+SHARE = 0.01
+"""Of a stroke, or of the extent of a path: the usual tolerance of a dwell."""
+STILL = 1e-12
+"""Of the largest rate of all: what is slower stands still."""
+
+
+# -- what moves ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Output:
+    """A slider or a rocker that is looked at."""
+
+    name: str
+    kind: Kind
+
+    def of(self, motion: Motion) -> tuple[Array, Array, Array]:
+        """Place and its derivatives by crank angle, (N,)."""
+        if self.kind == "slider":
+            slider = motion.sliders[self.name]
+            return slider.travel, slider.travel_1, slider.travel_2
+        link = motion.links[self.name]
+        return link.angle, link.angle_1, link.angle_2
+
+
+def rockers(linkage: Linkage) -> list[str]:
+    """Links that are pinned to the frame and swing; the cycle must be known."""
+    return [link for link in pinned(linkage.machine) if linkage.cycle.windings[link] == 0]
+
+
+def _motion(linkage: Linkage, theta: Array) -> Motion:
+    return Motion(linkage, theta, 1.0, 0.0, False, linkage.solve(theta))
+
+
+def _grid(linkage: Linkage) -> Array:
+    turns = linkage.cycle.turns
+    points = POINTS_PER_TURN if turns <= MANY_TURNS else FEWER_POINTS
+    return np.arange(points * turns) * (2 * pi / points)
+
+
+@dataclass(frozen=True)
+class _Outputs:
+    """Several of them, of which signals (P, K) are had at crank angles (P, K) of their own."""
+
+    linkage: Linkage
+    ones: tuple[_Output, ...]
+
+    def at(self, theta: Array) -> tuple[Array, Array, Array]:
+        """Places and their derivatives, (P, K)."""
+        motion = _motion(self.linkage, theta.ravel())
+        rows = range(len(self.ones))
+        read = [one.of(motion) for one in self.ones]
+        found: Array = np.array(read).reshape(len(rows), 3, *theta.shape)
+        place, first, second = (found[rows, k, rows] for k in range(3))
+        return place, first, second
+
+    def speed(self, theta: Array) -> Array:
+        """First derivative."""
+        return self.at(theta)[1]
+
+    def size(self, theta: Array) -> Array:
+        """Its size."""
+        return np.abs(self.speed(theta))
+
+    def gain(self, theta: Array) -> Array:
+        """What has the sign of the derivative of its size."""
+        _, first, second = self.at(theta)
+        return first * second
+
+
+# -- figures of a machine --------------------------------------------------------------------------
+
+
+def strokes(linkage: Linkage) -> Mapping[str, Stroke]:
+    """Figures of every slider and rocker by name; none where the crank cannot turn fully."""
+    try:
+        theta = _grid(linkage)
+    except (RangeError, ChangePointError):
+        return Named("slider or rocker", ())
+    machine = linkage.machine
+    ones = [_Output(slider.name, "slider") for slider in machine.sliders]
+    ones += [_Output(link, "rocker") for link in rockers(linkage)]
+    motion = _motion(linkage, theta)
+    samples = {one: np.array(one.of(motion)) for one in ones}
+    rates = {one: float(np.max(np.abs(found[1]))) for one, found in samples.items()}
+    least = STILL * max(rates.values(), default=0.0)
+    kept = tuple(one for one in ones if rates[one] > least)
+    if not kept:
+        return Named("slider or rocker", ())
+    outputs = _Outputs(linkage, kept)
+    table = np.array([samples[one] for one in kept])
+    fastest = largest(outputs.size, outputs.gain, theta, np.abs(table[:, 1]))
+    dead = _dead_positions(outputs, theta, table)
+    for k, one in enumerate(kept):
+        if len(dead[k]) > 1:
+            own = _Outputs(linkage, (one,))
+            dead[k] = _rested(own, dead[k], theta, table[k, 1], STILL * rates[one])
+    found = {
+        one.name: _stroke(one, linkage, table[k], dead[k], (fastest[0][k], fastest[1][k]))
+        for k, one in enumerate(kept)
+        if len(dead[k]) > 1
+    }
+    return Named("slider or rocker", found.items())
+
+
+def _dead_positions(
+    outputs: _Outputs, theta: Array, table: Array
+) -> list[tuple[DeadPosition, ...]]:
+    """Where each output turns back: zeros of its speed, all closed in on together.
+
+    table : (P, 3, N), places and derivatives at crank angles theta (N,).
+    """
+    step = theta[1] - theta[0]
+    negative = table[:, 1] < 0
+    found = [np.flatnonzero(row) for row in negative != np.roll(negative, -1, axis=1)]
+    most = max(map(len, found))
+    if not most:
+        return [()] * len(found)
+    low = np.array([np.resize(theta[k], most) if len(k) else np.zeros(most) for k in found])
+    at = roots(outputs.speed, low, low + step)
+    place = outputs.at(at)[0]
+    period = len(theta) * step
+    return [
+        tuple(_turning(at[p, : len(k)] % period, place[p, : len(k)])) for p, k in enumerate(found)
+    ]
+
+
+def _rested(
+    output: _Outputs, dead: tuple[DeadPosition, ...], theta: Array, speed: Array, least: float
+) -> tuple[DeadPosition, ...]:
+    """Dead positions of one output, each where a rest begins that it lies in."""
+    resting = rests(theta, speed, lambda at: output.speed(at[None])[0], least)
+    step = theta[1]
+    period, found = step * len(theta), []
+    for one in dead:
+        inside = (r for r in resting if (one.crank_angle - r[0] + step) % period < r[1] + 2 * step)
+        begin, rest = next(inside, (one.crank_angle, 0.0))
+        found.append(replace(one, crank_angle=begin, rest=rest))
+    return tuple(sorted(found, key=lambda position: position.crank_angle))
+
+
+def _turning(angles: Array, places: Array) -> list[DeadPosition]:
+    """Dead positions by crank angle, without those between which it moves by rounding alone."""
+    order = np.argsort(angles)
+    found = [DeadPosition(float(angles[k]), float(places[k])) for k in order]
+    least = EQUAL * float(np.ptp(places)) if len(places) else 0.0
+    k = 0
+    while len(found) > 2 and k < len(found):
+        if abs(found[k].place - found[k - 1].place) <= least:
+            del found[k], found[k - 1 if k else -1]
+            k = 0
+        else:
+            k += 1
+    return found
+
+
+def _stroke(
+    one: _Output,
+    linkage: Linkage,
+    samples: Array,
+    dead: tuple[DeadPosition, ...],
+    fastest: tuple[float, float],
+) -> Stroke:
+    places = np.array([position.place for position in dead])
+    low, high = (dead[highest_at(sign * places, smooth=False)] for sign in (-1, 1))
+    period = 2 * pi * linkage.cycle.turns
+    stroke = high.place - low.place
+    way = 1 if linkage.machine.drive.speed >= 0 else -1
+    angles = np.array([position.gone(-way) for position in dead])
+    tops, bottoms = (np.abs(places - end.place) <= EQUAL * stroke for end in (high, low))
+    rise = float(np.min(way * (angles[tops] - low.gone(way)) % period))
+    top = dead[int(np.argmin(np.where(tops, way * (angles - low.gone(way)) % period, np.inf)))]
+    fall = float(np.min(way * (angles[bottoms] - top.gone(way)) % period))
+    held = longest_dwell(_along(samples[0], samples[1], samples[2], period), SHARE * stroke)
+    advantage, at = None, None
+    told = one.kind == "rocker" or one.name in guided(linkage.machine)
+    if told and linkage.machine.has_crank:
+        advantage, at = 1 / float(fastest[0]), float(fastest[1] % period)
+    return Stroke(
+        one.kind,
+        stroke,
+        low.place,
+        low.crank_angle,
+        high.place,
+        high.crank_angle,
+        rise,
+        fall,
+        low.rest,
+        top.rest,
+        max(rise, fall) / min(rise, fall) if min(rise, fall) else float("nan"),
+        held.angle,
+        held.begin,
+        advantage,
+        at,
+        dead,
+    )
+
+
+# -- dwells of anything ----------------------------------------------------------------------------
+
+
+def dwell(linkage: Linkage, name: str, tolerance: float | None = None) -> Dwell:
+    """Longest crank angle over which a slider, link or point moves by no more than a tolerance.
+
+    Of a point, no two of its places there are further apart; of a link, its angle varies by no
+    more.
+
+    Parameters
+    ----------
+    name : of a slider, a link, or a point, in this order.
+    tolerance : m, of a link rad; a hundredth of its stroke, of the extent of a point's path, or of
+        half a turn of a link that turns fully, if None.
+
+    Raises
+    ------
+    MotionError : the crank cannot turn fully.
+    UsageError : nothing goes by that name, or the tolerance is none.
+    """
+    if tolerance is not None and not (isfinite(tolerance) and tolerance > 0):
+        raise UsageError(f"got {tolerance:g} for the tolerance of a dwell; give more than 0")
+    motion, period = _motion(linkage, _grid(linkage)), 2 * pi * linkage.cycle.turns
+    if tolerance is None and name in (known := strokes(linkage)):
+        tolerance = SHARE * known[name].stroke
+    if name in motion.sliders:
+        slider = motion.sliders[name]
+        parts = (slider.travel, slider.travel_1, slider.travel_2)
+        return _held(_along(*parts, period), tolerance)
+    if name in motion.links:
+        link = motion.links[name]
+        u = np.exp(1j * link.angle)
+        path = Path(u, 1j * link.angle_1 * u, (1j * link.angle_2 - link.angle_1**2) * u, period)
+        usual = SHARE * min(float(np.ptp(link.angle)), pi)
+        angle = usual if tolerance is None else min(tolerance, pi)
+        return Dwell(angle, *_ends_of(_held(path, 2 * np.sin(angle / 2))))
+    if name in motion.points:
+        point = motion.points[name]
+        return _held(Path(point.place, point.place_1, point.place_2, period), tolerance)
+    every = [*motion.sliders, *motion.links, *motion.points]
+    raise UsageError(unknown(name, every, "slider, link or point"))
+
+
+def _along(place: Array, first: Array, second: Array, period: float) -> Path:
+    """The path of what moves to and fro."""
+    return Path(place + 0j, first + 0j, second + 0j, period)
+
+
+def _held(path: Path, tolerance: float | None) -> Dwell:
+    if tolerance is None:
+        size = abs(complex(np.ptp(path.place.real), np.ptp(path.place.imag)))
+        tolerance = SHARE * size
+    return longest_dwell(path, tolerance)
+
+
+def _ends_of(found: Dwell) -> tuple[float, float]:
+    return found.angle, found.begin

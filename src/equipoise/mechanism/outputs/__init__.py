@@ -1,0 +1,1 @@
+"""The outputs of a machine, each declared once, and the names they go by."""

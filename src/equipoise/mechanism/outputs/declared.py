@@ -1,0 +1,344 @@
+"""The outputs of a machine, each declared once; everything that lists outputs reads them here.
+
+An analysis reads them: `found` has its machine, motion and forces, and in `together` the signals of
+all rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from equipoise.i18n import to_say
+from equipoise.mechanism.checks import bodies_at
+from equipoise.mechanism.outputs.declaring import (
+    DECLARED,
+    GROUPS,
+    Declared,
+    Found,
+    Measure,
+    alike,
+    declared,
+    declaring,
+    matches,
+    output,
+)
+from equipoise.mechanism.outputs.poles import advantage, guided, instant_center, pairs, pinned
+from equipoise.mechanism.outputs.spoken import joint_named, joint_names, pair_named, slider_names
+
+__all__ = ["DECLARED", "GROUPS", "Declared", "Found", "declared", "declaring", "matches", "output"]
+"""What `declaring` has is had from here, where something is declared."""
+
+FORCE: tuple[Measure, ...] = ("rms", "peak")
+MOMENT: tuple[Measure, ...] = ("rms", "peak", "area")
+TORQUE: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak")
+"""Measures that are told of an output before and after balancing."""
+XY, FORCES = (".x", ".y"), (".force_x", ".force_y")
+"""Components of vectors, behind their names."""
+
+
+# -- motion ----------------------------------------------------------------------------------------
+
+of_link = alike(
+    "links.{}.",
+    lambda name, found, link: getattr(found.motion.links[link], name),
+    needs="motion",
+    members=lambda machine: machine.links,
+    summed=False,
+    loop=True,
+)
+of_link("angle", "angle", to_say("angle of {name}"), loop=None)
+of_link("angular_velocity", "angular speed", to_say("angular velocity of {name}"))
+of_link("angular_acceleration", "angular acceleration", to_say("angular acceleration of {name}"))
+
+UNBOUNDED: dict[str, Any] = {"array": False, "summed": False, "loop": None, "unbounded": True}
+of_link(
+    "advantage",
+    None,
+    to_say("mechanical advantage of {name}"),
+    had="angle_1",
+    members=lambda machine: pinned(machine) * machine.has_crank,
+    of=advantage,
+    **UNBOUNDED,
+)
+
+of_point = alike(
+    "points.{}.",
+    lambda name, found, point: getattr(found.motion.points[point], name),
+    needs="motion",
+    members=lambda machine: bodies_at(machine.bodies),
+    summed=False,
+)
+of_point(
+    "place", "length", to_say("position of {name}"), ("x", "y"), sized=False, loop="{position:name}"
+)
+of_point("velocity", "speed", to_say("velocity of {name}"), ("vx", "vy"), loop=True)
+of_point(
+    "acceleration",
+    "acceleration",
+    to_say("acceleration of {name}"),
+    ("ax", "ay"),
+    loop=True,
+    had="acceleration_vector",
+)
+
+of_slider = alike(
+    "sliders.{}.",
+    lambda name, found, slider: getattr(found.motion.sliders[slider], name),
+    needs="motion",
+    members=slider_names,
+    spoken=joint_named,
+)
+of_slider("travel", "length", to_say("travel of {name}"))
+of_slider("velocity", "speed", to_say("sliding velocity of {name}"))
+of_slider(
+    "acceleration",
+    "acceleration",
+    to_say("sliding acceleration of {name}"),
+    had="along_acceleration",
+)
+of_slider(
+    "advantage",
+    "force per torque",
+    to_say("mechanical advantage of {name}"),
+    had="travel_1",
+    members=lambda machine: guided(machine) * machine.has_crank,
+    of=advantage,
+    **UNBOUNDED,
+)
+of_dyad = alike(
+    "transmission.{}",
+    lambda _, found, joint: found.motion.transmission[joint],
+    needs="motion",
+    members=lambda machine: (),
+    items=lambda found: found.motion.transmission,
+    spoken=joint_named,
+)
+of_dyad("", "angle", to_say("transmission angle at {name}"))
+of_pair = alike(
+    "centers.{}",
+    lambda _, found, pair: instant_center(found.motion, pair),
+    needs="motion",
+    members=pairs,
+    spoken=pair_named,
+    sized=False,
+    **UNBOUNDED,
+)
+of_pair("", "length", to_say("instant centre of {name}"), (".x", ".y"))
+
+# -- frame and drive -------------------------------------------------------------------------------
+
+
+def _force(name: str, found: Any) -> Any:
+    return getattr(found.forces, name)
+
+
+linear = alike("", _force, linear=True, loop=True)
+linear("shaking_force", "force", to_say("shaking force"), XY, ordered=True, compared=FORCE)
+linear(
+    "shaking_moment", "torque", to_say("shaking moment"), about=True, ordered=True, compared=MOMENT
+)
+TURNED: dict[str, Any] = {"members": lambda machine: () if machine.drive.pushes else ("",)}
+PUSHED: dict[str, Any] = {"members": lambda machine: ("",) if machine.drive.pushes else ()}
+EFFORT: dict[str, Any] = {"ordered": True, "compared": TORQUE}
+linear("drive_torque", "torque", to_say("drive torque"), **TURNED, **EFFORT)
+linear("drive_force", "force", to_say("drive force"), loop=None, **PUSHED, **EFFORT)
+linear("frame_force", "force", to_say("force on the frame"), XY, summed=(True, False))
+linear("frame_moment", "torque", to_say("moment on the frame"), about=True)
+of_space = alike(
+    "",
+    lambda name, found: getattr(found.forces.across, name),
+    needs="planes",
+    members=lambda machine: ("",) if machine.has_planes else (),
+    linear=True,
+    loop=True,
+)
+of_space("rocking_moment", "torque", to_say("rocking moment"), XY, ordered=True, compared=FORCE)
+of_space(
+    "frame_rocking_moment",
+    "torque",
+    to_say("rocking moment on the frame"),
+    XY,
+    summed=(True, False),
+)
+of_weight = alike(
+    "",
+    _force,
+    linear="{what} shakes nothing; take the force or moment on the frame instead",
+    summed=False,
+)
+of_weight("weight", "force", to_say("weight"), XY, sized=False)
+of_weight("weight_moment", "torque", to_say("moment of the weight"), about=True)
+of_center = alike(
+    "mass_center.",
+    lambda _, found: -found.forces.shaking_force.value / found.machine.mass,
+    linear="{what} is the shaking force over the mass; take the shaking force instead",
+    items=lambda found: ("",) if found.machine.mass else (),
+    ordered=True,
+    summed=False,
+    sized=False,
+)
+of_center(
+    "acceleration",
+    "acceleration",
+    to_say("acceleration of the common centre of mass"),
+    ("ax", "ay"),
+)
+
+
+def _of_drive(name: str, found: Any, link: str) -> Any:
+    effort, motion = found.forces.drives[link], found.motion
+    return effort * motion.way(link) * motion.speed if name == "power" else effort
+
+
+def _told(machine: Any, effort_in: str) -> list[str]:
+    """Links of drives that turn or push."""
+    kinds = {one.link: one.effort_in for one in machine.driven}
+    return [link for link in machine.told_drives if kinds[link] == effort_in]
+
+
+of_drive = alike("drives.{}.", _of_drive, linear=True)
+of_drive(
+    "torque",
+    "torque",
+    to_say("drive torque of {name}"),
+    loop="{drive torque:name}",
+    members=lambda machine: _told(machine, "torque"),
+)
+of_drive(
+    "force",
+    "force",
+    to_say("drive force of {name}"),
+    members=lambda machine: _told(machine, "force"),
+)
+of_drive(
+    "power",
+    "power",
+    to_say("drive power of {name}"),
+    loop="{drive torque:name} * {angular velocity:name}",
+    members=lambda machine: machine.told_drives,
+)
+
+# -- joints ----------------------------------------------------------------------------------------
+
+
+def _members(forces: Any, name: str, member: str) -> Any:
+    """A force by its member, or of that force what follows a dot."""
+    return getattr(forces[member], name[1:]) if name else forces[member]
+
+
+def _of_joint(name: str, found: Any, joint: str) -> Any:
+    if name == "tilting_moments":
+        return found.forces.across.tilting_moments[joint]
+    return _members(found.forces.joints, name, joint)
+
+
+of_joint = alike(
+    "joints.{}",
+    _of_joint,
+    spoken=joint_named,
+)
+of_joint(
+    "",
+    "force",
+    to_say("force in joint {name}"),
+    FORCES,
+    members=joint_names,
+    items=lambda found: found.forces.joints,
+    linear=True,
+    loop="{joint force:name}",
+    summed=(True, False),
+    compared=FORCE,
+)
+RAILS: dict[str, Any] = {
+    "members": slider_names,
+    "items": lambda found: [n for n, one in found.forces.joints.items() if hasattr(one, "moment")],
+    "linear": "{what} is only read; take the whole force in the joint instead",
+}
+of_joint(".normal", "force", to_say("normal force in joint {name}"), summed=False, **RAILS)
+of_joint(".moment", "torque", to_say("moment in joint {name}"), loop="{joint moment:name}", **RAILS)
+
+of_joint(
+    ".tilting_moment",
+    "torque",
+    to_say("tilting moment in joint {name}"),
+    XY,
+    members=lambda machine: joint_names(machine) if machine.has_planes else (),
+    items=lambda found: found.forces.across.tilting_moments if found.machine.has_planes else (),
+    had="tilting_moments",
+    needs="planes",
+    linear=True,
+    summed=(True, False),
+)
+of_bearing = alike(
+    "bearings.{}",
+    lambda _, found, bearing: found.forces.across.bearings[bearing],
+    needs="planes",
+    members=lambda machine: machine.bearings,
+    items=lambda found: found.forces.across.bearings if found.machine.bearings else (),
+)
+of_bearing(
+    "",
+    "force",
+    to_say("force of bearing {name}"),
+    FORCES,
+    linear=True,
+    loop="{bearing force:name}",
+    summed=(True, False),
+    compared=FORCE,
+)
+
+
+def _coupled(table: str) -> Callable[..., None]:
+    """Outputs of couplings; linear for the flanks in contact and the strands that pull."""
+    shared: dict[str, Any] = {"spoken": lambda name: name.replace(" to ", " → "), "linear": True}
+    shared["members"] = lambda machine: [one.name for one in getattr(machine, table)]
+    read = lambda name, found, item: _members(getattr(found.forces, table), name, item)  # noqa: E731
+    return alike(table + ".{}", read, **shared)
+
+
+TOOTH: dict[str, Any] = {"loop": "{joint force:name}", "summed": (True, False), "compared": FORCE}
+PART_OF_TOOTH = {"summed": False, "linear": "{what} is only read; take the whole force instead"}
+for of_teeth in (_coupled("gears"), _coupled("racks")):
+    of_teeth("", "force", to_say("tooth force {name}"), FORCES, **TOOTH)
+    of_teeth(".tangential", "force", to_say("tangential tooth force {name}"), **PART_OF_TOOTH)
+    of_teeth(".radial", "force", to_say("radial tooth force {name}"), **PART_OF_TOOTH)
+of_belt = _coupled("belts")
+of_belt(".pull", "force", to_say("effective pull {name}"), compared=FORCE,
+        loop="{belt pull:name}")  # fmt: skip
+of_belt(".left", "force", to_say("tension of the left strand {name}"), compared=FORCE,
+        loop="{belt left:name}")  # fmt: skip
+of_belt(".right", "force", to_say("tension of the right strand {name}"), compared=FORCE,
+        loop="{belt right:name}")  # fmt: skip
+
+CAMMED: dict[str, Any] = {
+    "members": lambda machine: [cam.name for cam in machine.cams],
+    "spoken": lambda name: name.replace(" to ", " → "),
+}
+of_cam = alike("cams.{}", lambda name, found, cam: _members(found.forces.cams, name, cam), **CAMMED)
+of_cam("", "force", to_say("contact force {name}"), FORCES, linear=True,
+       loop="{joint force:name}", summed=(True, False), compared=FORCE)  # fmt: skip
+READ = "{what} is only read; take the whole contact force instead"
+of_cam(".normal", "force", to_say("contact force along the normal {name}"), linear=READ,
+       loop="{cam push:name}")  # fmt: skip
+slant = alike("cams.{}.", lambda _, found, cam: found.motion.pressure_angles[cam], **CAMMED)
+slant("pressure_angle", "angle", to_say("pressure angle {name}"), needs="motion",
+      loop="angle_of({cam forth:name}.conjugate() * {cam normal:name})")  # fmt: skip
+
+# -- rows and support ------------------------------------------------------------------------------
+
+of_rows = alike("rows.", lambda name, found: found.together[name], needs="rows", linear=True)
+of_rows("shaking_force", "force", to_say("shaking force"), XY, summed=(True, False), compared=FORCE)
+of_rows("shaking_moment", "torque", to_say("shaking moment"), compared=FORCE)
+of_rows("roll_moment", "torque", to_say("roll moment"), compared=FORCE)
+of_rows("yaw_moment", "torque", to_say("yaw moment"), compared=FORCE)
+of_rows("drive_torque", "torque", to_say("drive torque"), **TURNED)
+of_rows("drive_force", "force", to_say("drive force"), **PUSHED)
+DECLARED["gauges.{}"] = Declared(
+    "gauges.{}",
+    "length",
+    to_say("reading at {name}"),
+    None,
+    needs="support",
+    members=lambda machine: [] if machine.support is None else list(machine.support.gauges),
+)

@@ -1,0 +1,337 @@
+"""How an output is declared: what it is called, what it measures, how it is had, what it is for.
+
+`outputs.declared` has the declarations.  `{}` in the name of a family stands for its members:
+``links.{}.angle`` is declared once for all links.
+
+    @output("drive_power", "power", "drive power", linear=True, loop="{drive torque} * {speed}")
+    def drive_power(found):
+        return found.forces.drive_torque * found.motion.speed
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import Any, Literal
+
+import numpy as np
+
+from equipoise.i18n import Note, say, speaking, spoken, to_say
+from equipoise.quantities import SI, Dimension
+
+Array = np.ndarray[Any, Any]
+Needs = Literal["motion", "masses", "planes", "rows", "support"]
+Measure = Literal["rms", "ripple", "peak", "peak_to_peak", "area"]
+"""What is told of an output as one number; see `mechanism.parts.objectives`."""
+Part = Literal["", "x", "y", "size"]
+Read = Callable[..., Any]
+"""From an analysis, and the name of the member for families, to values (N,), complex of vectors."""
+
+KINEMATIC = "{what} is a part of the motion, which masses do not change"
+ONLY_READ = "{what} is only read; it is not known to be linear in the masses"
+"""Why balancing cannot take an output."""
+GROUPS = {
+    "links": to_say("links"),
+    "points": to_say("points"),
+    "sliders": to_say("sliders"),
+    "transmission": to_say("transmission angles"),
+    "centers": to_say("instant centres"),
+    "forces": to_say("frame and drive"),
+    "drives": to_say("drives"),
+    "joints": to_say("joints"),
+    "bearings": to_say("bearings"),
+    "gears": to_say("gears"),
+    "racks": to_say("racks"),
+    "belts": to_say("belts"),
+    "cams": to_say("cams"),
+    "rows": to_say("all rows together"),
+    "gauges": to_say("gauges"),
+}
+"""Groups of outputs and their headings, in the order in which they are offered."""
+
+
+@lru_cache(maxsize=4096)  # asked for again with every analysis
+def _named(name: str, item: str) -> str:
+    return name.replace("{}", item)
+
+
+@lru_cache(maxsize=4096)
+def _path(name: str, item: str) -> tuple[str, ...]:
+    return tuple(item if key == "{}" and item else key for key in name.split("."))
+
+
+def _only_one(_: Any) -> Iterable[str]:
+    return ("",)
+
+
+@dataclass(frozen=True)
+class Declared:
+    """One output, or a family of outputs.
+
+    name : by which it is found.
+    dimension : of its values, which are in SI units.
+    label : in English, for `say`; ``{name}`` stands for the member of a family.
+    read : has it from an analysis, as values or with values as its `value`; None where it is told
+        of a response instead (gauges).
+    part : of the vector that `read` gives, where that is one; its size goes by the vector's name.
+    needs : what a machine must have; planes of links go with masses.
+    members : from a machine to the members that it may have; ``""`` where it is no family.
+    items : from an analysis to those that it has, where the machine alone does not tell.
+    spoken : a member in words.
+    reason : why balancing cannot take it; empty where it is linear in the masses.
+    loop : expression by which a compiled loop has it; ``{joint force:name}`` is looked up there.
+    about : whether it depends on the point about which moments are taken.
+    array : whether it stands among the arrays.  summed : whether it stands in the summary.
+    ordered : whether it is told by orders.
+    compared : measures that are told before and after balancing.
+    unbounded : whether there are crank angles at which it is infinite, which NaN stands for; it is
+        had by its name alone.
+    """
+
+    name: str
+    dimension: Dimension | None
+    label: str
+    read: Read | None
+    part: Part = ""
+    needs: Needs = "masses"
+    members: Callable[[Any], Iterable[str]] = _only_one
+    items: Callable[[Any], Iterable[str]] | None = None
+    spoken: Callable[[str], str] = str
+    reason: str = ""
+    loop: str | None = None
+    about: bool = False
+    array: bool = True
+    summed: bool = True
+    ordered: bool = False
+    compared: tuple[Measure, ...] = ()
+    unbounded: bool = False
+
+    @property
+    def unit(self) -> str:
+        """SI unit; empty of plain numbers."""
+        return "" if self.dimension is None else SI[self.dimension]
+
+    @cached_property
+    def group(self) -> str:
+        """One of `GROUPS`."""
+        first = self.name.partition(".")[0]
+        return first if first in GROUPS else "forces"
+
+    @property
+    def is_family(self) -> bool:
+        """Whether it is declared once for several members."""
+        return "{}" in self.name
+
+    @property
+    def is_vector(self) -> bool:
+        """Whether its name stands for a vector, of which it is the size."""
+        return self.part == "size"
+
+    @property
+    def is_split(self) -> bool:
+        """Whether it can be told by cause and by link: it is linear, and a force of one row."""
+        return self.is_of_row and not self.reason
+
+    @property
+    def is_of_row(self) -> bool:
+        """Whether it is a force, or a moment, of one row."""
+        return self.needs in ("masses", "planes")
+
+    def named(self, item: str) -> str:
+        """The name of a member."""
+        return _named(self.name, item)
+
+    def path(self, item: str = "") -> tuple[str, ...]:
+        """Keys that lead to a member in nested values; members may have dots in their names."""
+        return _path(self.name, item)
+
+    def item_of(self, name: str) -> str | None:
+        """The member that goes by a name; None where none can."""
+        if not self.is_family:
+            return "" if name == self.name else None
+        before, after = self.name.split("{}")
+        inside = name[len(before) : len(name) - len(after)]
+        return inside if inside and self.named(inside) == name else None
+
+    def note(self, item: str = "") -> Note:
+        """What it is called, to be said in any language."""
+        found = Note(self.label, **({"name": self.spoken(item)} if self.is_family else {}))
+        if self.part in ("x", "y"):
+            both = to_say("{what}, {axis}") if self.is_family else to_say("{what} {axis}")
+            found = Note(both, what=found, axis=self.part)
+        return Note(to_say("all rows: {what}"), what=found) if self.needs == "rows" else found
+
+    def title(self, item: str = "") -> str:
+        """The same as the heading of a table, in the language that is spoken."""
+        said = replace(self, part="").say(item)
+        if self.part in ("x", "y"):
+            said = say("{what} along {axis}", what=said, axis=self.part)
+        return said[:1].upper() + said[1:]
+
+    def say(self, item: str = "", of_one: bool = False) -> str:
+        """What it is called, in the language that is spoken; where that lacks it, in English.
+
+        of_one : whether it is of one row of several.
+        """
+        return _said(self, item, of_one and self.is_of_row, spoken())
+
+    def items_of(self, found: Any) -> Iterable[str]:
+        """Members that an analysis has; ``""`` where it is no family."""
+        return self.members(found.machine) if self.items is None else self.items(found)
+
+    def values(self, found: Any, item: str = "") -> Array:
+        """Values (N,) of an analysis; the component, or the size, of what is a vector."""
+        whole = self.component(self.vector(found, item))
+        return np.abs(whole) if self.is_vector else whole
+
+    def component(self, whole: Array) -> Array:
+        """That component of a vector which this is; all of it where it is its size."""
+        if self.part == "x":
+            return whole.real
+        return whole.imag if self.part == "y" else whole
+
+    def vector(self, found: Any, item: str = "") -> Array:
+        """The same, complex of a vector, whichever of its parts this is.
+
+        found : whatever has the motion and the forces; (..., N) where the forces have more axes.
+        """
+        assert self.read is not None
+        whole = self.read(found, item) if self.is_family else self.read(found)
+        return np.asarray(getattr(whole, "value", whole))
+
+
+@dataclass(frozen=True)
+class Found:
+    """What outputs are read of where it is no analysis: a motion, and forces that belong to it.
+
+    forces : such as a `Regressor` or `Split`, whose arrays have more axes before the last.
+    """
+
+    motion: Any
+    forces: Any
+
+    @property
+    def machine(self) -> Any:
+        return self.motion.machine
+
+
+DECLARED: dict[str, Declared] = {}
+"""Everything that is declared, by name, in the order in which it is told."""
+
+
+def output(
+    name: str,
+    dimension: Dimension | None,
+    label: str,
+    *,
+    parts: tuple[str, str] | None = None,
+    linear: bool | str = False,
+    needs: Needs = "masses",
+    summed: tuple[bool, bool] | bool = True,
+    sized: bool = True,
+    **more: Any,
+) -> Callable[[Read], Read]:
+    """Declare an output by the function that has it from an analysis.
+
+    Parameters
+    ----------
+    name, dimension, label, needs : as in `Declared`, as are all others.
+    parts : names of the components along x and y of what is a vector; `name` is then its size.
+    linear : whether it is linear in the masses of the links; or the sentence why not.
+    summed : whether it stands in the summary; of a vector, its size and its components.
+    sized : whether the size of a vector is told.
+    """
+    reason = "" if linear is True else linear or (KINEMATIC if needs == "motion" else ONLY_READ)
+    of_size, of_parts = summed if isinstance(summed, tuple) else (summed, summed)
+
+    def declare(read: Read) -> Read:
+        one = Declared(name, dimension, label, read, needs=needs, reason=reason, **more)
+        if parts is None:
+            DECLARED[name] = replace(one, summed=of_size)
+            return read
+        one_part = replace(one, summed=of_parts, compared=one.compared if of_parts else ())
+        DECLARED[parts[0]] = replace(one_part, name=parts[0], part="x")
+        DECLARED[parts[1]] = replace(one_part, name=parts[1], part="y")
+        if sized:
+            DECLARED[name] = replace(one, part="size", array=False, summed=of_size, ordered=False)
+        return read
+
+    return declare
+
+
+@contextmanager
+def declaring() -> Iterator[None]:
+    """Inside, outputs may be declared that are forgotten at the end."""
+    before = dict(DECLARED)
+    try:
+        yield
+    finally:
+        DECLARED.clear()
+        DECLARED.update(before)
+
+
+def matches(name: str) -> Iterator[tuple[Declared, str]]:
+    """Declarations that a name may mean, each with the member, the likeliest first.
+
+    Balancing calls ``joints.B.x`` what is a component of a vector, and ``roll_moment`` what only
+    all rows together have.
+    """
+    found = [(one, item) for one in DECLARED.values() for item in [one.item_of(name)]]
+    known = [(one, item) for one, item in found if item is not None]
+    # joints.B.moment is the moment in B, and no force in a joint B.moment
+    yield from sorted(known, key=lambda pair: -len(pair[0].name))
+    if f"rows.{name}" in DECLARED:
+        yield DECLARED[f"rows.{name}"], ""
+    whole, _, axis = name.rpartition(".")
+    for one, item in matches(whole) if whole and axis in ("x", "y") else ():
+        if one.is_vector:
+            part: Part = "x" if axis == "x" else "y"
+            yield replace(one, name=f"{one.name}.{axis}", part=part), item
+
+
+def declared(name: str) -> tuple[Declared, str] | None:
+    """The declaration of an output, and its member, by the name of the output; None if unknown."""
+    return next(matches(name), None)
+
+
+@lru_cache(8192)
+def _said(one: Declared, item: str, of_one: bool, language: str) -> str:
+    """What a member is called in a language; a page says a hundred names at each move of a drag."""
+    with speaking(language):
+        said = one.note(item).said()
+        if not Note(one.label).is_translated:
+            said = f"{said} (en)"
+        return say("one row: {what}", what=said) if of_one else said
+
+
+def alike(where: str, read: Callable[..., Any], **shared: Any) -> Callable[..., None]:
+    """A way to declare outputs whose names begin alike, and that are read alike.
+
+    read : from the rest of the name (or `had`), an analysis and the member.  shared : as of
+        `output`.
+    parts : of a vector; those that begin with a dot go on after its name, others stand in its
+        place.  loop : True where compiled loops know it by its name.
+    of : makes values of what is read.
+    """
+
+    def declare(
+        name: str,
+        dimension: Dimension | None,
+        label: str,
+        parts: tuple[str, ...] = (),
+        had: str = "",
+        of: Callable[[Any], Any] = lambda values: values,
+        **more: Any,
+    ) -> None:
+        more = {**shared, **more}
+        if parts:
+            stem = {part: where + name if part[0] == "." else where for part in parts}
+            more["parts"] = tuple(stem[part] + part for part in parts)
+        if more.get("loop") is True:
+            known = name.replace("_", " ") + (":name" if "{}" in where else "")
+            more["loop"] = f"{{{known}}}"
+        output(where + name, dimension, label, **more)(lambda *found: of(read(had or name, *found)))
+
+    return declare

@@ -1,0 +1,119 @@
+"""Chains and toothed belts, as frozen values with their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from math import pi
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import (
+    Conditions,
+    Flag,
+    Listing,
+    Quantity,
+    Whole,
+    declared,
+    key,
+)
+from equipoise.mechanism.checks import Bodies
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.couplings import Relation, Turning, as_fraction, wrong_ends
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.formulas.strands import Strands
+
+
+@declared
+class Belt(Turning):
+    """A toothed belt, or a chain, about two links pinned to the same carrier."""
+
+    called = to_say("{what} of belt {number}")
+    file_order = ("between", "teeth", "pitch", "radii", "crossed", "carrier", "start", "tension")
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [{"required": ["teeth"]}, {"required": ["radii"]}],
+        "dependentRequired": {"teeth": ["pitch"], "pitch": ["teeth"]},
+    }
+
+    table: ClassVar[str] = "belts"
+    kind: ClassVar[str] = "belt"
+
+    teeth: tuple[int, int] | None = key(
+        Listing(Whole(1), (2,)),
+        "of driver and driven; goes with `pitch`",
+        default=None,
+        example=[20, 40],
+        word=to_say("number of teeth"),
+    )
+    pitch: float | None = key(
+        "length", "of the teeth, or of the chain", default=None, example="5 mm", above=0
+    )
+    radii: tuple[float, float] | None = key(
+        Listing(Quantity("length"), (2,)),
+        "pitch radii of driver and driven, instead of `teeth` and `pitch`",
+        default=None,
+        example=["16 mm", "32 mm"],
+        above=0,
+        word=to_say("pitch radius"),
+    )
+    crossed: bool = key(
+        Flag(), "its strands cross, so that both turn against each other", default=False
+    )
+    tension: float | None = key(
+        "force",
+        "of each strand where no torque is passed on; without it a chain, of which one strand "
+        "hangs loose",
+        default=None,
+        example="80 N",
+        above=0,
+    )
+
+    @property
+    def pitch_radii(self) -> tuple[Any, Any]:
+        """Of driver and driven pulley, m."""
+        if self.teeth is None:
+            assert self.radii is not None
+            return self.radii
+        assert self.pitch is not None
+        first, second = (count * self.pitch / (2 * pi) for count in self.teeth)
+        return first, second
+
+    @property
+    def speed_ratio(self) -> float:
+        """Speed of driven over driver relative to the carrier."""
+        first, second = self.pitch_radii if self.teeth is None else self.teeth
+        return -first / second if self.crossed else first / second
+
+    @property
+    def relation(self) -> Relation:
+        return kernels.gear, (self.speed_ratio,)
+
+    @property
+    def exact_ratio(self) -> Fraction | None:
+        """The speed ratio as a fraction, or None if it is no ratio of whole numbers."""
+        if self.teeth is None:
+            return as_fraction(self.speed_ratio)
+        return Fraction(*self.teeth) * (-1 if self.crossed else 1)
+
+    def strands(self, apart: Any) -> Strands:
+        """Where they run; apart : from the driver's pin to the driven link's, complex, m."""
+        from equipoise.mechanism.formulas.strands import Strands  # which needs NumPy
+
+        first, second = self.pitch_radii
+        return Strands(apart, first, -second if self.crossed else second)
+
+
+def wrong_belt(where: str, belt: Belt, bodies: Bodies) -> Iterator[ModelError]:
+    """Everything that is wrong with a belt, but for where its pulleys are."""
+    yield from wrong_ends(where, belt, bodies)
+    if (belt.radii is None) == (belt.teeth is None):
+        yield ModelError(where, Note("give either teeth and pitch, or radii"))
+    elif (belt.pitch is None) != (belt.teeth is None):
+        missing = "teeth" if belt.teeth is None else "pitch"
+        yield ModelError(f"{where}.{missing}", Note("missing; teeth and pitch go together"))
+    elif belt.teeth is not None and min(belt.teeth) < 1:
+        yield ModelError(
+            f"{where}.teeth", Note("got {teeth}; give two positive numbers", teeth=list(belt.teeth))
+        )

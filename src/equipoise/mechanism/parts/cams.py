@@ -1,0 +1,155 @@
+"""Cams with their followers, as frozen values with their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import ClassVar, Literal
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import Conditions, Frozen, Table, Text, declared, key, not_both
+from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link, unknown_point
+from equipoise.mechanism.parts.couplings import Relation, coupled, name_of
+from equipoise.mechanism.parts.laws import AngleLaw, Law, LengthLaw, wrong_law
+
+RIDES = ("roller", "flat", "knife")
+CLOSURES = ("spring", "groove", "ribs")
+LEFT_RIGHT = ("left", "right")
+ROUND = LengthLaw(between=(0.0, 0.0))
+"""Of a cam without a law."""
+
+
+@declared
+class Cam(Frozen):
+    """A cam and its follower, both joined to the same carrier, with the motion of the follower.
+
+    One of lift and swing: of a follower that slides on the carrier, and of one that is pinned to
+    it.  Without either the cam is round, and the follower stays where it is.
+    """
+
+    called = to_say("{what} of cam {number}")
+    table: ClassVar[str] = "cams"
+    kind: ClassVar[str] = "cam"
+    start: ClassVar[float] = 0.0
+    speed_ratio: ClassVar[float] = 0.0
+    exact_ratio: ClassVar[Fraction] = Fraction(0)
+    file_order = ("cam", "follower", "carrier", "rides", "point", "roller_radius", "base_radius")
+    conditions: ClassVar[Conditions] = not_both("lift", "swing")
+
+    driver: str = key(
+        Text(of="body"),
+        'the link that bears the cam, or `"frame"` where the carrier turns; pinned to the carrier',
+        name="cam",
+        example="camshaft",
+    )
+    driven: str = key(
+        Text(of="link"),
+        "the link that follows; it slides on the carrier or is pinned to it",
+        name="follower",
+        example="tappet",
+    )
+    rides: Literal["roller", "flat", "knife"] = key(
+        Text(RIDES),
+        "what of the follower is on the cam: a roller, a flat face, or an edge",
+        example="roller",
+    )
+    point: str = key(
+        Text(of="point", on="follower"),
+        "of the follower: the roller's centre, a point of the flat face, or the edge",
+        example="R",
+    )
+    closed_by: Literal["spring", "groove", "ribs"] = key(
+        Text(CLOSURES),
+        "what keeps the follower on the cam: springs of this file, which can let go of it; a "
+        "groove around the roller; or ribs, that is a second flank for forces away from the cam",
+        example="spring",
+    )
+    base_radius: float = key(
+        "length",
+        "of the cam, least distance of its surface from its axis, where the displacement is 0",
+        above=0,
+        example="20 mm",
+    )
+    roller_radius: float = key("length", "goes with a roller", default=0.0, at_least=0)
+    carrier: str = key(Text(of="body"), "to which both are joined", default=FRAME, example="frame")
+    lift: LengthLaw | None = key(
+        Table(LengthLaw, headed=True),
+        "displacement of a sliding follower along its guide, away from the cam, over the angle "
+        "that the cam has turned against the carrier (its crank angle)",
+        default=None,
+    )
+    swing: AngleLaw | None = key(
+        Table(AngleLaw, headed=True),
+        "the same of a pinned follower: the angle by which it turns away from the cam",
+        default=None,
+    )
+    normal: float | None = key(
+        "angle",
+        "of a flat face: direction square to it, away from the cam, in the follower's axes; along "
+        "the guide of a sliding follower if left out",
+        default=None,
+    )
+    side: Literal["left", "right"] = key(
+        Text(LEFT_RIGHT),
+        "of a pinned follower: where its roller, edge or face is, seen from the cam's axis "
+        "towards the follower's pivot",
+        default="left",
+    )
+
+    @property
+    def name(self) -> str:
+        return name_of(self.driver, self.driven)
+
+    @property
+    def law(self) -> Law:
+        """Displacement over the angle that the cam has turned against the carrier."""
+        return self.lift or self.swing or ROUND
+
+    @property
+    def relation(self) -> Relation:
+        return coupled, (self.law.value,)
+
+    @property
+    def radius(self) -> float:
+        """Of the curve that roller or edge takes where the displacement is 0, m."""
+        return self.base_radius + self.roller_radius
+
+
+def wrong_cam(where: str, cam: Cam, bodies: Bodies) -> Iterator[ModelError]:
+    """Everything that is wrong with a cam."""
+    if problem := [*unknown_link(f"{where}.follower", cam.driven, bodies)]:
+        yield from problem
+        return
+    yield from unknown_body(f"{where}.cam", cam.driver, bodies)
+    yield from unknown_body(f"{where}.carrier", cam.carrier, bodies)
+    yield from unknown_point(f"{where}.point", cam.point, cam.driven, bodies)
+    if len({cam.driver, cam.driven, cam.carrier}) < 3:
+        yield ModelError(where, Note("cam, follower and carrier must be three different bodies"))
+    if cam.lift is not None and cam.swing is not None:
+        yield ModelError(where, Note("give either lift or swing, not both"))
+        return
+    yield from _wrong_ride(where, cam)
+    at = f"{where}.{'lift' if cam.swing is None else 'swing'}"
+    problem = [*wrong_law(at, cam.law)]
+    yield from problem
+    if not problem and (cam.law.turns != 1 or cam.law.windings):
+        yield ModelError(at, Note("let the follower be back after one turn of the cam"))
+
+
+def _wrong_ride(where: str, cam: Cam) -> Iterator[ModelError]:
+    """Complain of keys that do not go with what rides on the cam."""
+    if cam.rides == "roller" and not cam.roller_radius:
+        yield ModelError(f"{where}.roller_radius", Note("missing; give the radius of the roller"))
+    if cam.rides != "roller" and cam.roller_radius:
+        yield ModelError(f"{where}.roller_radius", Note("goes with a roller; leave it out"))
+    if cam.rides != "flat" and cam.normal is not None:
+        yield ModelError(f"{where}.normal", Note("goes with a flat face; leave it out"))
+    if cam.rides == "flat" and cam.swing is not None and cam.normal is None:
+        yield ModelError(
+            f"{where}.normal", Note("missing; say how the face stands on the pinned follower")
+        )
+    if cam.rides != "roller" and cam.closed_by == "groove":
+        yield ModelError(
+            f"{where}.closed_by", Note("a groove takes a roller; give ribs, or a spring")
+        )

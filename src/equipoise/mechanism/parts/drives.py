@@ -1,0 +1,269 @@
+"""What drives a machine, as frozen values: how driven links move over the crank angle."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from importlib import import_module
+from math import copysign
+from typing import Any, ClassVar, Literal
+
+from equipoise.i18n import to_say
+from equipoise.keys import (
+    NO_INERTIA,
+    Conditions,
+    Frozen,
+    Listing,
+    Number,
+    Quantity,
+    Table,
+    Text,
+    declared,
+    key,
+)
+from equipoise.mechanism.checks import Bodies, bodies_at
+from equipoise.mechanism.parts.couplings import as_fraction
+from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.mechanism.parts.laws import AngleLaw, LengthLaw
+
+
+class Pushing:
+    """What may push: a cylinder between two points, or a driven sliding joint."""
+
+    between: tuple[str, str] | None
+    slider: str
+    stroke: LengthLaw | None
+
+    @property
+    def pushes(self) -> bool:
+        """Whether a force drives, and not a torque."""
+        return self.stroke is not None
+
+    @property
+    def effort_in(self) -> Literal["force", "torque"]:
+        """What it exerts."""
+        return "force" if self.pushes else "torque"
+
+    def ends(self, bodies: Bodies) -> tuple[str, str]:
+        """The bodies between which a cylinder acts."""
+        assert self.between is not None
+        at = bodies_at(bodies)
+        first, second = (at[point] for point in self.between)
+        return first[0], next((body for body in second if body != first[0]), first[0])
+
+
+def _between() -> Any:
+    return key(
+        Listing(Text(of="point"), (2,)),
+        "points of two bodies that a cylinder without mass drives, by the length between them; at "
+        "a pin of several bodies it acts on the first of these",
+        default=None,
+        example=["A", "B"],
+    )
+
+
+def _slider() -> Any:
+    return key(
+        Text(),
+        "a sliding joint that is driven instead, by its travel, such as `rod on barrel`",
+        default="",
+        example="rod on barrel",
+    )
+
+
+def _stroke() -> Any:
+    return key(
+        Table(LengthLaw, headed=True),
+        "length of the cylinder, or travel of the sliding joint, over the cycle; `speed` tells how "
+        "fast the cycle goes on",
+        default=None,
+    )
+
+
+@declared
+class Drive(Pushing, Frozen):
+    """The link that is driven, or that tells the pose of a machine that is pushed.
+
+    The crank angle is the phase of the cycle, and turns at `speed`.  Without a motion of its own
+    the driven link's angle is the crank angle; with one it follows that law.  A stroke is the
+    length of a cylinder between two points, or the travel of a sliding joint, whose force drives.
+    """
+
+    called = to_say("{what} of the drive")
+    file_order = ("link", "speed", "speeds")
+    conditions: ClassVar[Conditions] = {
+        "dependentRequired": {"between": ["stroke"], "slider": ["stroke"], "start": ["stroke"]}
+    }
+
+    link: str = key(
+        Text(of="link"),
+        "the driven link; it shares exactly one point with the frame, about which it turns; of a "
+        "machine that a cylinder drives a link that does so and whose angle tells the pose",
+        example="crank",
+    )
+    speed: float = key("angular speed", "positive is counterclockwise", example="193 rpm")
+    acceleration: float = key(
+        "angular acceleration", "of the crank, at every crank angle analysed", default=0.0
+    )
+    flywheel: float = key(
+        "inertia",
+        "of what turns with the driven link beside it",
+        default=0.0,
+        at_least=0,
+        why=NO_INERTIA,
+    )
+    motor: Motor | None = key(Table(Motor, headed=True), "what drives it", default=None)
+    speeds: tuple[float, ...] = key(
+        Listing(Quantity("angular speed"), (2,), 'a list such as ["150 rpm", "240 rpm"]'),
+        "the slowest and the fastest at which the machine runs, in the direction of `speed`; over "
+        "these it is judged, swept and balanced",
+        default=(),
+        example=["150 rpm", "240 rpm"],
+        above=0,
+    )
+    motion: AngleLaw | None = key(
+        Table(AngleLaw, headed=True),
+        "how the driven link's angle goes with the crank angle, which turns at `speed`; they are "
+        "the same where it is left out",
+        default=None,
+    )
+    between: tuple[str, str] | None = _between()
+    slider: str = _slider()
+    stroke: LengthLaw | None = _stroke()
+    start: float | None = key(
+        "angle",
+        "of the link at crank angle 0, roughly, where a stroke can be had in several poses",
+        default=None,
+        word=to_say("angle at the start"),
+    )
+
+    @property
+    def crank(self) -> str:
+        """The link whose angle is the crank angle; empty where none is."""
+        return self.link if self.motion is None and self.stroke is None else ""
+
+    @property
+    def effort(self) -> str:
+        """The output that tells what the drive exerts."""
+        return "drive_force" if self.pushes else "drive_torque"
+
+    @property
+    def range(self) -> tuple[float, float] | None:
+        """The slowest and the fastest speed, rad/s, with the sign of `speed`; None if not told."""
+        if not self.speeds:
+            return None
+        slow, fast = self.speeds
+        return copysign(slow, self.speed), copysign(fast, self.speed)
+
+    def turned(self, crank_angle: Any) -> tuple[Any, Any, Any]:
+        """Angle of the driven link at crank angles (...), and its two derivatives by them."""
+        return (crank_angle, 1.0, 0.0) if self.motion is None else self.motion.value(crank_angle)
+
+    @property
+    def turns(self) -> int:
+        """Turns of the crank after which the drive is back."""
+        return next((law.turns for law in (self.motion, self.stroke) if law), 1)
+
+
+@declared
+class FurtherDrive(Pushing, Frozen):
+    """Another driven link, whose motion has a common period with the crank angle."""
+
+    called = to_say("{what} of the drive of the {link}")
+    conditions: ClassVar[Conditions] = {
+        "dependentRequired": {"between": ["stroke"], "slider": ["stroke"]},
+        "dependentSchemas": {
+            "motion": {"properties": {"ratio": False, "start": False}},
+            "stroke": {"properties": {"ratio": False, "motion": False}},
+        },
+    }
+
+    link: str = key(
+        Text(of="link"),
+        "the driven link; it shares exactly one point with the frame, about which it turns; one "
+        "that is pushed may turn about a point of another link",
+        example="second crank",
+    )
+    ratio: float = key(
+        Number(),
+        "turns in a turn of the crank; negative turns the other way",
+        default=1.0,
+        word=to_say("turns in a turn of the crank"),
+    )
+    start: float = key(
+        "angle",
+        "in the frame at crank angle 0; of a link that is pushed, roughly",
+        default=0.0,
+        word=to_say("angle at the start"),
+    )
+    motion: AngleLaw | None = key(
+        Table(AngleLaw, headed=True),
+        "how its angle goes with the crank angle, instead of `ratio` and `start`",
+        default=None,
+    )
+    between: tuple[str, str] | None = _between()
+    slider: str = _slider()
+    stroke: LengthLaw | None = _stroke()
+
+    def turned(self, crank_angle: Any) -> tuple[Any, Any, Any]:
+        """Its angle at crank angles (...), and its two derivatives by them."""
+        if self.motion is not None:
+            return self.motion.value(crank_angle)
+        return self.ratio * crank_angle + self.start, self.ratio, 0.0
+
+    @property
+    def turns(self) -> int:
+        """Turns of the crank after which it moves as before."""
+        if (law := self.motion or self.stroke) is not None:
+            return law.turns
+        exact = as_fraction(self.ratio)
+        return 1 if exact is None else exact.denominator
+
+
+class Driven:
+    """What is driven of a machine."""
+
+    drive: Drive
+    drives: tuple[FurtherDrive, ...]
+
+    @cached_property
+    def turning(self) -> Any:
+        """What tells the angles of links that are pushed; None where none is."""
+        if not self.pushers:
+            return None
+        room = "pushed_together" if self.drives else "cylinders"
+        pushed = import_module(f"equipoise.mechanism.kinematics.{room}")  # which needs this
+        return pushed.commanded(self)
+
+    def moved(self, crank_angle: Any) -> dict[str, tuple[Any, Any, Any]]:
+        """Angle of each driven link at crank angles (...), and its two derivatives by them."""
+        found = {drive.link: drive.turned(crank_angle) for drive in self.driven}
+        if self.turning is not None:
+            found |= self.turning.moved(crank_angle)
+        return found
+
+    @property
+    def laws(self) -> dict[str, AngleLaw | LengthLaw]:
+        """Motion laws of the drives, by the names of their links."""
+        each = ((one.link, one.motion or one.stroke) for one in self.driven)
+        return {link: law for link, law in each if law is not None}
+
+    @property
+    def pushers(self) -> tuple[Drive | FurtherDrive, ...]:
+        """Drives that push."""
+        return tuple(drive for drive in self.driven if drive.pushes)
+
+    @property
+    def driven(self) -> tuple[Drive | FurtherDrive, ...]:
+        """All drives; the crank angle is that of the first."""
+        return (self.drive, *self.drives)
+
+    @property
+    def told_drives(self) -> list[str]:
+        """Links of all drives, where there is more to tell than of one crank or stroke."""
+        alone = self.has_crank or (self.drive.pushes and not self.drives)
+        return [] if alone else [one.link for one in self.driven]
+
+    @property
+    def has_crank(self) -> bool:
+        """Whether one link alone is driven and turns with the crank angle."""
+        return not (self.drives or self.drive.motion or self.drive.pushes)

@@ -1,0 +1,193 @@
+"""Pairs of gears, as frozen values with their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+from math import dist
+from typing import Any, ClassVar, Literal
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import (
+    Conditions,
+    Key,
+    Keys,
+    Listing,
+    Number,
+    Table,
+    Text,
+    Whole,
+    declared,
+    inside,
+    key,
+)
+from equipoise.mechanism.checks import Bodies
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.couplings import (
+    Law,
+    Relation,
+    Turning,
+    as_fraction,
+    coupled,
+    pressure_angle,
+    wrong_ends,
+)
+from equipoise.mechanism.parts.gear_shapes import GearShape, wrong_shape
+
+MESHES = ("external", "internal")
+
+
+@declared
+class Gear(Turning):
+    """A pair of gears, both pinned to the same carrier; either ratio or teeth."""
+
+    called = to_say("{what} of gear {number}")
+    beside: ClassVar[Keys] = {
+        **Turning.beside,
+        "mesh": Key("mesh", Text(MESHES), "goes with `teeth`", default=None, shown="external"),
+    }
+    file_order = ("between", "ratio", "teeth", "mesh")
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [{"required": ["ratio"]}, {"required": ["teeth"]}],
+        "dependentRequired": {"mesh": ["teeth"]},
+    }
+
+    table: ClassVar[str] = "gears"
+    kind: ClassVar[str] = "gear"
+
+    ratio: float | None = key(
+        Number(),
+        "speed of driven over driver, both relative to the carrier; negative for an external mesh",
+        default=None,
+        example=-2,
+    )
+    teeth: tuple[int, int] | None = key(
+        Listing(Whole(1), (2,)),
+        "of driver and driven, instead of `ratio`",
+        default=None,
+        example=[20, 40],
+        word=to_say("number of teeth"),
+    )
+    mesh: Literal["external", "internal"] = inside(Text(MESHES), default="external")
+    pressure_angle: float = pressure_angle("the radial part of the tooth force")
+    shape: GearShape | None = key(
+        Table(GearShape, headed=True),
+        "pitch curves, where the ratio varies; `ratio` or `teeth` then tell its mean",
+        default=None,
+    )
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Gear:
+        if "mesh" in given and "teeth" not in given:
+            raise ModelError(
+                "mesh",
+                Note(
+                    "got {given!r} without teeth; leave it out, the sign of ratio tells: "
+                    "negative for external",
+                    given=given["mesh"],
+                ),
+            )
+        return super().from_table(given)
+
+    @classmethod
+    def to_table(cls, value: Gear) -> dict[str, Any]:
+        mesh = {} if value.teeth is None else {"mesh": value.mesh}
+        return {**super().to_table(value), **mesh}
+
+    @property
+    def speed_ratio(self) -> float:
+        """Speed of driven over driver relative to the carrier."""
+        if self.teeth is None:
+            assert self.ratio is not None
+            return self.ratio
+        ratio = self.teeth[0] / self.teeth[1]
+        return ratio if self.mesh == "internal" else -ratio
+
+    @property
+    def relation(self) -> Relation:
+        if self.law is not None:
+            return coupled, (self.law,)
+        return kernels.gear, (self.speed_ratio,)
+
+    @property
+    def law(self) -> Law | None:
+        """The driven gear's angle by the driver's, seen from the carrier, if the ratio varies."""
+        if self.shape is None:
+            return None
+        from equipoise.mechanism.parts.pitch_curves import law_of
+
+        return law_of(self.shape, self.speed_ratio)
+
+    @property
+    def ratios(self) -> tuple[float, float]:
+        if self.shape is None:
+            return super().ratios
+        from equipoise.mechanism.parts.pitch_curves import ratios_of
+
+        return ratios_of(self.shape, self.speed_ratio)
+
+    @property
+    def exact_ratio(self) -> Fraction | None:
+        """The speed ratio as a fraction, or None if it is no ratio of whole numbers."""
+        if self.teeth is not None:
+            ratio = Fraction(*self.teeth)
+            return ratio if self.mesh == "internal" else -ratio
+        return as_fraction(self.speed_ratio)
+
+
+def wrong_gear(where: str, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:
+    """Everything that is wrong with a pair of gears."""
+    yield from wrong_ends(where, gear, bodies)
+    if (gear.ratio is None) == (gear.teeth is None):
+        yield ModelError(where, Note("give either ratio or teeth"))
+        return
+    if gear.teeth is not None and min(gear.teeth) < 1:
+        yield ModelError(
+            f"{where}.teeth", Note("got {teeth}; give two positive numbers", teeth=list(gear.teeth))
+        )
+    elif gear.speed_ratio == 0.0:
+        yield ModelError(where, Note("the ratio is 0; no pair of gears has that"))
+    elif gear.speed_ratio == 1.0:
+        yield ModelError(
+            where,
+            Note(
+                "the ratio is 1; no pair of gears has that, a ring would be as large as what turns "
+                "in it; take a belt, which turns both alike: [[belts]]"
+            ),
+        )
+    elif gear.shape is not None:
+        yield from _wrong_shape(f"{where}.shape", gear.shape, gear, bodies)
+
+
+def _wrong_shape(where: str, shape: GearShape, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:
+    problems = wrong_shape(shape, gear)
+    if not problems:
+        from equipoise.mechanism.parts.pitch_curves import wrong_curve
+
+        problems = [*wrong_curve(shape, gear, _distance(gear, bodies))]
+    for name, told in problems:
+        yield ModelError(f"{where}.{name}".rstrip("."), told)
+
+
+def closed(gear: Gear, bodies: Bodies) -> Gear:
+    """The pair with the table of its shape, if it has one, scaled so that the curves close."""
+    if gear.shape is None or not gear.shape.angle:
+        return gear
+    from equipoise.mechanism.parts.pitch_curves import closed_table
+
+    shape = closed_table(gear.shape, gear.speed_ratio, _distance(gear, bodies))
+    return replace(gear, shape=shape)
+
+
+def _distance(gear: Gear, bodies: Bodies) -> float | None:
+    """Between the axes of a pair, m; None where either does not share exactly one point with the
+    carrier.
+    """
+    points = bodies.get(gear.carrier, {})
+    pins = [points.keys() & bodies.get(body, {}).keys() for body in (gear.driver, gear.driven)]
+    if any(len(shared) != 1 for shared in pins):
+        return None
+    driver, driven = (points[next(iter(shared))] for shared in pins)
+    return dist(driver, driven)

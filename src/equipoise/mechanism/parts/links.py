@@ -1,0 +1,326 @@
+"""A link: where its points are, and what it weighs, given as numbers or by lengths and bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import hypot
+from types import MappingProxyType
+from typing import Any, ClassVar
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import (
+    NO_INERTIA,
+    Conditions,
+    Frozen,
+    Named,
+    Point,
+    Quantity,
+    Table,
+    Tables,
+    declared,
+    key,
+    lacks,
+    needs,
+    not_both,
+    wrong_values,
+)
+from equipoise.mechanism.checks import FRAME, Vector, unknown, unknown_point
+from equipoise.mechanism.parts.bodies import Body, together, weighed
+from equipoise.mechanism.parts.body_checks import demands, wrong_bodies
+
+MASS_FIELDS = {"mass", "center_of_mass", "inertia"}
+FLAT = 1e-12
+"""Over the square of a side: that of a height which is rounding."""
+TOLD_BY_BODIES = Note(
+    "the bodies tell it; leave out mass, center_of_mass and inertia, or the bodies"
+)
+TOLD_BY_LENGTHS = Note(
+    "length or sides tell the places; give the names of the points alone, in a list"
+)
+
+
+@declared
+class Link(Frozen):
+    """A rigid body.  Points, centre of mass and inertia are in the link's own axes.
+
+    A point whose name another link or the frame also has is a pin.  Without a mass no forces are
+    computed.
+
+    points : by name; or the names alone, of two with a length, of three with their sides.
+    bodies : what it is made of, from which mass, centre of mass and inertia follow.
+    """
+
+    called = to_say("{what} of the {name}")
+    conditions: ClassVar[Conditions] = {
+        "dependentRequired": {
+            "mass": ["center_of_mass", "inertia"],
+            "center_of_mass": ["mass", "inertia"],
+            "inertia": ["mass", "center_of_mass"],
+        },
+        "dependentSchemas": {"bodies": lacks("mass", "center_of_mass", "inertia")},
+        "if": {"anyOf": [needs("length"), needs("sides")]},
+        "then": {"properties": {"points": {"type": "array"}}, **not_both("length", "sides")},
+        "else": {"properties": {"points": {"type": "object"}}},
+    }
+    file_order = ("points", "length", "sides", "mass", "center_of_mass", "inertia")
+
+    points: Mapping[str, Vector] = key(
+        Named(Point(), listed=True),
+        "in the link's own axes; links that share a name are pinned together there. With `length` "
+        "or `sides` a list of their names",
+        example={"A": ["0 mm", "0 mm"], "B": ["33.5 mm", "0 mm"]},
+    )
+    mass: float | None = key(
+        "mass", "needed for forces", default=None, at_least=0, why=Note("a mass cannot be negative")
+    )
+    center_of_mass: Vector | None = key(
+        Point(),
+        "needed for forces; in the link's own axes",
+        default=None,
+        word=to_say("centre of mass"),
+    )
+    inertia: float | None = key(
+        "inertia", "about the centre of mass", default=None, at_least=0, why=NO_INERTIA
+    )
+    bodies: tuple[Body, ...] = key(
+        Tables(Table(Body)), "what the link is made of, instead of its mass", default=()
+    )
+    length: float | None = key(
+        "length",
+        "from the first of two points, in the origin, to the second, on the x axis",
+        default=None,
+        example="120 mm",
+        above=0,
+    )
+    sides: Mapping[str, float] = key(
+        Named(Quantity("length")),
+        "of the triangle of three points: `sides.B-C` from B to C, and so on. The first is in the "
+        "origin, the second on the x axis, the third to the left of it",
+        factory=dict,
+        above=0,
+        word=to_say("side {name}"),
+    )
+    plane: float = key("length", "z of the plane in which it moves", default=0.0)
+    planes: Mapping[str, float] = key(
+        Named(Quantity("length")),
+        "z of points that lie beside that plane, such as the pins of a crankshaft: `planes.B`",
+        factory=dict,
+        word=to_say("plane of {name}"),
+    )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        measured = self.length is not None or bool(self.sides)
+        for problem in wrong_values("", self) if measured or self.bodies else ():
+            raise problem
+        names = not isinstance(self.points, Mapping)
+        if names and not measured:
+            raise ModelError(
+                "points", Note("got names alone; give length or sides too, or the places")
+            )
+        if measured:
+            points = placed(tuple(self.points), self.length, self.sides)
+            if not names and self.points != points:
+                raise ModelError("points", TOLD_BY_LENGTHS)
+            object.__setattr__(self, "points", MappingProxyType(points))
+        for problem in wrong_bodies(self.bodies, self.points):
+            raise problem
+        for name, value in weighed(self.bodies, self.points).items() if self.bodies else ():
+            if getattr(self, name) not in (None, value):
+                raise ModelError(name, TOLD_BY_BODIES)
+            object.__setattr__(self, name, value)
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Link:
+        if given.get("bodies") and (told := MASS_FIELDS & given.keys()):
+            raise ModelError(min(told), TOLD_BY_BODIES)
+        if isinstance(given["points"], Mapping) and given.keys() & {"length", "sides"}:
+            raise ModelError("points", TOLD_BY_LENGTHS)
+        return cls(**given)
+
+    @classmethod
+    def to_table(cls, value: Link) -> dict[str, Any]:
+        table = super().to_table(value)
+        if value.bodies:
+            table = {name: item for name, item in table.items() if name not in MASS_FIELDS}
+        if value.length is not None or value.sides:
+            table["points"] = tuple(value.points)
+        return table
+
+    def following(self, changes: dict[str, Any]) -> dict[str, Any]:
+        """Lengths give new places, and places and bodies new masses; a place or a mass that is
+        given itself takes the place of these.
+        """
+        found = dict(changes)
+        if "points" in changes:
+            found = {"length": None, "sides": {}, **changes}
+        elif changes.keys() & {"length", "sides"}:
+            found["points"] = tuple(self.points)
+        if changes.keys() & MASS_FIELDS:
+            found = {"bodies": (), **found}
+        elif changes.get("bodies", self.bodies):
+            found |= dict.fromkeys(MASS_FIELDS)
+        return found
+
+    def follow(self) -> None:
+        """Set places and masses anew, of which columns may be some; nothing is checked."""
+        if self.length is not None or self.sides:
+            self.__dict__["points"] = placed(tuple(self.points), self.length, self.sides)
+        if self.bodies:
+            self.__dict__.update(weighed(self.bodies, self.points))
+
+    def with_added(
+        self, mass: float, place: Vector, inertia: float = 0.0, plane: float | None = None
+    ) -> Link:
+        """With a mass (kg) at a place (m) in its axes, with so much inertia (kg m2) of its own:
+        as one more of its bodies, or in its numbers where it has none.
+
+        plane : in which the mass lies, where that is another than the link's; then the link is one
+            of bodies.
+        """
+        beside = plane is not None and plane != self.plane
+        if self.bodies or beside:
+            more = Body(
+                "point", at=place, mass=mass, inertia=inertia, plane=plane if beside else None
+            )
+            return self.altered(bodies=(*(self.bodies or self._as_body), more))
+        assert self.center_of_mass is not None
+        own = self.mass, complex(*self.center_of_mass), self.inertia
+        whole, center, second = together([own, (mass, complex(*place), inertia)])
+        center_of_mass = (center.real, center.imag)
+        return self.altered(mass=whole, center_of_mass=center_of_mass, inertia=second)
+
+    @property
+    def _as_body(self) -> tuple[Body, ...]:
+        """Its mass as one body; none where there is no mass."""
+        if not self.mass or self.inertia is None:
+            return ()
+        return (Body("point", at=self.center_of_mass, mass=self.mass, inertia=self.inertia),)
+
+    def demands(self) -> Iterator[Any]:
+        """What has to be true of lengths and bodies: flags, or columns of them."""
+        lengths = [] if self.length is None else [self.length]
+        yield from (length > 0 for length in (*lengths, *self.sides.values()))
+        if self.sides:
+            yield _apex(*_sides_of(tuple(self.points), self.sides))[2]
+        for body in self.bodies:
+            yield from demands(body, self.points)
+
+    def plane_of(self, point: str | None) -> float:
+        """z of one of its points, m; of the link itself where none is told."""
+        return self.plane if point is None else self.planes.get(point, self.plane)
+
+    @property
+    def has_mass(self) -> bool:
+        return self.mass is not None
+
+
+def placed(
+    names: Sequence[str], length: Any = None, sides: Mapping[str, Any] | None = None
+) -> dict[str, tuple[Any, Any]]:
+    """Places of two points by their distance, or of three by the sides of their triangle, m.
+
+    Lengths may be columns, of which nothing is checked; `Link.demands` tells which do not close.
+
+    Raises
+    ------
+    ModelError : there are not so many points, or the sides are not those of a triangle.
+    """
+    if length is not None and sides:
+        raise ModelError("sides", Note("given beside length; give one of both"))
+    count, words = (2, "length goes") if sides is None or length is not None else (3, "sides go")
+    if len({*names}) != count or len(names) != count:
+        several = {2: "two", 3: "three"}[count]
+        raise ModelError(
+            "points",
+            f"got {len(names)}; {words} with {several} names, each once",
+        )
+    first, second, *third = names
+    if length is not None:
+        return {first: (0.0, 0.0), second: (length, 0.0)}
+    a, b, c = _sides_of(names, sides or {})
+    x, square, closes = _apex(a, b, c)
+    if closes is False:
+        told = ", ".join(f"{1e3 * side:.6g}" for side in (a, b, c))
+        raise ModelError(
+            "sides",
+            Note(
+                "got {sides} mm, which do not close to a triangle; the longest must be shorter "
+                "than the other two together",
+                sides=told,
+            ),
+        )
+    return {first: (0.0, 0.0), second: (a, 0.0), third[0]: (x, abs(square) ** 0.5)}
+
+
+def _apex(a: Any, b: Any, c: Any) -> tuple[Any, Any, Any]:
+    """Where the third corner lies along the first side, from the first corner; the square of how
+    far beside it; and whether there is such a triangle, be it a flat one.
+    """
+    x = (a**2 + c**2 - b**2) / (2 * a)
+    square = (c - x) * (c + x)
+    return x, square * (abs(square) > FLAT * c**2), square >= -FLAT * c**2
+
+
+def _sides_of(names: Sequence[str], sides: Mapping[str, Any]) -> Iterator[Any]:
+    """Sides from the first point to the second, on to the third, and back, named either way."""
+    left = dict(sides)
+    ends = [*zip(names, (*names[1:], names[0]), strict=True)]
+    for one, other in ends:
+        either = [name for name in (f"{one}-{other}", f"{other}-{one}") if name in left]
+        if not either:
+            more = [f"{one}-{other}" for one, other in ends]
+            wrong = next((f"; {unknown(name, more, 'side')}" for name in left), "")
+            raise ModelError(f"sides.{one}-{other}", f"missing; give that length{wrong}")
+        yield left.pop(either[0])
+    for name in left:
+        raise ModelError(f"sides.{name}", Note("given beside three others; leave it out"))
+
+
+def size_of(points: Mapping[str, Vector]) -> float:
+    """Diagonal of the rectangle around some points, m: how large a body is."""
+    xs, ys = zip(*points.values(), strict=True)
+    return hypot(max(xs) - min(xs), max(ys) - min(ys))
+
+
+# -- checks ----------------------------------------------------------------------------------------
+
+
+def wrong_points(where: str, points: Mapping[str, Vector]) -> Iterator[ModelError]:
+    """Everything that is wrong with what has to have points, each with a name."""
+    if not points:
+        yield ModelError(f"{where}.points", Note("there is no point; give at least one"))
+    for name in points:
+        if not name.strip():
+            yield ModelError(f"{where}.points", Note("a point has an empty name"))
+
+
+def wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
+    """Everything that is wrong with a link."""
+    if name == FRAME or not name.strip():
+        yield ModelError(
+            where, Note("a link cannot be called {name!r}; choose another name", name=name)
+        )
+    yield from wrong_points(where, link.points)
+    for point in link.planes:
+        yield from unknown_point(f"{where}.planes", point, name, {name: link.points})
+    given = {"mass": link.mass, "center_of_mass": link.center_of_mass, "inertia": link.inertia}
+    missing = [key for key, value in given.items() if value is None]
+    if 0 < len(missing) < 3:
+        yield ModelError(
+            where,
+            Note(
+                "{names} missing; give mass, center_of_mass and inertia together, or none of them",
+                names=" and ".join(missing),
+            ),
+        )
+        return
+    if link.mass is None or link.inertia is None:
+        return
+    if link.mass == 0 and link.inertia > 0:
+        text = f"{link.inertia:g} kg m^2"
+        yield ModelError(
+            f"{where}.inertia",
+            Note("got {text} for a mass of 0; no body can have that, give 0", text=text),
+        ).about(link.inertia, text)

@@ -1,0 +1,296 @@
+"""The machine: frozen values in SI units and radians, the same whether read from a file or built.
+
+Every value is checked when the object is made, so that a `Machine` that exists can be computed
+with; what it cannot do (turn fully, close) is found by `mechanism.assembly.linkage`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note
+from equipoise.keys import (
+    SCHEMA_VERSION,
+    VERSION,
+    Frozen,
+    Keys,
+    Listing,
+    Named,
+    Quantity,
+    Table,
+    Tables,
+    Text,
+    Wording,
+    changed,
+    declared,
+    key,
+)
+from equipoise.mechanism.checks import (
+    FRAME,
+    SIDES,
+    Bodies,
+    Vector,
+    check_kept,
+    unknown,
+)
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.cams import Cam
+from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.drives import (
+    Drive,
+    Driven,
+    FurtherDrive,
+)
+from equipoise.mechanism.parts.field import Planting
+from equipoise.mechanism.parts.force_elements import (
+    Load,
+    LoadTable,
+)
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.links import (
+    MASS_FIELDS,
+    Link,
+    size_of,
+)
+from equipoise.mechanism.parts.places import Frame, Position
+from equipoise.mechanism.parts.racks import Rack
+from equipoise.mechanism.parts.shown_units import ShownUnits
+from equipoise.mechanism.parts.sliders import Bearing, JointStiffness, Slider
+from equipoise.mechanism.parts.springs import Spring
+from equipoise.mechanism.parts.support import Row, Support
+from equipoise.mechanism.parts.whole import problems_of
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.parts.balance import Balance
+
+__all__ = [
+    "FRAME",
+    "Cam",
+    "Drive",
+    "FurtherDrive",
+    "Gear",
+    "Link",
+    "Load",
+    "LoadTable",
+    "Machine",
+    "Position",
+    "Slider",
+    "Spring",
+    "Vector",
+    "size_of",
+    "unknown",
+]
+
+
+MOVING = ("link", "motion", "between", "slider", "stroke", "start")
+"""What of the drive sets how the links move."""
+BESIDE = ("bodies", "plane", "planes")
+"""Keys of a link that change nothing about the motion, beside its mass."""
+STILL = {"planting", "support", "rows", "springs", "bearings"}
+"""Keys under which no number changes the motion."""
+STANDARD_GRAVITY: Vector = (0.0, -9.80665)
+
+
+@declared
+class Machine(Driven, Frozen):
+    """A planar linkage with its drive, loads, springs and gravity."""
+
+    beside: ClassVar[Keys] = {"schema": VERSION}
+    file_order = ("schema", "title", "description", "units", "gravity", "drive", "drives", "frame",
+                  "links", "bearings", "assembly", "sliders", "gears", "belts", "racks", "cams",
+                  "loads", "springs", "joints", "position", "planting", "support", "rows",
+                  "balance")  # fmt: skip
+
+    title: str = key(Wording(), "shown in reports", example="Slider-crank")
+    drive: Drive = key(Table(Drive), "the link that is driven")
+    frame: Mapping[str, Vector] = key(Table(Frame), "the part that stands still")
+    links: Mapping[str, Link] = key(Named(Table(Link)), "moving links by name")
+    assembly: Mapping[str, str] = key(
+        Named(Text(SIDES)),
+        "side on which the inner joint of each dyad lies, by name of the joint; `mode` for all "
+        "that close a four-bar of equal opposite sides",
+        factory=dict,
+    )
+    sliders: tuple[Slider, ...] = key(Tables(Table(Slider)), "sliding joints", default=())
+    gears: tuple[Gear, ...] = key(Tables(Table(Gear)), "pairs of gears", default=())
+    cams: tuple[Cam, ...] = key(Tables(Table(Cam)), "cams with their followers", default=())
+    loads: tuple[Load, ...] = key(
+        Tables(Table(Load)), "forces and torques from outside", default=()
+    )
+    gravity: Vector = key(
+        Listing(Quantity("acceleration"), (2,)),
+        'along x and y; `["0 m/s^2", "0 m/s^2"]` for a machine that lies flat',
+        default=STANDARD_GRAVITY,
+        shown=["0 m/s^2", "-9.80665 m/s^2"],
+    )
+    position: Position | None = key(
+        Table(Position), "rough position, needed only where dyads do not suffice", default=None
+    )
+    description: str = key(Wording(), "further text", default="")
+    planting: Planting | None = key(
+        Table(Planting), "what a finger does in the field", default=None
+    )
+    support: Support | None = key(Table(Support), "what carries the linkages", default=None)
+    rows: tuple[Row, ...] = key(
+        Tables(Table(Row)),
+        "equal linkages on one shaft; the one of this file if left out",
+        default=(),
+    )
+    balance: Balance | None = key(
+        Table("equipoise.mechanism.parts.balance:Balance"),
+        "what may be changed to quieten it, and what is to become small",
+        default=None,
+    )
+    springs: tuple[Spring, ...] = key(
+        Tables(Table(Spring)), "linear springs between links, or links and frame", default=()
+    )
+    drives: tuple[FurtherDrive, ...] = key(
+        Tables(Table(FurtherDrive)), "links that are driven besides", default=()
+    )
+
+    joints: tuple[JointStiffness, ...] = key(
+        Tables(Table(JointStiffness)),
+        "stiffness of joints, by which they share forces that statics leaves open; those left out "
+        "are rigid",
+        default=(),
+    )
+    bearings: Mapping[str, Bearing] = key(
+        Named(Table(Bearing)),
+        "in which links turn about their pins in the frame, two of each, by name",
+        factory=dict,
+    )
+    units: ShownUnits | None = key(
+        Table(ShownUnits), "in which values are shown, as by `--units`", default=None
+    )
+    belts: tuple[Belt, ...] = key(Tables(Table(Belt)), "toothed belts and chains", default=())
+    racks: tuple[Rack, ...] = key(Tables(Table(Rack)), "racks with their pinions", default=())
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Machine:
+        del given["schema"]
+        return cls(**given)
+
+    @classmethod
+    def to_table(cls, value: Machine) -> dict[str, Any]:
+        return {**super().to_table(value), "schema": SCHEMA_VERSION}
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for problem in problems_of(self):
+            raise problem
+
+    @property
+    def bodies(self) -> Bodies:
+        """Points of the frame and of every link, in their own axes."""
+        return {FRAME: self.frame} | {name: link.points for name, link in self.links.items()}
+
+    @property
+    def couplings(self) -> tuple[Coupling, ...]:
+        """Joints by which one body's angle tells another's, in the order of the file."""
+        return (*self.gears, *self.belts, *self.racks, *self.cams)
+
+    @property
+    def has_planes(self) -> bool:
+        """Whether it tells where its parts lie across the plane of its motion."""
+        return bool(self.bearings) or any(
+            link.plane or link.planes or any(body.plane is not None for body in link.bodies)
+            for link in self.links.values()
+        )
+
+    @property
+    def mass(self) -> float:
+        """Mass of all links of one linkage together, kg; one without a mass adds nothing."""
+        return sum(link.mass or 0.0 for link in self.links.values())
+
+    def with_link(self, name: str, **changes: Any) -> Machine:
+        """Return the machine with fields of one link changed; `points` has to have all of them."""
+        if name not in self.links:
+            raise ModelError(f"links.{name}", unknown(name, self.links, "link"))
+        check_kept(f"links.{name}.points", self.links[name].points, changes.get("points"))
+        found = self._with_link(name, lambda link: link.altered(**changes))
+        return self._same_motion(found, set(changes) <= {*MASS_FIELDS, *BESIDE})
+
+    def _with_link(self, name: str, change: Callable[[Link], Link]) -> Machine:
+        try:
+            link = change(self.links[name])
+        except ModelError as error:
+            raise error.within(f"links.{name}") from error
+        return replace(self, links={**self.links, name: link})
+
+    def with_point(self, body: str, point: str, place: Vector) -> Machine:
+        """Return the machine with one point of a link or the frame elsewhere, in its axes, m."""
+        if body not in self.bodies:
+            raise ModelError(f"links.{body}", unknown(body, self.bodies, "link"))
+        where = "frame" if body == FRAME else f"links.{body}"
+        if point not in (points := self.points_of(body)):
+            raise ModelError(
+                f"{where}.points", unknown(point, points, Note("point of {body}", body=body))
+            )
+        moved = {**points, point: place}
+        return replace(self, frame=moved) if body == FRAME else self.with_link(body, points=moved)
+
+    def with_drive(self, **changes: Any) -> Machine:
+        """Return the machine with fields of its drive changed."""
+        changed = replace(self, drive=replace(self.drive, **changes))
+        return self._same_motion(changed, not {*changes} & {*MOVING})
+
+    def with_number(self, steps: Sequence[str], number: float) -> Machine:
+        """Return the machine with another number, by the keys and names on the way to it such as
+        ``links``, ``crank``, ``mass`` or ``springs``, ``1``, ``stiffness``, in SI units.
+        """
+        first, last = steps[0], steps[-1]
+
+        def put(_: Any) -> float:
+            return number
+
+        massive = first == "links" and bool({*steps[2:3]} & {*MASS_FIELDS, *BESIDE})
+        same = massive or first in STILL or last == "speed"
+        if first == "links":
+            found = self._with_link(steps[1], lambda link: changed(link, steps[2:], put))
+        else:
+            found = changed(self, steps, put)
+        return self._same_motion(found, same)
+
+    def with_planting(self, **changes: Any) -> Machine:
+        """Return the machine with values of its planting changed, or given for the first time."""
+        old = self.planting
+        new = Planting(**changes) if old is None else replace(old, **changes)
+        return self._same_motion(replace(self, planting=new))
+
+    def with_support(self, **changes: Any) -> Machine:
+        """Return the machine with values of its support changed, or given for the first time."""
+        old = self.support
+        new = Support(**changes) if old is None else replace(old, **changes)
+        return self._same_motion(replace(self, support=new))
+
+    def with_rows(self, rows: Iterable[Row]) -> Machine:
+        """Return the machine with other rows of linkages."""
+        return self._same_motion(replace(self, rows=tuple(rows)))
+
+    def with_springs(self, springs: Iterable[Spring]) -> Machine:
+        """Return the machine with other springs."""
+        return self._same_motion(replace(self, springs=tuple(springs)))
+
+    def with_balance(self, balance: Balance | None) -> Machine:
+        """Return the machine with another plan of what may be changed, or with none."""
+        return self._same_motion(replace(self, balance=balance))
+
+    def _same_motion(self, changed: Machine, same: bool = True) -> Machine:
+        """Hand on how the linkage is solved, where neither lengths nor joints have changed."""
+        if same and "_linkage" in self.__dict__:
+            changed.__dict__["_linkage"] = self.__dict__["_linkage"].of(changed)
+            if "turning" in self.__dict__:
+                changed.__dict__["turning"] = self.__dict__["turning"]
+        return changed
+
+    def forget(self) -> None:
+        """Let go of what was computed of it and is kept, such as its motion."""
+        for name in self.__dict__.keys() - self.__dataclass_fields__.keys():
+            self.__dict__.pop(name, None)
+
+    def points_of(self, body: str) -> Mapping[str, Vector]:
+        """Points of a link, or of the frame."""
+        return self.frame if body == FRAME else self.links[body].points

@@ -1,0 +1,270 @@
+"""What is to become small, or must not become larger: measures of outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import pi
+from typing import ClassVar
+
+from equipoise.errors import ModelError
+from equipoise.i18n import to_say
+from equipoise.keys import (
+    Frozen,
+    Key,
+    Keys,
+    Listing,
+    Number,
+    Quantity,
+    Table,
+    Text,
+    Told,
+    declared,
+    inside,
+    key,
+)
+from equipoise.mechanism.checks import numbered, positive, unknown
+from equipoise.mechanism.outputs.declared import DECLARED
+from equipoise.mechanism.outputs.declaring import Declared, Measure, matches
+from equipoise.mechanism.parts.sliders import Mechanism
+from equipoise.quantities import NUMBER, Dimension, pattern
+
+MEASURES: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak", "area")
+"""Root of the mean square, the same about the mean, largest size, largest minus smallest value, and
+area under the absolute value over one turn of the crank."""
+MEASURED_IN: tuple[Dimension, ...] = ("force", "torque", "power", "energy", "length", "angle")
+"""What measures of outputs can be."""
+OF_ROWS = tuple(
+    name.removeprefix("rows.")
+    for name, one in DECLARED.items()
+    if one.needs == "rows" and name.removeprefix("rows.") not in DECLARED
+)
+"""About x and y, from linkages side by side."""
+JOINTS, GAUGES = "joints.", "gauges."
+WITHIN = (JOINTS, "gears.", "racks.", "belts.", "cams.")
+"""How forces begin that act inside of one linkage, whichever row it is."""
+OF_NUMBERS = ("ripple", "peak_to_peak", "area")
+"""Measures of outputs that are one number at each crank angle."""
+MOST_NUMBERS = 200
+
+
+@declared
+class Objective(Frozen):
+    """What is to become small: a measure of an output."""
+
+    called = to_say("{what} of objective {number}")
+    file_order = ("output", "measure", "orders", "about", "speeds", "weight")
+
+    output: str = key(
+        Text(),
+        "such as `shaking_force.y`, `shaking_force`, `shaking_moment`, `drive_torque`, "
+        "`frame_force`, `frame_moment`, `joints.NAME`, `gears.NAME`, `belts.NAME.pull`, "
+        "`gauges.NAME`, `roll_moment`, `yaw_moment`, `rocking_moment`",
+        example="shaking_moment",
+    )
+    measure: Measure = key(
+        Text(MEASURES),
+        "`rms`: root of the mean square; `ripple`: the same about the mean; `peak`: largest size; "
+        "`peak_to_peak`: largest minus smallest value; `area`: under the size, over one turn of "
+        "the crank",
+        default="rms",
+    )
+    orders: tuple[float, ...] = key(
+        Listing(Number(), right="a list of numbers such as [1, 2]"),
+        "those that count: events in one turn of the crank, 0 for the mean; all if left out",
+        default=(),
+        example=[1, 2],
+        at_least=0,
+    )
+    about: str | None = key(
+        Text(of="point", on="frame"),
+        "point of the frame about which `shaking_moment` or `frame_moment` is taken; the drive's "
+        "pivot if left out",
+        default=None,
+    )
+    weight: float = key(
+        Number(),
+        "where there are several objectives, each of which counts over its value before",
+        default=1.0,
+        above=0,
+        word=to_say("weighting"),
+    )
+    speeds: tuple[float, ...] = key(
+        Listing(Quantity("angular speed"), right='a list such as ["150 rpm", "240 rpm"]'),
+        "of the crank, at which a gauge is read; the loudest counts; the drive's if left out",
+        default=(),
+        example=["150 rpm", "240 rpm"],
+    )
+
+    @property
+    def name(self) -> str:
+        """How it is called in results, such as ``rms of shaking_force.y``."""
+        words = "area under" if self.measure == "area" else f"{self.measure} of"
+        orders = f" (order {', '.join(f'{order:g}' for order in self.orders)})"
+        about = f" about {self.about}" if self.about else ""
+        if self.speeds:
+            about += f" at {', '.join(f'{speed * 30 / pi:.6g}' for speed in self.speeds)} rpm"
+        name = f"{words} {self.output}{about}{orders if self.orders else ''}"
+        return name.replace("_to_", " to ")
+
+
+@declared
+class Limit(Frozen):
+    """What must not become larger: a measure of an output, whose weight does not count.
+
+    at_most : in SI units.  ratio : over the value before, instead.
+    """
+
+    called = to_say("{what} of limit {number}")
+    beside: ClassVar[Keys] = {
+        "at_most": Key(
+            "at_most",
+            Told(
+                right='give number and unit in quotes, such as "120 N", or a share of the value '
+                'before, such as "80 %"',
+                schema={"pattern": "|".join([rf"^{NUMBER} +%$", *map(pattern, MEASURED_IN)])},
+            ),
+            '`"120 N"`, in a unit of the output; or a share of the value before, such as `"80 %"`',
+            example="120 N",
+        )
+    }
+
+    objective: Objective = key(Table(Objective, flat=True, without=("weight",)))
+    at_most: float | None = inside(Number(), default=None)
+    ratio: float | None = inside(Number(), default=None)
+
+    @property
+    def name(self) -> str:
+        return self.objective.name
+
+
+def output_of(name: str, machine: Mechanism) -> Declared:
+    """Look up an output of a machine by its name.
+
+    Raises
+    ------
+    ModelError : there is no such output, or it is not linear in the masses; says what there is.
+    """
+    found = [(one, item) for one, item in matches(name) if not name.startswith("rows.")]
+    for one, item in found:
+        if item in one.members(machine):
+            return _balanced(one, item, machine)
+    if not found:
+        raise ModelError("", unknown(name, balanced_names(machine), "output"))
+    one, item = found[0]
+    names, kind = list(one.members(machine)), one.group.removesuffix("s")
+    if kind == "gauge" and not names:
+        raise ModelError("", "there is no gauge; give a support with gauges")
+    if not names and one.reason:
+        raise ModelError("", one.reason.format(what=name))
+    if not one.is_family:
+        raise ModelError("", unknown(name, balanced_names(machine), "output"))
+    raise ModelError("", unknown(item, names, kind))
+
+
+def _balanced(one: Declared, item: str, machine: Mechanism) -> Declared:
+    """An output that balancing can take, with the dimension that it has in this machine."""
+    name = one.named(item).removeprefix("rows.")
+    if one.needs == "rows" and not machine.rows:
+        raise ModelError(
+            "",
+            f"{name} comes from linkages side by side; give [[rows]], or ask for rocking_moment of "
+            "links in planes",
+        )
+    if one.reason:
+        raise ModelError("", one.reason.format(what=name))
+    if one.needs == "support" and machine.support.gauges[item].axis is not None:  # type: ignore[union-attr]
+        return replace(one, dimension="angle")
+    return one
+
+
+def balanced_names(machine: Mechanism) -> list[str]:
+    """Names of everything that balancing can take of a machine."""
+    names = [
+        one.named(item).removeprefix("rows.")
+        for one in DECLARED.values()
+        if not one.reason
+        and (one.needs != "rows" or machine.rows)
+        and not (one.is_family and one.part in ("x", "y"))
+        for item in one.members(machine)
+    ]
+    return list(dict.fromkeys(names))
+
+
+def quantity_of(objective: Objective, machine: Mechanism) -> Dimension | None:
+    """What the measure of an output is; None where it has no name (the area under a force).
+
+    Raises
+    ------
+    ModelError : as for `output_of`.
+    """
+    quantity = output_of(objective.output, machine).dimension
+    if objective.measure != "area":
+        return quantity
+    return "energy" if quantity == "torque" else None
+
+
+# -- checks ----------------------------------------------------------------------------------------
+
+
+def wrong_objective(where: str, objective: Objective, machine: Mechanism) -> Iterator[ModelError]:
+    """Everything that is wrong with an output and its measure."""
+    try:
+        output = output_of(objective.output, machine)
+    except ModelError as error:
+        yield ModelError(f"{where}.output", error.what)
+        return
+    if objective.measure not in MEASURES:
+        yield ModelError(f"{where}.measure", unknown(objective.measure, MEASURES, "measure"))
+    elif output.is_vector and objective.measure in OF_NUMBERS:
+        yield ModelError(
+            f"{where}.output",
+            f"{objective.output} is a vector, which has no {objective.measure}; give .x or .y",
+        )
+    for name in ("orders", "speeds"):
+        count = len(getattr(objective, name))
+        if count > MOST_NUMBERS:
+            sentence = f"got {count}; at most {MOST_NUMBERS} are computed with"
+            yield ModelError(f"{where}.{name}", sentence)
+    for k, (place, order) in enumerate(numbered(f"{where}.orders", objective.orders)):
+        if order < 0:
+            yield ModelError(place, f"got {order:g}; give 0 or more")
+        elif order in objective.orders[:k]:
+            yield ModelError(place, f"{order:g} is given twice")
+    if objective.about is not None and not output.about:
+        names = [one.name for one in DECLARED.values() if one.about and not one.reason]
+        yield ModelError(f"{where}.about", f"goes with {' and '.join(names)}; leave it out")
+    elif objective.about is not None and objective.about not in machine.frame:
+        sentence = unknown(objective.about, machine.frame, "point of the frame")
+        yield ModelError(f"{where}.about", sentence)
+    yield from _wrong_speeds(where, objective)
+    if objective.weight <= 0:
+        yield ModelError(f"{where}.weight", f"got {objective.weight:g}; give more than 0")
+
+
+def _wrong_speeds(where: str, objective: Objective) -> Iterator[ModelError]:
+    if objective.speeds and not objective.output.startswith(GAUGES):
+        yield ModelError(
+            f"{where}.speeds", "goes with gauges; other outputs are taken at the speed of the drive"
+        )
+    for k, (place, speed) in enumerate(numbered(f"{where}.speeds", objective.speeds)):
+        if speed == 0:
+            yield ModelError(place, "the crank stands still there; give another speed")
+        elif speed in objective.speeds[:k]:
+            yield ModelError(place, "the same speed is given twice")
+
+
+def wrong_limit(where: str, limit: Limit, machine: Mechanism) -> Iterator[ModelError]:
+    """Everything that is wrong with what must not become larger."""
+    yield from wrong_objective(where, limit.objective, machine)
+    if (limit.at_most is None) == (limit.ratio is None):
+        yield ModelError(where, "give either at_most or ratio, its share of the value before")
+    elif limit.at_most is not None and quantity_of(limit.objective, machine) is None:
+        yield ModelError(
+            f"{where}.at_most",
+            f"there is no unit for the area under {limit.objective.output}; give a share of the "
+            'value before, such as "80 %"',
+        )
+    yield from positive(f"{where}.at_most", limit.at_most, "in SI units")
+    if limit.ratio is not None and limit.ratio <= 0:
+        yield ModelError(f"{where}.at_most", f"got {100 * limit.ratio:g} %; give more than 0")

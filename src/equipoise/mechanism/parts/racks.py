@@ -1,0 +1,125 @@
+"""Racks and pinions, as frozen values with their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import ClassVar, Literal
+
+from equipoise.errors import ModelError, MotionError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import Frozen, Text, declared, key
+from equipoise.mechanism.checks import FRAME, Bodies
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.couplings import Relation, name_of, pressure_angle, wrong_ends
+
+HANDS = ("left", "right")
+ENDS = ("pinion", "rack")
+
+
+@declared
+class Rack(Frozen):
+    """A rack and its pinion, which is pinned to the carrier on which the rack slides."""
+
+    called = to_say("{what} of rack {number}")
+
+    table: ClassVar[str] = "racks"
+    kind: ClassVar[str] = "rack"
+
+    pinion: str = key(Text(of="body"), "link that turns", example="rocker")
+    rack: str = key(
+        Text(of="link"),
+        "link that slides on the carrier, by a guide of `[[sliders]]` that is `on` the carrier",
+        example="rack",
+    )
+    radius: float = key("length", "pitch radius of the pinion", example="20 mm", above=0)
+    side: Literal["left", "right"] = key(
+        Text(HANDS),
+        "on which the pinion is of the rack, seen along the direction of its guide",
+        example="left",
+    )
+    drives: Literal["pinion", "rack"] = key(
+        Text(ENDS), "which of both is moved already", default="pinion"
+    )
+    carrier: str = key(
+        Text(of="body"),
+        "link to which the pinion is pinned, and on which the rack slides",
+        default=FRAME,
+        example="frame",
+    )
+    angle: float = key(
+        "angle",
+        "of a driven pinion in the frame at crank angle 0",
+        default=0.0,
+        word=to_say("angle at the start"),
+    )
+    travel: float = key(
+        "length",
+        "of a driven rack along its guide at crank angle 0",
+        default=0.0,
+        word=to_say("travel at the start"),
+    )
+    pressure_angle: float = pressure_angle("the part of the tooth force across the rack")
+
+    @property
+    def driver(self) -> str:
+        return self.pinion if self.drives == "pinion" else self.rack
+
+    @property
+    def driven(self) -> str:
+        return self.rack if self.drives == "pinion" else self.pinion
+
+    @property
+    def name(self) -> str:
+        return name_of(self.driver, self.driven)
+
+    @property
+    def start(self) -> float:
+        """Angle (rad) of a driven pinion, or travel (m) of a driven rack, at crank angle 0."""
+        return self.travel if self.drives == "pinion" else self.angle
+
+    @property
+    def left(self) -> int:
+        """1 where the pinion is on the left, -1 on the right."""
+        return 1 if self.side == "left" else -1
+
+    @property
+    def relation(self) -> Relation:
+        """Between the pinion's angle and the rack's travel on the carrier."""
+        way = self.left * self.radius
+        return (kernels.rolled, (way,)) if self.drives == "pinion" else (kernels.wound, (1 / way,))
+
+    @property
+    def speed_ratio(self) -> float:
+        """0: seen from the carrier, neither turns in the mean."""
+        return 0.0
+
+    @property
+    def exact_ratio(self) -> Fraction | None:
+        """There is none.
+
+        Raises
+        ------
+        MotionError : the pinion turns on and on, and drives a rack.
+        """
+        raise MotionError(
+            Note(
+                "the rack {rack!r} never comes back: its pinion {pinion!r} turns on and on; let a "
+                "link drive it that swings to and fro",
+                rack=self.rack,
+                pinion=self.pinion,
+            )
+        )
+
+
+def wrong_rack(where: str, rack: Rack, bodies: Bodies) -> Iterator[ModelError]:
+    """Everything that is wrong with a rack, but for how it is guided."""
+    yield from wrong_ends(where, rack, bodies)
+    for name, drives in (("angle", "rack"), ("travel", "pinion")):
+        if getattr(rack, name) and rack.drives != drives:
+            yield ModelError(
+                f"{where}.{name}",
+                Note(
+                    "goes with drives = {drives!r}; what drives tells its own place", drives=drives
+                ),
+            )

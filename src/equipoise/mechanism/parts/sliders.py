@@ -1,0 +1,129 @@
+"""Sliding joints and bearings as frozen values; what a machine is to those who see its parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Protocol
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import Frozen, Text, declared, key
+from equipoise.mechanism.checks import (
+    Bodies,
+    Vector,
+    unknown_body,
+    unknown_link,
+    unknown_point,
+)
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.drives import Drive, FurtherDrive
+from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.links import Link
+from equipoise.mechanism.parts.support import Row, Support
+
+JOINTS = ("pin", "slider")
+"""Kinds of what holds bodies together, which is no push of a coupling."""
+
+
+@declared
+class Slider(Frozen):
+    """A sliding joint: `point` of `link` stays on a line of the body `on`, without turning."""
+
+    called = to_say("{what} of the guide of the {link}")
+
+    link: str = key(Text(of="link"), "the sliding link", example="piston")
+    point: str = key(Text(of="point", on="link"), "its point on the line", example="C")
+    on: str = key(Text(of="body"), 'the guiding link, or `"frame"`', example="frame")
+    through: str = key(Text(of="point", on="on"), "a point of the guide on the line", example="A")
+    direction: float = key("angle", "of the line, in the axes of the guide", example="0 deg")
+    angle: float = key("angle", "of the sliding link's x axis, from the line", default=0.0)
+    label: str = key(
+        Text(),
+        "its name in outputs, `LINK on BODY` if left out; a second guide of the same link on the "
+        "same body needs one",
+        default="",
+    )
+
+    @property
+    def name(self) -> str:
+        return self.label or f"{self.link} on {self.on}"
+
+
+OF_FORCES = {"pin": "joints.", "slider": "joints.", "gear": "gears.", "rack": "racks.",
+             "belt": "belts.", "cam": "cams."}  # fmt: skip
+"""How names of outputs begin that tell of a force, by the kind of what exerts it."""
+
+
+@declared
+class JointStiffness(Frozen):
+    """How stiff a joint is, where joints share a force that statics leaves open."""
+
+    called = to_say("{what} of stiff joint {number}")
+
+    joint: str = key(Text(), "its force, as outputs call it", example="joints.B")
+    stiffness: float = key("stiffness", "more than 0", example="20000 kN/m", above=0)
+
+
+@declared
+class Bearing(Frozen):
+    """One of both bearings in which a link turns about its pin in the frame."""
+
+    called = to_say("{what} of bearing {name}")
+
+    link: str = key(
+        Text(of="link"), "that turns in it; it has one pin in the frame", example="crank"
+    )
+    plane: float = key("length", "z of its middle", example="-20 mm")
+
+
+class Mechanism(Protocol):
+    """What a machine is to those who only look at its parts."""
+
+    @property
+    def drive(self) -> Drive: ...
+    @property
+    def pushers(self) -> Sequence[Drive | FurtherDrive]: ...
+    @property
+    def frame(self) -> Mapping[str, Vector]: ...
+    @property
+    def links(self) -> Mapping[str, Link]: ...
+    @property
+    def bodies(self) -> Bodies: ...
+    @property
+    def sliders(self) -> Sequence[Slider]: ...
+    @property
+    def gears(self) -> Sequence[Gear]: ...
+    @property
+    def belts(self) -> Sequence[Belt]: ...
+    @property
+    def rows(self) -> Sequence[Row]: ...
+    @property
+    def bearings(self) -> Mapping[str, Bearing]: ...
+    @property
+    def support(self) -> Support | None: ...
+    @property
+    def has_planes(self) -> bool: ...
+
+
+# -- checks ----------------------------------------------------------------------------------------
+
+
+def wrong_slider(where: str, slider: Slider, bodies: Bodies) -> Iterator[ModelError]:
+    """Everything that is wrong with a sliding joint."""
+    if problem := [*unknown_link(f"{where}.link", slider.link, bodies)]:
+        yield from problem
+        return
+    yield from unknown_body(f"{where}.on", slider.on, bodies)
+    if slider.link == slider.on:
+        yield ModelError(f"{where}.on", Note("{link!r} cannot slide on itself", link=slider.link))
+    if slider.on in bodies:
+        yield from unknown_point(f"{where}.through", slider.through, slider.on, bodies)
+    yield from unknown_point(f"{where}.point", slider.point, slider.link, bodies)
+
+
+def wrong_joint(where: str, one: JointStiffness, bodies: Bodies) -> Iterator[ModelError]:
+    """Complain of what is no joint's force; which joints there are, assembling tells."""
+    if not one.joint.startswith((*OF_FORCES.values(),)):
+        yield ModelError(
+            f"{where}.joint", Note("got {joint!r}; give a joint as joints.B", joint=one.joint)
+        )

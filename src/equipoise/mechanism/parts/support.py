@@ -1,0 +1,320 @@
+"""What carries the linkages: a rigid body on mounts, the gauges on it, and the rows of linkages.
+
+They are part of the model; `equipoise.vibration` computes with them.  Places are in the frame's
+axes while the machine stands still: x forward, y up, z to the right of who looks forward.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import ClassVar
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, all_of, to_say
+from equipoise.keys import (
+    Conditions,
+    Frozen,
+    Listing,
+    Named,
+    OneOr,
+    Point,
+    Quantity,
+    Table,
+    Text,
+    declared,
+    key,
+)
+from equipoise.mechanism.checks import too_many
+from equipoise.mechanism.parts.mounts import (
+    AXES,
+    UP,
+    Direction,
+    Gauge,
+    Mount,
+    Place,
+    unit_vector,
+    wrong_mount,
+    wrong_reading,
+)
+
+__all__ = [
+    "AXES",
+    "FREEDOMS",
+    "PLANAR",
+    "UP",
+    "Direction",
+    "Gauge",
+    "Mount",
+    "Place",
+    "Row",
+    "Support",
+    "idle_parts",
+    "unit_vector",
+    "wrong_support",
+]
+
+
+PLANAR = ("surge", "heave", "pitch")
+FREEDOMS = (
+    to_say("surge"),
+    to_say("heave"),
+    to_say("sway"),
+    to_say("roll"),
+    to_say("yaw"),
+    to_say("pitch"),
+)
+"""Along x, y, z and about x, y, z: the order of coordinates in `equipoise.vibration`."""
+HELD = ("surge", "heave", "sway")
+"""What a pivot takes away."""
+MOST = {"mounts": 200, "gauges": 200, "rows": 200}
+
+
+@declared
+class Row(Frozen):
+    """One of several equal linkages on the support, all driven by one shaft."""
+
+    called = to_say("{what} of row {number}")
+
+    phase: float = key(
+        "angle", "by which its crank angle is larger than that of the drive", default=0.0
+    )
+    lateral: float = key("length", "z of its plane", default=0.0, word=to_say("place across"))
+    offset: tuple[float, float] = key(
+        Listing(Quantity("length"), (2,)),
+        "x and y by which it stands beside the linkage of the file",
+        default=(0.0, 0.0),
+    )
+
+
+@declared
+class Support(Frozen):
+    """The rigid body that carries the linkages, without their moving links."""
+
+    called = to_say("{what} of the support")
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [
+            {"required": ["inertia"], "properties": {"pivot_inertia": False}},
+            {
+                "required": ["pivot_inertia", "pivot"],
+                "properties": {"inertia": False, "products": False},
+            },
+        ],
+        "if": {"required": ["products"]},
+        "then": {"properties": {"inertia": {"type": "array"}}},
+    }
+
+    mass: float = key(
+        "mass",
+        "of the support with all that is fixed to it, motor and flywheel too",
+        example="60 kg",
+        above=0,
+    )
+    center_of_mass: Place = key(
+        Point(space=True),
+        "in the frame's axes",
+        example=["0 mm", "300 mm"],
+        word=to_say("centre of mass"),
+    )
+    inertia: tuple[float, ...] = key(
+        OneOr(
+            Quantity("inertia"),
+            3,
+            right="one moment of inertia, or a list of three, about x, y and z",
+        ),
+        "about the centre of mass and an axis along z; or a list of three, about axes along x, y "
+        "and z (roll, yaw, pitch)",
+        default=(),
+        example="4 kg m^2",
+        above=0,
+    )
+    products: tuple[float, ...] = key(
+        Listing(Quantity("inertia"), (3,), "a list of three, of x y, y z and z x"),
+        "integrals of x y, y z and z x over the mass, about its centre; they go with three moments "
+        "of inertia",
+        default=(),
+    )
+    pivot_inertia: float | None = key(
+        "inertia", "about the pivot, instead of `inertia`", default=None
+    )
+    pivot: tuple[float, float] | None = key(
+        Point(), "of the pin on the ground that carries the support", default=None
+    )
+    freedoms: tuple[str, ...] = key(
+        Listing(
+            Text(FREEDOMS),
+            right='a list such as ["heave", "pitch"]; leave it out for the usual ones',
+        ),
+        "how it can move: along x, y, z or about x, y, z; if left out pitch with a pivot, and "
+        "surge, heave and pitch without",
+        default=(),
+        example=["heave", "pitch"],
+    )
+    mounts: Mapping[str, Mount] = key(
+        Named(Table(Mount)), "springs and dampers by name", factory=dict
+    )
+    gauges: Mapping[str, Gauge] = key(
+        Named(Table(Gauge)), "readings of its motion by name", factory=dict
+    )
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """How it can move, in the order of `FREEDOMS`."""
+        if self.freedoms:
+            return tuple(name for name in FREEDOMS if name in self.freedoms)
+        return ("pitch",) if self.pivot is not None else PLANAR
+
+    @property
+    def planar(self) -> bool:
+        """Whether it moves in the plane of the drawing only."""
+        return set(self.coordinates) <= set(PLANAR)
+
+    @property
+    def reference(self) -> Place:
+        """The point by whose displacement its place is told: the pivot, or the centre of mass."""
+        return self.center_of_mass if self.pivot is None else (*self.pivot, 0.0)
+
+
+def wrong_support(support: Support | None, rows: Sequence[Row]) -> Iterator[ModelError]:
+    """Everything that is wrong with the support and the rows of a machine."""
+    if len(rows) > MOST["rows"]:
+        yield ModelError(
+            "rows", Note("got {rows}; at most {most} are used", rows=len(rows), most=MOST["rows"])
+        )
+    if support is None:
+        return
+    yield from _wrong_freedoms(support)
+    yield from _wrong_body(support)
+    for kind, items in (("mounts", support.mounts), ("gauges", support.gauges)):
+        yield from too_many(f"support.{kind}", items, MOST[kind])
+        for name in items:
+            if not name.strip() or not name.isprintable() or len(name) > 200:
+                yield ModelError(
+                    f"support.{kind}", Note("got the name {name!r}; give another", name=name[:60])
+                )
+    for name, mount in support.mounts.items():
+        yield from wrong_mount(f"support.mounts.{name}", mount)
+    for name, gauge in support.gauges.items():
+        yield from wrong_reading(f"support.gauges.{name}", gauge)
+
+
+def _wrong_freedoms(support: Support) -> Iterator[ModelError]:
+    for number, name in enumerate(support.freedoms, 1):
+        if support.pivot is not None and name in HELD:
+            yield ModelError(
+                f"support.freedoms[{number}]",
+                Note(
+                    "the pivot is a pin in the ground, which leaves no {name}; leave out one "
+                    "of them",
+                    name=name,
+                ),
+            )
+        elif name in support.freedoms[: number - 1]:
+            yield ModelError(
+                f"support.freedoms[{number}]", Note("{name!r} is given twice", name=name)
+            )
+
+
+def _wrong_body(support: Support) -> Iterator[ModelError]:
+    if bool(support.inertia) == (support.pivot_inertia is not None):
+        yield ModelError("support", Note("give either inertia or pivot_inertia"))
+        return
+    if support.pivot_inertia is not None:
+        if support.products:
+            yield ModelError("support.products", Note("goes with an inertia of three values"))
+        yield from _wrong_pivot_inertia(support)
+        return
+    if len(support.inertia) not in {1, 3}:
+        yield ModelError(
+            "support.inertia",
+            Note("got {inertia} values; give one or three", inertia=len(support.inertia)),
+        )
+    elif len(support.inertia) == 1 and not support.planar:
+        yield ModelError(
+            "support.inertia",
+            Note(
+                "got one value, but the support can {out_of_plane}; give three, about x, y and z",
+                out_of_plane=_out_of_plane(support),
+            ),
+        )
+    elif len(support.inertia) == 3:
+        yield from _wrong_moments(support)
+    if support.products and len(support.inertia) != 3:
+        yield ModelError("support.products", Note("goes with an inertia of three values"))
+    elif support.products and len(support.products) != 3:
+        yield ModelError("support.products", Note("give three values, of x y, y z and z x"))
+
+
+def _out_of_plane(support: Support) -> Note | str:
+    return all_of([Note(name) for name in support.coordinates if name not in PLANAR])
+
+
+def _wrong_moments(support: Support) -> Iterator[ModelError]:
+    a, b, c = sorted(support.inertia)
+    if c > (a + b) * (1 + 1e-9):
+        yield ModelError(
+            "support.inertia",
+            Note(
+                "got {c:g} kg m^2 beside {a:g} and {b:g}; no body has one moment of "
+                "inertia above the sum of the others",
+                c=c,
+                a=a,
+                b=b,
+            ),
+        )
+    if len(support.products) == 3:
+        (xx, yy, zz), (xy, yz, zx) = support.inertia, support.products
+        minors = (xx * yy - xy**2, yy * zz - yz**2, zz * xx - zx**2)
+        whole = xx * minors[1] - xy * (xy * zz + yz * zx) - zx * (xy * yz + yy * zx)
+        if min(*minors, whole) <= 0:
+            yield ModelError(
+                "support.products",
+                Note(
+                    "got {xy:g}, {yz:g} and {zx:g} kg m^2 beside an inertia of {xx:g}, {yy:g} "
+                    "and {zz:g}; no body has that, give smaller ones",
+                    xy=xy,
+                    yz=yz,
+                    zx=zx,
+                    xx=xx,
+                    yy=yy,
+                    zz=zz,
+                ),
+            )
+
+
+def _wrong_pivot_inertia(support: Support) -> Iterator[ModelError]:
+    assert support.pivot_inertia is not None
+    where = "support.pivot_inertia"
+    if support.pivot is None:
+        yield ModelError(where, Note("there is no pivot; give inertia, about the centre of mass"))
+        return
+    if not support.planar:
+        yield ModelError(
+            where,
+            Note(
+                "the support can {out_of_plane} too; give inertia about the centre of "
+                "mass, three values",
+                out_of_plane=_out_of_plane(support),
+            ),
+        )
+    x, y = (c - p for c, p in zip(support.center_of_mass[:2], support.pivot, strict=True))
+    least = support.mass * (x * x + y * y)
+    if support.pivot_inertia <= least:
+        yield ModelError(
+            where,
+            Note(
+                "got {pivot_inertia:g} kg m^2; mass and center_of_mass alone make "
+                "{least:g}, give more",
+                pivot_inertia=support.pivot_inertia,
+                least=least,
+            ),
+        )
+
+
+def idle_parts(support: Support | None) -> Iterator[str]:
+    """Mounts and gauges about axes about which the support does not turn."""
+    if support is None:
+        return
+    for kind, items in (("mounts", support.mounts), ("gauges", support.gauges)):
+        for name, item in items.items():
+            if item.axis is not None and item.axis not in support.coordinates:
+                yield f"support.{kind}.{name} does nothing: the support cannot {item.axis}"

@@ -1,0 +1,121 @@
+"""Couplings that are added to a machine that is made: gears, belts, racks.
+
+Each function takes a sketch to another one, or refuses in a `UsageError`.  Links keep the places in
+which they are drawn; what a drawing tells, such as the radius of a pinion, nobody has to say.
+"""
+
+from __future__ import annotations
+
+from cmath import exp
+from dataclasses import replace
+from math import pi
+
+from equipoise.errors import UsageError
+from equipoise.i18n import Note
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.machine import FRAME, Gear
+from equipoise.mechanism.parts.racks import Rack
+from equipoise.quantities import clean
+from equipoise.web.adding import TOGETHER, check_body, the
+from equipoise.web.sketch import Sketch
+
+PITCHES = (0.014, 0.008, 0.005, 0.003, 0.002)
+"""Of toothed belts that are usual, m."""
+FILLED = 0.8
+"""Share of the distance of two pins that the radii of both pulleys may take."""
+
+
+def with_gears(
+    sketch: Sketch, driver: str, driven: str, teeth: tuple[int, int], carrier: str | None = None
+) -> Sketch:
+    """A pair of gears in external mesh."""
+    carrier = _carrier(sketch, driver, driven, carrier)
+    gear = Gear(driver, driven, teeth=teeth, carrier=carrier)
+    return replace(sketch, gears=(*sketch.gears, gear))
+
+
+def with_belt(
+    sketch: Sketch, driver: str, driven: str, teeth: tuple[int, int], carrier: str | None = None
+) -> Sketch:
+    """An open chain of the largest usual pitch for which there is room between both pins."""
+    carrier = _carrier(sketch, driver, driven, carrier)
+    one, other = (sketch.places[_pin(sketch, body, carrier)] for body in (driver, driven))
+    room = FILLED * 2 * pi * abs(one - other) / sum(teeth)
+    pitch = next((one for one in PITCHES if one <= room), clean(room, "length"))
+    return _added(sketch, "belts", Belt(driver, driven, teeth=teeth, pitch=pitch, carrier=carrier))
+
+
+def with_rack(sketch: Sketch, driver: str, driven: str) -> Sketch:
+    """A rack and its pinion, of which the first drives; the pitch line goes through the rack's
+    block.
+    """
+    for body in (driver, driven):
+        check_body(sketch, body)
+    for pinion, link in ((driven, driver), (driver, driven)):
+        for slider in sketch.sliders:
+            if slider.link != link or len(_shared(sketch, pinion, slider.on)) != 1:
+                continue
+            axis = sketch.places[_pin(sketch, pinion, slider.on)] - sketch.places[slider.point]
+            off = axis / exp(1j * (slider.direction + sketch.pose(slider.on).angle))
+            if abs(off.imag) <= TOGETHER * sketch.size:
+                told = Note(
+                    "{pinion} turns about a point of the line of {rack}; set it beside the line, "
+                    "by the radius of the pinion",
+                    pinion=pinion,
+                    rack=link,
+                )
+                raise UsageError(told)
+            rack = Rack(
+                pinion,
+                link,
+                radius=clean(abs(off.imag), "length"),
+                side="left" if off.imag > 0 else "right",
+                drives="pinion" if pinion == driver else "rack",
+                carrier=slider.on,
+            )
+            return _added(sketch, "racks", rack)
+    raise UsageError(
+        Note(
+            "neither {driver} nor {driven} slides on a body about one point of which the other "
+            "turns; give the rack a slider on the carrier of its pinion",
+            driver=the(driver),
+            driven=the(driven),
+        )
+    )
+
+
+def _added(sketch: Sketch, table: str, one: Belt | Rack) -> Sketch:
+    return replace(sketch, rest={**sketch.rest, table: (*sketch.rest.get(table, ()), one)})
+
+
+def _shared(sketch: Sketch, body: str, carrier: str) -> list[str]:
+    return [point for point in sketch.bodies[body] if point in sketch.bodies[carrier]]
+
+
+def _pin(sketch: Sketch, body: str, carrier: str) -> str:
+    """The point about which a body turns on a carrier."""
+    return _shared(sketch, body, carrier)[0]
+
+
+def _carrier(sketch: Sketch, driver: str, driven: str, told: str | None) -> str:
+    """The body about one point of which each of both turns; the frame before others."""
+    for body in (driver, driven, *([told] if told else ())):
+        check_body(sketch, body)
+    for carrier in [told] if told else (FRAME, *sketch.links):
+        wheels = [body for body in (driver, driven) if body != carrier]
+        if [len(_shared(sketch, body, carrier)) for body in wheels] == [1, 1]:
+            return carrier
+    carrier = told or FRAME
+    body = next(
+        one for one in (driver, driven)
+        if one == carrier or len(_shared(sketch, one, carrier)) != 1
+    )  # fmt: skip
+    raise UsageError(
+        Note(
+            "{body} shares {shared} points with {carrier}; each gear or pulley turns about exactly "
+            "one point of it",
+            body=the(body),
+            shared=len(_shared(sketch, body, carrier)),
+            carrier=the(carrier),
+        )
+    )
