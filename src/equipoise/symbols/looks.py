@@ -124,6 +124,14 @@ LOOKS = {
 }
 """Role -> look."""
 
+LAYERS = {
+    "strand": {"springs": "strand"},
+    "cam": {"wheels": "cam", "springs": "cam-edge"},
+    "rider": {"riders": "rider"},
+    "face": {"riders": "face"},
+}
+"""Of marks that do not lie below all links: their roles by layer, so that links hide none."""
+
 
 def pixels(value: float, digits: int = 2) -> str:
     """A number without needless signs."""

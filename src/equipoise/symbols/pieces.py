@@ -11,6 +11,7 @@ from equipoise.mechanism.parts.machine import FRAME
 from equipoise.mechanism.parts.support import Mount, unit_vector
 from equipoise.symbols.carrier import foot, gauge, ground, strut, turning
 from equipoise.symbols.drives import Drive
+from equipoise.symbols.looks import LAYERS
 from equipoise.symbols.scene import WIDE, Body, Guide, Scene
 from equipoise.symbols.shapes import (
     PIN,
@@ -47,13 +48,6 @@ BARREL, ROD, INSIDE = 0.55, 0.95, 0.8
 """Length of a cylinder's barrel over the largest stroke, of both over the smallest, and how much of
 the barrel the rod leaves free when it is out.
 """
-LAYERS = {
-    "strand": {"springs": "strand"},
-    "cam": {"wheels": "cam", "springs": "cam-edge"},
-    "rider": {"riders": "rider"},
-    "face": {"riders": "face"},
-}
-"""Of marks that do not lie below all links: their roles by layer, so that links hide none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,8 +169,7 @@ def _wheels(scene: Scene) -> Iterator[Piece]:
         seen.add(key)
         if gear.link == FRAME:
             still = complex(scene.places[gear.center][0])
-            shape = rim(still, gear.radius, gear.curve)
-            yield Piece("wheels", (shape,), part=gear.part)
+            yield Piece("wheels", (rim(still, gear.radius, gear.curve),), part=gear.part)
             continue
         body = bodies[gear.link]
         center = scene.local(body, scene.places[gear.center])
@@ -189,8 +182,7 @@ def _drawn(scene: Scene, layer: str) -> Iterator[Piece]:
     """What moves with bodies and lies in a layer, of marks that lie in one or two."""
     bodies = {body.name: body for body in scene.bodies}
     for mark in scene.marks:
-        role = LAYERS.get(mark.shape.role, {"wheels": mark.shape.role}).get(layer)
-        if role is None:
+        if not (role := LAYERS.get(mark.shape.role, {"wheels": mark.shape.role}).get(layer)):
             continue
         start, hold = complex(scene.places[mark.point][0]), None
         if mark.body != FRAME:
