@@ -110,6 +110,7 @@ export class Tools {
   }
 
   private take(tool: Tool, focus = false): void {
+    const drawing = this.tool !== "select"; // then the crosshair stays where it is
     [this.tool, this.pending] = [tool, null];
     this.page.talk.release();
     const making = tool !== "select";
@@ -122,7 +123,7 @@ export class Tools {
     this.page.hint("");
     if (making) {
       const { view } = this.page.stage;
-      this.cross = this.at([view.width / 2, view.height / 2]).place;
+      if (!drawing) this.cross = this.at([view.width / 2, view.height / 2]).place;
       this.aim();
       if (focus) this.crosshair.focus({ preventScroll: true });
     }
