@@ -108,6 +108,10 @@ def check_turning(machine: Machine, title: str) -> None:
     refusal = to_say("a file of {title} turns the driven link evenly all the way round: {why}")
     if not machine.has_crank:
         why = Note("this drive has a motion of its own")
+        if machine.drives:
+            why = Note("this machine has several drives")
+        elif machine.pushers:
+            why = Note("this drive pushes")
         raise UsageError(Note(refusal, title=title, why=why))
     try:
         _ = assemble(machine).cycle

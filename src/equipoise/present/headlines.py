@@ -138,14 +138,15 @@ def resisted(found: PlantingFigures) -> str:
 def shaken(found: Findings) -> str:
     """How much shakes the frame."""
     size = Shaking.of(found).size
-    if size.peak <= NOTHING * found.analysis.summary["frame_force"].peak:
+    if not size.peak:
         return say("No force shakes the frame")
     return say("Up to {peak} shakes the frame", peak=told(size.peak, "force", digits=3))
 
 
 def pushed(found: Findings) -> str:
     """In which way the shaking force of all rows acts."""
-    return acting(Shaking.of(found).force) if shaken(found) else ""
+    force = Shaking.of(found).force
+    return acting(force) if np.any(force) else ""
 
 
 def peaked(analysis: Analysis, name: str, dimension: Dimension) -> str:
@@ -174,6 +175,9 @@ def caused(analysis: Analysis, number: int = 1) -> str:
     output = machine.drive.effort if number == 1 else f"drives.{drive.link}.{drive.effort_in}"
     parts = analysis.forces.split.by_cause(output)
     name, share = next(iter(shares({k: part - np.mean(part) for k, part in parts.items()}).items()))
+    scale = analysis.summary["frame_force" if drive.pushes else "frame_moment"].peak
+    if analysis.summary[output].peak <= NOTHING * scale or not share:
+        return ""
     values = {"share": percent(share), "cause": say(CAUSES[name])}
     of_force = to_say("{share} % of the swing of the drive force comes from: {cause}")
     of_torque = to_say("{share} % of the swing of the drive torque comes from: {cause}")
@@ -183,6 +187,8 @@ def caused(analysis: Analysis, number: int = 1) -> str:
 def ordered(found: Findings) -> str:
     """The loudest order of the shaking force."""
     order, share = Shaking.of(found).loudest
+    if not share:
+        return ""
     text = to_say("{share} % of the shaking force is order {order}")
     return say(text, share=percent(share), order=f"{order:.4g}")
 

@@ -61,7 +61,8 @@ def tiles(found: Findings) -> Iterator[Tile]:
         return
     size = Shaking.of(found).size
     after = None if later is None else Shaking.of(later).size.peak
-    yield _tile(say("shaking force, peak"), size.peak, "force", _at(size.peak_at), after=after)
+    note = _at(size.peak_at) if size.peak else ""
+    yield _tile(say("shaking force, peak"), size.peak, "force", note, after=after)
     template = to_say("one row: {what}") if len(found.machine.rows) > 1 else "{what}"
     drive = found.machine.drive
     effort = say("drive force, peak") if drive.pushes else say("drive torque, peak")
@@ -113,7 +114,7 @@ def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
     size, rows = shaking.size, len(found.machine.rows)
     speed = brief(abs(found.analysis.motion.speed) / PER_RPM)
     summary = found.analysis.summary
-    if size.peak <= 1e-9 * summary["frame_force"].peak:
+    if not size.peak:
         yield say("At {speed} rpm the linkage does not shake its frame by any force.", speed=speed)
     else:
         of_rows = to_say(
@@ -166,18 +167,21 @@ def _ordered(found: Findings, shaking: Shaking) -> str:
 
 def _why(found: Findings) -> Iterator[str]:
     split, summary = found.analysis.forces.split, found.analysis.summary
-    if summary["shaking_force"].rms > 0:
-        by_link = shares(split.by_link("shaking_force"))
+    by_link = shares(split.by_link("shaking_force"))
+    if any(by_link.values()):
         yield say("The shaking force comes from: {parts}.", parts=_parts(by_link))
         if min(by_link.values()) <= -SMALL:
             yield say("A minus means that the link works against the others.")
     drive = found.machine.drive
     effort = summary[drive.effort]
-    if effort.rms > 0:
-        by_cause = {
+    scale = summary["frame_force" if drive.pushes else "frame_moment"].peak
+    by_cause = shares(
+        {
             say(CAUSES[name]): part - np.mean(part)
             for name, part in split.by_cause(drive.effort).items()
         }
+    )
+    if brief(effort.peak, scale) != "0" and any(by_cause.values()):
         of_rows = to_say(
             "The drive torque of one row swings between {low} and {high}; that comes from: {parts}."
         )
@@ -193,7 +197,7 @@ def _why(found: Findings) -> Iterator[str]:
             of_force if drive.pushes else of_rows if len(found.machine.rows) > 1 else of_one,
             low=low,
             high=unit.with_unit(high),
-            parts=_parts(shares(by_cause)),
+            parts=_parts(by_cause),
         )
 
 

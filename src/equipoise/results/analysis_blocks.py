@@ -142,13 +142,19 @@ def advantages_table(analysis: Analysis) -> Table:
 # -- forces ----------------------------------------------------------------------------------------
 
 
+def _beside(analysis: Analysis, kind: Dimension | None) -> float:
+    """The largest of all forces, moments or torques on frame and drive."""
+    ones = (one for one in analysis.outputs.summed if one.group in ("forces", "drives"))
+    return max((one.figures.peak for one in ones if one.dimension == kind), default=0.0)
+
+
 def force_blocks(analysis: Analysis) -> Iterator[Block]:
     """Forces on frame and drive; what they come from; their orders."""
     ones = [one for one in analysis.outputs.summed if one.group in ("forces", "drives")]
     rows: list[tuple[Cell, ...]] = []
     for one in ones:
         found, kind = one.figures, one.dimension
-        scale = max(other.figures.peak for other in ones if other.dimension == kind)
+        scale = _beside(analysis, kind)
         mean, rms, swing = (
             Value(value, scale, dimension=kind)
             for value in (found.mean, found.rms, found.peak_to_peak)
@@ -223,7 +229,8 @@ def orders_table(analysis: Analysis) -> Table:
     count = max(len(signal.amplitudes) for signal in signals)
     sizes = [np.pad(signal.sizes, (0, count - len(signal.sizes))) for signal in signals]
     tops = tops_of(zip(ones, (size[1:] for size in sizes), strict=True))
-    scales = [1e3 * tops[one.dimension] for one in ones]
+    kinds = [one.dimension for one in ones]
+    scales = [max(1e3 * tops[kind], _beside(analysis, kind)) for kind in kinds]
     turns = analysis.motion.turns
     per_order = abs(analysis.motion.speed) / (2 * np.pi)
     rows = (

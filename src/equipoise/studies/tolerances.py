@@ -183,8 +183,9 @@ def _check(study: Study) -> None:
     if rows_of(study.size, causes) < LEAST_ROWS:
         raise ModelError(
             "sampling.designs",
-            f"got {study.size}; to tell {causes} tolerances apart give "
-            f"{LEAST_ROWS * (2 + 3 * causes)} or more",
+            f"got {study.size}; "
+            + (f"to tell {causes} tolerances apart" if causes > 1 else "for one tolerance")
+            + f" give {LEAST_ROWS * (2 + 3 * causes)} or more",
         )
 
 

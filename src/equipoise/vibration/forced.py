@@ -61,14 +61,14 @@ def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
             return "exact"
         raise ModelError("support", MISSING)
     if not support.planar and (drive or model in {"coupled", "exact"}):
-        others = [name for name in support.coordinates if name in {"sway", "roll", "yaw"}]
+        *others, last = (name for name in support.coordinates if name in {"sway", "roll", "yaw"})
         raise ModelError(
             "support.freedoms",
             Note(
                 "the model {value} is for motion in the plane of the drawing; leave out "
                 "{names}, or choose moment",
                 value=model or "exact",
-                names=" and ".join(others),
+                names=" and ".join([*filter(None, [", ".join(others)]), last]),
             ),
         )
     if model in WITH_CRANK and not machine.has_crank:

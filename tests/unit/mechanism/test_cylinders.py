@@ -167,11 +167,13 @@ def test_a_file_of_it_is_read_as_it_was_written() -> None:
 
 @pytest.mark.parametrize("name", ["mjcf", "exudyn", "fmu", "modelica"])
 def test_programs_that_turn_a_crank_refuse_it(name: str) -> None:
-    words = "turns the driven link evenly all the way round: this drive has a motion of its own"
-    with pytest.raises(UsageError, match=words):
+    evenly = "turns the driven link evenly all the way round:"
+    with pytest.raises(UsageError, match=f"{evenly} this drive pushes"):
         made(boom(), FORMATS[name], 0.0)
+    with pytest.raises(UsageError, match=f"{evenly} this machine has several drives"):
+        made(eq.load("pick-and-place"), FORMATS[name], 0.0)
     stuck = four_bar(1.0, 0.9, 0.5, 0.55)
-    with pytest.raises(UsageError, match="evenly all the way round: the crank cannot turn fully"):
+    with pytest.raises(UsageError, match=f"{evenly} the crank cannot turn fully"):
         made(stuck, FORMATS[name], 0.0)
 
 

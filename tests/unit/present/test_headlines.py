@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,8 +14,13 @@ import equipoise as eq
 from equipoise.i18n import LANGUAGES
 from equipoise.present.composition import SHORT, build
 from equipoise.present.findings import Findings, find
+from equipoise.present.headlines import caused, ordered, pushed
 from equipoise.present.pages import Document, page, paired, pdf
-from equipoise.results.blocks import Drawn, Table
+from equipoise.present.shaking import Shaking
+from equipoise.present.summary import answers, tiles
+from equipoise.quantities import brief
+from equipoise.results.analysis_blocks import orders_table
+from equipoise.results.blocks import Drawn, Table, Value
 from support.found import found as found_of
 
 
@@ -100,11 +106,11 @@ def test_long_tables_stand_in_the_appendix_and_none_is_lost(name: str) -> None:
 def test_what_helps_is_told_before_and_after_at_once() -> None:
     found = found_of("yamashita-1")
     assert isinstance(found, Findings) and found.after is not None
-    tiles = {tile.label: tile for tile in document("yamashita-1").tiles}
-    peak = tiles["shaking force, peak"]
+    shown = {tile.label: tile for tile in document("yamashita-1").tiles}
+    peak = shown["shaking force, peak"]
     later = found.after.analysis.summary["shaking_force"].peak
     assert (peak.value, peak.after) == ("23.2", f"{later:.1f}")
-    assert tiles["drive torque, peak"].after == ""  # is the same
+    assert shown["drive torque, peak"].after == ""  # is the same
 
 
 @pytest.mark.parametrize(("name", "most"), [("yamashita-1", 7), ("yamashita-rig", 10)])
@@ -125,3 +131,34 @@ def test_what_the_hands_get_is_called_by_words() -> None:
     summary = document("yamashita-rig").summary
     sentences = [one for answer in summary for one in answer.sentences]
     assert any(one.startswith("“gauge”: the support moves by") for one in sentences)
+
+
+def test_a_force_that_cancels_but_for_rounding_is_none(tmp_path: Path) -> None:
+    bars = [
+        f'[links.bar{k}]\npoints.B{k} = ["0 mm", "0 mm"]\npoints.C{k} = ["80 mm", "30 mm"]\n'
+        'mass = "2 kg"\ncenter_of_mass = ["10 mm", "-80 mm"]\ninertia = "0.03 kg m^2"\n'
+        for k in range(3)
+    ]
+    turns = [
+        f'[links.{link}]\npoints.{pin} = ["0 mm", "0 mm"]\nmass = "6 kg"\n'
+        'center_of_mass = ["0 mm", "0 mm"]\ninertia = "0.5 kg m^2"\n'
+        + "".join(
+            f'points.{way}{k} = {{ distance = "400 mm", direction = "{120 * k} deg" }}\n'
+            for k in range(3)
+        )
+        for link, pin, way in (("spider", "A", "B"), ("guide", "E", "C"))
+    ]
+    frame = 'schema = 1\ntitle = "reel"\ndrive = { link = "spider", speed = "40 rpm" }\n'
+    frame += '[frame]\npoints.A = ["0 mm", "0 mm"]\npoints.E = ["80 mm", "30 mm"]\n'
+    (tmp_path / "reel.toml").write_text("".join([frame, *turns, *bars]))
+    found = find(tmp_path / "reel.toml")
+    assert isinstance(found, Findings)
+    for _, _, x, *_ in orders_table(found.analysis).rows:
+        assert isinstance(x, Value) and brief(x.value, x.scale) == "0"
+    assert not np.any(Shaking.of(found).force)
+    told = [sentence for answer in answers(found) for sentence in answer.sentences]
+    assert any("does not shake its frame by any force" in one for one in told)
+    assert not any("comes from" in one for one in told)
+    assert (pushed(found), ordered(found), caused(found.analysis)) == ("", "", "")
+    tile = next(one for one in tiles(found) if one.label == "shaking force, peak")
+    assert (tile.value, tile.note) == ("0", "")

@@ -55,7 +55,7 @@ def _words_of(kind: keys.Kind) -> str:
         return " or ".join(map(str, kind.names))
     if isinstance(kind, keys.Text) and (names := kind.names or kind.suggested):
         *most, last = (f'`"{name}"`' for name in names)
-        return f"{', '.join(most)} or {last}"
+        return f"{', '.join(most)} or {last}" if most else last
     if isinstance(kind, keys.Point):
         return "point or name" if kind.named else "place" if kind.space else "point"
     return WORDS.get(type(kind), "text")

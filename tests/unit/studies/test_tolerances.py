@@ -156,6 +156,8 @@ def test_too_few() -> None:
     with pytest.raises(ModelError, match=f"^{re.escape(sentence)}$"):
         tolerance(given(300), compute=formulas)
     assert tolerance(given(352), compute=formulas).rows == 32
+    with pytest.raises(ModelError, match=r"got 10; for one tolerance give 160 or more$"):
+        tolerance(study(Normal(0.2, 0.01), designs=10, outputs=SUM), compute=formulas)
 
 
 def test_nothing_can_be_computed() -> None:

@@ -31,7 +31,7 @@ GROUND = ModelError(
 )
 MOTORLESS = ModelError("drive.motor", "missing; give its no_load_speed and stall_torque")
 SPACE = (
-    "the model {} is for motion in the plane of the drawing; leave out sway and roll and yaw, or "
+    "the model {} is for motion in the plane of the drawing; leave out sway, roll and yaw, or "
     "choose moment"
 )
 
