@@ -106,7 +106,9 @@ class PinLoop:
     def gaps(self, poses: Poses, level: int) -> list[Any]:
         """What vanishes (level 0), and its first and second derivative."""
         ends = ((poses[end.body], end.arm) for end in (self.on, self.by))
-        here, there = (pose.point(arm)[level] if level else pose.place_of(arm) for pose, arm in ends)
+        here, there = (
+            pose.point(arm)[level] if level else pose.place_of(arm) for pose, arm in ends
+        )
         gap = here - there
         return [gap.real, gap.imag]
 

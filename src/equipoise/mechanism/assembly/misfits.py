@@ -59,10 +59,8 @@ class Fit:
         state, poses : over the whole cycle.
         """
         theta, size = state["theta"], self.size
-        poses = {
-            body: pose if f"phi({body})" in state else replace(pose, angle=running_angle(state, body))
-            for body, pose in poses.items()
-        }
+        poses = {body: replace(pose, angle=state.get(f"phi({body})", running_angle(state, body)))
+                 for body, pose in poses.items()}  # fmt: skip
         misfits = [np.broadcast_to(gap(one, poses, size), np.shape(theta)) for one in self.loops]
         worst, at = np.unravel_index(np.argmax(misfits), np.shape(misfits))
         if misfits[worst][at] <= AGREES * size:

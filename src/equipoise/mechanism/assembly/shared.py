@@ -119,9 +119,9 @@ class Shared(LoopForces):
         """
         size = self.group.size
         couples = [
-            couple
+            isinstance(loop, SlideLoop) and part == 0
             for loop in self.loops
-            for couple in ([True, False] if isinstance(loop, SlideLoop) else [False] * loop.unknowns)
+            for part in range(loop.unknowns)
         ]
         units = np.where([*couples, True], size, 1.0)
         rows = np.tile([1.0, 1.0, size], len(self.group.links))
