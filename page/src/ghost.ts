@@ -8,7 +8,7 @@ import { Piece } from "./signs";
 import type { View } from "./view";
 
 /** Layers of signs that tell a design; soil and support would only hide. */
-const DRAWN = ["wheels", "links", "pivots", "blocks", "springs", "joints"];
+const DRAWN = ["wheels", "links", "pivots", "blocks", "riders", "springs", "joints"];
 
 export class Ghost implements Overlay {
   readonly element = s("g", { class: "pale", "aria-hidden": "true" });

@@ -79,6 +79,7 @@ LOOKS = {
     "pitch": Look(None, "faint", 1.2, (5.0, 3.0)),
     "spoke": Look(None, "faint", 3.0),
     "cam": Look("wheel", "lines", 1.4),
+    "cam-edge": Look(None, "lines", 1.4),
     "rider": Look("paper", "lines", 1.4),
     "face": Look(None, "lines", 3.0),
     "strand": Look(None, "lines", 1.6),
@@ -122,6 +123,14 @@ LOOKS = {
     "scale": Look(None, "ink", 1.4),
 }
 """Role -> look."""
+
+LAYERS = {
+    "strand": {"springs": "strand"},
+    "cam": {"wheels": "cam", "springs": "cam-edge"},
+    "rider": {"riders": "rider"},
+    "face": {"riders": "face"},
+}
+"""Of marks that do not lie below all links: their roles by layer, so that links hide none."""
 
 
 def pixels(value: float, digits: int = 2) -> str:

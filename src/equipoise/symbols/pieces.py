@@ -11,6 +11,7 @@ from equipoise.mechanism.parts.machine import FRAME
 from equipoise.mechanism.parts.support import Mount, unit_vector
 from equipoise.symbols.carrier import foot, gauge, ground, strut, turning
 from equipoise.symbols.drives import Drive
+from equipoise.symbols.looks import LAYERS
 from equipoise.symbols.scene import WIDE, Body, Guide, Scene
 from equipoise.symbols.shapes import (
     PIN,
@@ -54,7 +55,7 @@ class Piece:
     """Shapes that move together, in axes of their own; those without a hold stand still.
 
     layer : ``field``, ``support``, ``rows``, ``wheels``, ``guides``, ``stands``, ``links``,
-        ``springs``, ``pivots``, ``blocks``, ``joints``, ``tray`` or ``drive``.
+        ``springs``, ``pivots``, ``blocks``, ``riders``, ``joints``, ``tray`` or ``drive``.
     link : whose plate or bar it is, if any.
     part : ``slider``, ``gears``, ``belts`` or ``racks``, and the name of that which it tells.
     still : whether it stands on the ground, and not on the support.
@@ -82,12 +83,13 @@ def pieces(scene: Scene, traced: Collection[str] = (), field: bool = True) -> li
     """
     found = [*_soil(scene)] if field else []
     found += [*_carrier(scene), *_rows(scene), *_wheels(scene), *_stands(scene)]
-    found += [*_links(scene), *_drawn(scene, strands=True)]
+    found += [*_links(scene), *_drawn(scene, "springs")]
     found += [*_springs(scene), *_cylinder(scene), Piece("pivots", tuple(_pivots(scene)))]
     found += [
         Piece("blocks", tuple(block()), Hold(guide.point, guide=guide.name), part=_part(guide))
         for guide in scene.guides
     ]
+    found += _drawn(scene, "riders")
     found += [
         Piece("joints", tuple(_marks(scene, body, traced)), _with(body)) for body in scene.bodies
     ]
@@ -167,28 +169,27 @@ def _wheels(scene: Scene) -> Iterator[Piece]:
         seen.add(key)
         if gear.link == FRAME:
             still = complex(scene.places[gear.center][0])
-            shape = rim(still, gear.radius, gear.curve)
-            yield Piece("wheels", (shape,), part=gear.part)
+            yield Piece("wheels", (rim(still, gear.radius, gear.curve),), part=gear.part)
             continue
         body = bodies[gear.link]
         center = scene.local(body, scene.places[gear.center])
         shapes = tuple(wheel(center, gear.radius, gear.curve))
         yield Piece("wheels", shapes, _with(body), part=gear.part)
-    yield from _drawn(scene, strands=False)
+    yield from _drawn(scene, "wheels")
 
 
-def _drawn(scene: Scene, strands: bool) -> Iterator[Piece]:
-    """What moves with bodies; strands of belts lie above their carrier."""
+def _drawn(scene: Scene, layer: str) -> Iterator[Piece]:
+    """What moves with bodies and lies in a layer, of marks that lie in one or two."""
     bodies = {body.name: body for body in scene.bodies}
     for mark in scene.marks:
-        if (mark.shape.role == "strand") != strands:
+        if not (role := LAYERS.get(mark.shape.role, {"wheels": mark.shape.role}).get(layer)):
             continue
         start, hold = complex(scene.places[mark.point][0]), None
         if mark.body != FRAME:
             start = scene.local(bodies[mark.body], scene.places[mark.point])
             hold = _with(bodies[mark.body])
-        moved = replace(mark.shape, places=mark.shape.places + start)
-        yield Piece("springs" if strands else "wheels", (moved,), hold, part=mark.part)
+        moved = replace(mark.shape, role=role, places=mark.shape.places + start)
+        yield Piece(layer, (moved,), hold, part=mark.part)
 
 
 def _stands(scene: Scene) -> Iterator[Piece]:

@@ -78,6 +78,14 @@ def test_both_flanks_of_a_groove_touch_its_roller() -> None:
         assert abs(outer) > abs(inner)
 
 
+def test_links_hide_neither_the_surface_nor_the_roller() -> None:
+    _, scene, _ = drawn("camshaft_tappet", "roller")
+    roles = [shape.role for piece in pieces(scene) for shape in piece.shapes]
+    last = max(k for k, role in enumerate(roles) if role == "body")
+    assert roles.index("cam") < last < roles.index("cam-edge") < roles.index("rider")
+    assert max(k for k, role in enumerate(roles) if role == "block") < roles.index("rider")
+
+
 def test_the_cam_is_in_sight_and_has_a_key() -> None:
     _, scene, every = drawn("fixed_cam_tappet", "roller")
     low, high = scene.box
