@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from decimal import Decimal
+from functools import cache, cached_property
 from math import floor, isfinite, log10, pi
 from types import MappingProxyType
 from typing import Any
@@ -173,7 +174,7 @@ class Display:
     unit: str
     factor: float
 
-    @property
+    @cached_property
     def name(self) -> str:
         """The unit as print has it."""
         return _SIGNS.get(self.unit) or typeset(self.unit)
@@ -254,6 +255,7 @@ LARGE_IN_UNIT = 1e5
 """Largest number for which the unit of a column stays, whatever suits the sizes."""
 
 
+@cache
 def in_unit(unit: str) -> Display:
     """The display of a unit that is given."""
     return Display(unit, _MORE[unit] if unit in _MORE else 1 / float(FACTORS[unit]))

@@ -98,16 +98,20 @@ def state_of(
 
 def outputs_of(analysis: Analysis) -> list[Values]:
     """What can be drawn over the crank angle."""
+    told = {
+        dimension: {"unit": shown.name, "factor": shown.factor}
+        for dimension in {one.dimension for one in analysis.outputs}
+        for shown in [display(dimension)]
+    }
+    groups = {group: say(title) for group, title in GROUPS.items()}
     return [
         {
             "name": one.name,
             "label": one.label(),
-            "group": say(GROUPS[one.group]),
-            "unit": shown.name,
-            "factor": shown.factor,
+            "group": groups[one.group],
+            **told[one.dimension],
         }
         for one in analysis.outputs
-        for shown in [display(one.dimension)]
     ]
 
 

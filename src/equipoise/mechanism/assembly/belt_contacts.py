@@ -51,7 +51,7 @@ class Pull(Turned):
 
     def place(self, poses: Poses, on: End, carrier: str) -> Any:
         """The driven pulley's pin."""
-        return poses[on.body].point(on.arm)[0]
+        return poses[on.body].place_of(on.arm)
 
     def wrenches(self, poses: Poses, on: End, carrier: str, sense: Any) -> list[tuple[Any, Any]]:
         turn = poses[carrier].turn[0]

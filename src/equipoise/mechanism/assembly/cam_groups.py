@@ -143,9 +143,9 @@ class CamLoop(CouplingLoop):
         """Where the two touch, and the common normal."""
         fit, (_, y1, _) = self.fit, self.displaced(poses)
         carrier, link = poses[self.carrier], poses[self.on.body]
-        p, axis = link.point(self.rider.arm)[0], carrier.point(self.axis.arm)[0]
+        p, axis = link.place_of(self.rider.arm), carrier.place_of(self.axis.arm)
         if fit.guide is None:
-            (rate,) = kernels.rate_swung(p, carrier.point(self.base.arm)[0], y1, fit.sense)
+            (rate,) = kernels.rate_swung(p, carrier.place_of(self.base.arm), y1, fit.sense)
         else:
             (rate,) = kernels.rate_lifted(carrier.turn[0], y1, fit.guide.along)
         if fit.face is None:

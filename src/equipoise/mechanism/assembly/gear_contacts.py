@@ -44,7 +44,7 @@ class Mesh(Turned):
 
     def place(self, poses: Poses, on: End, carrier: str) -> Any:
         """The pitch point."""
-        return poses[on.body].point(on.arm)[0] + poses[carrier].turn[0] * self.lever
+        return poses[on.body].place_of(on.arm) + poses[carrier].turn[0] * self.lever
 
     def wrenches(self, poses: Poses, on: End, carrier: str, sense: Any) -> list[tuple[Any, float]]:
         """The flank in contact, told by `sense`, sets the line of action."""
@@ -87,7 +87,7 @@ class RollingMesh(Turned):
     def place(self, poses: Poses, on: End, carrier: str) -> Any:
         """The pitch point."""
         lever, _ = self.rolled(poses, carrier)
-        return poses[on.body].point(on.arm)[0] + poses[carrier].turn[0] * lever
+        return poses[on.body].place_of(on.arm) + poses[carrier].turn[0] * lever
 
     def wrenches(self, poses: Poses, on: End, carrier: str, sense: Any) -> list[tuple[Any, float]]:
         """The pitch curves and the flank in contact, told by `sense`, set the line of action."""

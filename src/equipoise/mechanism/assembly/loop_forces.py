@@ -61,19 +61,19 @@ class LoopForces:
         strengths = iter(np.moveaxis(solved, -1, 0))
         return [list(islice(strengths, loop.unknowns)) for loop in self.loops]
 
-    def matrix(self, state: State, poses: Poses, senses: Sequence[Any]) -> Array:
-        """What each unknown adds to force and moment on each link, (N, 3 n, m)."""
+    def matrix(self, state: State, poses: Poses, senses: Sequence[Any], more: int = 0) -> Array:
+        """What each unknown adds to force and moment on each link, (N, 3 n, m + more)."""
         columns = [
             column
             for loop, sense in zip(self.loops, senses, strict=True)
             for column in self.columns(loop, poses, sense)
         ]
         rows = 3 * len(self.group.links)
-        matrix = np.zeros((len(columns), rows, *np.shape(state["theta"])))
-        for column, entries in zip(matrix, columns, strict=True):
+        matrix = np.zeros((len(columns) + more, rows, *np.shape(state["theta"])))
+        for column, entries in zip(matrix, columns, strict=False):
             for row, entry in entries.items():
                 column[row] = entry
-        return np.moveaxis(matrix, (0, 1, 2), (2, 1, 0))
+        return matrix.T
 
     def columns(self, loop: Loop, poses: Poses, sense: Any) -> list[dict[int, Any]]:
         """Force and moment about the anchor on the links that it joins, by row, for a unit of each

@@ -268,7 +268,7 @@ def _check_near(builder: Builder, poses: Poses, position: Position, group: LoopG
     """A solution far from the position in the file may be another assembly of the links."""
     for link, anchor in zip(group.links, group.anchors, strict=True):
         for name in builder.machine.links[link].points.keys() & position.points.keys():
-            found = complex(poses[link].point(builder.arm(link, anchor, name))[0])
+            found = complex(poses[link].place_of(builder.arm(link, anchor, name)))
             if abs(found - complex(*position.points[name])) > FAR * group.size:
                 raise ModelError(
                     f"position.points.{name}",
@@ -296,7 +296,7 @@ def _guess(
         for name in builder.machine.points_of(body):
             if name in points and name not in position.points:
                 arm = builder.arm(body, builder.anchors[body], name)
-                given.append((complex(*points[name]), complex(pose.point(arm)[0])))
+                given.append((complex(*points[name]), complex(pose.place_of(arm))))
     anchor = complex(*points[group.anchors[group.links.index(link)]])
     angle = position.angles.get(link)
     if angle is None and len(given) >= 2:

@@ -33,6 +33,10 @@ class Pose:
         p, p1, p2 = kernels.point(*self.place, *self.turn, arm)
         return p, p1, p2
 
+    def place_of(self, arm: Any) -> Any:
+        """The same without its derivatives."""
+        return self.place[0] + self.turn[0] * arm
+
     def pick(self, part: Any) -> Pose:
         """The pose at one or some of the crank angles."""
         place, turn = (tuple(value[part] for value in values) for values in (self.place, self.turn))
@@ -101,13 +105,16 @@ class PinLoop:
 
     def gaps(self, poses: Poses, level: int) -> list[Any]:
         """What vanishes (level 0), and its first and second derivative."""
-        here, there = (poses[end.body].point(end.arm)[level] for end in (self.on, self.by))
+        ends = ((poses[end.body], end.arm) for end in (self.on, self.by))
+        here, there = (
+            pose.point(arm)[level] if level else pose.place_of(arm) for pose, arm in ends
+        )
         gap = here - there
         return [gap.real, gap.imag]
 
     def place(self, poses: Poses) -> Any:
         """Where its force acts."""
-        return poses[self.on.body].point(self.on.arm)[0]
+        return poses[self.on.body].place_of(self.on.arm)
 
     def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
         """Force and couple on `on`, at that place, for a unit of each unknown."""
@@ -142,7 +149,7 @@ class SlideLoop:
         return [turned, kernels.along_line(d, d1, d2, n, w_n, a_n)[level].imag]
 
     def place(self, poses: Poses) -> Any:
-        return poses[self.on.body].point(self.on.arm)[0]
+        return poses[self.on.body].place_of(self.on.arm)
 
     def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
         return [(0j, 1.0), (1j * poses[self.by.body].turn[0] * self.along, 0.0)]
@@ -264,7 +271,7 @@ class Rail:
 
     def values(self, poses: Poses) -> list[Any]:
         guide = poses[self.to.body]
-        way = poses[self.link].place[0] - guide.point(self.to.arm)[0]
+        way = poses[self.link].place[0] - guide.place_of(self.to.arm)
         return [kernels.dot(guide.turn[0] * self.along, way)]
 
 

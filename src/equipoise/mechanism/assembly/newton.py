@@ -256,9 +256,10 @@ def poses_in(state: State, bodies: Iterable[tuple[str, str]]) -> Poses:
     shape = np.atleast_1d(state["theta"]).shape
     for body, anchor in bodies:
         turn = tuple(state[name] for name in u(body))
-        angle = state.get(f"phi({body})", np.angle(turn[0]))
+        angle = state[f"phi({body})"] if f"phi({body})" in state else np.angle(turn[0])
         values = [*(state[name] for name in p(anchor)), *turn, angle]
-        full = (np.broadcast_to(v, np.broadcast_shapes(np.shape(v), shape)) for v in values)
+        full = (v if np.shape(v)[-1:] == shape else np.broadcast_to(v, (*np.shape(v)[:-1], *shape))
+                for v in values)  # fmt: skip
         x, x1, x2, t, t1, t2, angle = full
         poses[body] = Pose((x, x1, x2), (t, t1, t2), angle)
     return poses

@@ -111,7 +111,7 @@ def _guided(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Posi
     label = next(iter(builder.machine.links[link].points))
     rows, ways = [], []
     for one in outers:
-        at = now[one.body].point(builder.arm(one.body, builder.anchors[one.body], one.point))[0][0]
+        at = now[one.body].place_of(builder.arm(one.body, builder.anchors[one.body], one.point))[0]
         own = one.point if one.guide is None else one.guide.point
         at -= turn * builder.arm(link, label, own)
         along = 1.0 if one.guide is None else now[one.body].turn[0][0] * one.guide.along

@@ -129,7 +129,7 @@ class Teeth(Turned):
 
     def place(self, poses: Poses, on: End, carrier: str) -> Any:
         """The pitch point."""
-        return poses[carrier].point(self.at)[0]
+        return poses[carrier].place_of(self.at)
 
     def wrenches(self, poses: Poses, on: End, carrier: str, sense: Any) -> list[tuple[Any, float]]:
         way = poses[carrier].turn[0] * self.guide.along

@@ -38,6 +38,8 @@ ROUNDING = 1e-11
 """Share of a singular value in the largest that rounding explains."""
 CLEAR = 1e-8
 """The same of rows that clearly do not depend on each other."""
+APART = 1e5
+"""By how much, at most, products of rows let errors grow."""
 WEAK = 1e-6
 """Smallest over largest stiffness against motion, up to which joints do not hold the machine."""
 BESIDE = 1e-3
@@ -117,16 +119,16 @@ class Shared(LoopForces):
         """
         size = self.group.size
         couples = [
-            not force
+            isinstance(loop, SlideLoop) and part == 0
             for loop in self.loops
-            for force in ([1, 0] if isinstance(loop, SlideLoop) else [0] * loop.unknowns)
+            for part in range(loop.unknowns)
         ]
-        units = np.where([not one for one in [*couples, False]], size, 1.0)
+        units = np.where([*couples, True], size, 1.0)
         rows = np.tile([1.0, 1.0, size], len(self.group.links))
-        matrix = self.matrix(state, poses, senses)
-        torque = np.zeros((*matrix.shape[:2], 1))
-        torque[:, 2] = 1.0
-        return np.concatenate([matrix, torque], axis=-1) / rows[:, None] * units, rows, units
+        matrix = self.matrix(state, poses, senses, more=1)
+        matrix[:, 2, -1] = 1.0
+        matrix *= units / rows[:, None]
+        return matrix, rows, units
 
     def check(self, state: State) -> None:
         """Raise an error where a joint that is not needed for the motion does not fit, or where
@@ -207,9 +209,26 @@ class Shared(LoopForces):
 
 
 def _least(matrix: Array, right: Array) -> Array:
-    """Least solutions (N, m, k) of equations (N, n, m) with right sides (N, n, k): by QR, and by
-    singular values where rows nearly depend on each other.
+    """Least solutions (N, m, k) of equations (N, n, m) with right sides (N, n, k): by the products
+    of rows, and by the rows themselves where products lose digits.
     """
+    across = np.swapaxes(matrix, -1, -2)
+    products = matrix @ across
+    probe = np.cos(np.arange(matrix.shape[1]))  # of no meaning: shows how much errors can grow
+    probe = np.broadcast_to(probe[:, None], (*matrix.shape[:2], 1))
+    try:
+        told = np.linalg.solve(products, np.concatenate([right, probe], axis=-1))
+    except np.linalg.LinAlgError:
+        return _least_by_rows(matrix, right)
+    found = np.asarray(across @ told[..., :-1])
+    sizes = np.max(np.abs(told[..., -1]), axis=-1) * np.trace(products, axis1=1, axis2=2)
+    if not np.all(apart := sizes < APART):
+        found[~apart] = _least_by_rows(matrix[~apart], right[~apart])
+    return found
+
+
+def _least_by_rows(matrix: Array, right: Array) -> Array:
+    """The same by QR, and by singular values where rows nearly depend on each other."""
     across, triangle = np.linalg.qr(np.swapaxes(matrix, -1, -2))
     sizes = np.abs(np.diagonal(triangle, axis1=-2, axis2=-1))
     clear = np.min(sizes, axis=-1) > CLEAR * np.max(sizes, axis=-1)
