@@ -110,7 +110,10 @@ def strokes(linkage: Linkage) -> Mapping[str, Stroke]:
     samples = {one: np.array(one.of(motion)) for one in ones}
     rates = {one: float(np.max(np.abs(found[1]))) for one, found in samples.items()}
     least = STILL * max(rates.values(), default=0.0)
-    kept = tuple(one for one in ones if rates[one] > least)
+    ways = {
+        one: np.ptp(found[0]) > EQUAL * np.max(np.abs(found[0])) for one, found in samples.items()
+    }
+    kept = tuple(one for one in ones if rates[one] > least and ways[one])
     if not kept:
         return Named("slider or rocker", ())
     outputs = _Outputs(linkage, kept)
