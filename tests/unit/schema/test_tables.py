@@ -223,7 +223,7 @@ def test_a_motion_law_follows_its_table(tmp_path: Path) -> None:
     (tmp_path / "law.csv").write_text(LAW_CSV)
     (tmp_path / "a.toml").write_text(SORTS["angles"][0])
     machine = load(tmp_path / "a.toml")
-    given = AngleLaw(crank_angles=LAW.crank_angle, values=LAW.angle)
+    given = AngleLaw(crank_angles=LAW.crank_angle, values=LAW.values)
     assert machine.drive.motion is not None
     np.testing.assert_array_equal(machine.drive.motion.value(1.0), given.value(1.0))
     save(machine, tmp_path / "b.toml")
