@@ -494,7 +494,8 @@ export class App {
       if (problem) return this.board.say(problem, true);
     }
     const [{ name }, text] = [file, await file.text()];
-    if (isTable(file)) return this.command({ type: "record", name, text });
+    // Without a text a record is taken away.
+    if (isTable(file)) return this.command({ type: "record", name, text: text || "\n" });
     const texts = tables.map(async (one) => [one.name, await one.text()] as const);
     const files = Object.fromEntries(await Promise.all(texts));
     void this.open({ type: "open", name, text, files }, name);
