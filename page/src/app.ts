@@ -535,7 +535,7 @@ export class App {
     if (!scene) return;
     const frame = grip.kind === "point" && scene.frame.includes(grip.name);
     const holder = scene.bodies.find((body) => body.points.includes(grip.name))?.name ?? null;
-    const link = grip.kind === "mass" ? grip.name : frame ? "frame" : holder;
+    const link = { mass: grip.name, radius: "cams", point: frame ? "frame" : holder }[grip.kind];
     this.stage.select(new Set([grip.name]), grip.kind === "mass" ? grip.name : null, grip);
     this.inspector.choose(link, grip.kind === "point" ? grip.name : null);
     this.tools.selected(grip);
