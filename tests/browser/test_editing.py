@@ -144,6 +144,13 @@ def test_a_typed_number_is_what_is_computed(live: Live) -> None:
     assert live.machine().links["crank"].mass == 0.45
 
 
+ANSWERED = """() => {
+    const last = (name) => performance.getEntriesByName(name).at(-1)?.detail.seq;
+    return last("equipoise:painted") === last("equipoise:input");
+}"""
+"""What was tried last has been painted, as it stands or as it cannot."""
+
+
 def test_what_cannot_turn_is_told_and_the_last_good_state_stays(live: Live) -> None:
     joint, still = live.joint("B"), others(live)
     x, y = live.spot(joint)
@@ -153,8 +160,11 @@ def test_what_cannot_turn_is_told_and_the_last_good_state_stays(live: Live) -> N
     expect(joint).not_to_have_attribute("aria-valuetext", "x 33.50 mm, y 0.00 mm")
     live.page.mouse.move(x, y - 150, steps=5)
     expect(live.told("cannot")).to_be_visible()
+    live.page.wait_for_function(ANSWERED)
+    expect(live.page.locator(".tried")).to_have_count(1)
     live.page.mouse.up()
     expect(live.button("Undo")).to_be_enabled()
+    expect(live.page.locator(".tried")).to_have_count(0)
     assert others(live) == still
     live.comes_to(joint, at_start(live.machine(), "B"), SHOWN)
     live.button("Undo").click()
