@@ -348,6 +348,7 @@ export class App {
     if (other || !state.beside) this.across.hidden = true;
     if (!state.before) this.balance.hide();
     this.board.clear(this.held || other);
+    this.hands.accepted();
     this.show(state, other);
   }
 
@@ -411,7 +412,7 @@ export class App {
     this.tools.show(state);
     this.root.classList.toggle("unfinished", !state.status.finished);
     this.hands.describe();
-    this.hands.accepted();
+    this.hands.follow();
     this.heading.show(state);
   }
 
@@ -447,10 +448,13 @@ export class App {
     else this.board.clear(false);
   }
 
-  private refuse(message: string, edit: boolean): void {
+  private refuse(message: string, edit: number | null): void {
     this.views.say(message);
     this.board.say(message, true);
-    if (edit) this.hands.refused();
+    if (edit !== null) {
+      this.hands.refused();
+      this.frames.draw(edit); // what is shown of the attempt is its answer
+    }
     this.opened = "";
     this.name();
   }

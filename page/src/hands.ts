@@ -73,11 +73,15 @@ export class Hands {
     if (this.keys) this.target = this.stage.place(this.grip);
   }
 
+  /** What was tried stands: nothing is left to show of what could not. */
   accepted(): void {
-    if (this.gesture && this.grip) {
-      this.stage.ghost(null, null);
-      this.tell(this.grip, "");
-    } else if (this.told) this.tell(...this.told); // where the last answer has put it
+    this.stage.ghost(null, null);
+  }
+
+  /** Say anew where what is held is, or what was spoken of last. */
+  follow(): void {
+    if (this.gesture && this.grip) this.tell(this.grip, "");
+    else if (this.told) this.tell(...this.told);
   }
 
   /** Say anew where everything is: names of handles for those who hear them. */

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from itertools import pairwise
 from typing import Any
 
@@ -58,7 +57,7 @@ def stage_of(scene: Scene, handles: Sequence[str], cams: Sequence[Values] = ()) 
 
 
 def _sign(scene: Scene, piece: Piece) -> Values:
-    hold = None if piece.hold is None else {k: v for k, v in asdict(piece.hold).items() if v}
+    hold = None if piece.hold is None else {k: v for k, v in vars(piece.hold).items() if v}
     if hold is not None and "to" in hold:
         hold["length"] = float(np.max(piece.shapes[0].places.real))
     if hold is not None and "mount" in hold:
