@@ -18,7 +18,8 @@ export interface Events {
   tool(message: ToolMessage, numbers: Numbers): void;
   study(message: StudyMessage, numbers: Numbers): void;
   stores(message: Stores): void;
-  refused(message: string, edit: boolean): void;
+  /** Something could not be done; `edit`: the number of the edit that was tried, if it was one. */
+  refused(message: string, edit: number | null): void;
   balanced(message: Extract<Told, { type: "balanced" }>): void;
   busy(what: string | null): void;
   tables(message: Tables): void;
@@ -200,9 +201,9 @@ export class Conversation {
   private refuse(seq: number, message: string): void {
     const asked = this.flight?.seq === seq ? this.flight.asked : null;
     if (asked && ASIDE.has(asked.type) && this.flight?.answered) return;
-    if (asked?.type !== "edit") return this.events.refused(message, false);
+    if (asked?.type !== "edit") return this.events.refused(message, null);
     // Who asks for a number and waits for the answer says it beside that number.
-    if (!asked.commit || !this.flight?.answered) this.events.refused(message, true);
+    if (!asked.commit || !this.flight?.answered) this.events.refused(message, seq);
   }
 
   private end(seq: number, refusal: string | null, told: Refused | null = null): void {

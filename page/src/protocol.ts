@@ -177,10 +177,20 @@ export interface Sign {
     ground?: Pair;
   } | null;
   /** The slider or the coupling that it tells, if any. */
-  part: [what: "slider" | "gears" | "belts" | "racks", name: string] | null;
+  part: [what: "slider" | "gears" | "belts" | "racks" | "cams", name: string] | null;
   /** Whether it stands on the ground, and not on the support. */
   still: boolean;
   shapes: Shape[];
+}
+
+/** A base circle that can be changed by hand, across from the point of its follower. */
+export interface BaseCircle {
+  name: string;
+  path: string;
+  /** m. */
+  radius: number;
+  axis: string;
+  point: string;
 }
 
 export interface Scene {
@@ -191,6 +201,7 @@ export interface Scene {
   mass_centers: string[];
   box: [number, number, number, number];
   movable: string[];
+  cams: BaseCircle[];
   /** From the back to the front. */
   signs: Sign[];
   /** What a support turns about, m. */

@@ -175,7 +175,7 @@ class Batch:
         laws = [*machine.laws.values(), *(cam.law for cam in machine.cams)]
         has_steps |= any(len(law.jumps(2)) for law in laws)
         self.least = STEP / tolerance if has_steps else FIRST
-        self.source = emit(self.base, Gathered.of(self.wanted))
+        self.source = emit(self.base, Gathered.of(self.wanted), fixed=self.base.shared is not None)
         self.gathered = self.source.gathered
         self.march = March.of(self.source, self.base)
         rounds = machine.couplings or self.march

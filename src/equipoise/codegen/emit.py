@@ -170,8 +170,10 @@ def can_emit(linkage: Linkage) -> bool:
     return all(map(can_write, loops)) and not (loops and machine.couplings)
 
 
-def emit(linkage: Linkage, gathered: Gathered) -> Source:
+def emit(linkage: Linkage, gathered: Gathered, fixed: bool = False) -> Source:
     """Write out the steps of a linkage, with the signals that are gathered.
+
+    fixed : whether no design changes the motion; the source then has it as rows.
 
     Raises
     ------
@@ -183,7 +185,7 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
             "large groups of loops, fingers in soil, drives that push, couplings beside loops, and "
             "gears of varying ratio on links that dyads move cannot be computed in a loop"
         )
-    writer = Writer(linkage)
+    writer = Writer(linkage, fixed)
     write_motion(writer)
     wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]
     if any(one.is_of_row for one in wanted):

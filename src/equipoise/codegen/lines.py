@@ -15,6 +15,7 @@ from equipoise.codegen.across import write_across
 from equipoise.codegen.angles import write_running_angle
 from equipoise.codegen.applied import Held, names, write_load, write_spring, write_tension
 from equipoise.codegen.coupled import write_coupling, write_rolled
+from equipoise.codegen.course import write_course
 from equipoise.codegen.followers import write_displacement, write_swung
 from equipoise.codegen.loops import write_loops
 from equipoise.codegen.source import Read
@@ -42,12 +43,15 @@ from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive
 
 
 def write_motion(writer: Writer) -> None:
-    """Write the steps from the crank angle to every link."""
+    """Write the steps from the crank angle to every link, or what they come to for all designs."""
     sheet, driven = writer.sheet, writer.machine.driven
     for name in writer.machine.frame:
         sheet.slot(f"p({name})", _frame_point(name), vector=True)
         sheet.put(f"p1({name})", "0j")
         sheet.put(f"p2({name})", "0j")
+    if writer.fixed:
+        write_course(writer)
+        return
     moved = {FRAME: ("0.0", "1 + 0j", "0.0", "0.0")}
     for link, (angle, *values) in (moved | {d.link: _driven(writer, d) for d in driven}).items():
         for name, value in zip(u(link), values, strict=True):

@@ -15,6 +15,7 @@ from equipoise.mechanism.parts.machine import FRAME, Machine
 class Writer:
     """What has been written of a linkage so far.
 
+    fixed : whether no design changes the motion, so that it is told by the crank angle alone.
     counted : whether angles of links are counted on from crank angle to crank angle, because a
         gear follows a link that a dyad moves.
     orders : link -> turns in a turn of the crank, of links that turn in proportion to it.
@@ -24,8 +25,9 @@ class Writer:
         between the crank angles.
     """
 
-    def __init__(self, linkage: Linkage) -> None:
+    def __init__(self, linkage: Linkage, fixed: bool = False) -> None:
         self.linkage, self.machine, self.sheet = linkage, linkage.machine, Sheet()
+        self.fixed = fixed
         steps = any(map(_counts, linkage.motion)) or _drives_on(self.machine)
         self.counted = steps or not self.machine.has_crank
         self.orders: dict[str, float] = {FRAME: 0.0, self.machine.drive.link: 1.0}

@@ -197,6 +197,11 @@ BOTH = {"swing": AngleLaw(between=(0.0, 0.3)), "lift": LengthLaw(between=(0.0, 0
         ({"rides": "knife", "normal": 0.1}, "cams[1].normal", "goes with a flat face; ..."),
         ({"closed_by": "groove"}, "cams[1].closed_by", "a groove takes a roller; ..."),
         ({"lift": LengthLaw(between=(0.0, HIGH), turns=2)}, "cams[1].lift", "let the follower ..."),
+        (
+            {"lift": LengthLaw(segments=(LengthSegment(pi, 0.0),))},
+            "cams[1].lift.segments",
+            "they take 180 deg of cam angle together, ...",
+        ),
     ],
 )
 def test_values_of_a_cam(changes: dict[str, Any], where: str, words: str) -> None:
