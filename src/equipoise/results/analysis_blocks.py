@@ -152,7 +152,10 @@ def _beside(analysis: Analysis, kind: Dimension | None) -> float:
 
 def force_blocks(analysis: Analysis) -> Iterator[Block]:
     """Forces on frame and drive; what they come from; their orders."""
+    named = [f"drives.{analysis.machine.drive.link}.{analysis.machine.drive.effort_in}"]
     ones = [one for one in analysis.outputs.summed if one.group in ("forces", "drives")]
+    if not analysis.machine.drives:
+        ones = [one for one in ones if one.name not in named]  # which is the drive torque
     rows: list[tuple[Cell, ...]] = []
     for one in ones:
         found, kind = one.figures, one.dimension
