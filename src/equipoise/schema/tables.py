@@ -13,6 +13,7 @@ import os
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import fields
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -219,7 +220,7 @@ TABLES: dict[str, Any] = {
     "motor": MotorTable,
     "impedance": Impedance,
 }
-"""The class of each sort of table; but for a load's, its fields are the columns."""
+"""The class of each sort of table; but for a load's, its first fields are the columns."""
 FORMS: dict[str, Forms] = {
     "load": (
         ("crank_angle", "force_x", "force_y"),
@@ -270,7 +271,7 @@ def parse_table(sort: str, text: str, file: str = "") -> Table:
         pairs = zip(columns["magnitude"], columns["phase"], strict=True)
         resistance, reactance = zip(*(from_polar(*pair) for pair in pairs), strict=True)
         return Impedance(columns["frequency"], resistance, reactance, file)
-    found: Table = TABLES[sort](**columns, file=file)
+    found: Table = TABLES[sort](*(columns[name] for name in FORMS[sort][0]), file)
     return found
 
 
@@ -280,7 +281,8 @@ def format_table(table: Table) -> str:
         form = FORMS["load"][0 if len(table.values) == 2 else 1]
         return _text(form, [table.crank_angle, *table.values])
     form = next(FORMS[sort][0] for sort, of in TABLES.items() if of is type(table))
-    return _text(form, [getattr(table, name) for name in form])
+    columns = [getattr(table, one.name) for one in fields(table)]
+    return _text(form, columns[: len(form)])
 
 
 def _text(form: tuple[str, ...], columns: Sequence[Sequence[float]]) -> str:

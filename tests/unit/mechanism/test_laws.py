@@ -10,13 +10,13 @@ import pytest
 from scipy.interpolate import make_interp_spline
 
 from equipoise.mechanism.formulas.curves import NORMAL, spline
+from equipoise.mechanism.parts.law_checks import CAM, wrong_law
 from equipoise.mechanism.parts.laws import (
     LAWS,
     AngleLaw,
     AngleSegment,
     LengthLaw,
     LengthSegment,
-    wrong_law,
 )
 
 PEAKS = {  # of velocity and acceleration, as of Norton, Cam Design, table 3-1, and closed forms
@@ -148,9 +148,11 @@ WRONG = {
         segments=tuple(AngleSegment(*radian(180, to), "linear") for to in (50, 0))
     ),
     "goes with segments": LengthLaw(between=(0.0, 1.0), start=0.003),
-    "got 3 values at 2 crank angles": AngleLaw(crank_angles=(0, 1), values=(0, 1, 2)),
-    "must rise from row to row": AngleLaw(crank_angles=(0, 2, 1), values=(0, 1, 2)),
-    "over 401.07 deg, more than the 360 deg": AngleLaw(crank_angles=(0, 2, 7), values=(0, 1, 2)),
+    "got 3 values at 2 angles": AngleLaw(crank_angles=(0, 1), values=(0, 1, 2)),
+    "crank angle must rise from row to row": AngleLaw(crank_angles=(0, 2, 1), values=(0, 1, 2)),
+    "over 401.07 deg of crank angle, more than the 360 deg": AngleLaw(
+        crank_angles=(0, 2, 7), values=(0, 1, 2)
+    ),
 }
 
 
@@ -159,3 +161,6 @@ def test_what_is_wrong_is_told_in_one_sentence(told):
     (problem,) = wrong_law("drive.motion", WRONG[told])
     assert told in str(problem)
     assert str(problem).startswith("drive.motion")
+    (of_cam,) = wrong_law("cams[1].lift", WRONG[told], CAM)
+    assert told.replace("crank angle", "cam angle") in str(of_cam)
+    assert "crank angle" not in str(of_cam)

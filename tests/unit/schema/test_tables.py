@@ -142,9 +142,9 @@ BAD: dict[str, list[tuple[str | None, str]]] = {
     "angles": [
         (None, "law.csv: there is no such file"),
         ("crank_angle [deg],length [mm]\n", "the header is crank_angle [deg],angle [deg]"),
-        (f"{SWINGS}\n0,1\n180,2\n", "got 2 values at 2 crank angles; give 3 to 720 of each"),
+        (f"{SWINGS}\n0,1\n180,2\n", "got 2 values at 2 angles; give 3 to 720 of each"),
         (f"{SWINGS}\n0,1\n180,2\n90,2\n", "line 4, column crank_angle: the angles must rise"),
-        (f"{SWINGS}\n0,1\n180,2\n400,1\n", "got crank angles over 400 deg, more than the 360"),
+        (f"{SWINGS}\n0,1\n180,2\n400,1\n", "the rows go over 400 deg of crank angle, more than"),
         (f"{SWINGS}\n0,1\n180,2\n360,5\n", "begins at 1 deg and ends at 5 deg; let it come b"),
     ],
     "impedance": [
@@ -223,7 +223,7 @@ def test_a_motion_law_follows_its_table(tmp_path: Path) -> None:
     (tmp_path / "law.csv").write_text(LAW_CSV)
     (tmp_path / "a.toml").write_text(SORTS["angles"][0])
     machine = load(tmp_path / "a.toml")
-    given = AngleLaw(crank_angles=LAW.crank_angle, values=LAW.angle)
+    given = AngleLaw(crank_angles=LAW.crank_angle, values=LAW.values)
     assert machine.drive.motion is not None
     np.testing.assert_array_equal(machine.drive.motion.value(1.0), given.value(1.0))
     save(machine, tmp_path / "b.toml")

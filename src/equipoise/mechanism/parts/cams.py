@@ -11,7 +11,8 @@ from equipoise.i18n import Note, to_say
 from equipoise.keys import Conditions, Frozen, Table, Text, declared, key, not_both
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link, unknown_point
 from equipoise.mechanism.parts.couplings import Relation, coupled, name_of
-from equipoise.mechanism.parts.laws import AngleLaw, Law, LengthLaw, wrong_law
+from equipoise.mechanism.parts.law_checks import CAM, wrong_law
+from equipoise.mechanism.parts.laws import AngleLaw, Law, LengthLaw
 
 RIDES = ("roller", "flat", "knife")
 CLOSURES = ("spring", "groove", "ribs")
@@ -76,7 +77,7 @@ class Cam(Frozen):
     lift: LengthLaw | None = key(
         Table(LengthLaw, headed=True),
         "displacement of a sliding follower along its guide, away from the cam, over the angle "
-        "that the cam has turned against the carrier (its crank angle)",
+        "that the cam has turned against the carrier",
         default=None,
     )
     swing: AngleLaw | None = key(
@@ -131,7 +132,7 @@ def wrong_cam(where: str, cam: Cam, bodies: Bodies) -> Iterator[ModelError]:
         return
     yield from _wrong_ride(where, cam)
     at = f"{where}.{'lift' if cam.swing is None else 'swing'}"
-    problem = [*wrong_law(at, cam.law)]
+    problem = [*wrong_law(at, cam.law, CAM)]
     yield from problem
     if not problem and (cam.law.turns != 1 or cam.law.windings):
         yield ModelError(at, Note("let the follower be back after one turn of the cam"))

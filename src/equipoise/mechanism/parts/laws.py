@@ -1,20 +1,19 @@
-"""Motion laws as they stand in a file: a value, an angle or a length, over the crank angle.
+"""Motion laws as they stand in a file: a value, an angle or a length, over an angle.
 
-`AngleLaw` and `LengthLaw` are the same with another dimension: a swing by a sine, a sequence of
-segments, or a spline through values that are given or in a CSV file.  `curve` is what
-`mechanism.formulas.curves` evaluates.
+That is the crank angle for a drive, and for a cam the angle that it has turned.  `AngleLaw` and
+`LengthLaw` are the same with another dimension: a swing by a sine, a sequence of segments, or a
+spline through values that are given or in a CSV file.  `curve` is what `mechanism.formulas.curves`
+evaluates.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import cached_property
 from itertools import pairwise
-from math import degrees, pi
+from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-from equipoise.errors import ModelError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import to_say
 from equipoise.keys import (
     ROW,
     Conditions,
@@ -30,7 +29,6 @@ from equipoise.keys import (
     inside,
     key,
 )
-from equipoise.quantities import format_exact
 
 if TYPE_CHECKING:
     from equipoise.mechanism.formulas.curves import Array, Curve
@@ -41,65 +39,76 @@ SPLINES = {"cubic": 3, "quintic": 5}
 MOST_ROWS, MOST_TURNS = 720, 100
 CLOSED = 1e-9
 """Of the largest value, or of the cycle, by which rounding may miss what has to agree."""
-OVER = "crank angle that it takes"
-LAW = "by which it moves; nothing moves where `to` is the value before"
 BESIDE = "CSV file beside this one, instead of `crank_angles` and `values`: "
-AT = 'a list such as ["0 deg", "90 deg", "210 deg"]'
+ANGLES = 'a list such as ["0 deg", "90 deg", "210 deg"]'
+LENGTHS = 'a list such as ["0 mm", "5 mm", "20 mm"]'
 
 
 @declared
-class AngleSegment(Frozen):
+class Segment(Frozen):
+    """A part of a motion from the value before it to another, over an angle of crank or cam."""
+
+    called = to_say("{what} of segment {number}")
+
+    over: float = key(
+        "angle",
+        "crank angle that it takes; of a cam, its own angle",
+        above=0,
+        word=to_say("angle taken"),
+        example="120 deg",
+    )
+    to: float
+    law: str = key(
+        Text(LAWS),
+        "by which it moves; nothing moves where `to` is the value before",
+        default="cycloidal",
+    )
+
+
+@declared
+class AngleSegment(Segment):
     """A part of a motion from the angle before it to another."""
 
-    called = to_say("{what} of segment {number}")
-
-    over: float = key("angle", OVER, above=0, word=to_say("crank angle taken"), example="120 deg")
     to: float = key("angle", "at its end", word=to_say("angle at the end"), example="30 deg")
-    law: str = key(Text(LAWS), LAW, default="cycloidal")
 
 
 @declared
-class LengthSegment(Frozen):
+class LengthSegment(Segment):
     """A part of a motion from the length before it to another."""
 
-    called = to_say("{what} of segment {number}")
-
-    over: float = key("angle", OVER, above=0, word=to_say("crank angle taken"), example="120 deg")
     to: float = key("length", "at its end", word=to_say("length at the end"), example="20 mm")
-    law: str = key(Text(LAWS), LAW, default="cycloidal")
 
 
 @declared
-class AngleTable(Frozen):
-    """Angles over the crank angle, through which a spline goes.
+class LawTable(Frozen):
+    """Values over the crank angle, or a cam's own, through which a spline goes.
 
-    crank_angle : rad, rising.  angle : rad, as long as `crank_angle`.
+    crank_angle : rad, rising.  values : rad or m, as long as `crank_angle`.
     file : name of the CSV file that it came from.
     """
 
     crank_angle: tuple[float, ...] = inside(ROW)
-    angle: tuple[float, ...] = inside(ROW)
+    values: tuple[float, ...] = inside(ROW)
     file: str = inside(Text(), default="", compare=False)
+
+
+class AngleTable(LawTable):
+    """Angles."""
+
+
+class LengthTable(LawTable):
+    """Lengths."""
 
 
 @declared
-class LengthTable(Frozen):
-    """Lengths over the crank angle, through which a spline goes.
-
-    crank_angle : rad, rising.  length : m, as long as `crank_angle`.
-    file : name of the CSV file that it came from.
-    """
-
-    crank_angle: tuple[float, ...] = inside(ROW)
-    length: tuple[float, ...] = inside(ROW)
-    file: str = inside(Text(), default="", compare=False)
-
-
 class Law(Frozen):
-    """What both kinds of law do.
+    """What both kinds of law have and do.
 
     whole : what the value may have gained when it begins anew is a multiple of this.
     """
+
+    called = to_say("{what} of the motion")
+    file_order = ("between", "start", "segments", "crank_angles", "values", "table")
 
     whole: ClassVar[float]
     dimension: ClassVar[Literal["angle", "length"]]
@@ -118,12 +127,22 @@ class Law(Frozen):
     between: tuple[float, float] | None
     start: float
     segments: tuple[Any, ...]
-    crank_angles: tuple[float, ...]
     values: tuple[float, ...]
-    table: AngleTable | LengthTable | None
-    spline: Literal["cubic", "quintic"]
-    turns: int
-    phase: float
+    table: LawTable | None
+    crank_angles: tuple[float, ...] = key(
+        Listing(Quantity(dimension="angle"), right=ANGLES),
+        "crank angles of `values`; of a cam, its own angles",
+        default=(),
+    )
+    spline: Literal["cubic", "quintic"] = key(
+        Text((*SPLINES,)), "through `values`; both come back smoothly", default="cubic"
+    )
+    turns: int = key(
+        Whole(1, MOST_TURNS), "of the crank in which it comes back; 1 of a cam", default=1
+    )
+    phase: float = key(
+        "angle", "crank angle at which it begins; of a cam, its own angle", default=0.0
+    )
 
     @property
     def period(self) -> float:
@@ -135,7 +154,7 @@ class Law(Frozen):
         """Crank angles, rad, and the values there through which a spline goes."""
         if self.table is None:
             return self.crank_angles, self.values
-        return self.table.crank_angle, getattr(self.table, self.dimension)
+        return self.table.crank_angle, self.table.values
 
     @cached_property
     def curve(self) -> Curve:
@@ -150,7 +169,7 @@ class Law(Frozen):
         if given:
             knots = np.subtract([*angles, angles[0] + self.period], angles[0])
             values = np.array([*given, given[0]])
-            if self._is_closed:
+            if self.is_closed:
                 knots, values = np.append(knots[:-2], self.period), values[:-1]
             return spline(knots, values, SPLINES[self.spline])
         before = (self.start, *(one.to for one in self.segments))
@@ -164,7 +183,7 @@ class Law(Frozen):
         return self.phase + next(iter(self.rows[0]), 0.0)
 
     @property
-    def _is_closed(self) -> bool:
+    def is_closed(self) -> bool:
         """Whether the last of the rows is the first one in the next cycle."""
         angles = self.rows[0]
         return abs(angles[-1] - angles[0] - self.period) <= CLOSED * self.period
@@ -197,154 +216,46 @@ def _between(dimension: Any, example: list[str]) -> Any:
     return key(kind, text, default=None, example=example)
 
 
+def _start(dimension: Any, word: str) -> Any:
+    return key(dimension, "where the first segment begins", default=0.0, word=word)
+
+
+def _segments(kind: type[Segment]) -> Any:
+    return key(Tables(Table(kind)), "parts of the motion, one after the other", default=())
+
+
+def _values(dimension: Any, right: str) -> Any:
+    kind = Listing(Quantity(dimension=dimension), right=right)
+    return key(kind, "through which a spline goes", default=())
+
+
 @declared
 class AngleLaw(Law):
-    """An angle over the crank angle; it may gain whole turns."""
+    """An angle over the crank angle, or over a cam's own; it may gain whole turns."""
 
-    called = to_say("{what} of the motion")
     whole = 2 * pi
     dimension = "angle"
 
     between: tuple[float, float] | None = _between("angle", ["-30 deg", "30 deg"])
-    start: float = key(
-        "angle", "where the first segment begins", default=0.0, word=to_say("angle at the start")
-    )
-    segments: tuple[AngleSegment, ...] = key(
-        Tables(Table(AngleSegment)), "parts of the motion, one after the other", default=()
-    )
-    crank_angles: tuple[float, ...] = key(
-        Listing(Quantity(dimension="angle"), right=AT), "crank angles of `values`", default=()
-    )
-    values: tuple[float, ...] = key(
-        Listing(Quantity(dimension="angle"), right=AT), "through which a spline goes", default=()
-    )
+    start: float = _start("angle", to_say("angle at the start"))
+    segments: tuple[AngleSegment, ...] = _segments(AngleSegment)
+    values: tuple[float, ...] = _values("angle", ANGLES)
     table: AngleTable | None = key(
         File("angles"), BESIDE + "`crank_angle [deg],angle [deg]`", default=None, example="law.csv"
     )
-    spline: Literal["cubic", "quintic"] = key(
-        Text((*SPLINES,)), "through `values`; both come back smoothly", default="cubic"
-    )
-    turns: int = key(Whole(1, MOST_TURNS), "of the crank in which it comes back", default=1)
-    phase: float = key("angle", "crank angle at which it begins", default=0.0)
 
 
 @declared
 class LengthLaw(Law):
-    """A length over the crank angle."""
+    """A length over the crank angle, or over a cam's own."""
 
-    called = to_say("{what} of the motion")
     whole = 0.0
     dimension = "length"
 
     between: tuple[float, float] | None = _between("length", ["0 mm", "20 mm"])
-    start: float = key(
-        "length", "where the first segment begins", default=0.0, word=to_say("length at the start")
-    )
-    segments: tuple[LengthSegment, ...] = key(
-        Tables(Table(LengthSegment)), "parts of the motion, one after the other", default=()
-    )
-    crank_angles: tuple[float, ...] = key(
-        Listing(Quantity(dimension="angle"), right=AT), "crank angles of `values`", default=()
-    )
-    values: tuple[float, ...] = key(
-        Listing(Quantity(dimension="length"), right='a list such as ["0 mm", "5 mm", "20 mm"]'),
-        "through which a spline goes",
-        default=(),
-    )
+    start: float = _start("length", to_say("length at the start"))
+    segments: tuple[LengthSegment, ...] = _segments(LengthSegment)
+    values: tuple[float, ...] = _values("length", LENGTHS)
     table: LengthTable | None = key(
         File("lengths"), BESIDE + "`crank_angle [deg],length [mm]`", default=None, example="law.csv"
     )
-    spline: Literal["cubic", "quintic"] = key(
-        Text((*SPLINES,)), "through `values`; both come back smoothly", default="cubic"
-    )
-    turns: int = key(Whole(1, MOST_TURNS), "of the crank in which it comes back", default=1)
-    phase: float = key("angle", "crank angle at which it begins", default=0.0)
-
-
-# -- checks ----------------------------------------------------------------------------------------
-
-
-def wrong_law(where: str, law: Law) -> Iterator[ModelError]:
-    """Everything that is wrong with a motion law."""
-    given = [law.between is not None, bool(law.segments), bool(law.values), law.table is not None]
-    if sum(given) != 1 or bool(law.crank_angles) != bool(law.values):
-        told = Note("give exactly one of between, segments, table, and crank_angles with values")
-        yield ModelError(where, told)
-        return
-    problem = next(_wrong_segments(where, law) if law.segments else _wrong_rows(where, law), None)
-    if problem is not None:
-        yield problem
-    elif len(jumps := law.jumps(1)):
-        yield ModelError(
-            where,
-            Note(
-                "the speed jumps at crank angle {angle:.6g} deg, which takes an infinite force; "
-                "give laws there that begin and end at the same speed, such as cycloidal",
-                angle=degrees(jumps[0]),
-            ),
-        )
-
-
-def _wrong_segments(where: str, law: Law) -> Iterator[ModelError]:
-    total = sum(one.over for one in law.segments)
-    if abs(total - law.period) > CLOSED * law.period:
-        yield ModelError(
-            f"{where}.segments",
-            Note(
-                "they take {total:.6g} deg of crank angle together, and a cycle has {period:.6g} "
-                "deg; let them sum up to that (a dwell is a segment to the value before it)",
-                total=degrees(total),
-                period=degrees(law.period),
-            ),
-        )
-    yield from _wrong_return(f"{where}.segments", law, law.start, law.segments[-1].to)
-
-
-def _wrong_return(where: str, law: Law, first: float, last: float) -> Iterator[ModelError]:
-    """Complain of a value that is not back at the end of the cycle."""
-    gained = last - first
-    missing = gained - law.whole * round(gained / law.whole) if law.whole else gained
-    if abs(missing) > CLOSED * (abs(last) + abs(first) + law.whole):
-        values = {"first": format_exact(first, law.dimension)}
-        values["last"] = format_exact(last, law.dimension)
-        told = (
-            Note("begins at {first} and ends at {last}; let it come back, or gain whole turns",
-                 **values)
-            if law.whole
-            else Note("begins at {first} and ends at {last}; let it come back", **values)
-        )  # fmt: skip
-        yield ModelError(where, told)
-
-
-def _wrong_rows(where: str, law: Law) -> Iterator[ModelError]:
-    """Complain of rows through which no spline goes."""
-    if law.start:
-        yield ModelError(f"{where}.start", Note("goes with segments; leave it out"))
-    if law.between is not None:
-        return
-    (angles, values), count = law.rows, len(law.rows[1])
-    listed = ("values", "crank_angles") if law.table is None else ("table",) * 2
-    told, at = (f"{where}.{one}" for one in listed)
-    if len(angles) != count or not 3 <= count <= MOST_ROWS:
-        yield ModelError(
-            told,
-            Note(
-                "got {values} values at {angles} crank angles; give 3 to {most} of each",
-                values=count,
-                angles=len(angles),
-                most=MOST_ROWS,
-            ),
-        )
-    elif any(b - a <= CLOSED for a, b in pairwise(angles)):
-        yield ModelError(at, Note("the crank angles must rise from row to row"))
-    elif angles[-1] - angles[0] > law.period * (1 + CLOSED):
-        yield ModelError(
-            at,
-            Note(
-                "got crank angles over {span:.6g} deg, more than the {period:.6g} deg of a cycle",
-                span=degrees(angles[-1] - angles[0]),
-                period=degrees(law.period),
-            ),
-        )
-    elif law._is_closed:
-        yield from _wrong_return(told, law, values[0], values[-1])
