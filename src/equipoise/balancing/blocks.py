@@ -82,7 +82,7 @@ def outcome_blocks(found: Balanced) -> Iterator[Block]:
         yield _prices(found)
     speeds = tuple(_speeds(found))
     if speeds:
-        columns = (Column(""), Column(say("crank speed"), "angular speed", "rpm"))
+        columns = (Column(""), Column(say("speed"), "angular speed", "rpm"))
         yield Table(say("Speed at which it shakes as before"), columns, speeds)
     if found.planting_kept is not None:
         kept = say("The planting figures stay as they are.")

@@ -9,6 +9,7 @@ import re
 from collections.abc import Sequence
 
 from equipoise.codegen.across import write_bearing
+from equipoise.codegen.applied import stretched
 from equipoise.codegen.coupled import can_write_couplings, shifts_laws
 from equipoise.codegen.figures import Figure, Gathered
 from equipoise.codegen.followers import can_write_followers
@@ -35,6 +36,9 @@ _OF_FORCES = re.compile(
 ORDERS = {"position": 0, "velocity": 1, "acceleration": 2}
 OF_CAMS = {"cam push": "T({})", "cam forth": "forth({})", "cam normal": "normal({})"}
 """Values of a state that tell of a cam."""
+LENGTH = "length({1} - {0})"
+OF_SPRINGS = {"spring length": LENGTH, "spring pull": f"{{2}} * ({LENGTH} - {{3}})"}
+"""Of a spring, from its ends, stiffness and free length."""
 OF_BELTS = {"belt pull": 0, "belt left": 1, "belt right": -1}
 """Strands of a belt, by their side; 0 for what they differ by."""
 TURNING = {"angular velocity": 1, "angular acceleration": 2}
@@ -92,10 +96,17 @@ def _identified(writer: Writer, looked_up: re.Match[str], item: str) -> str:
     if value == "drive torque" and item in [drive.link for drive in writer.machine.driven]:
         return writer.name(f"M({item})")
     if value not in TURNING:
-        return _reaction(writer, item, value)
+        return (_of_spring if value in OF_SPRINGS else _reaction)(writer, item, value)
     if item not in writer.machine.links:
         raise _Missing
     return _in_time(writer, writer.body(item)[3:], TURNING[value])
+
+
+def _of_spring(writer: Writer, item: str, value: str) -> str:
+    number = int(item) - 1 if item.isdecimal() else -1
+    if not 0 <= number < len(writer.machine.springs):
+        raise _Missing
+    return f"({OF_SPRINGS[value].format(*stretched(writer, number))})"
 
 
 def _reaction(writer: Writer, item: str, value: str) -> str:

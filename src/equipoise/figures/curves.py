@@ -198,7 +198,7 @@ RANGES = {GROUND: 0.4, BEFORE: 1.3}
 """By how much the last one lies above the first."""
 WEIGHTS = {"edge": 1.0, "rail": 2.0, "stand": 3.0, "slot": 1.0, "block": 2.0, "spring": 1.0}
 WEIGHTS |= {"planned": 1.0, "added": 1.0, "driver": 2.0, "mount": 2.0, "tray": 4.0, "needle": 2.0}
-WEIGHTS |= {"surface": 1.0, "rest": 1.0, "swing": 1.0, "other-swing": 1.0}
+WEIGHTS |= {"room": 1.0, "surface": 1.0, "rest": 1.0, "swing": 1.0, "other-swing": 1.0}
 """What names keep clear of, and how much it matters."""
 
 

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 ROOM = 0.06
 """Around what is drawn, over its size: for the signs of bearings and masses."""
+BEYOND = 10.0
+"""Units: how far pins reach beyond the middle of what they carry."""
 
 
 def side(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
@@ -41,6 +43,7 @@ def side(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
     what = say("Linkage from the side, to scale; angle of {link} in the frame: {angle}", **told)
     keys = [("solid", say("bodies"))] if view.solids else []
     keys += [("mass", say("centre of mass"))] if view.loose else []
+    keys += [("room", say("room for mass to be found"))] if view.rooms else []
     return Chart("side", analysis.machine.title, what, (view.panel(),), keys=tuple(keys))
 
 
@@ -71,6 +74,7 @@ class _View:
             for name, link in self.machine.links.items()
         }
         self.solids, self.loose = [*self._solids()], [*self._loose()]
+        self.rooms = [*self._rooms()]
 
     def _spread(self, part: str) -> Array:
         """How far links reach along an axis of the frame, (N,)."""
@@ -104,9 +108,20 @@ class _View:
                     heights = self._seen(name, np.array(corners))
                     low, high = float(heights.min()) - radius, float(heights.max()) + radius
                     z = link.plane if body.plane is None else body.plane
-                    half = (body.thickness or 0.0) / 2
-                    ends = ((z - half, low), (z + half, low), (z + half, high), (z - half, high))
-                    yield line("solid", *(complex(*end) for end in ends), closed=True)
+                    yield _box("solid", z, body.thickness, low, high)
+
+    def _rooms(self) -> Iterator[Shape]:
+        """Where balancing may add masses: boxes, or a ring where there is room without limit."""
+        balance = self.machine.balance
+        for one in balance.masses if balance is not None else ():
+            link, weight = self.machine.links[one.link], one.weight
+            z = link.plane if weight.plane is None else weight.plane
+            high = self.height(one.at)
+            if np.isinf(weight.radius):
+                yield circle("room", complex(z, high), grown=BEYOND)
+            else:
+                ends = high - weight.radius, high + weight.radius
+                yield _box("room", z, weight.thickness, *ends)
 
     def _loose(self) -> Iterator[complex]:
         """Centres of masses of which no outline is known."""
@@ -116,24 +131,28 @@ class _View:
                 if own and not seen:
                     yield complex(z, self._seen(name, np.array([center]))[0])
 
-    def _bars(self, name: str) -> Iterator[tuple[complex, complex]]:
-        """A link: upright in its plane, and along z to points beside it and to its bearings."""
+    def _bars(self, name: str, role: str) -> Iterator[Shape]:
+        """A link: upright in its plane, and along z through what it holds beside it, and to its
+        bearings.
+        """
         z, nodes = self.machine.links[name].plane, self.nodes[name]
         heights = [node.imag for node in nodes.values()]
-        yield complex(z, min(heights)), complex(z, max(heights))
+        yield line(role, complex(z, min(heights)), complex(z, max(heights)))
         for point, node in nodes.items():
             held = [one.plane for one in self.machine.bearings.values() if one.link == name]
             ends = [node.real, z, *(held if point in self.machine.frame else ())]
-            if max(ends) > min(ends):
-                yield complex(min(ends), node.imag), complex(max(ends), node.imag)
+            if (low := min(ends)) < (high := max(ends)):
+                places = np.array([complex(low, node.imag), complex(high, node.imag)])
+                beyond = np.array([-BEYOND * (low < z), BEYOND * (high > z)], complex)
+                yield Shape(role, places, beyond)
 
     def signs(self) -> Iterator[Shape]:
         """Bodies behind, then links, then what holds them."""
         yield from self.solids
+        yield from self.rooms
         for name in self.machine.links:
-            bars = [*self._bars(name)]
             for role in ("edge", "body"):
-                yield from (line(role, *ends) for ends in bars)
+                yield from self._bars(name, role)
         yield from self._held()
         for body, point, plane in self.pins:
             if body != FRAME:
@@ -167,7 +186,7 @@ class _View:
         """The view with its axes and names."""
         places = [node for nodes in self.nodes.values() for node in nodes.values()]
         places += [*self.loose, *(one.plane + 1j * 0 for one in self.machine.bearings.values())]
-        every = np.concatenate([places, *(shape.places for shape in self.solids)])
+        every = np.concatenate([places, *(one.places for one in (*self.solids, *self.rooms))])
         low, high = (complex(end(every.real), end(every.imag)) for end in (np.min, np.max))
         room = ROOM * abs(high - low) * (1 + 1j)
         size = [abs(high - low)]
@@ -182,3 +201,10 @@ class _View:
             signs=tuple(self.signs()),
             held=(low - room, high + room),
         )
+
+
+def _box(role: str, z: float, thickness: float | None, low: float, high: float) -> Shape:
+    """What is so thick and so high, around z."""
+    half = (thickness or 0.0) / 2
+    ends = ((z - half, low), (z + half, low), (z + half, high), (z - half, high))
+    return line(role, *(complex(*end) for end in ends), closed=True)

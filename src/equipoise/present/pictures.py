@@ -163,8 +163,12 @@ def _forces(found: Findings) -> Iterator[Entry]:
             partial(seen.caused, analysis, number),
         )
     if analysis.has_orders:
-        of_torque = to_say("Shaking force, shaking moment and drive torque by orders of the crank.")
-        of_force = to_say("Shaking force, shaking moment and drive force by orders of the crank.")
+        of_torque = to_say(
+            "Shaking force, shaking moment and drive torque by orders of the crank angle."
+        )
+        of_force = to_say(
+            "Shaking force, shaking moment and drive force by orders of the crank angle."
+        )
         caption = of_force if pushes else of_torque
         yield Entry(
             "spectrum", caption, partial(forces.spectrum, analysis), partial(seen.ordered, found)
@@ -204,7 +208,7 @@ def _vibration(found: Findings) -> Iterator[Entry]:
                 partial(vibration.gauge, response, name),
                 partial(gauged.moved, response, name),
             )
-        caption = to_say("Vibration at the gauges by orders of the crank.")
+        caption = to_say("Vibration at the gauges by orders of the crank angle.")
         yield from pages(
             "gauge-spectrum",
             caption,

@@ -17,6 +17,7 @@ from operator import add
 import numpy as np
 
 from equipoise.i18n import Note, to_say
+from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.signals import Array, Periodic
@@ -106,10 +107,13 @@ def mount_force(varying: Periodic, preload: float, exciting: Array) -> MountForc
 
 
 def force_amplitudes(linear: Linear, speed: float) -> Array:
-    """Amplitude (K + 1,) of the force of all linkages on the frame; 0 where rows cancel."""
+    """Amplitude (K + 1,) of the force of all linkages on the frame; 0 where they cancel."""
     signals = (linear.excitation.at(speed), linear.excitation.of_one(speed))
     sizes, single = (np.linalg.norm(signal.amplitudes[:3], axis=0) for signal in signals)
-    rounding = 1e-10 * len(rows_of(linear.body.machine)) * np.max(single[1:], initial=0.0)
+    machine = linear.body.machine
+    own = machine.mass * size_of_bodies(machine) * speed**2
+    top = max(float(np.max(single[1:], initial=0.0)), own)
+    rounding = 1e-10 * len(rows_of(machine)) * top
     return np.where(sizes > rounding, sizes, 0.0)
 
 

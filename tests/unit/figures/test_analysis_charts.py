@@ -95,6 +95,12 @@ def test_planes_from_the_side() -> None:
     stands = {complex(shape.places[0]) for shape in panel.signs if shape.role == "stand"}
     assert stands == {-0.075 + 0j, 0.075 + 0j}
     assert {mark.text for mark in panel.marks} == {*twin.links, *twin.bearings}
+    rooms = [shape.places for shape in panel.signs if shape.role == "room"]
+    spans = [(*np.round([z.real.min(), z.real.max()], 9), np.ptp(z.imag)) for z in rooms]
+    assert np.allclose(spans, [(-0.065, -0.055, 0.076), (0.055, 0.065, 0.076)])
+    through = [s for s in panel.signs if s.role == "edge" and np.any(s.offsets)]
+    ends = {complex(p): o.real for s in through for p, o in zip(s.places, s.offsets, strict=True)}
+    assert ends[-0.04 + 0.025j] < 0 < ends[0.04 - 0.025j]
     loose = analysis_pictures(eq.analyze(replace(twin, bearings={}), [0.0]), at=[0.0])["side"]
     assert [s.places[0] for s in loose.panels[0].signs if s.role == "stand"] == [0j]
 

@@ -14,6 +14,7 @@ from equipoise.mechanism.kinematics.dwell import Path, longest_dwell
 from equipoise.mechanism.kinematics.stroke_figures import DeadPosition
 from equipoise.mechanism.kinematics.strokes import _turning
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment
+from equipoise.results.analysis_blocks import force_blocks
 from support.conformance import compared
 from support.sources import CLOSED_FORMS
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
@@ -288,3 +289,16 @@ def test_what_rests_on_its_guide_has_no_stroke() -> None:
     (slider,) = machine.sliders
     held = replace(machine, sliders=(replace(slider, on="crank"),)).with_drive(speed=31.52)
     assert not eq.analyze(held).strokes
+
+
+def test_driven_links_that_swing_have_a_stroke_and_one_torque() -> None:
+    """Of several drives the first too; a drive torque of the only one is told once."""
+    found = eq.analyze(eq.load("pick-and-place"), 72)
+    assert {"left crank", "right crank"} <= {*found.strokes}
+    assert found.strokes["left crank"].stroke == pytest.approx(radians(50))
+    alone = eq.analyze(eq.load("hydraulic-loader"), 72)
+    assert alone.strokes["boom"].stroke == pytest.approx(alone.strokes["bar"].stroke)
+    crank = eq.load("yamashita-1")
+    machine = replace(crank, drive=replace(crank.drive, motion=AngleLaw(between=(0.5, 1.2))))
+    labels = [row[0] for row in next(force_blocks(eq.analyze(machine, 72))).rows]
+    assert [name for name in labels if name.startswith("drive torque")] == ["drive torque"]

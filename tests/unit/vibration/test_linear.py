@@ -68,6 +68,12 @@ def test_transmissibility(speed: float) -> None:
         assert mount.lifts_off == 0
 
 
+def test_links_that_cancel_hand_on_nothing() -> None:
+    """A force that is rounding beside mass times size times the speed's square counts as none."""
+    still = unbalance().with_link("crank", mass=ECCENTRIC, center_of_mass=(1e-17, 0.0))
+    assert all(np.isnan(one.whole) for one in respond(still, 3.0, "moment").mounts.values())
+
+
 def test_without_damping_at_resonance_there_is_no_answer() -> None:
     """10.25 kg on 2624 N/m at 16 rad/s: all exact in binary."""
     feet = {"a": Mount((0.0, 0.0, 0.0), stiffness=2624.0)}

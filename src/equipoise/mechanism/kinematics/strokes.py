@@ -50,8 +50,10 @@ class _Output:
 
 
 def rockers(linkage: Linkage) -> list[str]:
-    """Links that are pinned to the frame and swing; the cycle must be known."""
-    return [link for link in pinned(linkage.machine) if linkage.cycle.windings[link] == 0]
+    """Links that turn about a pin in the frame and swing, driven or not; the cycle is known."""
+    machine = linkage.machine
+    links = [machine.drive.link] * (not machine.drive.crank) + pinned(machine)
+    return [link for link in links if linkage.cycle.windings[link] == 0]
 
 
 def _motion(linkage: Linkage, theta: Array) -> Motion:
