@@ -50,7 +50,7 @@ export class App {
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
   private readonly planted = new FigureTable(say("Figures of the planting finger"));
-  private readonly strokes = new FigureTable(say("Figures of sliders and rockers"));
+  private readonly strokes = new FigureTable(say("Figures of sliders, rockers and cams"));
   private readonly across = h("img", {
     class: "across",
     alt: say("The planes of links, masses and bearings, from the side and to scale."),
@@ -348,6 +348,7 @@ export class App {
     if (other || !state.beside) this.across.hidden = true;
     if (!state.before) this.balance.hide();
     this.board.clear(this.held || other);
+    this.hands.accepted();
     this.show(state, other);
   }
 
@@ -411,7 +412,7 @@ export class App {
     this.tools.show(state);
     this.root.classList.toggle("unfinished", !state.status.finished);
     this.hands.describe();
-    this.hands.accepted();
+    this.hands.follow();
     this.heading.show(state);
   }
 
@@ -447,10 +448,13 @@ export class App {
     else this.board.clear(false);
   }
 
-  private refuse(message: string, edit: boolean): void {
+  private refuse(message: string, edit: number | null): void {
     this.views.say(message);
     this.board.say(message, true);
-    if (edit) this.hands.refused();
+    if (edit !== null) {
+      this.hands.refused();
+      this.frames.draw(edit); // what is shown of the attempt is its answer
+    }
     this.opened = "";
     this.name();
   }
@@ -494,7 +498,8 @@ export class App {
       if (problem) return this.board.say(problem, true);
     }
     const [{ name }, text] = [file, await file.text()];
-    if (isTable(file)) return this.command({ type: "record", name, text });
+    // Without a text a record is taken away.
+    if (isTable(file)) return this.command({ type: "record", name, text: text || "\n" });
     const texts = tables.map(async (one) => [one.name, await one.text()] as const);
     const files = Object.fromEntries(await Promise.all(texts));
     void this.open({ type: "open", name, text, files }, name);
@@ -535,7 +540,7 @@ export class App {
     if (!scene) return;
     const frame = grip.kind === "point" && scene.frame.includes(grip.name);
     const holder = scene.bodies.find((body) => body.points.includes(grip.name))?.name ?? null;
-    const link = grip.kind === "mass" ? grip.name : frame ? "frame" : holder;
+    const link = { mass: grip.name, radius: "cams", point: frame ? "frame" : holder }[grip.kind];
     this.stage.select(new Set([grip.name]), grip.kind === "mass" ? grip.name : null, grip);
     this.inspector.choose(link, grip.kind === "point" ? grip.name : null);
     this.tools.selected(grip);

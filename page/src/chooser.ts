@@ -1,6 +1,6 @@
 /** A choice that is the heading of a chart at the same time. */
 
-import { h } from "./dom";
+import { h, put } from "./dom";
 
 export interface Chooser {
   label: HTMLElement;
@@ -18,7 +18,7 @@ export function chooser(name: string, changed: () => void): Chooser {
       return select.value;
     },
     set value(value: string) {
-      select.value = value;
+      put(select, value);
     },
     has,
     offer(options) {

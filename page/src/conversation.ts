@@ -1,6 +1,6 @@
 /** One question at a time: of edits that wait, the newest is enough. */
 
-import type { Asked, Edit, Refused, Tables, Told, Wire } from "./protocol";
+import type { Asked, Edit, HandedOut, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
 import { Numbers, type Pictured, type Planted, type ResponseMessage, type Side, type State } from "./protocol";
 import type { GhostMessage, Stores, StudyMessage, ToolMessage, VariantsMessage } from "./protocol";
@@ -18,13 +18,14 @@ export interface Events {
   tool(message: ToolMessage, numbers: Numbers): void;
   study(message: StudyMessage, numbers: Numbers): void;
   stores(message: Stores): void;
-  refused(message: string, edit: boolean): void;
+  /** Something could not be done; `edit`: the number of the edit that was tried, if it was one. */
+  refused(message: string, edit: number | null): void;
   balanced(message: Extract<Told, { type: "balanced" }>): void;
   busy(what: string | null): void;
   tables(message: Tables): void;
   saved(name: string): void;
   pictured(message: Pictured | null, numbers: Numbers): void;
-  file(name: string, mime: string, bytes: DataView | undefined): void;
+  file(told: HandedOut, bytes: DataView | undefined): void;
   line(up: boolean): void;
   /** An answer takes longer than a reader waits without a sign. */
   waiting(on: boolean): void;
@@ -40,7 +41,7 @@ interface Question {
   asked: Asked;
   answered?: Answered | undefined;
   /** Takes the file that is asked for, instead of the browser's downloads. */
-  got?: ((name: string, bytes: DataView | undefined) => void) | undefined;
+  got?: ((told: HandedOut, bytes: DataView | undefined) => void) | undefined;
 }
 
 /** What takes long: other questions do not wait for it. */
@@ -191,18 +192,18 @@ export class Conversation {
     }
   };
 
-  private file(told: Extract<Told, { type: "file" }>, bytes: DataView | undefined): void {
+  private file(told: HandedOut, bytes: DataView | undefined): void {
     const got = this.aside.get(told.seq)?.got ?? this.flight?.got;
-    if (got) got(told.name, bytes);
-    else this.events.file(told.name, told.mime, bytes);
+    if (got) got(told, bytes);
+    else this.events.file(told, bytes);
   }
 
   private refuse(seq: number, message: string): void {
     const asked = this.flight?.seq === seq ? this.flight.asked : null;
     if (asked && ASIDE.has(asked.type) && this.flight?.answered) return;
-    if (asked?.type !== "edit") return this.events.refused(message, false);
+    if (asked?.type !== "edit") return this.events.refused(message, null);
     // Who asks for a number and waits for the answer says it beside that number.
-    if (!asked.commit || !this.flight?.answered) this.events.refused(message, true);
+    if (!asked.commit || !this.flight?.answered) this.events.refused(message, seq);
   }
 
   private end(seq: number, refusal: string | null, told: Refused | null = null): void {

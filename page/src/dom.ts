@@ -57,6 +57,11 @@ export function show(element: HTMLElement, on: boolean): void {
   if (element.hidden === on) element.hidden = !on;
 }
 
+/** Choose or put in only what is otherwise: after a choice browsers look through all forms of a page. */
+export function put(element: HTMLSelectElement | HTMLInputElement, value: string): void {
+  if (element.value !== value) element.value = value;
+}
+
 /** A small drawing for a button, 16 by 16, in the colour of the text. */
 export function icon(path: string): SVGSVGElement {
   return s(

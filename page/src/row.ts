@@ -1,7 +1,7 @@
 /** One number of the machine: typed, stepped by keys, or moved by its slider. */
 
 import type { Conversation } from "./conversation";
-import { fresh, h, set, show, write } from "./dom";
+import { fresh, h, put, set, show, write } from "./dom";
 import { Gesture } from "./gesture";
 import type { Field } from "./protocol";
 import { breakable } from "./format";
@@ -186,7 +186,7 @@ export class Row {
     const part = high > low ? (value - low) / (high - low) : 0;
     const [step, shown] = [String(Math.round(part * STEPS)), part.toFixed(3)];
     // Most numbers stay while one is dragged, and what is written is laid out again.
-    if (slider.value !== step) slider.value = step;
+    put(slider, step);
     if (slider.style.getPropertyValue("--part") !== shown)
       slider.style.setProperty("--part", shown);
     set(slider, { "aria-valuetext": this.field.shown });

@@ -1,7 +1,7 @@
 /** What is seen besides the machine: arrows at a point, a pale design, a support that moves. */
 
 import { Arrows } from "./arrows";
-import { h, show } from "./dom";
+import { h, put, show } from "./dom";
 import { unbroken } from "./format";
 import { Ghost } from "./ghost";
 import { type ArrowOf, type Asked, Numbers, type ResponseMessage, type State } from "./protocol";
@@ -143,6 +143,6 @@ export class Seeing {
       const options = state.points.map((name) => h("option", { value: name }, name));
       this.at.replaceChildren(h("option", { value: "" }, say("no point")), ...options);
     }
-    this.at.value = state.arrows_at ?? "";
+    put(this.at, state.arrows_at ?? "");
   }
 }

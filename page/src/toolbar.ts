@@ -1,6 +1,6 @@
 /** The bar at the top: what to look at, undo and redo, balancing, downloads, help. */
 
-import { h, icon, set } from "./dom";
+import { h, icon, put, set } from "./dom";
 import type { Example, FileKind, State } from "./protocol";
 import { language as spoken, languages, say } from "./words";
 
@@ -87,7 +87,7 @@ export class Toolbar {
       this.own.value = state.name;
       this.examples.prepend(this.own);
     }
-    if (this.examples.value !== state.name) this.examples.value = state.name;
+    put(this.examples, state.name);
     label(this.undo, say("Undo"), state.undo);
     label(this.redo, say("Redo"), state.redo);
     this.balance.disabled = !state.has_forces;

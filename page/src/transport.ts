@@ -1,6 +1,6 @@
 /** Playing, pausing, turning the crank by hand. */
 
-import { h, icon, set, write } from "./dom";
+import { h, icon, put, set, write } from "./dom";
 import { signed } from "./format";
 import { type Player, RATES } from "./player";
 import { say } from "./words";
@@ -62,7 +62,7 @@ export class TransportBar {
   /** The samples or the rate are others. */
   take(count: number): void {
     set(this.slider, { max: count - 1 });
-    this.rates.value = String(this.player.rate);
+    put(this.rates, String(this.player.rate));
   }
 
   /** Playing or not. */
@@ -80,7 +80,7 @@ export class TransportBar {
   point(): void {
     const text = `${signed(this.player.angle.toFixed(1))}°`;
     write(this.told, text);
-    this.slider.value = String(this.player.sample);
+    put(this.slider, String(this.player.sample));
     this.slider.style.setProperty(
       "--part",
       (this.player.sample / Math.max(Number(this.slider.max), 1)).toFixed(3),

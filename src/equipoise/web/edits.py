@@ -7,6 +7,7 @@ coordinates in each link that has it, so that all other points stand still.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -114,17 +115,28 @@ def edited(base: Solved, changes: Iterable[Change], near: Solved | None = None) 
         else:
             design, place = _moved(base, design, change)
             goals[change.name] = (change.at, place)
-    stuck = base.swings is not None
+    if near is not None and near.along is not None:  # so this one needs something along too
+        with suppress(EquipoiseError):
+            if (found := _agreeing(base, design, goals, near)) is not None:
+                return found
+    near = near or base
     try:
-        return _assembled(design, goals, near or base, stuck)
+        return _assembled(design, goals, near, base.swings is not None)
     except (MobilityError, ModelError):
-        found = None
-        if base.motion.linkage.shared is not None:
-            found = following(base.motion, design.own, goals)
-        if found is None:
+        if (found := _agreeing(base, design, goals, near)) is None:
             raise
-        fitting = solved(design.with_machine(found.machine), near or base, stuck)
-        return replace(fitting, along=found.note)
+        return found
+
+
+def _agreeing(base: Solved, design: Design, goals: Goals, near: Solved) -> Solved | None:
+    """The design with what has to go along so that all joints fit, if that can be told."""
+    if base.motion.linkage.shared is None:
+        return None
+    found = following(base.motion, design.own, goals)
+    if found is None:
+        return None
+    fitting = solved(design.with_machine(found.machine), near, base.swings is not None)
+    return replace(fitting, along=found.note if found.spots else None)
 
 
 def _set(design: Design, change: Setting) -> Design:

@@ -11,6 +11,7 @@ import pytest
 import equipoise as eq
 from equipoise.mechanism.assembly.newton import LoopGroup
 from equipoise.quantities import clean, format_exact, showing
+from equipoise.web import edits
 from equipoise.web.edits import edited, movable
 from equipoise.web.messages import Drag
 from unit.web.pages import ask, counterweight, edit, move, opened, refusal
@@ -186,11 +187,15 @@ def test_newton_begins_where_the_machine_is() -> None:
         ("D", {"frame": "D", **{f"walker-{k}": f"R{k}" for k in range(1, 5)}}),
     ],
 )
-def test_what_joints_need_goes_along(point: str, wanted: dict[str, str]) -> None:
+def test_what_joints_need_goes_along(
+    point: str, wanted: dict[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Parallel cranks stay alike, and what they carry as long as they are apart."""
     session, before = opened("straw-walker")
     old, at = session.shown.design.own.bodies, 100
     to = before.place(point)[at] + 0.013 + 0.007j
+    edit(session, move(point, to + 0.004j, at), commit=False)
+    monkeypatch.setattr(edits, "_assembled", None)  # what has gone along once goes at once
     after = edit(session, move(point, to, at))
     assert abs(after.place(point)[at] - to) < 2e-6
     new = session.shown.design.own.bodies

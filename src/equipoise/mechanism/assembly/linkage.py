@@ -189,15 +189,20 @@ def ordered(
     return Linkage(machine, joints, pivot, builder.anchors, order, shared=whole)
 
 
-def sides_at_position(machine: Machine) -> dict[str, str]:
+def sides_at_position(machine: Machine, turning: Any = None) -> dict[str, str]:
     """The side of each dyad that has two, as the machine's rough position has it; what its table
     of sides says is left aside.
+
+    turning : of `Machine`, what tells the angles of links that are pushed; that of their strokes
+        takes sides.
 
     Raises
     ------
     MobilityError, ModelError : as of `assemble`.
     """
     bare = replace(machine, assembly={})
+    if turning is not None:
+        bare.__dict__["turning"] = turning
     joints = structure(bare)
     _, _, choices = _grouped(bare, joints, {}, NOTHING)
     return {one.joint: one.words[one.side] for one in choices}

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from itertools import compress
 from math import degrees
 
 import numpy as np
@@ -72,15 +73,12 @@ class Undecided:
 
 def undecided(linkage: Linkage) -> Undecided:
     """What statics does not tell of the joints of a linkage; kept with it."""
-    found: Undecided | None = linkage.__dict__.get("_undecided")
-    if found is None:
-        found = linkage.__dict__["_undecided"] = _found(linkage)
-    return found
+    return _kept(linkage, _found)
 
 
 def refuse_unbounded(linkage: Linkage, output: str) -> None:
     """Raise a `UsageError` for an output of a joint whose force has no bound."""
-    found = undecided(linkage)
+    found = _kept(linkage, _growing)
     if any(output.partition(".")[2].startswith(name) for name in found.unbounded):
         *_, told = found.told()
         raise UsageError(told)
@@ -88,11 +86,19 @@ def refuse_unbounded(linkage: Linkage, output: str) -> None:
 
 def hidden(motion: Motion) -> tuple[str, ...]:
     """Joints whose force has no bound at some of the crank angles of a motion, or between them."""
-    shared, found = motion.linkage.shared, undecided(motion.linkage)
+    shared, found = motion.linkage.shared, _kept(motion.linkage, _growing)
     if shared is None or not found.unbounded:
         return ()
     bounded = not motion.whole_cycle and np.all(shared.strength(motion.state) > WEAK)
     return () if bounded else found.unbounded
+
+
+def _kept(linkage: Linkage, find: Callable[[Linkage], Undecided]) -> Undecided:
+    name = find.__name__
+    if name not in linkage.__dict__:
+        linkage.__dict__[name] = find(linkage)
+    found: Undecided = linkage.__dict__[name]
+    return found
 
 
 def _found(linkage: Linkage) -> Undecided:
@@ -100,18 +106,26 @@ def _found(linkage: Linkage) -> Undecided:
     if shared is None:
         return Undecided()
     open_ones = shared.open_joints(_somewhere(linkage)) if shared.count else frozenset()
-    found = Undecided(
-        _named(linkage, open_ones),
+    return replace(
+        _kept(linkage, _growing),
+        open=_named(linkage, open_ones),
         by_stiffness=bool(shared.compliance),
         reach=shared.group.size if linkage.joints.sliders else 0.0,
     )
-    for group in linkage.groups if _turns(linkage) else ():
-        _, at = linkage.cycle.weakest.get(group.joint, (0.0, 0.0))
-        if group.through and shared.strength(linkage.solve(np.array([at])))[0] < WEAK:
-            growing = shared.growing_joints(linkage.solve(np.array([at - BESIDE, at + BESIDE])))
-            names = _named(linkage, growing)
-            return replace(found, unbounded=names, at=at % (2 * np.pi), links=group.links)
-    return found
+
+
+def _growing(linkage: Linkage) -> Undecided:
+    """Forces without bound alone, which every analysis of joint forces has to know."""
+    shared, through = linkage.shared, [group for group in linkage.groups if group.through]
+    if shared is None or not through or not _turns(linkage):
+        return Undecided()
+    weakest = [linkage.cycle.weakest.get(group.joint, (0.0, 0.0))[1] for group in through]
+    weak = shared.strength(linkage.solve(np.array(weakest))) < WEAK
+    for group, at in compress(zip(through, weakest, strict=True), weak):
+        growing = shared.growing_joints(linkage.solve(np.array([at - BESIDE, at + BESIDE])))
+        names = _named(linkage, growing)
+        return Undecided(unbounded=names, at=at % (2 * np.pi), links=group.links)
+    return Undecided()
 
 
 def _named(linkage: Linkage, forces: frozenset[str]) -> tuple[str, ...]:
