@@ -150,8 +150,8 @@ class _Skeleton:
         taken = {id(one) for one in (*self.grounds, *self.guides)}
         beside = [one for one in every if _first((*one.names, "")[0]) in BESIDE]
         if beside:
-            left = "lines and circles of paths, parts, springs, gears, belts, racks and cams are left out"
-            drawing.note(f"{len(beside)} {left}")
+            drawn = "paths, parts, springs, gears, belts, racks and cams"
+            drawing.note(f"{len(beside)} lines and circles of {drawn} are left out")
         taken |= {id(one) for one in beside}
         lines = [one for one in drawing.strokes if id(one) not in taken]
         rings = [one for one in drawing.rings if one not in beside]
