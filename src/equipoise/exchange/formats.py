@@ -159,7 +159,7 @@ class Job:
         ------
         UsageError : they do.
         """
-        if joints.mobility < 1:
+        if joints.surplus:
             raise UsageError(
                 "joints hold more than the motion needs, so that the equations of this format have "
                 "no single solution; give another format, or leave cranks or guides out"
