@@ -50,7 +50,7 @@ export class App {
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
   private readonly planted = new FigureTable(say("Figures of the planting finger"));
-  private readonly strokes = new FigureTable(say("Figures of sliders and rockers"));
+  private readonly strokes = new FigureTable(say("Figures of sliders, rockers and cams"));
   private readonly across = h("img", {
     class: "across",
     alt: say("The planes of links, masses and bearings, from the side and to scale."),
@@ -498,7 +498,8 @@ export class App {
       if (problem) return this.board.say(problem, true);
     }
     const [{ name }, text] = [file, await file.text()];
-    if (isTable(file)) return this.command({ type: "record", name, text });
+    // Without a text a record is taken away.
+    if (isTable(file)) return this.command({ type: "record", name, text: text || "\n" });
     const texts = tables.map(async (one) => [one.name, await one.text()] as const);
     const files = Object.fromEntries(await Promise.all(texts));
     void this.open({ type: "open", name, text, files }, name);
@@ -539,7 +540,7 @@ export class App {
     if (!scene) return;
     const frame = grip.kind === "point" && scene.frame.includes(grip.name);
     const holder = scene.bodies.find((body) => body.points.includes(grip.name))?.name ?? null;
-    const link = grip.kind === "mass" ? grip.name : frame ? "frame" : holder;
+    const link = { mass: grip.name, radius: "cams", point: frame ? "frame" : holder }[grip.kind];
     this.stage.select(new Set([grip.name]), grip.kind === "mass" ? grip.name : null, grip);
     this.inspector.choose(link, grip.kind === "point" ? grip.name : null);
     this.tools.selected(grip);

@@ -5,14 +5,29 @@ import { set } from "./dom";
 import { length, lengths, round } from "./format";
 import { Gesture } from "./gesture";
 import type { Edit, Pair, State } from "./protocol";
-import { type Grip, keyOf, type Stage } from "./stage";
-import { say } from "./words";
+import { type Grip, type Kind, keyOf, type Stage } from "./stage";
+import { say, toSay } from "./words";
 
 const ARROWS: Record<string, Pair> = {
   ArrowLeft: [-1, 0],
   ArrowRight: [1, 0],
   ArrowUp: [0, 1],
   ArrowDown: [0, -1],
+};
+const ROLES: Record<Kind, string> = {
+  point: toSay("joint that can be moved"),
+  mass: toSay("centre of mass that can be moved"),
+  radius: toSay("base circle that can be changed"),
+};
+const NAMES: Record<Kind, string> = {
+  point: toSay("Joint {name}"),
+  mass: toSay("Centre of mass of {name}"),
+  radius: toSay("Base circle of {name}"),
+};
+const STEPS: Record<Kind, string> = {
+  point: toSay("move {name}"),
+  mass: toSay("move centre of mass of {name}"),
+  radius: toSay("change base circle of {name}"),
 };
 const COARSE = 10;
 const FINE = 0.1;
@@ -72,13 +87,16 @@ export class Hands {
   /** Say anew where everything is: names of handles for those who hear them. */
   describe(): void {
     for (const element of this.stage.grips.values()) {
-      const place = this.stage.place(gripOf(element));
+      const grip = gripOf(element);
+      const place = this.stage.place(grip);
       if (!place) continue;
-      const [x, y] = [length(place[0]), length(place[1])];
+      const [cam] = this.stage.circle(grip) ?? [];
       const { unit, factor } = lengths();
       set(element, {
-        "aria-valuetext": `x ${x} ${unit}, y ${y} ${unit}`,
-        "aria-valuenow": (place[0] * factor).toFixed(2),
+        "aria-valuetext": cam
+          ? `${length(cam.radius)} ${unit}`
+          : `x ${length(place[0])} ${unit}, y ${length(place[1])} ${unit}`,
+        "aria-valuenow": ((cam?.radius ?? place[0]) * factor).toFixed(2),
       });
     }
   }
@@ -88,10 +106,7 @@ export class Hands {
     set(element, {
       role: "slider",
       "aria-label": label,
-      "aria-roledescription":
-        grip.kind === "point"
-          ? say("joint that can be moved")
-          : say("centre of mass that can be moved"),
+      "aria-roledescription": say(ROLES[grip.kind]),
       "data-kind": grip.kind,
       "data-name": grip.name,
     });
@@ -125,7 +140,9 @@ export class Hands {
   private tell(grip: Grip, more: string): void {
     const place = this.stage.place(grip);
     if (!place) return;
-    const where = `${nameOf(grip)}: ${length(place[0])}, ${length(place[1])} ${lengths().unit}`;
+    const [cam] = this.stage.circle(grip) ?? [];
+    const told = cam ? length(cam.radius) : `${length(place[0])}, ${length(place[1])}`;
+    const where = `${nameOf(grip)}: ${told} ${lengths().unit}`;
     this.told = [grip, more];
     this.page.hint(more ? `${where} · ${more}` : where);
   }
@@ -136,10 +153,7 @@ export class Hands {
     [this.grip, this.keys] = [grip, keys];
     this.target = this.stage.place(grip);
     this.page.holding(true);
-    const what =
-      grip.kind === "point"
-        ? say("move {name}", { name: grip.name })
-        : say("move centre of mass of {name}", { name: grip.name });
+    const what = say(STEPS[grip.kind], { name: grip.name });
     const gesture: Gesture = new Gesture(this.page.talk, what, () => {
       if (this.gesture !== gesture) return;
       this.gesture = this.grip = null;
@@ -153,10 +167,16 @@ export class Hands {
     const { grip, gesture } = this;
     if (!grip || !gesture) return;
     this.target = to;
+    const edit = this.edit(grip, to);
+    if (edit) gesture.move([edit], stamp);
+  }
+
+  private edit(grip: Grip, to: Pair): Edit | null {
     const at = this.page.sample();
-    const edit: Edit =
-      grip.kind === "point" ? { move: grip.name, to, at, keep: this.page.kept(grip.name) } : { move_mass: grip.name, to, at };
-    gesture.move([edit], stamp);
+    if (grip.kind === "point") return { move: grip.name, to, at, keep: this.page.kept(grip.name) };
+    if (grip.kind === "mass") return { move_mass: grip.name, to, at };
+    const [cam, axis] = this.stage.circle(grip) ?? [];
+    return cam && axis ? { set: cam.path, value: Math.hypot(to[0] - axis[0], to[1] - axis[1]) } : null;
   }
 
   private press(event: PointerEvent, grip: Grip, element: SVGGElement): void {
@@ -201,7 +221,9 @@ export class Hands {
     const place = this.target ?? this.stage.place(grip);
     if (!place) return;
     const step = this.step() * (event.shiftKey ? COARSE : event.altKey ? FINE : 1);
-    this.move([place[0] + way[0] * step, place[1] + way[1] * step], event.timeStamp);
+    const [, axis] = this.stage.circle(grip) ?? [];
+    const [dx, dy] = axis ? outward(axis, place, way) : way;
+    this.move([place[0] + dx * step, place[1] + dy * step], event.timeStamp);
     this.gesture?.endSoon(PAUSE);
   }
 
@@ -212,16 +234,20 @@ export class Hands {
   }
 }
 
+/** Away from an axis by keys to the right and up, towards it by the others. */
+function outward(axis: Pair, place: Pair, way: Pair): Pair {
+  const [dx, dy] = [place[0] - axis[0], place[1] - axis[1]];
+  const share = (way[0] + way[1]) / (Math.hypot(dx, dy) || 1);
+  return [share * dx, share * dy];
+}
+
 /** In the row or the column of where it was, whichever is nearer. */
 function straight([x, y]: Pair, [toX, toY]: Pair): Pair {
   return Math.abs(toX - x) > Math.abs(toY - y) ? [toX, y] : [x, toY];
 }
 
 export function nameOf(grip: Grip): string {
-  const { name } = grip;
-  return grip.kind === "point"
-    ? say("Joint {name}", { name })
-    : say("Centre of mass of {name}", { name });
+  return say(NAMES[grip.kind], { name: grip.name });
 }
 
 function gripOf(element: SVGElement): Grip {

@@ -16,7 +16,7 @@ export const KEYS: [keys: string, what: string][] = [
   ["Ctrl + Z", toSay("undo")],
   ["Ctrl + Shift + Z", toSay("redo")],
   ["Ctrl + S", toSay("save the file that was opened, or download the model")],
-  ["V P L J X S G B K D", toSay("tools: select, point, link, pin, separate, slider, gears, belt, rack, drive")],
+  ["V P L J X S G B K C D", toSay("tools: select, point, link, pin, separate, slider, gears, belt, rack, cam, drive")],
   ["Delete", toSay("delete the joint or link that is chosen")],
   ["?", toSay("this list")],
 ];

@@ -14,6 +14,7 @@ export type Tool =
   | "gears"
   | "belt"
   | "rack"
+  | "cam"
   | "drive"
   | "delete";
 
@@ -101,6 +102,14 @@ export const TOOLS: Told[] = [
     picture: "M7 2.500a3 3 0 1 0 .01 0M2 13.500v-2.500h1.500v-1.500h2v1.500h2v-1.500h2v1.500h2v-1.500h2v1.500h.5v2.500z",
   },
   {
+    tool: "cam",
+    key: "c",
+    name: toSay("Cam"),
+    first: toSay("click the link that bears the cam"),
+    then: toSay("click the follower, where it rides on the cam: a link that swings, or a slider"),
+    picture: "M6 13.500a3.500 3.500 0 0 1-3.300-4.700l2-5a1.400 1.400 0 0 1 2.600 0l2 5a3.500 3.500 0 0 1-3.300 4.700zM6 9.500a.8.8 0 1 0 .01 0M12.500 2.500v7M11 9.500h3",
+  },
+  {
     tool: "drive",
     key: "d",
     name: toSay("Drive"),
@@ -112,10 +121,17 @@ export const TOOLS: Told[] = [
     tool: "delete",
     key: "Delete",
     name: toSay("Delete"),
-    first: toSay("click the joint, the link, the slider, the gears, the belt or the rack that is to go"),
+    first: toSay("click the joint, the link, the slider, the gears, the belt, the rack or the cam that is to go"),
     then: "",
     picture: "M3 4.500h10M6.500 4.500v-2h3v2M4.500 4.500l.7 9h5.600l.7-9",
   },
+];
+
+/** What of a follower may be on its cam, and what that is called. */
+const RIDERS: [rides: string, name: string][] = [
+  ["roller", toSay("roller")],
+  ["flat", toSay("flat face")],
+  ["knife", toSay("knife edge")],
 ];
 
 export interface Palettes {
@@ -138,6 +154,8 @@ export class Palette {
   });
   private readonly teeth: HTMLInputElement[];
   private readonly meshing: HTMLElement;
+  private readonly rider = h("select", { "aria-label": say("What rides on the cam") });
+  private readonly riding = h("span", { class: "meshing", hidden: true }, say("follower"), this.rider);
 
   constructor(private readonly page: Palettes) {
     const tools = TOOLS.map((told) => {
@@ -153,12 +171,14 @@ export class Palette {
       h("input", { type: "text", inputmode: "numeric", class: "teeth", "aria-label": name, value: "20" }),
     );
     this.meshing = h("span", { class: "meshing", hidden: true }, say("teeth"), ...this.teeth);
+    this.rider.append(...RIDERS.map(([value, name]) => h("option", { value }, say(name))));
     this.name.addEventListener("change", () => this.rename());
     this.root = h(
       "div",
       { class: "making" },
       h("div", { class: "tools", role: "toolbar", "aria-label": say("Tools") }, make, ...tools),
       this.meshing,
+      this.riding,
       this.name,
       this.status,
       this.next,
@@ -171,12 +191,18 @@ export class Palette {
     return [one ?? NaN, other ?? NaN];
   }
 
+  /** What of the next cam's follower is on it. */
+  get rides(): string {
+    return this.rider.value;
+  }
+
   /** Which tool is used, and what to do next with it. */
   show(tool: Tool, pending: boolean): void {
     for (const [name, button] of this.buttons) set(button, { "aria-pressed": String(name === tool) });
     const told = TOOLS.find((one) => one.tool === tool);
     write(this.next, tool === "select" || !told ? "" : say(pending ? told.then : told.first));
     this.meshing.hidden = tool !== "gears" && tool !== "belt";
+    this.riding.hidden = tool !== "cam";
   }
 
   tell(status: Status): void {

@@ -177,10 +177,20 @@ export interface Sign {
     ground?: Pair;
   } | null;
   /** The slider or the coupling that it tells, if any. */
-  part: [what: "slider" | "gears" | "belts" | "racks", name: string] | null;
+  part: [what: "slider" | "gears" | "belts" | "racks" | "cams", name: string] | null;
   /** Whether it stands on the ground, and not on the support. */
   still: boolean;
   shapes: Shape[];
+}
+
+/** A base circle that can be changed by hand, across from the point of its follower. */
+export interface BaseCircle {
+  name: string;
+  path: string;
+  /** m. */
+  radius: number;
+  axis: string;
+  point: string;
 }
 
 export interface Scene {
@@ -191,6 +201,7 @@ export interface Scene {
   mass_centers: string[];
   box: [number, number, number, number];
   movable: string[];
+  cams: BaseCircle[];
   /** From the back to the front. */
   signs: Sign[];
   /** What a support turns about, m. */
@@ -456,6 +467,15 @@ export interface Refused {
   what?: string;
 }
 
+/** A file to be kept; `files` are texts of the tables that it names. */
+export interface HandedOut {
+  type: "file";
+  seq: number;
+  name: string;
+  mime: string;
+  files?: Record<string, string>;
+}
+
 /** Keys, names and numbers from 0 on the way to a table of a model file. */
 export type Steps = (string | number)[];
 
@@ -578,7 +598,7 @@ export type Told =
   /** Sign of the file as it is now, and the model that its steps began with. */
   | { type: "saved"; seq: number; name: string; base: string; text: string }
   | { type: "busy"; seq?: number; what: string }
-  | { type: "file"; seq: number; name: string; mime: string }
+  | HandedOut
   /** All answers to a question have come, those too that take longer. */
   | { type: "told"; seq: number }
   /** Said by the page's own transport, never by a server. */

@@ -3,7 +3,7 @@
 import { Dimensions } from "./dims";
 import { s, set } from "./dom";
 import { type Overlay, type Swing, swung } from "./overlay";
-import type { Pair, Scene, State } from "./protocol";
+import type { BaseCircle, Pair, Scene, State } from "./protocol";
 import { at, curve, outside, quarters } from "./shapes";
 import { ruled } from "./sheet";
 import { build, Piece } from "./signs";
@@ -30,9 +30,9 @@ interface Label extends Named {
   footed: boolean;
 }
 
-export type Kind = "point" | "mass";
+export type Kind = "point" | "mass" | "radius";
 
-/** What can be taken hold of: a joint, or a link's centre of mass. */
+/** What can be taken hold of: a joint, a link's centre of mass, or the base circle of a cam. */
 export interface Grip {
   kind: Kind;
   name: string;
@@ -75,9 +75,9 @@ export class Stage {
 
   /** Take a state, before it is posed; `other` is of another machine, another build is drawn from scratch. */
   show(state: State, other: boolean): void {
-    const { frame, bodies, movable, mass_centers } = state.scene;
+    const { frame, bodies, movable, mass_centers, cams } = state.scene;
     // While a point is dragged signs may change their order, but what is held must stay the same.
-    const names = JSON.stringify([frame, bodies, movable, mass_centers]);
+    const names = JSON.stringify([frame, bodies, movable, mass_centers, cams.map(({ name }) => name)]);
     const signs = build(state.scene);
     const built = names !== this.names;
     this.state = state;
@@ -136,11 +136,30 @@ export class Stage {
     this.pose(this.k);
   }
 
-  /** Where a point or a centre of mass is at sample k, m. */
+  /** Where what can be taken hold of is at sample k, m. */
   place(grip: Grip, k = this.k): Pair | null {
+    if (grip.kind === "radius") return this.across(grip, k);
     const name = grip.kind === "point" ? `place.${grip.name}` : `mass_center.${grip.name}`;
     const row = this.state?.numbers.get(name);
     return row ? [row[2 * k] as number, row[2 * k + 1] as number] : null;
+  }
+
+  /** The base circle that is taken hold of, if one is, and where its cam turns, m. */
+  circle(grip: Grip, k = this.k): [cam: BaseCircle, axis: Pair] | null {
+    const cams = grip.kind === "radius" ? this.state?.scene.cams : [];
+    const cam = cams?.find(({ name }) => name === grip.name);
+    const axis = cam && this.place({ kind: "point", name: cam.axis }, k);
+    return cam && axis ? [cam, axis] : null;
+  }
+
+  /** On a base circle, across from the follower, m. */
+  private across(grip: Grip, k: number): Pair | null {
+    const [cam, axis] = this.circle(grip, k) ?? [];
+    const rider = cam && this.place({ kind: "point", name: cam.point }, k);
+    if (!axis || !rider) return null;
+    const [dx, dy] = [axis[0] - rider[0], axis[1] - rider[1]];
+    const share = cam.radius / (Math.hypot(dx, dy) || 1);
+    return [axis[0] + share * dx, axis[1] + share * dy];
   }
 
   /** Every point by its name, m. */
@@ -207,8 +226,15 @@ export class Stage {
       const name = key.slice(key.indexOf(":") + 1);
       if (key.startsWith("point:")) move(element, spot(name));
       else {
-        const place = this.place({ kind: "mass", name }, k);
-        if (place) move(element, this.view.px(...place));
+        const kind = key.startsWith("radius:") ? "radius" : "mass";
+        const place = this.place({ kind, name }, k);
+        if (!place) continue;
+        const [px, py] = this.view.px(...place);
+        move(element, [px, py]);
+        const [cam, axis] = this.circle({ kind, name }, k) ?? [];
+        if (!cam || !axis) continue;
+        const [cx, cy] = this.view.px(...axis);
+        set(element.firstElementChild as SVGElement, { cx: cx - px, cy: cy - py, r: cam.radius * this.view.scale });
       }
     }
   }
@@ -281,21 +307,23 @@ export class Stage {
     this.layer.paths?.append(...this.paths.map(({ element }) => element), this.rim);
     this.labels = [...new Set([...scene.frame, ...points])].map((name) => labelOf(name, scene));
     this.layer.labels?.append(...this.labels.map(({ element }) => element));
-    this.buildGrips(scene.movable, scene.mass_centers);
+    this.buildGrips(scene);
     if (held) this.grips.get(held)?.focus({ preventScroll: true }); // keys go on where they were
   }
 
-  private buildGrips(movable: string[], masses: string[]): void {
+  private buildGrips({ movable, mass_centers, cams }: Scene): void {
     this.grips.clear();
     const add = (grip: Grip, ...parts: SVGElement[]) => {
       const halo = [s("circle", { class: "hit", r: 15 }), s("circle", { class: "halo", r: 11 })];
       const element = s("g", { class: `grip ${grip.kind}`, tabindex: 0 }, ...halo, ...parts);
+      if (grip.kind === "radius") element.prepend(s("circle", { class: "base" }));
       this.dress(grip, element);
       this.grips.set(keyOf(grip), element);
       this.layer.grips?.append(element);
     };
     // Those that are added later are above: joints are, because they are asked for more often.
-    for (const name of masses) {
+    for (const { name } of cams) add({ kind: "radius", name }, s("path", { class: "knob", d: "M0-6L6 0L0 6L-6 0z" }));
+    for (const name of mass_centers) {
       const signs = [
         s("circle", { class: "rim", r: 6.5 }),
         s("path", { class: "quarters", d: quarters(6.5) }),

@@ -20,7 +20,7 @@ const ARROWS: Record<string, Pair> = {
 };
 
 /** Tools that need two clicks. */
-const COUPLING = new Set<Tool>(["gears", "belt", "rack"]);
+const COUPLING = new Set<Tool>(["gears", "belt", "rack", "cam"]);
 const TWO = new Set<Tool>(["link", "pin", "slider", ...COUPLING]);
 
 export interface Making extends Turning, Snapping {
@@ -295,6 +295,10 @@ export class Tools {
         const driver = first && this.linkOf(first);
         return driver && link ? { do: this.tool, driver, driven: link, teeth, driven_teeth } : null;
       }
+      case "cam": {
+        const driver = first && this.linkOf(first);
+        return driver && link ? { do: "cam", driver, driven: link, spot: spot(hit), rides: this.palette.rides } : null;
+      }
       case "drive":
         return link ? { do: "drive", link } : null;
       case "delete":
@@ -314,11 +318,12 @@ export class Tools {
 
   /**
    * The link that is meant; at a joint the one that turns about a point of the frame, and for a rack
-   * the one that slides.
+   * or a follower the one that slides.
    */
   private linkOf(hit: Hit): string | undefined {
     const { bodies = [], frame = [] } = this.page.state()?.scene ?? {};
-    const block = this.tool === "rack" && hit.part?.what === "slider" ? hit.part.name : "";
+    const slides = this.tool === "rack" || this.tool === "cam";
+    const block = slides && hit.part?.what === "slider" ? hit.part.name : "";
     const sliding = bodies.find(({ name }) => block.startsWith(`${name} on `));
     if (sliding) return sliding.name;
     const met = bodies.filter(({ points }) => hit.point && points.includes(hit.point));

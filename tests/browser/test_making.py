@@ -12,6 +12,7 @@ from playwright.sync_api import Page, expect
 
 import equipoise as eq
 from browser.live import NUMBER, Live
+from unit.web.test_camming import SWUNG
 from unit.web.test_sketch import GEARED, SAME, check_same, massed
 
 TURNS = "1 free motion; crank turns fully"
@@ -195,6 +196,63 @@ def test_a_geared_five_bar_is_made_by_keys(sheet: Sheet) -> None:
     sheet.type(**numbers)
     made, like = sheet.live.machine(), eq.loads(GEARED)
     check_same(massed(made, like, {name: name for name in like.links}), like)
+
+
+def test_a_cam_and_its_follower_are_made_by_mouse(sheet: Sheet) -> None:
+    sheet.take("Point")
+    sheet.click((0, 0), (60, 0))
+    sheet.take("Link")
+    sheet.click((0, 0), (20, 0), (60, 0), (30, 40))
+    sheet.take("Drive")
+    sheet.click((10, 0))
+    sheet.says("free motions too many: 1; rocker hangs free: pin D to something")
+    sheet.take("Cam")
+    live = sheet.live
+    expect(live.page.locator(".making .next")).to_have_text("click the link that bears the cam")
+    sheet.click((10, 0))
+    expect(live.page.locator(".making .next")).to_contain_text("click the follower")
+    sheet.click((30, 40))
+    sheet.says(TURNS)
+    made, like = live.machine(), eq.loads(SWUNG)
+    check_same(massed(made, like, {name: name for name in like.links}), like)
+    circle = live.page.get_by_role("slider", name="Base circle of crank to rocker")
+    expect(circle).to_have_attribute("aria-valuetext", "40.00 mm")
+    sheet.take("Select")
+    x, y = live.spot(circle.locator(".knob"))
+    ax, ay = live.spot(live.joint("A"))
+    live.drag(circle.locator(".knob"), (0.25 * (ax - x), 0.25 * (ay - y)))
+    assert live.machine().cams[0].base_radius == pytest.approx(0.03, abs=5e-4)
+    circle.press("Shift+ArrowUp")
+    live.settled()
+    assert 0.031 < live.machine().cams[0].base_radius < 0.04
+    for _ in range(3):  # both, and the cam
+        live.button("Undo").click()
+    sheet.says("free motions too many: 1")
+
+
+def test_a_cam_and_a_sliding_face_are_made_by_keys(sheet: Sheet) -> None:
+    live, keys = sheet.live, sheet.live.page.keyboard
+    sheet.take("Point")
+    sheet.steer(0, 0)
+    keys.press("l")
+    for place in ((0, 0), (20, 0)):
+        sheet.steer(*place)
+    keys.press("s")
+    for place in ((0, 30), (0, 0)):
+        sheet.steer(*place)
+    keys.press("c")
+    live.page.get_by_role("combobox", name="What rides on the cam").select_option("flat face")
+    for place in ((10, 0), (0, 30)):
+        sheet.steer(*place)
+    keys.press("d")
+    sheet.steer(10, 0)
+    sheet.says(TURNS)
+    (cam,) = live.machine().cams
+    assert (cam.rides, cam.driven, cam.base_radius) == ("flat", "slider", 0.03)
+    sheet.take("Delete")
+    sheet.steer(-15, 26)  # on the cam
+    sheet.says("free motions too many: 1")
+    assert not live.findings()
 
 
 def test_the_crank_turns_by_its_rim_and_grows_by_its_handle(live: Live) -> None:

@@ -8,8 +8,9 @@ import numpy as np
 
 from equipoise.mechanism.assembly.cam_fits import Fit, fits_of
 from equipoise.mechanism.assembly.cam_shapes import Shape
+from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.formulas.kernels import cross
-from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.symbols.shapes import Array, Mark, circle, line
 
 CORNERS = 360
@@ -18,14 +19,15 @@ BEYOND = 0.15
 """How much farther a flat face reaches than the cam touches it, over the base radius."""
 
 
-def cams_of(motion: Motion) -> Iterator[Mark]:
+def cams_of(machine: Machine, joints: Structure) -> Iterator[Mark]:
     """Every cam, then what rides on each; a knife's edge is a point, and has a sign already."""
     turn = np.linspace(0.0, 2 * np.pi, CORNERS, endpoint=False)
-    cut = [(fit, fit.shape(turn)) for fit in fits_of(motion.machine, motion.linkage.joints)]
+    cut = [(fit, fit.shape(turn)) for fit in fits_of(machine, joints)]
     for fit, shape in cut:
         flanks = [shape.outer] * (fit.cam.closed_by == "groove") + [shape.surface]
         for flank in flanks:
-            yield Mark(fit.cam.driver, fit.cam_pin, line("cam", *flank, closed=True))
+            around = line("cam", *flank, closed=True)
+            yield Mark(fit.cam.driver, fit.cam_pin, around, (fit.cam.table, fit.cam.name))
     for fit, shape in cut:
         if fit.cam.rides == "roller":
             roller = circle("rider", 0j, fit.cam.roller_radius)

@@ -147,7 +147,7 @@ class Scene:
             _field(motion),
             Carrier.of(machine),
             marks=(
-                *cams_of(motion),
+                *cams_of(machine, joints),
                 *strands_of(joints, machine.bodies),
                 *racks_of(joints, machine.bodies, lambda one: motion.sliders[one.name].travel),
             ),

@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.kinematics.tip import surface_of
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.symbols.carrier import MOUNT
 from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.pieces import Piece, pieces
@@ -21,7 +23,7 @@ UNIT = 1.25
 """Pixels: size of a unit of signs on a page."""
 
 
-def stage_of(scene: Scene, handles: Sequence[str]) -> Values:
+def stage_of(scene: Scene, handles: Sequence[str], cams: Sequence[Values] = ()) -> Values:
     """Names and the drawing of a scene.
 
     signs : from the back to the front, each with its ``layer``, the ``link`` that it is, the
@@ -30,6 +32,7 @@ def stage_of(scene: Scene, handles: Sequence[str]) -> Values:
         role, whether it is closed, radius (m), and that in pixels, then x and y (m) and offsets
         from there (pixels) of each corner.
     looks : role -> style.
+    cams : see `cams_told`.
     """
     low, high = scene.box
     drawn = pieces(scene)
@@ -43,6 +46,7 @@ def stage_of(scene: Scene, handles: Sequence[str]) -> Values:
         "mass_centers": list(scene.mass_centers),
         "box": [low.real, low.imag, high.real, high.imag],
         "movable": list(handles),
+        "cams": list(cams),
         "signs": [
             {**_sign(scene, piece), "shapes": [next(shapes) for _ in piece.shapes]}
             for piece in drawn
@@ -65,6 +69,23 @@ def _sign(scene: Scene, piece: Piece) -> Values:
         "part": piece.part,
         "still": piece.still,
     }
+
+
+def cams_told(machine: Machine, joints: Structure) -> list[Values]:
+    """What a page needs to change base circles by hand: of each the path and the value of its
+    radius, the point about which the cam turns, and the point of the follower, across from which
+    the circle is taken hold of.
+    """
+    return [
+        {
+            "name": cam.name,
+            "path": f"cams.{number}.base_radius",
+            "radius": cam.base_radius,
+            "axis": joints.pins_between(cam.driver, cam.carrier)[0],
+            "point": cam.point,
+        }
+        for number, cam in enumerate(machine.cams, 1)
+    ]
 
 
 def _strut(scene: Scene, name: str) -> Values:

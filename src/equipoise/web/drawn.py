@@ -13,6 +13,7 @@ from equipoise.i18n import Note, say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import DIGITS, display
+from equipoise.symbols.cams import cams_of
 from equipoise.symbols.drives import Drive
 from equipoise.symbols.scene import Guide, Scene, bodies_of
 from equipoise.symbols.shapes import Mark
@@ -260,10 +261,11 @@ def _wheels(sketch: Sketch) -> list[Wheel]:
 
 
 def _taut(sketch: Sketch) -> list[Mark]:
-    """Strands of belts, and racks, as far as these have their pins by now."""
+    """Strands of belts, racks, and cams, as far as these have their pins by now."""
     try:
+        cams = cams_of(sketch.machine(), sketch.joints) if sketch.rest.get("cams") else ()
         racks = racks_of(sketch.joints, sketch.bodies, sketch.travel)
-        return [*strands_of(sketch.joints, sketch.bodies), *racks]
+        return [*cams, *strands_of(sketch.joints, sketch.bodies), *racks]
     except (EquipoiseError, StopIteration, ValueError):  # a rack without its guide, or its pin
         return []
 

@@ -143,6 +143,7 @@ SECTIONS = {
     "drive": to_say("drive"),
     "frame": to_say("frame"),
     "gears": to_say("gears"),
+    "cams": to_say("cams"),
     "springs": to_say("springs"),
     "rows": to_say("rows"),
     "planting": to_say("planting"),
@@ -180,7 +181,7 @@ def _shown(value: float, unit: Display) -> str:
 
 def fields_of(design: Design) -> dict[str, Field]:
     """Every number by its path, in the order in which a page shows them."""
-    parts = (_drive, _links, _frame, _gears, _springs, _rows, _planting, _mounts)
+    parts = (_drive, _links, _frame, _gears, _cams, _springs, _rows, _planting, _mounts)
     found = [field for part in parts for field in part(design.own)]
     return {field.path: field for field in (*found, *_weights(design))}
 
@@ -272,6 +273,12 @@ def _gears(machine: Machine) -> Iterator[Field]:
     for number, gear in enumerate(machine.gears, 1):
         label = say("{gear}, angle of {link} at the start", gear=gear.name, link=gear.driven)
         yield _field(("gears", str(number), "start"), "gears", label, "angle", gear.start)
+
+
+def _cams(machine: Machine) -> Iterator[Field]:
+    for number, cam in enumerate(machine.cams, 1):
+        without = () if cam.rides == "roller" else ("roller_radius",)
+        yield from _numbers(("cams", str(number)), "cams", f"{cam.name}, ", cam, without)
 
 
 def _springs(machine: Machine) -> Iterator[Field]:

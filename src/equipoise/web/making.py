@@ -8,8 +8,10 @@ from functools import partial
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.parts.cams import RIDES
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.web.adding import with_drive, with_link, with_point, with_slider
+from equipoise.web.camming import with_cam
 from equipoise.web.coupling import with_belt, with_gears, with_rack
 from equipoise.web.messages import Message
 from equipoise.web.remaking import (
@@ -58,6 +60,10 @@ def _rack(sketch: Sketch, asked: Message) -> Sketch:
     return with_rack(sketch, *_ends(asked))
 
 
+def _cam(sketch: Sketch, asked: Message) -> Sketch:
+    return with_cam(sketch, *_ends(asked), asked.spot("spot"), asked.text("rides", RIDES[0]))
+
+
 def _ends(asked: Message) -> tuple[str, str]:
     return asked.text("driver"), asked.text("driven")
 
@@ -100,6 +106,7 @@ OPERATIONS: Mapping[str, tuple[str, Operation]] = {
     "gears": (to_say("add a pair of gears"), _gears),
     "belt": (to_say("add a belt"), _belt),
     "rack": (to_say("add a rack"), _rack),
+    "cam": (to_say("add a cam"), _cam),
     "drive": (
         to_say("set the drive"),
         lambda sketch, asked: with_drive(sketch, asked.text("link")),

@@ -109,3 +109,5 @@ def _axes_of(key: str, entry: Any) -> Iterator[str]:
         yield from (entry.link, entry.on)
     if key == "loads":
         yield entry.link
+    if key == "cams":  # the law counts from the axes of cam and carrier, a face stands in its own
+        yield from (entry.driver, entry.carrier, entry.driven)

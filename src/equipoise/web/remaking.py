@@ -26,7 +26,12 @@ from equipoise.web.moving import straight
 from equipoise.web.naming import What, named_in, renamed_in
 from equipoise.web.sketch import Sketch
 
-COUPLED = {"gears": to_say("pair of gears"), "belts": to_say("belt"), "racks": to_say("rack")}
+COUPLED = {
+    "gears": to_say("pair of gears"),
+    "belts": to_say("belt"),
+    "racks": to_say("rack"),
+    "cams": to_say("cam"),
+}
 """Lists of couplings, with what one of each is called."""
 TABLES = ("planting", "balance")
 """Tables of which there is one, and which go with a point or link that they name."""
@@ -128,7 +133,7 @@ def without_slider(sketch: Sketch, name: str) -> Sketch:
 
 
 def without_coupling(table: str, sketch: Sketch, name: str) -> Sketch:
-    """One pair of gears, one belt or one rack less."""
+    """One pair of gears, one belt, one rack or one cam less."""
     entries = [*sketch.entries()]
     found = [k for k, (key, one) in enumerate(entries) if key == table and one.name == name]
     if not found:
@@ -164,7 +169,8 @@ def _tidied(sketch: Sketch) -> Sketch:
 def _held(key: str, entry: Any, bodies: Bodies) -> bool:
     """Whether all that an entry names is there."""
     if key in COUPLED:
-        return {entry.driver, entry.driven, entry.carrier} <= bodies.keys()
+        there = {entry.driver, entry.driven, entry.carrier} <= bodies.keys()
+        return there and (key != "cams" or entry.point in bodies[entry.driven])
     points = [(entry.link, entry.point)] if entry.point is not None else []
     if key == "sliders":
         points.append((entry.on, entry.through))

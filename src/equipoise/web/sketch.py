@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from equipoise.mechanism.kinematics.outline import STILL, Outline, Pose
+from equipoise.mechanism.kinematics.outline import COUPLED, STILL, Outline, Pose
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector
 from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.quantities import clean_place
@@ -17,7 +17,7 @@ UNTITLED = "untitled"
 REST = ("title", "description", "gravity", "drives", "belts", "racks", "cams", "loads",
         "springs", "planting", "support", "rows", "balance", "bearings", "units")  # fmt: skip
 """Fields of a machine that a sketch hands on as they are."""
-LISTS = ("belts", "racks", "loads", "springs")
+LISTS = (*COUPLED, "loads", "springs")
 """Those of them that have names of links and points in them."""
 
 

@@ -18,7 +18,7 @@ from equipoise.results.drive_blocks import driven
 from equipoise.signals import Periodic
 from equipoise.web.arrows import arrows_of, points_of
 from equipoise.web.block import Array, Block, Values
-from equipoise.web.drawing import ground_of, moves_of, stage_of
+from equipoise.web.drawing import cams_told, ground_of, moves_of, stage_of
 from equipoise.web.edits import Solved, movable
 from equipoise.web.figures import charts_of, figures_of, least_of, signals_of
 from equipoise.web.following import extent_of
@@ -70,7 +70,7 @@ def state_of(
         "length": {"unit": length.name, "factor": length.factor},
         "has_forces": analysis.solved is not None,
         "missing": [name for name, link in machine.links.items() if not link.has_mass],
-        "scene": stage_of(scene, movable(machine)),
+        "scene": stage_of(scene, movable(machine), cams_told(machine, motion.linkage.joints)),
         "traced": traced(motion),
         "first": first_of(machine)[0],
         "figures": figures_of(signals, compared, machine),

@@ -196,7 +196,7 @@ def test_geared_five_bar_from_nothing_has_the_figures_of_its_file() -> None:
 
 def test_an_example_goes_on_being_made_and_finishes_again() -> None:
     """Taken apart at some crank angle, and put together: the same machine."""
-    for name in ("yamashita-1", "quick-return", "class-three", "stephenson-six-bar"):
+    for name in ("yamashita-1", "quick-return", "class-three", "stephenson-six-bar", "cam-pusher"):
         session, _ = opened(name)
         page, like = Maker(session), session.shown.design.machine
         crank = like.drive.link
@@ -399,7 +399,8 @@ def test_a_new_machine_takes_the_place_of_a_tool() -> None:
 
 @pytest.mark.parametrize(
     "name", ["transplanter", "balance-spring", "balance-geared-a", "brush-cutter-engine",
-             "spring-balanced-crank", "planetary-planting-arm", "riding-transplanter"]
+             "spring-balanced-crank", "planetary-planting-arm", "riding-transplanter",
+             "cam-pusher", "hydraulic-loader"]
 )  # fmt: skip
 def test_whatever_names_a_point_or_a_link_gets_its_new_name(name: str) -> None:
     """A machine with all names changed and changed back is the same."""

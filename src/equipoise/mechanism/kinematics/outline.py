@@ -32,6 +32,8 @@ from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities import clean, clean_place
 
 TITLE = "Untitled machine"
+COUPLED = ("belts", "racks", "cams")
+"""Lists of couplings beside gears."""
 USUAL_SIZE = 0.1
 """m, of a machine that has no points yet."""
 MESHING = 1e-9
@@ -63,6 +65,18 @@ class Pose:
 
 STILL = Pose()
 """Of the frame."""
+
+
+@dataclass(frozen=True)
+class Standing:
+    """Links that are pushed, as they are drawn, at whatever crank angle."""
+
+    angles: Mapping[str, float]
+
+    def moved(self, crank_angle: Any) -> dict[str, tuple[Any, Any, Any]]:
+        """Angle of each, and its two derivatives, of which nothing is known."""
+        one, none = np.ones(np.shape(crank_angle)), np.zeros(np.shape(crank_angle))
+        return {link: (angle * one, one, none) for link, angle in self.angles.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,8 +128,8 @@ class Outline:
 
     @property
     def joints(self) -> Structure:
-        coupled = (*self.gears, *self.rest.get("belts", ()), *self.rest.get("racks", ()))
-        return joined(self.bodies, self.sliders, coupled)
+        others = (one for key in COUPLED for one in self.rest.get(key, ()))
+        return joined(self.bodies, self.sliders, (*self.gears, *others))
 
     @property
     def driven(self) -> list[str]:
@@ -150,7 +164,7 @@ class Outline:
         ModelError : what it has contradicts itself, or it has no drive.
         """
         drive = self.drive or self._usual_drive()
-        turning = self._meshed(drive.link)
+        turning = self._meshed(drive)
         count = len(self.gears)
         return Machine(
             drive=drive,
@@ -170,7 +184,9 @@ class Outline:
         EquipoiseError : it does not make a linkage; the sentence says why.
         """
         machine = self.machine()
-        machine = replace(machine, assembly=sides_at_position(machine))
+        pushed = {one.link: self.pose(one.link).angle for one in machine.pushers}
+        turning = Standing(pushed) if pushed else None
+        machine = replace(machine, assembly=sides_at_position(machine, turning))
         if machine.racks:
             machine = replace(machine, racks=self._engaged(machine))
         loops = any(group.kind == "loops" for group in assemble(machine).groups)
@@ -187,13 +203,14 @@ class Outline:
         way = self.places[slider.point] - self.places[slider.through]
         return (way / exp(1j * (slider.direction + self.pose(slider.on).angle))).real
 
-    def _meshed(self, drive: str) -> tuple[Any, ...]:
+    def _meshed(self, drive: Drive) -> tuple[Any, ...]:
         """Gears, then belts, that start so that what they drive comes to where it is drawn, as far
         as that is known.
         """
         angles = {FRAME: (0.0, 0.0)}  # at crank angle 0, and as drawn
-        if drive in self.links:
-            angles[drive] = 0.0, self.pose(drive).angle
+        for given in (drive, *self.rest.get("drives", ())):
+            if given.link in self.links and not given.pushes:
+                angles[given.link] = float(given.turned(0.0)[0]), self.pose(given.link).angle
         found: list[Gear | Belt] = [*self.gears, *self.rest.get("belts", ())]
         left = [*range(len(found))]
         while ready := [k for k in left if _known(found[k], angles)]:
