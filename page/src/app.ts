@@ -50,7 +50,7 @@ export class App {
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
   private readonly planted = new FigureTable(say("Figures of the planting finger"));
-  private readonly strokes = new FigureTable(say("Figures of sliders and rockers"));
+  private readonly strokes = new FigureTable(say("Figures of sliders, rockers and cams"));
   private readonly across = h("img", {
     class: "across",
     alt: say("The planes of links, masses and bearings, from the side and to scale."),
@@ -498,7 +498,8 @@ export class App {
       if (problem) return this.board.say(problem, true);
     }
     const [{ name }, text] = [file, await file.text()];
-    if (isTable(file)) return this.command({ type: "record", name, text });
+    // Without a text a record is taken away.
+    if (isTable(file)) return this.command({ type: "record", name, text: text || "\n" });
     const texts = tables.map(async (one) => [one.name, await one.text()] as const);
     const files = Object.fromEntries(await Promise.all(texts));
     void this.open({ type: "open", name, text, files }, name);

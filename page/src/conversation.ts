@@ -1,6 +1,6 @@
 /** One question at a time: of edits that wait, the newest is enough. */
 
-import type { Asked, Edit, Refused, Tables, Told, Wire } from "./protocol";
+import type { Asked, Edit, HandedOut, Refused, Tables, Told, Wire } from "./protocol";
 import { mark } from "./frames";
 import { Numbers, type Pictured, type Planted, type ResponseMessage, type Side, type State } from "./protocol";
 import type { GhostMessage, Stores, StudyMessage, ToolMessage, VariantsMessage } from "./protocol";
@@ -25,7 +25,7 @@ export interface Events {
   tables(message: Tables): void;
   saved(name: string): void;
   pictured(message: Pictured | null, numbers: Numbers): void;
-  file(name: string, mime: string, bytes: DataView | undefined): void;
+  file(told: HandedOut, bytes: DataView | undefined): void;
   line(up: boolean): void;
   /** An answer takes longer than a reader waits without a sign. */
   waiting(on: boolean): void;
@@ -41,7 +41,7 @@ interface Question {
   asked: Asked;
   answered?: Answered | undefined;
   /** Takes the file that is asked for, instead of the browser's downloads. */
-  got?: ((name: string, bytes: DataView | undefined) => void) | undefined;
+  got?: ((told: HandedOut, bytes: DataView | undefined) => void) | undefined;
 }
 
 /** What takes long: other questions do not wait for it. */
@@ -198,10 +198,10 @@ export class Conversation {
     }
   };
 
-  private file(told: Extract<Told, { type: "file" }>, bytes: DataView | undefined): void {
+  private file(told: HandedOut, bytes: DataView | undefined): void {
     const got = this.aside.get(told.seq)?.got ?? this.flight?.got;
-    if (got) got(told.name, bytes);
-    else this.events.file(told.name, told.mime, bytes);
+    if (got) got(told, bytes);
+    else this.events.file(told, bytes);
   }
 
   private refuse(seq: number, message: string): void {

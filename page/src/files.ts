@@ -1,6 +1,7 @@
 /** Files that are dropped on the page, and files that it hands out. */
 
 import { h } from "./dom";
+import type { HandedOut } from "./protocol";
 import { say } from "./words";
 
 /** Let files be dropped on an element; returns the veil that is over it meanwhile. */
@@ -49,11 +50,16 @@ export function tooLarge(file: File, largest: number): string | null {
   return say("{name} has {size} MB; at most {most} MB are read: give a model file.", values);
 }
 
-/** Hand a file to the browser's own downloads. */
-export function save(name: string, mime: string, bytes: DataView | undefined): void {
+/** Hand a file, and the tables that it names, to the browser's own downloads. */
+export function save({ name, mime, files = {} }: HandedOut, bytes: DataView | undefined): void {
   const part = bytes
     ? new Uint8Array(bytes.buffer as ArrayBuffer, bytes.byteOffset, bytes.byteLength)
     : "";
+  handOut(name, mime, part);
+  for (const [table, text] of Object.entries(files)) handOut(table, "text/csv", text);
+}
+
+function handOut(name: string, mime: string, part: BlobPart): void {
   const address = URL.createObjectURL(new Blob([part], { type: mime }));
   h("a", { href: address, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(address), 10_000);

@@ -4,7 +4,7 @@ import type { Conversation } from "./conversation";
 import { h } from "./dom";
 import type { Asked, Hello } from "./protocol";
 import { question } from "./question";
-import { fragment, LONGEST, read } from "./share";
+import { fragment, LONGEST, read, type Shared } from "./share";
 import type { Told } from "./story";
 import type { Opened } from "./toolbar";
 import { say } from "./words";
@@ -51,7 +51,7 @@ export class Keeping {
     if (await this.shared()) return true;
     if (this.page.talk.recall(hello.base)) return true;
     const [told] = await this.page.talk.offered(hello.base);
-    if (told) this.show(told, hello.base);
+    if (told && this.offer.hidden) this.show(told, hello.base);
     return false;
   }
 
@@ -96,13 +96,14 @@ export class Keeping {
   link(): void {
     const { page } = this;
     page.talk.release();
-    page.talk.ask({ type: "download", kind: "model" }, undefined, (name, bytes) => {
-      void this.copy(name, new TextDecoder().decode(bytes));
+    page.talk.ask({ type: "download", kind: "model" }, undefined, ({ name, files }, bytes) => {
+      const text = new TextDecoder().decode(bytes);
+      void this.copy({ name, text, ...(files && { files }) });
     });
   }
 
-  private async copy(name: string, text: string): Promise<void> {
-    const address = `${location.href.replace(/#.*/, "")}#${await fragment({ name, text })}`;
+  private async copy(shared: Shared): Promise<void> {
+    const address = `${location.href.replace(/#.*/, "")}#${await fragment(shared)}`;
     if (address.length > LONGEST) {
       const values = { length: address.length, most: LONGEST };
       return this.page.say(
@@ -132,11 +133,16 @@ export class Keeping {
     history.replaceState(null, "", pathname + search);
     try {
       const found = await read(hash, this.largest);
-      if (!found) return false;
       this.page.open({ type: "open", ...found }, found.name);
       return true;
     } catch {
-      this.page.say(say("the address holds no whole model: copy all of the link"), true);
+      // Above the page, where no machine that opens takes it away.
+      this.offer.replaceChildren(
+        say("the address holds no whole model: copy all of the link"),
+        " ",
+        this.button(say("Close"), () => undefined),
+      );
+      this.offer.hidden = false;
       return false;
     }
   }

@@ -467,6 +467,15 @@ export interface Refused {
   what?: string;
 }
 
+/** A file to be kept; `files` are texts of the tables that it names. */
+export interface HandedOut {
+  type: "file";
+  seq: number;
+  name: string;
+  mime: string;
+  files?: Record<string, string>;
+}
+
 /** Keys, names and numbers from 0 on the way to a table of a model file. */
 export type Steps = (string | number)[];
 
@@ -589,7 +598,7 @@ export type Told =
   /** Sign of the file as it is now, and the model that its steps began with. */
   | { type: "saved"; seq: number; name: string; base: string; text: string }
   | { type: "busy"; seq?: number; what: string }
-  | { type: "file"; seq: number; name: string; mime: string }
+  | HandedOut
   /** All answers to a question have come, those too that take longer. */
   | { type: "told"; seq: number }
   /** Said by the page's own transport, never by a server. */

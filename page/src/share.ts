@@ -6,27 +6,39 @@ export const LONGEST = 30_000;
 export interface Shared {
   name: string;
   text: string;
+  /** Texts of the tables that it names. */
+  files?: Record<string, string>;
 }
 
 /** The part behind the `#`, without it. */
-export async function fragment({ name, text }: Shared): Promise<string> {
+export async function fragment({ name, text, files = {} }: Shared): Promise<string> {
+  const tables = Object.keys(files).length > 0 && { tables: await packed(JSON.stringify(files)) };
+  return new URLSearchParams({ name, model: await packed(text), ...tables }).toString();
+}
+
+async function packed(text: string): Promise<string> {
   const stream = new Blob([text]).stream().pipeThrough(new CompressionStream("deflate"));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
   let signs = "";
   for (const byte of bytes) signs += String.fromCharCode(byte);
-  const model = btoa(signs).replace(/\+/g, "-").replace(/\//g, "_").replace(/=/g, "");
-  return new URLSearchParams({ name, model }).toString();
+  return btoa(signs).replace(/\+/g, "-").replace(/\//g, "_").replace(/=/g, "");
 }
 
-/** What a fragment holds; null where it holds no model, and an error where it is damaged. */
-export async function read(hash: string, largest: number): Promise<Shared | null> {
+/** What a fragment holds, and an error where that is no whole model. */
+export async function read(hash: string, largest: number): Promise<Shared> {
   const found = new URLSearchParams(hash.replace(/^#/, ""));
-  const model = found.get("model");
-  if (!model) return null;
-  const signs = atob(model.replace(/-/g, "+").replace(/_/g, "/"));
+  const [model, tables] = [found.get("model"), found.get("tables")];
+  if (!model) throw new RangeError();
+  const name = found.get("name") ?? "machine.toml";
+  const files = tables && (JSON.parse(await unpacked(tables, largest)) as Record<string, string>);
+  return { name, text: await unpacked(model, largest), ...(files && { files }) };
+}
+
+async function unpacked(packed: string, largest: number): Promise<string> {
+  const signs = atob(packed.replace(/-/g, "+").replace(/_/g, "/"));
   const bytes = Uint8Array.from(signs, (sign) => sign.charCodeAt(0));
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return { name: found.get("name") ?? "machine.toml", text: await text(stream, largest) };
+  return text(stream, largest);
 }
 
 /** A few bytes can swell to any size: nothing is read beyond what a model may have. */

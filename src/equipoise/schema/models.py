@@ -216,6 +216,32 @@ def dumped(model: Machine | Tool) -> str:
     return text_of(model, {part.where: part.file for part in parts})
 
 
+def taken_along(model: Machine | Tool, name: str) -> tuple[str, dict[str, str]]:
+    """The text of a file that is taken anywhere, and those of the tables it names, by their names.
+
+    name : of the file, after which tables are called that have no name, or that of another one.
+
+    Raises
+    ------
+    ModelError : a linkage of a tool has no file, or a section has what no file can tell.
+    """
+    from equipoise.schema.tables import format_table
+
+    parts = parts_of(model)
+    if any(part.sort == "linkage" for part in parts):
+        _ = dumped(model)
+    names: dict[str, str] = {}
+    texts: dict[str, str] = {}
+    for part in parts:
+        names[part.where] = part.file
+        if part.sort != "linkage":
+            text, own = format_table(part.value), Path(part.file).name
+            if not own or texts.get(own, text) != text:
+                own = part.name_beside(Path(name))
+            names[part.where], texts[own] = own, text
+    return text_of(model, names), texts
+
+
 def save_model(model: Machine | Tool, path: Path) -> None:
     """Write a file and those beside it, the model file last; errors as `text_of`."""
     parts = parts_of(model)

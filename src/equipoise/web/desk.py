@@ -175,8 +175,9 @@ def begun(file: str | None) -> Callable[[], Desk]:
     disk = on_disk(file, first.shown)
 
     def begin() -> Desk:
-        session = Session(disk=disk)
-        found = first.shown if disk is None else disk.found
+        own = disk and disk.now()
+        session = Session(disk=own)
+        found = first.shown if own is None else own.found
         session.open(found.design, found)
         return Desk(session, folder=folder)
 

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from threading import Lock
 from typing import Any
 
-from equipoise.errors import UsageError
+from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import Note
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.documents import dumps
 from equipoise.schema.files import FileError, printable, read_text, write
+from equipoise.schema.models import Beside, parts_of
 from equipoise.web.design import Design
 from equipoise.web.edits import Solved, solved
+from equipoise.web.openings import opened_file
 
 COMMENT = re.compile(r"^\s*#|\s#\s", re.MULTILINE)
 
@@ -23,8 +26,10 @@ COMMENT = re.compile(r"^\s*#|\s#\s", re.MULTILINE)
 class Disk:
     """A model file as it was last read or written.
 
+    Each page has one of its own, so that none writes over what another one has saved.
+
     path : of the file.  text : what it holds.  found : the design in it, computed.
-    lock : held while it is written, since pages share it.
+    lock : held while it is written, since pages share the file.
     """
 
     path: str
@@ -53,12 +58,23 @@ class Disk:
         saved = machine is not None and self.found.design.machine == machine
         return {"name": self.name, "saved": saved, "comments": self.has_comments}
 
+    def now(self) -> Disk:
+        """The same for another page, with what the file holds by now, where that is a machine."""
+        text = self._on_disk()
+        if text is None or text == self.text:
+            return replace(self)
+        try:
+            return replace(self, text=text, found=solved(opened_file(self.path)))
+        except EquipoiseError:
+            return replace(self)
+
     def save(self, found: Solved) -> None:
         """Put a design in the place of what the file holds.
 
         Raises
         ------
-        UsageError : somebody else has changed the file meanwhile, or it cannot be written.
+        UsageError : somebody else has changed the file meanwhile, or it cannot be written, or
+            lacks a table beside it.
         ModelError : the machine has what no file can tell.
         """
         text = dumps(found.design.machine)
@@ -66,14 +82,33 @@ class Disk:
             if self._on_disk() != self.text:
                 raise UsageError(
                     Note(
-                        "{name}: the file was changed on disk since it was opened; download the "
-                        "model to keep this one, or start `equipoise serve` again to see that one",
+                        "{name}: the file was changed since it was opened here, by another page or "
+                        "program; download the model to keep this one, or load the page again to "
+                        "see that one",
                         name=self.name,
                     )
                 )
+            self._check_tables(found.design.machine)
             write(self.path, text)
             design = Design(found.design.name, found.design.machine)
             self.text, self.found = text, solved(design)
+
+    def _check_tables(self, machine: Machine) -> None:
+        """Nothing but the model file is written: its tables have to lie beside it."""
+        for part in parts_of(machine):
+            try:
+                beside = Beside(os.path.dirname(self.path)).read(part.sort, part.file)
+            except EquipoiseError:
+                beside = None
+            if beside != part.value:
+                raise UsageError(
+                    Note(
+                        "{name}: the table {table!r} does not lie beside it as it is here; put it "
+                        "there, or download the model with its tables",
+                        name=self.name,
+                        table=printable(part.file),
+                    )
+                )
 
     def _on_disk(self) -> str | None:
         """What the file holds now; None where it cannot be read."""

@@ -9,8 +9,8 @@ from typing import Any
 from equipoise.errors import UsageError
 from equipoise.i18n import LANGUAGES
 from equipoise.mechanism.checks import unknown
-from equipoise.schema.documents import dumps
 from equipoise.schema.files import to_csv
+from equipoise.schema.models import taken_along
 from equipoise.web.edits import Solved
 from equipoise.web.messages import Message
 from equipoise.web.pictures import chart_of, drawing, film_of, linkage_at
@@ -37,30 +37,32 @@ Replies = Callable[[str], Iterable[Reply]]
 def downloaded(found: Solved, message: Message, told: Replies) -> tuple[dict[str, Any], bytes]:
     """Name and type of a file that a message asks for, and its bytes.
 
+    The model comes with the texts of the tables that it names, by the names of their files.
+
     Raises
     ------
     UsageError : there is no such file or language.
     EquipoiseError : it cannot be made of this machine.
     """
     kind = message.text("kind")
-    if kind not in (*FILES, PLAYED):
-        raise UsageError(unknown(kind, (*FILES, PLAYED), "download"))
+    if kind not in (MODEL, *FILES, PLAYED):
+        raise UsageError(unknown(kind, (MODEL, *FILES, PLAYED), "download"))
+    more: dict[str, Any] = {}
     stem = FORBIDDEN.sub("-", found.design.name.removesuffix(".toml")) or "machine"
     if kind == PLAYED:
         language = message.text("language", "en")
         end, data = "-played.html", played(found, told(language), language).encode()
+    elif kind == MODEL:
+        text, more["files"] = taken_along(found.design.machine, f"{stem}.toml")
+        end, data = ".toml", text.encode()
     else:
         end, data = FILES[kind](found, message, stem)
     name = f"{stem}{end}"
-    return {"name": name, "mime": MIMES[name.rpartition(".")[2]]}, data
+    return {"name": name, "mime": MIMES[name.rpartition(".")[2]], **more}, data
 
 
 Made = tuple[str, bytes]
 """What follows the name of the machine in that of the file, and its bytes."""
-
-
-def _model(found: Solved, message: Message, stem: str) -> Made:
-    return ".toml", dumps(found.design.machine).encode()
 
 
 def _csv(found: Solved, message: Message, stem: str) -> Made:
@@ -74,7 +76,7 @@ def _report(found: Solved, message: Message, stem: str) -> Made:
     language = message.text("language", "en")
     if language not in LANGUAGES:
         raise UsageError(unknown(language, LANGUAGES, "language of reports"))
-    file = dumps(found.design.machine)
+    file, _ = taken_along(found.design.machine, f"{stem}.toml")
     findings = Findings(found.analysis.machine, file, f"{stem}.toml", swings=found.swings)
     with drawing:
         text = report_page(findings, language)
@@ -106,7 +108,6 @@ def _rendered(picture: Any, name: str, message: Message) -> Made:
 
 
 FILES: dict[str, Callable[[Solved, Message, str], Made]] = {
-    "model": _model,
     "csv": _csv,
     "report": _report,
     "drawing": _drawing,
@@ -114,5 +115,7 @@ FILES: dict[str, Callable[[Solved, Message, str], Made]] = {
     "film": _film,
 }
 """What there is."""
+MODEL = "model"
+"""Besides, the model with its tables."""
 PLAYED = "played"
 """And a page in one file."""

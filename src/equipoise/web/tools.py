@@ -14,8 +14,8 @@ from equipoise.i18n import LANGUAGES, Note, said, say
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import in_unit, parse, typeset
 from equipoise.quantities.units import KINDS
-from equipoise.schema.documents import dumps
 from equipoise.schema.files import printable
+from equipoise.schema.models import taken_along
 from equipoise.schema.numbers import Number, format_share, parse_share
 from equipoise.schema.opening import kind_of_text, opened
 from equipoise.schema.template import Template
@@ -163,8 +163,8 @@ class ToolDesk:
     def _download(self, message: Message) -> Reply:
         kind, language = message.text("kind"), message.text("language", "en")
         stem = self.name.removesuffix(".toml") or "tool"
-        text = dumps(self.now.tool)
         name, mime = f"{stem}.toml", "application/toml"
+        text, files = taken_along(self.now.tool, name)
         if kind == "report":
             from equipoise.present.composition import report_page
             from equipoise.present.findings import ToolFindings
@@ -177,7 +177,9 @@ class ToolDesk:
             raise UsageError(
                 Note("{kind}: that is there for linkages; of a tool, model or report", kind=kind)
             )
-        told = {"type": "file", "seq": message.seq, "name": name, "mime": mime}
+        told: Values = {"type": "file", "seq": message.seq, "name": name, "mime": mime}
+        if kind == "model":
+            told["files"] = files
         return Reply(told, text.encode())
 
     # -- what it is told ---------------------------------------------------------------------------

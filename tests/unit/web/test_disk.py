@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import equipoise as eq
+from equipoise.web.desk import begun
 from equipoise.web.disk import on_disk
 from equipoise.web.openings import opened_file
 from equipoise.web.session import Session
@@ -52,11 +53,43 @@ def test_what_somebody_else_wrote_is_not_lost(path: Path) -> None:
     edit(session, CHANGE)
     other = example_text("yamashita-2")
     path.write_text(other, encoding="utf-8")
-    assert "was changed on disk" in refusal(ask(session, "save"))
+    assert "by another page or program" in refusal(ask(session, "save"))
     assert path.read_text(encoding="utf-8") == other
     path.unlink()
-    assert "was changed on disk" in refusal(ask(session, "save"))
+    assert "by another page or program" in refusal(ask(session, "save"))
     assert not path.exists()
+
+
+def test_pages_do_not_write_over_each_other(path: Path) -> None:
+    begin = begun(str(path))
+    one, other = begin().session, begin().session
+    edit(one, CHANGE)
+    edit(other, {**CHANGE, "text": "150 g"})
+    ask(one, "save")
+    saved = path.read_text(encoding="utf-8")
+    assert "by another page or program" in refusal(ask(other, "save"))
+    assert path.read_text(encoding="utf-8") == saved
+    ask(one, "undo")
+    ask(one, "save")
+    assert eq.load(path) == eq.load("yamashita-1")
+    path.write_text(saved, encoding="utf-8")  # by a program of another kind
+    again = begin().session
+    assert again.shown.design.machine == eq.loads(saved)
+    path.write_text("schema = 2", encoding="utf-8")
+    assert begin().session.shown.design.machine == eq.load("yamashita-1")
+
+
+def test_no_table_is_named_that_is_not_there(path: Path) -> None:
+    session = session_of(path)
+    values = {"link": "coupler", "table": "push.csv"}
+    files = {"push.csv": "crank_angle [deg],torque [N m]\n0,1\n180,2\n360,1\n"}
+    ask(session, "entry", label="", place=["loads", 0], values=values, files=files)
+    assert "the table 'push.csv' does not lie beside it" in refusal(ask(session, "save"))
+    (model,) = ask(session, "download", kind="model")
+    for name, text in model.content["files"].items():
+        (path.parent / name).write_text(text, encoding="utf-8")
+    ask(session, "save")
+    assert eq.load(path) == session.shown.design.machine
 
 
 def test_nothing_but_the_opened_file_is_written(path: Path) -> None:

@@ -75,3 +75,12 @@ def test_a_page_that_plays_holds_all_that_was_told(monkeypatch: pytest.MonkeyPat
     state = told["replies"][2][0]
     assert {f"output.{one['name']}" for one in state["outputs"]} <= state["arrays"].keys()
     assert told["replies"][0][0]["language"] == "ko"
+
+
+def test_a_model_comes_with_its_tables() -> None:
+    session, _ = opened("four-stroke-engine")
+    (file,) = ask(session, "download", kind="model")
+    text, files = file.buffer.decode(), file.content["files"]
+    again = Session()
+    ask(again, "open", name="there.toml", text=text, files=files)
+    assert again.shown.design.machine == session.shown.design.machine
