@@ -6,11 +6,10 @@ Signals go by their names in the output of an analysis.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from equipoise.codegen.across import write_bearing
 from equipoise.codegen.applied import stretched
-from equipoise.codegen.coupled import can_write_couplings, shifts_laws
 from equipoise.codegen.figures import Figure, Gathered
 from equipoise.codegen.followers import can_write_followers
 from equipoise.codegen.lines import write_demands, write_joints, write_motion
@@ -167,8 +166,8 @@ def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
 
 
 def can_emit(linkage: Linkage) -> bool:
-    """Whether the steps of a linkage can be written out: no soil, no gears beside loops, no laws of
-    couplings at angles that designs change, and no drive that pushes.
+    """Whether the steps of a linkage can be written out: no soil, no gears beside loops, and no
+    drive that pushes.
     """
     if linkage.machine.pushers:
         return False
@@ -176,15 +175,15 @@ def can_emit(linkage: Linkage) -> bool:
     if machine.planting is not None and machine.planting.soil is not None:
         return False
     loops = [step for step in linkage.motion if isinstance(step, LoopGroup)]
-    if not (can_write_couplings(linkage) and can_write_followers(linkage)):
+    if not can_write_followers(linkage):
         return False
     return all(map(can_write, loops)) and not (loops and machine.couplings)
 
 
-def emit(linkage: Linkage, gathered: Gathered, fixed: bool = False) -> Source:
+def emit(linkage: Linkage, gathered: Gathered, paths: Collection[str] | None = None) -> Source:
     """Write out the steps of a linkage, with the signals that are gathered.
 
-    fixed : whether no design changes the motion; the source then has it as rows.
+    paths : of the numbers in which designs differ; None of one design.
 
     Raises
     ------
@@ -193,10 +192,10 @@ def emit(linkage: Linkage, gathered: Gathered, fixed: bool = False) -> Source:
     """
     if not can_emit(linkage):
         raise UsageError(
-            "large groups of loops, fingers in soil, drives that push, couplings beside loops, and "
-            "gears of varying ratio on links that dyads move cannot be computed in a loop"
+            "large groups of loops, fingers in soil, drives that push, and couplings beside loops "
+            "cannot be computed in a loop"
         )
-    writer = Writer(linkage, fixed)
+    writer = Writer(linkage, paths)
     write_motion(writer)
     wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]
     if any(one.is_of_row for one in wanted):
@@ -223,10 +222,10 @@ def can_compute(machine: Machine, paths: Sequence[str], figure: Figure) -> bool:
     linkage = assemble(machine)
     if not can_emit(linkage) or not all(can_vary(machine, path) for path in paths):
         return False
-    if shifts_laws(machine, paths) or moves_shared(linkage, paths):
+    if moves_shared(linkage, paths):
         return False
     try:
-        emit(linkage, Gathered.of([figure]))
+        emit(linkage, Gathered.of([figure]), paths)
     except (UsageError, MassError):
         return False
     return True
