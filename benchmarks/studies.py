@@ -32,6 +32,7 @@ from equipoise.codegen.figures import Figure
 from equipoise.codegen.gram import MassBatch
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.mechanism.parts.machine import Machine
 from study_runs import ANGLES, MACHINE, SIGNALS, VARIED, designs
 from timing import in_turn
@@ -172,6 +173,13 @@ def other_machines(table: Table) -> None:
     agree("twin-engine", batch(planes[:1])[0], right, CLOSE)
     beside = "twin-engine, whose planes vary, with its rocking moment"
     tasks[beside] = (Loop(batch, planes), 512)
+    shaped = with_shapes()
+    for name, machine in shaped.items():
+        paths = tuple(f"gears[{k}].shape.eccentricity" for k in range(1, 1 + len(machine.gears)))
+        batch = batch_of(machine, paths, WANTED)
+        near = machine.gears[0].shape.eccentricity * np.linspace(1.0, 1.2, 512)[:, None]
+        agree(name, batch(near[:1].repeat(len(paths), 1))[0], analyzed(machine), CLOSE)
+        tasks[name] = (Loop(batch, near.repeat(len(paths), 1)), 512 * batch.turns)
     joints = [f"joints.{name}" for name, _ in assemble(MACHINE).named_reactions]
     wanted = [*WANTED, *(Figure(joint, "rms") for joint in joints)]
     with_joints = "four-bar with the force in every joint"
@@ -182,8 +190,23 @@ def other_machines(table: Table) -> None:
         limit = Limit({"cam-pusher": 2.5}.get(name, 2.2))
         table.ratio(f"{name} / four-bar", times[name], times["four-bar"], limit)
     table.ratio(f"{beside} / four-bar", times[beside], times["four-bar"], Limit(2.5))
+    for name in shaped:
+        table.ratio(f"{name} / four-bar", times[name], times["four-bar"], Limit(2.5))
     by_loops(table)
     table.ratio(f"{with_joints} / without", times[with_joints], times["four-bar"])
+
+
+def with_shapes() -> dict[str, Machine]:
+    """Machines whose gears have eccentricities: on a carrier, and on a link that a dyad moves."""
+    planting = eq.load("rotary-transplanter")
+    in_air = replace(planting, planting=replace(planting.planting, soil=None))
+    base = eq.load("geared-counterweight")
+    ellipse = GearShape("elliptic", eccentricity=0.3)
+    gear = replace(base.gears[0], ratio=-0.5, teeth=None, shape=ellipse)
+    return {
+        "rotary-transplanter in air, whose eccentricities vary": in_air,
+        "geared-counterweight by ellipses, whose eccentricity varies": replace(base, gears=(gear,)),
+    }
 
 
 def by_loops(table: Table) -> None:

@@ -50,7 +50,7 @@ export class App {
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
   private readonly planted = new FigureTable(say("Figures of the planting finger"));
-  private readonly strokes = new FigureTable(say("Figures of sliders and rockers"));
+  private readonly strokes = new FigureTable(say("Figures of sliders, rockers and cams"));
   private readonly across = h("img", {
     class: "across",
     alt: say("The planes of links, masses and bearings, from the side and to scale."),

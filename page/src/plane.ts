@@ -1,9 +1,10 @@
 /** A curve in a plane with equal scales: the shaking force's polar diagram, paths of points. */
 
-import { h, s, set, write } from "./dom";
+import { type Attributes, h, s, set, write } from "./dom";
 import type { Unit } from "./protocol";
 import { degrees, multiples, plain, round, shown, signed } from "./format";
 import { FEWEST, spacing } from "./scale";
+import { curve } from "./shapes";
 
 export interface Trace {
   /** x and y in turn. */
@@ -43,6 +44,26 @@ const TWELFTH = 30;
 /** Pixels. */
 type Spot = [x: number, y: number];
 
+/** Texts of a picture: those of before are used again, as each new one is laid out. */
+class Texts {
+  readonly root = s("g", { class: "texts" });
+  private count = 0;
+
+  begin(): void {
+    this.count = 0;
+  }
+
+  add(at: Attributes, text: string): void {
+    const one = this.root.children[this.count++] ?? this.root.appendChild(s("text"));
+    set(one, at);
+    write(one, text);
+  }
+
+  end(): void {
+    while (this.root.children.length > this.count) this.root.lastChild?.remove();
+  }
+}
+
 /** An SVG picture, `polar` with circles and an arrow from the origin. */
 export class Plane {
   readonly root: HTMLElement;
@@ -50,10 +71,10 @@ export class Plane {
   private readonly grid = s("path", { class: "grid" });
   private readonly axes = s("path", { class: "axes" });
   private readonly ground = s("rect", { class: "soil" });
-  private readonly texts = s("g", { class: "texts" });
+  private readonly texts = new Texts();
   private readonly curves = s("g", { class: "curves" });
   private readonly marks = s("path", { class: "marks" });
-  private readonly numbers = s("g", { class: "texts" });
+  private readonly numbers = new Texts();
   private readonly arrow = s("path", { class: "arrow" });
   private readonly dot = s("circle", { class: "dot", r: 3.5 });
   private readonly reading = h("span", { class: "legend" });
@@ -69,8 +90,8 @@ export class Plane {
     private readonly polar: boolean,
     control?: HTMLElement,
   ) {
-    this.svg.append(this.ground, this.grid, this.axes, this.texts);
-    this.svg.append(this.curves, this.marks, this.numbers, this.arrow, this.dot);
+    this.svg.append(this.ground, this.grid, this.axes, this.texts.root);
+    this.svg.append(this.curves, this.marks, this.numbers.root, this.arrow, this.dot);
     this.root = h(
       "figure",
       { class: "strip square", "aria-label": title },
@@ -164,35 +185,26 @@ export class Plane {
     const { plot } = this;
     if (!plot || !this.size[0]) return;
     this.fit(plot);
-    this.texts.replaceChildren();
     this.along(plot);
+    this.texts.begin();
     const [width, height] = this.size;
-    this.texts.append(s("text", { x: width - 4, y: height - 4, "text-anchor": "end" }, plot.unit));
+    this.texts.add({ x: width - 4, y: height - 4, "text-anchor": "end" }, plot.unit);
     if (this.polar) this.circles(plot);
     else this.lines(plot);
+    this.texts.end();
+    const place = (x: number, y: number) => this.place(x, y);
     const kept = this.curves.children;
     plot.traces.forEach((trace, i) => {
       const path = kept[i] ?? this.curves.appendChild(s("path"));
-      set(path, { class: `curve ${trace.kind}`, d: this.path(trace) });
+      set(path, { class: `curve ${trace.kind}`, d: curve(trace.points, place, trace.closed) });
     });
     while (kept.length > plot.traces.length) kept[kept.length - 1]?.remove();
-  }
-
-  private path(trace: Trace): string {
-    const { points } = trace;
-    const step = Math.max(Math.round(points.length / 720), 1) * 2;
-    let d = "";
-    for (let i = 0; i + 1 < points.length; i += step) {
-      const [x, y] = this.place(points[i] as number, points[i + 1] as number);
-      d += `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`;
-    }
-    return d && trace.closed ? `${d}Z` : d;
   }
 
   /** Dots at equal steps of the crank; in the polar diagram with numbers at its quarters. */
   private along(plot: Plot): void {
     const points = this.now();
-    this.numbers.replaceChildren();
+    this.numbers.begin();
     this.named = [];
     let d = "";
     const count = points ? points.length / 2 : 0;
@@ -210,6 +222,7 @@ export class Plane {
     set(this.marks, { d });
     const curve = quarters.length ? this.sampled() : [];
     for (const [spot, angles] of quarters) this.crank(spot, angles, curve);
+    this.numbers.end();
   }
 
   /** Some places along the curve "now". */
@@ -251,7 +264,7 @@ export class Plane {
     if (!best) return;
     this.named.push(best);
     const at = { class: "crank", x: best[0].toFixed(1), y: (best[1] + 4).toFixed(1) };
-    this.numbers.append(s("text", { ...at, "text-anchor": "middle" }, text));
+    this.numbers.add({ ...at, "text-anchor": "middle" }, text);
   }
 
   private circles(plot: Plot): void {
@@ -339,7 +352,7 @@ export class Plane {
 
   private text(x: number, y: number, value: number, anchor = "middle"): void {
     const at = { x: x.toFixed(1), y: y.toFixed(1), "text-anchor": anchor };
-    this.texts.append(s("text", at, plain(value)));
+    this.texts.add(at, plain(value));
   }
 }
 

@@ -14,6 +14,7 @@ from support.analyses import (
     Subject,
     agree,
     every_apart,
+    every_followed,
     every_subject,
     force_size,
     moment_size,
@@ -32,7 +33,6 @@ from support.free_bodies import (
     strand_contacts,
 )
 from support.loads import on_links, springs_on_links
-from support.machines_strokes import PUSHED
 from support.poses import Array, cross
 from support.sources import MUJOCO
 
@@ -115,8 +115,8 @@ def test_totals_and_what_each_link_carries(name: str) -> float:
     return carried(subject_of(name))
 
 
-@pytest.mark.parametrize("name", PUSHED)
-def test_what_is_pushed_gets_just_what_it_needs(name: str) -> None:
+@every_followed
+def test_what_is_pushed_or_has_cams_gets_just_what_it_needs(name: str) -> None:
     carried(subject_of(name))
 
 

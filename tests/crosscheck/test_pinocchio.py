@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import pytest
-
 from support import pinocchio_engine
-from support.analyses import every_apart, every_subject, subject_of
+from support.analyses import every_apart, every_followed, every_subject, subject_of
 from support.conformance import compared
 from support.engines import TOLERANCE, TOTALS, same_totals
-from support.machines_strokes import PUSHED
 from support.sources import PINOCCHIO
 
 
@@ -18,8 +15,8 @@ def test_totals(name: str) -> float:
     return same_totals(subject_of(name), pinocchio_engine.totals)
 
 
-@pytest.mark.parametrize("name", PUSHED)
-def test_totals_of_what_is_pushed(name: str) -> None:
+@every_followed
+def test_totals_of_what_is_pushed_or_has_cams(name: str) -> None:
     same_totals(subject_of(name), pinocchio_engine.totals)
 
 

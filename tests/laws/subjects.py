@@ -24,6 +24,7 @@ from support.machines_redundant import REDUNDANT
 Array = NDArray[Any]
 IN_SOIL = "kim-chung-b in soil"
 CAUSES = ("translation", "rotation", "weight", "load", "spring")
+STRANDS = ("left", "right")
 SEEDS = (0, 1, 2)
 ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 """Crank angles off the round numbers at which loads may begin or end."""
@@ -32,7 +33,7 @@ ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 @cache
 def names() -> tuple[str, ...]:
     """Names of all subjects: examples, one in soil, and kinds of random machines with a seed."""
-    kinds = (*KINDS, *REDUNDANT, *machines_cams.KINDS, *machines_cams.LOOPED)
+    kinds = (*KINDS, *REDUNDANT, *machines_cams.ALL)
     random = (f"{kind}:{seed}" for kind in kinds for seed in SEEDS)
     return (*sorted(eq.examples("linkage")), IN_SOIL, *random)
 
@@ -44,9 +45,7 @@ def machine_of(name: str) -> eq.Machine:
         return in_soil()
     kind, _, seed = name.partition(":")
     # What may be changed of it does nothing to what is analysed, and its names need not follow.
-    cammed = {*machines_cams.KINDS, *machines_cams.LOOPED}
-    made = machines_cams.make if kind in cammed else make
-    found = made(kind, int(seed)).machine if seed else eq.load(name).with_balance(None)
+    found = make(kind, int(seed)).machine if seed else eq.load(name).with_balance(None)
     return spelled_out(found)
 
 
@@ -152,16 +151,16 @@ def outputs(found: eq.mechanism.Forces) -> Iterator[tuple[str, Array]]:
         yield name, getattr(found, name).value
     for name in ("shaking_moment", "frame_moment", "drive_torque"):
         yield name, getattr(found, name)
-    for family in ("joints", "gears", "cams"):
-        yield from family_of(family, getattr(found, family))
+    yield from families_of(found)
 
 
-def family_of(family: str, found: Any) -> Iterator[tuple[str, Array]]:
-    """Every array of joints or gears by name."""
-    for name, joint in found.items():
-        for part in ("value", "normal", "moment", "tangential", "radial"):
-            if hasattr(joint, part):
-                yield f"{family}/{name}/{part}", getattr(joint, part)
+def families_of(found: Any) -> Iterator[tuple[str, Array]]:
+    """Every array of joints and contacts by name, of forces, a split or a regressor."""
+    for family in ("joints", "gears", "racks", "cams", "belts"):
+        for name, joint in getattr(found, family).items():
+            for part in ("value", "normal", "moment", "tangential", "radial", *STRANDS):
+                if hasattr(joint, part):
+                    yield f"{family}/{name}/{part}", getattr(joint, part)
 
 
 def sizes(found: eq.mechanism.Forces) -> tuple[float, float]:

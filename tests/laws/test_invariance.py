@@ -16,6 +16,7 @@ from laws import transforms
 from laws.subjects import (
     ANGLES,
     IN_SOIL,
+    STRANDS,
     forces,
     forces_of,
     is_force,
@@ -37,13 +38,18 @@ def scaled(
     found: eq.mechanism.Forces, force: complex = 1, moment: float = 1, flip: bool = False
 ) -> Any:
     """Outputs as another description must give them."""
+    ahead = (r.name for r in found.motion.machine.racks if r.drives == "pinion")
+    straight = ["cams/", *(f"racks/{rack}/" for rack in ahead)]
     for name, value in outputs(found):
         if np.iscomplexobj(value):
             yield name, (np.conj(value) if flip else value) * force
         else:
-            towards = name.endswith("/radial") or name.startswith("cams/")
-            sign = -1 if flip and not towards else 1
-            yield name, sign * value * (abs(force) if is_force(name) else moment)
+            *family, part = name.split("/")
+            if flip and part in STRANDS:  # a mirror swaps them
+                part = STRANDS[1 - STRANDS.index(part)]
+            size = abs(force) if is_force(name) else moment
+            turns = part not in ("radial", *STRANDS) and not name.startswith(tuple(straight))
+            yield "/".join([*family, part]), (-size if flip and turns else size) * value
 
 
 def agree(got: eq.mechanism.Forces, want: dict[str, Any], tolerance: float = TOLERANCE) -> None:

@@ -15,7 +15,7 @@ from laws.subjects import (
     CAUSES,
     acting,
     along,
-    family_of,
+    families_of,
     forces,
     forces_of,
     gravity_power,
@@ -128,9 +128,7 @@ def split_outputs(split: Any) -> Any:
     """Every array of a split or regressor by the names of `outputs`."""
     for key in ("shaking_force", "frame_force", "shaking_moment", "frame_moment", "drive_torque"):
         yield key, getattr(split, key)
-    yield from family_of("joints", split.joints)
-    yield from family_of("gears", split.gears)
-    yield from family_of("cams", split.cams)
+    yield from families_of(split)
 
 
 def split_scales(parts: dict[str, Any]) -> dict[bool, float]:

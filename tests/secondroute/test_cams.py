@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 import pytest
 
@@ -11,21 +9,12 @@ import equipoise as eq
 from secondroute.test_free_bodies import FLOOR, same_reaction, same_totals
 from secondroute.test_motion import same_links, same_point
 from support import cams, free_bodies
-from support.analyses import Subject, analysed, force_size, moment_size
-from support.machines_cams import KINDS, LOOPED, make
+from support.analyses import force_size, moment_size, subject_of
+from support.machines_cams import ALL
 from support.poses import from_motion
 
-CAMS = [f"{kind}:{seed}" for kind in (*KINDS, *LOOPED) for seed in range(10)]
+CAMS = [f"{kind}:{seed}" for kind in ALL for seed in range(10)]
 CAMS.append("cam-pusher")
-
-
-@cache
-def subject_of(name: str) -> Subject:
-    kind, _, seed = name.partition(":")
-    if not seed:
-        return analysed(eq.load(name))
-    case = make(kind, int(seed))
-    return analysed(case.machine, case)
 
 
 @pytest.mark.parametrize("name", CAMS)

@@ -13,7 +13,7 @@ import equipoise as eq
 from equipoise.errors import MassError
 from equipoise.mechanism.parts.field import PlantingArm, Soil, SoilTable
 from equipoise.mechanism.parts.machine import Machine
-from support import machines_strokes
+from support import machines_cams, machines_strokes
 from support.loads import springs_on_links
 from support.machines import KINDS, Case, make
 from support.machines_planes import set_apart
@@ -27,8 +27,11 @@ EXAMPLES = sorted(eq.examples("linkage"))
 RANDOM = [f"{kind}:{seed}" for kind in (*KINDS, *REDUNDANT) for seed in range(10)]
 PLANTED = [f"{kind} in soil:{seed}" for kind in KINDS for seed in range(2)]
 APART = [f"{kind} apart:{seed}" for kind in KINDS for seed in range(2)]
+CAMMED = [f"{kind}:{seed}" for kind in machines_cams.ALL for seed in range(2)]
 every_subject = pytest.mark.parametrize("name", [*EXAMPLES, *RANDOM, *PLANTED])
 """Bundled examples, and random machines by kind and seed, also with a point in the soil."""
+every_followed = pytest.mark.parametrize("name", [*machines_strokes.PUSHED, *CAMMED])
+"""Random machines that are pushed, and such with cams."""
 every_apart = pytest.mark.parametrize("name", APART)
 """Random machines whose links lie beside each other."""
 

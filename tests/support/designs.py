@@ -16,6 +16,7 @@ import numpy as np
 import equipoise as eq
 from equipoise.errors import ChangePointError, ModelError, MotionError, RangeError
 from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.mechanism.parts.machine import Machine
 
 Array = np.ndarray[Any, Any]
@@ -55,6 +56,7 @@ def plain_of(machine: Machine) -> Plain:
         "gravity": list(machine.gravity),
         "sliders": [{"direction": s.direction, "angle": s.angle} for s in machine.sliders],
         "gears": [{"start": g.start, "pressure_angle": g.pressure_angle} for g in machine.gears],
+        "shapes": [_shaped(g.shape) for g in machine.gears],
         "belts": [{"start": b.start, "tension": b.tension} for b in machine.belts],
         "racks": [
             {"angle": r.angle, "travel": r.travel, "pressure_angle": r.pressure_angle}
@@ -92,6 +94,10 @@ def machine_of(base: Machine, plain: Plain) -> Machine:
         )
         for key in ("sliders", "gears", "belts", "racks", "cams", "springs")
     }
+    listed["gears"] = tuple(
+        replace(gear, shape=shaped and replace(gear.shape, **shaped))
+        for gear, shaped in zip(listed["gears"], plain["shapes"], strict=True)
+    )
     return Machine(
         title=base.title,
         drive=replace(base.drive, **plain["drive"]),
@@ -107,6 +113,18 @@ def machine_of(base: Machine, plain: Plain) -> Machine:
         gravity=tuple(plain["gravity"]),
         **listed,
     )
+
+
+def _shaped(shape: GearShape | None) -> Plain | None:
+    """Numbers of a shape of gears whose laws are formulas of them."""
+    if shape is None:
+        return None
+    told: Plain = {"phase": shape.phase}
+    if shape.kind in ("elliptic", "limacon"):
+        told["eccentricity"] = shape.eccentricity
+    if shape.kind == "ratio":
+        told |= {"cosines": [*shape.cosines], "sines": [*shape.sines]}
+    return told
 
 
 def design(base: Machine, numbers: Sequence[Number], values: Sequence[float]) -> Machine:
@@ -147,6 +165,7 @@ def numbers_of(machine: Machine, share: float = 0.01, polar: bool = False) -> li
         *(_across(machine) if machine.has_planes else ()),
         *_of_drive(machine),
         *_listed(machine),
+        *_of_gears(machine),
     ]
 
 
@@ -272,12 +291,6 @@ def _listed(machine: Machine) -> Iterator[Number]:
     for k, slider in enumerate(machine.sliders):
         yield number("sliders", k, "direction", _near(slider.direction, 0.02))
         yield number("sliders", k, "angle", _near(slider.angle, 2.0))
-    uneven = [gear for gear in machine.gears if gear.shape is not None]
-    counted = {body for gear in uneven for body in (gear.driver, gear.carrier)}
-    for k, gear in enumerate(machine.gears):
-        if gear.driven not in counted:  # where its start varies no loop can compute the designs
-            yield number("gears", k, "start", _near(gear.start, pi))
-        yield number("gears", k, "pressure_angle", lambda rng: float(rng.uniform(0, 0.5)))
     for k, belt in enumerate(machine.belts):
         yield number("belts", k, "start", _near(belt.start, pi))
         if belt.tension is not None:
@@ -295,6 +308,27 @@ def _listed(machine: Machine) -> Iterator[Number]:
     for k, spring in enumerate(machine.springs):
         yield number("springs", k, "stiffness", _times(spring.stiffness))
         yield number("springs", k, "free_length", _times(spring.free_length))
+
+
+def _of_gears(machine: Machine) -> Iterator[Number]:
+    for k, gear in enumerate(machine.gears):
+        draws = {
+            "start": _near(gear.start, pi),
+            "pressure_angle": lambda rng: float(rng.uniform(0, 0.5)),
+        }
+        for key, draw in draws.items():
+            yield Number(
+                f"gears[{k + 1}].{key}", getattr(gear, key), _putter("gears", k, key), draw
+            )
+        for key, value in (_shaped(gear.shape) or {}).items():
+            path = f"gears[{k + 1}].shape.{key}"
+            if isinstance(value, list):
+                for place, one in enumerate(value):
+                    put = _putter("shapes", k, key, place)
+                    yield Number(f"{path}[{place + 1}]", one, put, _near(one, abs(one) / 4))
+            else:
+                spread = pi if key == "phase" else value / 2
+                yield Number(path, value, _putter("shapes", k, key), _near(value, spread))
 
 
 def _at(plain: Plain, keys: Sequence[Any]) -> Any:

@@ -751,8 +751,11 @@ KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
 
 def make(kind: str, seed: int) -> Case:
     """Return the machine of a kind that belongs to a seed, the same at every call."""
+    from support import machines_cams
     from support.machines_redundant import REDUNDANT
 
+    if kind in machines_cams.ALL:
+        return machines_cams.make(kind, seed)
     return {**KINDS, **REDUNDANT}[kind](np.random.default_rng([seed, *kind.encode()]))
 
 

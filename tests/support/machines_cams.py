@@ -223,6 +223,7 @@ LOOPED = {"looped_tappet": looped_tappet, "looped_lever": looped_lever}
 """Kinds that Newton's method has to solve."""
 KINDS = {one.__name__: one for one in (camshaft_tappet, camshaft_lever, fixed_cam_tappet,
                                        fixed_cam_lever, pusher_tappet, pusher_lever)}  # fmt: skip
+ALL = {**KINDS, **LOOPED}
 
 
 def make(kind: str, seed: int) -> Case:
@@ -230,7 +231,7 @@ def make(kind: str, seed: int) -> Case:
     from equipoise.mechanism.assembly.linkage import assemble
 
     for draw in range(200):
-        case = {**KINDS, **LOOPED}[kind](np.random.default_rng([seed, draw, *kind.encode()]))
+        case = ALL[kind](np.random.default_rng([seed, draw, *kind.encode()]))
         try:
             assemble(case.machine).cycle  # noqa: B018
         except (ModelError, MotionError):

@@ -32,15 +32,21 @@ def write_load(writer: Any, number: int, load: Load) -> Held:
 
 def write_spring(writer: Any, number: int, spring: Spring) -> Iterator[Held]:
     """Write a spring's pull, and what holds it at each of its ends on a link."""
-    sheet, cause = writer.sheet, number + 1
+    cause = number + 1
+    pull = writer.sheet.put(f"pull({cause})", f"spring({', '.join(stretched(writer, number))})")
+    for (link, point), force in zip(spring.ends, (pull, f"(-{pull})"), strict=False):
+        yield _write_held(writer, link, point, force, "0.0", f"S{cause}")
+
+
+def stretched(writer: Any, number: int) -> tuple[str, str, str, str]:
+    """Identifiers of both ends of a spring, of its stiffness and its free length."""
+    sheet, cause, spring = writer.sheet, number + 1, writer.machine.springs[number]
     place, *_ = writer.point(spring.link, spring.point)
     on_frame = spring.on == FRAME
     to = writer.name(f"p({spring.to})") if on_frame else writer.point(spring.on, spring.to)[0]
     stiffness = sheet.slot(f"stiffness({cause})", lambda one: one.machine.springs[number].stiffness)
     free = sheet.slot(f"free({cause})", lambda one: one.machine.springs[number].free_length)
-    pull = sheet.put(f"pull({cause})", f"spring({place}, {to}, {stiffness}, {free})")
-    for (link, point), force in zip(spring.ends, (pull, f"(-{pull})"), strict=False):
-        yield _write_held(writer, link, point, force, "0.0", f"S{cause}")
+    return place, to, stiffness, free
 
 
 def write_tension(writer: Any, number: int) -> Iterator[Held]:

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.backends import processors, run_loop
-from equipoise.codegen.coupled import shifts_laws
 from equipoise.codegen.emit import emit, moves_shared
 from equipoise.codegen.figures import (
     CHANGE_POINT,
@@ -52,6 +51,8 @@ PARTS, ROUNDS = 64, 5
 SLOPE = 6.0
 """A dyad's number between two crank angles is no lower than the lower one less (SLOPE h / 2)^2, for
 links that turn no faster than the crank."""
+SWUNG = 3.0
+"""How much farther ratios may swing of designs that differ in the shape of gears."""
 AT_ONCE = 500_000
 """Designs times crank angles that one thread does sooner than several."""
 SMOOTH = ("mean", "rms")
@@ -159,8 +160,6 @@ class Batch:
     ) -> None:
         if angles is not None and angles < 1:
             raise UsageError(f"got {angles} crank angles; give at least 1")
-        if shifts_laws(machine, paths):
-            raise UsageError("got the start of a body from whose angle a varying ratio counts")
         self.base = assemble(machine)
         if moves_shared(self.base, paths):
             raise UsageError(
@@ -175,7 +174,7 @@ class Batch:
         laws = [*machine.laws.values(), *(cam.law for cam in machine.cams)]
         has_steps |= any(len(law.jumps(2)) for law in laws)
         self.least = STEP / tolerance if has_steps else FIRST
-        self.source = emit(self.base, Gathered.of(self.wanted), fixed=self.base.shared is not None)
+        self.source = emit(self.base, Gathered.of(self.wanted), self.paths)
         self.gathered = self.source.gathered
         self.march = March.of(self.source, self.base)
         rounds = machine.couplings or self.march
@@ -183,7 +182,8 @@ class Batch:
         windings = self.base.cycle.windings if rounds else {}
         fastest = max((abs(turns) for turns in windings.values()), default=1) / self.turns
         fastest *= prod(max(map(abs, g.ratios)) / abs(g.speed_ratio) for g in machine.gears)
-        self.slope = SLOPE * max(1.0, fastest)
+        shaped = any(".shape." in path for path in self.paths)
+        self.slope = SLOPE * max(1.0, fastest) * (SWUNG if shaped else 1.0)
 
     def __call__(self, values: Array) -> tuple[Array, Array]:
         """Figures (P, m) and reasons (P,) of designs (P, d), SI units; NaN where one failed."""

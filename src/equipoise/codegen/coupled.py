@@ -6,72 +6,37 @@ up to the angle at which each design starts.
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.writer import Writer
+from equipoise.codegen.writer import Writer, links_of
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array, Call
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.cams import Cam
-from equipoise.mechanism.parts.couplings import Coupling, coupled
-from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.machine import FRAME
 
 Turning = Callable[[Array], tuple[Any, Any, Any]]
 """Angle of a link at crank angles (N,), rad, and its two derivatives by them."""
 
 
-def links_of(step: Call) -> list[str]:
-    """Driver, carrier and driven link of a coupling's step."""
-    angles = step.inputs[0], step.inputs[3], step.outputs[0]
-    return [name.removeprefix("phi(")[:-1] for name in angles]
-
-
-def told_by_crank(linkage: Linkage) -> dict[str, Turning]:
+def told_by_crank(writer: Writer) -> dict[str, Turning]:
     """Links whose angle the crank angle alone tells: those driven, and what couplings add."""
     found: dict[str, Turning] = {FRAME: lambda theta: (0.0 * theta, 0.0, 0.0)}
-    found |= {drive.link: drive.turned for drive in linkage.machine.driven}
-    for step in linkage.motion:
+    found |= {drive.link: drive.turned for drive in writer.machine.driven}
+    for step in writer.linkage.motion:
         if isinstance(step, Call) and step.outputs[0].startswith("phi("):
             driver, carrier, driven = links_of(step)
-            if {driver, carrier} <= found.keys():
+            if {driver, carrier} <= found.keys() and driven not in writer.loose:
                 found[driven] = partial(_followed, step, found[driver], found[carrier])
     return found
 
 
 def _followed(step: Call, driver: Turning, carrier: Turning, theta: Array) -> tuple[Any, ...]:
     return step.kernel(*driver(theta), *carrier(theta), *step.parameters)
-
-
-def can_write_couplings(linkage: Linkage) -> bool:
-    """Whether no law of a coupling has to be evaluated at angles that designs change."""
-    told = told_by_crank(linkage).keys()
-    return all(
-        one.relation[0] in (kernels.gear, kernels.rolled, kernels.wound)
-        or {one.driver, one.carrier} <= told
-        for one in linkage.machine.couplings
-        if not isinstance(one, Cam)
-    )
-
-
-def shifts_laws(machine: Machine, paths: Iterable[str]) -> bool:
-    """Whether designs start bodies at other angles from which laws of couplings count."""
-    laws = [one for one in machine.couplings if one.relation[0] is coupled]
-    turning = {body for one in laws for body in (one.driver, one.carrier)}
-    starts = {f"{one.table}[{number}].start": one.driven for number, one in _numbered(machine)}
-    return any(starts.get(path) in turning for path in paths)
-
-
-def _numbered(machine: Machine) -> Iterator[tuple[int, Coupling]]:
-    """Couplings, each with its number in its table."""
-    counts: Counter[str] = Counter()
-    for one in machine.couplings:
-        counts[one.table] += 1
-        yield counts[one.table], one
 
 
 def write_coupling(writer: Writer, step: Call) -> None:
@@ -81,7 +46,7 @@ def write_coupling(writer: Writer, step: Call) -> None:
     if even and not writer.counted:
         _write_uniform(writer, step)
         return
-    sheet, told = writer.sheet, told_by_crank(writer.linkage)
+    sheet, told = writer.sheet, told_by_crank(writer)
     parts = {"angle": 0, "first": 1, "second": 2}
     angle, first, second = (
         sheet.row(f"{name}({link})", partial(_part, told[link], place))
@@ -109,12 +74,16 @@ def write_coupling(writer: Writer, step: Call) -> None:
 def write_rolled(writer: Writer, step: Call, number: int) -> None:
     """Write where gears of varying ratio touch: the step of this number of the ``forces``."""
     name = step.outputs[0].removeprefix("lever(")[:-1]
-    law, told = step.parameters[0], told_by_crank(writer.linkage)
-    driver, carrier = (told[angle.removeprefix("phi(")[:-1]] for angle in step.inputs)
-    ratio, bend = (
-        writer.sheet.row(f"{what}({name})", partial(_of_law, law, place, driver, carrier))
-        for place, what in ((1, "ratio"), (2, "bend"))
-    )
+    link = next(one.driven for one in writer.machine.couplings if one.name == name)
+    if link in writer.loose:
+        ratio, bend = (writer.name(f"{what}({link})") for what in ("ratio", "bend"))
+    else:
+        law, told = step.parameters[0], told_by_crank(writer)
+        driver, carrier = (told[angle.removeprefix("phi(")[:-1]] for angle in step.inputs)
+        ratio, bend = (
+            writer.sheet.row(f"{what}({name})", partial(_of_law, law, place, driver, carrier))
+            for place, what in ((1, "ratio"), (2, "bend"))
+        )
     centres = writer.sheet.slot(f"centres({name})", partial(_centres, number), vector=True)
     lever, slope = step.outputs
     writer.sheet.put(lever, f"{centres} * (1 / (1 - {ratio}))")

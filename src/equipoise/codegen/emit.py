@@ -6,10 +6,10 @@ Signals go by their names in the output of an analysis.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from equipoise.codegen.across import write_bearing
-from equipoise.codegen.coupled import can_write_couplings, shifts_laws
+from equipoise.codegen.applied import stretched
 from equipoise.codegen.figures import Figure, Gathered
 from equipoise.codegen.followers import can_write_followers
 from equipoise.codegen.lines import write_demands, write_joints, write_motion
@@ -35,6 +35,9 @@ _OF_FORCES = re.compile(
 ORDERS = {"position": 0, "velocity": 1, "acceleration": 2}
 OF_CAMS = {"cam push": "T({})", "cam forth": "forth({})", "cam normal": "normal({})"}
 """Values of a state that tell of a cam."""
+LENGTH = "length({1} - {0})"
+OF_SPRINGS = {"spring length": LENGTH, "spring pull": f"{{2}} * ({LENGTH} - {{3}})"}
+"""Of a spring, from its ends, stiffness and free length."""
 OF_BELTS = {"belt pull": 0, "belt left": 1, "belt right": -1}
 """Strands of a belt, by their side; 0 for what they differ by."""
 TURNING = {"angular velocity": 1, "angular acceleration": 2}
@@ -92,10 +95,17 @@ def _identified(writer: Writer, looked_up: re.Match[str], item: str) -> str:
     if value == "drive torque" and item in [drive.link for drive in writer.machine.driven]:
         return writer.name(f"M({item})")
     if value not in TURNING:
-        return _reaction(writer, item, value)
+        return (_of_spring if value in OF_SPRINGS else _reaction)(writer, item, value)
     if item not in writer.machine.links:
         raise _Missing
     return _in_time(writer, writer.body(item)[3:], TURNING[value])
+
+
+def _of_spring(writer: Writer, item: str, value: str) -> str:
+    number = int(item) - 1 if item.isdecimal() else -1
+    if not 0 <= number < len(writer.machine.springs):
+        raise _Missing
+    return f"({OF_SPRINGS[value].format(*stretched(writer, number))})"
 
 
 def _reaction(writer: Writer, item: str, value: str) -> str:
@@ -156,8 +166,8 @@ def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
 
 
 def can_emit(linkage: Linkage) -> bool:
-    """Whether the steps of a linkage can be written out: no soil, no gears beside loops, no laws of
-    couplings at angles that designs change, and no drive that pushes.
+    """Whether the steps of a linkage can be written out: no soil, no gears beside loops, and no
+    drive that pushes.
     """
     if linkage.machine.pushers:
         return False
@@ -165,15 +175,15 @@ def can_emit(linkage: Linkage) -> bool:
     if machine.planting is not None and machine.planting.soil is not None:
         return False
     loops = [step for step in linkage.motion if isinstance(step, LoopGroup)]
-    if not (can_write_couplings(linkage) and can_write_followers(linkage)):
+    if not can_write_followers(linkage):
         return False
     return all(map(can_write, loops)) and not (loops and machine.couplings)
 
 
-def emit(linkage: Linkage, gathered: Gathered, fixed: bool = False) -> Source:
+def emit(linkage: Linkage, gathered: Gathered, paths: Collection[str] | None = None) -> Source:
     """Write out the steps of a linkage, with the signals that are gathered.
 
-    fixed : whether no design changes the motion; the source then has it as rows.
+    paths : of the numbers in which designs differ; None of one design.
 
     Raises
     ------
@@ -182,10 +192,10 @@ def emit(linkage: Linkage, gathered: Gathered, fixed: bool = False) -> Source:
     """
     if not can_emit(linkage):
         raise UsageError(
-            "large groups of loops, fingers in soil, drives that push, couplings beside loops, and "
-            "gears of varying ratio on links that dyads move cannot be computed in a loop"
+            "large groups of loops, fingers in soil, drives that push, and couplings beside loops "
+            "cannot be computed in a loop"
         )
-    writer = Writer(linkage, fixed)
+    writer = Writer(linkage, paths)
     write_motion(writer)
     wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]
     if any(one.is_of_row for one in wanted):
@@ -212,10 +222,10 @@ def can_compute(machine: Machine, paths: Sequence[str], figure: Figure) -> bool:
     linkage = assemble(machine)
     if not can_emit(linkage) or not all(can_vary(machine, path) for path in paths):
         return False
-    if shifts_laws(machine, paths) or moves_shared(linkage, paths):
+    if moves_shared(linkage, paths):
         return False
     try:
-        emit(linkage, Gathered.of([figure]))
+        emit(linkage, Gathered.of([figure]), paths)
     except (UsageError, MassError):
         return False
     return True

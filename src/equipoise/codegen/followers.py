@@ -6,6 +6,7 @@ law is evaluated at each design's own angle: its piece is looked up in tables, w
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from math import ceil
 from typing import Any
@@ -34,8 +35,8 @@ def can_write_followers(linkage: Linkage) -> bool:
 
 def write_displacement(writer: Writer, step: Displacement) -> None:
     """Write what a law says at the angle that a cam has turned against its carrier."""
-    told = told_by_crank(writer.linkage)
-    if {step.driver, step.carrier} <= told.keys():
+    told = told_by_crank(writer)
+    if {step.driver, step.carrier} <= told.keys() - writer.shifted:
         driver, carrier = told[step.driver], told[step.carrier]
         for place, output in enumerate(step.outputs):
             of = partial(_displaced, step, driver, carrier, place)
@@ -43,7 +44,8 @@ def write_displacement(writer: Writer, step: Displacement) -> None:
             writer.sheet.put(output, row)
         return
     angles = (writer.name(f"phi({body})") for body in (step.driver, step.carrier))
-    _write_curve(writer, step, " - ".join(angles))
+    angle = f"{' - '.join(angles)} - {step.law.origin!r}"
+    write_curve(writer, step.law.curve, angle, step.outputs)
 
 
 def _displaced(
@@ -52,19 +54,19 @@ def _displaced(
     return np.asarray(step.law.value(driver(theta)[0] - carrier(theta)[0])[place])
 
 
-def _write_curve(writer: Writer, step: Displacement, angle: str) -> None:
-    """Write a curve at an angle that is each design's own."""
-    curve, sheet = step.law.curve, writer.sheet
-    near, length = ROUNDING * curve.length, curve.length
-    name = step.outputs[0]
+def write_curve(writer: Writer, curve: Curve, angle: str, outputs: Sequence[str]) -> None:
+    """Write a curve, and its two derivatives, at an angle that is each design's own."""
+    sheet, near, length = writer.sheet, ROUNDING * curve.length, curve.length
+    name = outputs[0]
 
     def put(what: str, expression: str) -> str:
         return sheet.put(f"{what} {name}", expression)
 
-    x = put("angle", f"{angle} - {step.law.origin!r}")
-    since = put("since", f"{x} - floored(({x} + {near!r}) * {1 / length!r}) * {length!r}")
+    x = put("angle", angle)
+    rounds = put("rounds", f"floored(({x} + {near!r}) * {1 / length!r})")
+    since = put("since", f"{x} - {rounds} * {length!r}")
     pieces = _Pieces(writer, curve, name, put("ahead", f"{since} + {near!r}"))
-    way = put("way", f"{since} - {pieces.value('beginning', curve.knots[:-1])}")
+    way = put("way", f"{since} - {pieces.beginning()}")
     powers = [pieces.value(f"c{k}", values) for k, values in enumerate(curve.powers.T)]
     amplitude, rate, phase = (
         pieces.value(what, values)
@@ -74,7 +76,10 @@ def _write_curve(writer: Writer, step: Displacement, angle: str) -> None:
     if amplitude != "0.0":
         turned = put("wave", f"rotation({rate} * {way} + {phase})")
         cosine, sine = f"{turned}.real", f"{turned}.imag"
-    sheet.call("piece_value", [way, *powers, amplitude, rate, cosine, sine], step.outputs)
+    found = (f"within {name}", *outputs[1:]) if curve.rise else outputs
+    sheet.call("piece_value", [way, *powers, amplitude, rate, cosine, sine], found)
+    if curve.rise:
+        sheet.put(name, f"{sheet.name(found[0])} + {curve.rise!r} * {rounds}")
 
 
 def _waves(curve: Curve) -> Array:
@@ -96,12 +101,18 @@ class _Pieces:
     def __init__(self, writer: Writer, curve: Curve, name: str, since: str) -> None:
         """since : identifier of the way from the curve's beginning, rounding ahead."""
         self.sheet, self.name, self.curve = writer.sheet, name, curve
-        self.few = len(curve.powers) <= FEW
+        self.few, self.even = len(curve.powers) <= FEW, False
         if self.few:
             self.behind = [
                 self.put(f"behind {k}", f"{since} >= {knot!r}")
                 for k, knot in enumerate(curve.knots[1:-1].tolist(), 1)
             ]
+            return
+        if np.allclose(np.diff(curve.knots), curve.length / len(curve.powers), rtol=1e-12, atol=0):
+            self.even = True
+            last = float(len(curve.powers) - 1)
+            whole = f"floored({since} * {len(curve.powers) / curve.length!r})"
+            self.piece = self.put("piece", f"smallest({last!r}, {whole})")
             return
         count = _bins(curve)
         part = self.put("part", f"{since} * {count / curve.length!r}")
@@ -114,6 +125,12 @@ class _Pieces:
     def picked(self, what: str, values: Array, place: str) -> str:
         table = self.sheet.constant(f"each {what} {self.name}", values)
         return self.put(what, f"picked({table}, {place})")
+
+    def beginning(self) -> str:
+        """Where the piece begins."""
+        if self.even:
+            return self.put("beginning", f"{self.piece} * {float(self.curve.knots[1])!r}")
+        return self.value("beginning", self.curve.knots[:-1])
 
     def value(self, what: str, values: Array) -> str:
         """What the piece has of values (K,)."""

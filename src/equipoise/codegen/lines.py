@@ -17,9 +17,10 @@ from equipoise.codegen.applied import Held, names, write_load, write_spring, wri
 from equipoise.codegen.coupled import write_coupling, write_rolled
 from equipoise.codegen.course import write_course
 from equipoise.codegen.followers import write_displacement, write_swung
+from equipoise.codegen.laws import write_law
 from equipoise.codegen.loops import write_loops
 from equipoise.codegen.source import Read
-from equipoise.codegen.writer import Writer
+from equipoise.codegen.writer import Writer, links_of
 from equipoise.errors import MassError
 from equipoise.mechanism.assembly.cam_groups import Displacement
 from equipoise.mechanism.assembly.gear_contacts import rolled
@@ -89,10 +90,12 @@ def _write_step(writer: Writer, step: Step, steps: str, number: int) -> None:
     if isinstance(step, RunningAngle):
         write_running_angle(writer.sheet, writer.linkage.cycle, step.link)
     elif isinstance(step, Rotation):
-        if writer.counted:
+        if writer.counted and step.link not in writer.rotated:
             sheet.put(f"u({step.link})", f"rotation({writer.name(f'phi({step.link})')})")
     elif isinstance(step, Call):
-        if step.kernel is coupled or (step.kernel is kernels.gear and not writer.counted):
+        if step.kernel is coupled and links_of(step)[-1] in writer.loose:
+            write_law(writer, step, number)
+        elif step.kernel is coupled or (step.kernel is kernels.gear and not writer.counted):
             write_coupling(writer, step)
         elif step.kernel is rolled:
             write_rolled(writer, step, number)

@@ -23,7 +23,13 @@ import numpy as np
 
 from equipoise.codegen.figures import KINDS, Gathered
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.formulas import cam_kernels, curve_kernels, joint_kernels, kernels
+from equipoise.mechanism.formulas import (
+    cam_kernels,
+    curve_kernels,
+    joint_kernels,
+    kernels,
+    rolling_kernels,
+)
 from equipoise.signals import ROUNDING
 
 Array = np.ndarray[Any, Any]
@@ -31,7 +37,7 @@ Read = Callable[[Linkage], Any]
 PLACE = {"highest": "{x} - {g} >", "lowest": "{g} - {x} >"}
 """An extreme has a new place where it grows by more than rounding, so that of equal ones the first
 is told; this takes a branch, which costs the loop its speed."""
-KERNELS = (kernels, joint_kernels, cam_kernels, curve_kernels)
+KERNELS = (kernels, joint_kernels, cam_kernels, curve_kernels, rolling_kernels)
 """Modules whose functions the lines call, those first that others are made of."""
 CALLED = {
     name: found for one in KERNELS for name, found in vars(one).items() if inspect.isfunction(found)

@@ -38,7 +38,7 @@ Dimension = Literal[
     "mass per length",
     "modulus",
     "unbalance",
-    "force per torque",
+    "per length",
 ]
 
 
@@ -309,8 +309,8 @@ KINDS: dict[Dimension, Kind] = {
         example="300 g mm",
         usual=("g mm", "kg m"),
     ),
-    "force per torque": Kind(
-        to_say("a force per torque"), {"1/m": "1", "1/mm": "1000"}, example="20 1/m"
+    "per length": Kind(
+        to_say("a number per length"), {"1/m": "1", "1/mm": "1000"}, example="20 1/m"
     ),
 }
 

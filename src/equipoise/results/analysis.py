@@ -13,6 +13,7 @@ from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dynamics.assessment import FourBar, four_bar
+from equipoise.mechanism.dynamics.cam_contacts import CamFigures, cam_figures
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
 from equipoise.mechanism.dynamics.shares import CAUSES
 from equipoise.mechanism.dynamics.undecided import undecided
@@ -82,6 +83,11 @@ class Analysis(Result):
         turn fully.
         """
         return strokes(self.motion.linkage)
+
+    @cached_property
+    def cams(self) -> Mapping[str, CamFigures]:
+        """Figures of every cam, by name: how sharp it is, and when its follower lifts off."""
+        return cam_figures(self.motion, self.solved)
 
     def dwell(self, name: str, tolerance: float | None = None) -> Dwell:
         """Longest crank angle over which a slider, link or point moves by no more than a tolerance
@@ -177,7 +183,7 @@ class Analysis(Result):
         split : whether to add every force by cause and by link.
         outputs : names of further outputs that are added; None stands among the values of those
             that are infinite somewhere.
-        strokes : whether to tell of sliders and rockers, which takes some milliseconds.
+        strokes : whether to tell figures of sliders, rockers and cams: some milliseconds.
         """
         result: Values = {
             **self._heading,
@@ -210,6 +216,8 @@ class Analysis(Result):
             result["outputs"] = {one.name: _or_none(one.values) for one in chosen}
         if strokes:
             result["strokes"] = {name: one.told() for name, one in self.strokes.items()}
+            for name, cam in self.cams.items():
+                result["cams"][name] |= cam.told()
         summary: Values = {
             name: {**vars(figure), "peak_to_peak": figure.peak_to_peak}
             for name, figure in self.summary.items()
@@ -221,11 +229,8 @@ class Analysis(Result):
     @property
     def _heading(self) -> Values:
         motion = self.motion
-        heading: Values = {
-            "title": self.machine.title,
-            "speed": motion.speed,
-            "acceleration": motion.acceleration,
-        }
+        heading: Values = {"title": self.machine.title}
+        heading |= {"speed": motion.speed, "acceleration": motion.acceleration}
         return heading | ({"turns": motion.turns} if motion.whole_cycle else {})
 
     def to_dataset(self) -> xarray.Dataset:

@@ -18,7 +18,7 @@ from equipoise.results.belt_blocks import belt_blocks
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import cam_blocks
 from equipoise.results.drive_blocks import driven, drives_table
-from equipoise.results.joint_blocks import joint_blocks
+from equipoise.results.joint_blocks import joint_blocks, springs_table
 from equipoise.results.machine_blocks import (
     angles_told,
     four_bar_facts,
@@ -49,6 +49,8 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
     yield Text(f"{driven(machine, motion.speed)}; {angles_told(analysis)}")
     yield from motion_blocks(analysis)
     yield from cam_blocks(analysis)
+    if analysis.machine.springs:
+        yield springs_table(analysis)
     if analysis.solved is None:
         yield Notes((massless(machine),))
         return
@@ -86,7 +88,7 @@ def motion_blocks(analysis: Analysis) -> Iterator[Block]:
         for name, link in analysis.motion.links.items()
     )
     yield Table.of(say("Links: angle, angular velocity and acceleration"), columns, rows)
-    yield points_table(analysis)
+    yield from points_table(analysis)
 
 
 def strokes_table(analysis: Analysis) -> Table:
@@ -127,7 +129,7 @@ def advantages_table(analysis: Analysis) -> Table:
         "",
         Column(say("rises over"), "angle", "deg"),
         Column(say("dwell"), "angle", "deg"),
-        Column(say("force over crank torque"), "force per torque"),
+        Column(say("force over crank torque"), "per length"),
         say("torque over crank torque"),
     )
     there = [k for k in range(5) if k < 3 or any(row[k] is not None for row in rows)]

@@ -6,12 +6,10 @@ from collections.abc import Iterator
 from math import degrees, pi
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from equipoise.i18n import Note, all_of, say
 from equipoise.mechanism.assembly.cam_fits import fits_of, sharpest
 from equipoise.mechanism.dynamics.cam_contacts import LetGo, let_go
-from equipoise.mechanism.dynamics.forces import forces, massless
+from equipoise.mechanism.dynamics.forces import Forces, forces, massless
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.spoken import body_named
 from equipoise.quantities import PER_RPM, angle, told
@@ -29,20 +27,20 @@ def cam_blocks(analysis: Analysis) -> Iterator[Block]:
     """Shape, pressure angle and contact force of each cam; where followers lift off."""
     if not analysis.machine.cams:
         return
-    found = () if analysis.solved is None else let_go(analysis.solved)
-    limits = {one.cam.name: Value(one.speed, at=one.at) for one in found if np.isfinite(one.speed)}
     rows: list[tuple[Cell, ...]] = []
-    for fit in fits_of(analysis.machine, analysis.motion.linkage.joints):
-        name = fit.cam.name
+    limited = any(one.lift_off_speed is not None for one in analysis.cams.values())
+    for name, one in analysis.cams.items():
         steep = figures(analysis.crank_angle, abs(analysis.motion.pressure_angles[name]))
         row: tuple[Cell, ...] = (
             name.replace(" to ", " → "),
-            Value(sharpest(fit)[0]),
+            Value(one.least_radius),
             largest(steep),
         )
         if analysis.solved is not None:
             force = figures(analysis.crank_angle, analysis.solved.cams[name].normal)
-            row = (*row, smallest(force), largest(force), limits.get(name))
+            speed = one.lift_off_speed
+            limit = None if speed is None else Value(speed, at=one.lift_off_at)
+            row = (*row, smallest(force), largest(force), limit)
         rows.append(row)
     force_heads = (say("smallest contact force"), say("largest"))
     columns = (
@@ -52,10 +50,10 @@ def cam_blocks(analysis: Analysis) -> Iterator[Block]:
         *(Column(head, "force") for head in force_heads),
         Column(say("lifts off from"), "angular speed", "rpm"),
     )
-    shown = len(rows[0]) - (len(rows[0]) == len(columns) and not limits)
+    shown = len(rows[0]) - (len(rows[0]) == len(columns) and not limited)
     title = say("Cams; largest and smallest with the crank angle")
     yield Table.of(title, columns[:shown], (row[:shown] for row in rows))
-    if lost := tuple(lost_told(one) for one in found if one.ranges):
+    if analysis.solved is not None and (lost := _where_lost(analysis.solved)):
         yield Notes(lost)
 
 
@@ -96,4 +94,8 @@ def where_lost(machine: Machine) -> tuple[Note, ...]:
     """Where springs do not keep followers on their cams, at the file's speed."""
     if not machine.cams or massless(machine):
         return ()
-    return tuple(lost_told(one) for one in let_go(forces(move(machine))) if one.ranges)
+    return _where_lost(forces(move(machine)))
+
+
+def _where_lost(found: Forces) -> tuple[Note, ...]:
+    return tuple(lost_told(one) for one in let_go(found) if one.ranges)

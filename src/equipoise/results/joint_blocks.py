@@ -12,7 +12,7 @@ from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
 from equipoise.mechanism.dynamics.undecided import undecided
 from equipoise.mechanism.outputs.spoken import body_named, joint_named
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
-from equipoise.results.machine_blocks import largest
+from equipoise.results.machine_blocks import largest, smallest
 from equipoise.signals import figures
 
 if TYPE_CHECKING:
@@ -28,6 +28,21 @@ def joint_blocks(analysis: Analysis) -> Iterator[Block]:
         told += analysis.forces.across.statics.told()
     if told:
         yield Notes(tuple(told))
+
+
+def springs_table(analysis: Analysis) -> Table:
+    """How long every spring is, and what it pulls its ends together by."""
+    rows: list[tuple[Cell, ...]] = []
+    for number, one in analysis.motion.springs.items():
+        spring = analysis.machine.springs[int(number) - 1]
+        length, pull = (figures(analysis.crank_angle, values) for values in (one.length, one.pull))
+        ends = f"{spring.point} → {spring.to}"
+        rows.append((number, ends, *(f(x) for x in (length, pull) for f in (smallest, largest))))
+    heads = (say("shortest"), say("longest")), (say("smallest pull"), say("largest"))
+    columns = ["", say("from → to"), *(Column(head, "length") for head in heads[0])]
+    columns += [Column(head, "force") for head in heads[1]]
+    title = say("Springs, each with its crank angle; below 0 they push their ends apart")
+    return Table.of(title, columns, rows)
 
 
 def joint_table(analysis: Analysis) -> Table:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import Field, dataclass
 from functools import cached_property
 from itertools import groupby
@@ -14,6 +14,7 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.dynamics.cam_contacts import CamFigures
 from equipoise.mechanism.dynamics.undecided import refuse_unbounded
 from equipoise.mechanism.kinematics.stroke_figures import DeadPosition, Stroke, declared_figures
 from equipoise.mechanism.outputs.declared import DECLARED, GROUPS, Declared, declared
@@ -211,10 +212,19 @@ def _documented(one: Declared) -> str:
 
 def documented_strokes() -> str:
     """The figures of sliders and rockers in the same way."""
+    return _documented_figures({"": Stroke, "dead_positions[1].": DeadPosition})
+
+
+def documented_cams() -> str:
+    """The figures of cams."""
+    return _documented_figures({"": CamFigures})
+
+
+def _documented_figures(classes: Mapping[str, type]) -> str:
     head = "| figure | unit | what it is |\n|---|---|---|\n"
     return head + "".join(
         f"| `{before}{one.name}` | {_unit_of_figure(one)} | {one.metadata['label']} |\n"
-        for before, of in (("", Stroke), ("dead_positions[1].", DeadPosition))
+        for before, of in classes.items()
         for one in declared_figures(of)
     )
 

@@ -45,7 +45,8 @@ def analyzed(machine: Machine, angles: int, wanted: Wanted) -> Values:
     further: list[str] = []
     if wanted is None or "outputs" in wanted:  # those that are had by their names alone
         further = [one.name for one in analysis.outputs if one.declared.unbounded]
-    values = analysis.to_dict(split, further, wanted is None or "strokes" in wanted)
+    figures = wanted is None or not {"strokes", "cams"}.isdisjoint(wanted)
+    values = analysis.to_dict(split, further, figures)
     ordered = analysis.solved is not None and angles >= LEAST_ANGLES
     if ordered and (wanted is None or "by_order" in wanted):
         values["by_order"] = order_values(analysis, MOST_ORDERS, 0.0)

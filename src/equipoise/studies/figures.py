@@ -17,6 +17,8 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.dynamics.cam_contacts import CamFigures
+from equipoise.mechanism.kinematics.stroke_figures import declared_figures
 from equipoise.mechanism.kinematics.stroke_figures import dimension_of as of_stroke
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.planting.names import dimension_of as of_planting
@@ -245,6 +247,7 @@ KINDS: dict[str, dict[str, str | None]] = {
         r"four_bar\..*|turns|by_order\.(.*\.)?orders": None,
         "speed": "angular speed",
         "acceleration": "angular acceleration",
+        **{rf"cams\..*\.{f.name}": f.metadata["dimension"] for f in declared_figures(CamFigures)},
     },
     "plant": {
         r"visits\.depth|loops\.(y|height|width)": "length",

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import Field, dataclass
+from functools import partial
 from math import isfinite
 from typing import Any
 
@@ -227,18 +228,38 @@ def _shown(name: str, one: _Told, other: _Told | None) -> Values:
 
 
 def _strokes(found: Solved) -> _Figures:
-    """Figures of every slider and rocker, but for the crank angles at which they are."""
+    """Figures of every slider, rocker and cam, but for the crank angles at which they are."""
     return dict(_strokes_of(found.analysis))
 
 
 def _strokes_of(analysis: Analysis) -> Iterator[tuple[str, _Told]]:
+    machine = analysis.machine
     for name, one in analysis.strokes.items():
-        for kind in declared_figures():
-            value = getattr(one, kind.name)
-            if value is not None and not kind.name.endswith("_at"):
-                label = f"{joint_named(name)}: {say(kind.metadata['label'])}"
-                dimension = dimension_of(analysis.machine, f"{name}.{kind.name}")
-                yield f"strokes.{name}.{kind.name}", _Told(label, value, dimension)
+        of_joint = partial(_of_joint, machine, name)
+        yield from _declared_of(f"strokes.{name}", joint_named(name), one, of_joint)
+    for name, cam in analysis.cams.items():
+        yield from _declared_of(f"cams.{name}", name.replace(" to ", " → "), cam, _of_cam)
+
+
+def _of_joint(machine: Machine, name: str, kind: Field[Any]) -> Dimension | None:
+    return dimension_of(machine, f"{name}.{kind.name}")
+
+
+def _of_cam(kind: Field[Any]) -> Dimension | None:
+    found: Dimension | None = kind.metadata["dimension"]
+    return found
+
+
+def _declared_of(
+    path: str, named: str, one: Any, dimension: Callable[[Field[Any]], Dimension | None]
+) -> Iterator[tuple[str, _Told]]:
+    """Figures that are declared on the class of something."""
+    for kind in declared_figures(type(one)):
+        value, of = getattr(one, kind.name), dimension(kind)
+        if value is not None and not kind.name.endswith("_at"):
+            unit = "rpm" if of == "angular speed" else None
+            label = f"{named}: {say(kind.metadata['label'])}"
+            yield f"{path}.{kind.name}", _Told(label, value, of, unit)
 
 
 def _plants(found: Solved) -> bool:

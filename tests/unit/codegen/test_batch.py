@@ -16,8 +16,9 @@ import equipoise as eq
 from equipoise.codegen.batch import Batch
 from equipoise.codegen.emit import can_compute
 from equipoise.codegen.figures import GATHERED, PLACES, Figure, Gathered, figure_of
-from equipoise.errors import ChangePointError, RangeError, UsageError
+from equipoise.errors import ChangePointError, ModelError, RangeError, UsageError
 from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.mechanism.parts.machine import Gear, Load, LoadTable, Machine, Slider
 from support.batches import WRITTEN, by_numpy, known_of, wanted_of
 from support.designs import (
@@ -145,16 +146,40 @@ def test_four_bars_that_open_somewhere(numpy_engine: None) -> None:
     assert set(same_reasons(FOUR, named(FOUR, *LENGTHS), values)) == {2}
 
 
-def test_gears_of_varying_ratio_are_written_where_the_crank_tells_their_angles() -> None:
-    """Not where a design changes the angle from which the ratio counts: those go the other way."""
-    assert "rolling_planet" in WRITTEN
-    base = make("rolling_planet", 0).machine
-    figure = Figure("drive_torque", "rms")
-    assert can_compute(base, ["gears[2].start", "links.arm.points.B.x"], figure)
-    assert not can_compute(base, ["gears[1].start"], figure)
-    with pytest.raises(UsageError, match="got the start of a body"):
-        Batch(base, ["gears[1].start"], [figure])
-    assert not can_compute(make("rolling_coupler", 0).machine, [], figure)
+def elliptic(mean: float, eccentricity: float) -> Machine:
+    """A four-bar whose crank turns a weight by elliptic gears."""
+    base = with_gear("crank", mean)
+    shape = GearShape("elliptic", eccentricity=eccentricity)
+    return replace(base, gears=(replace(base.gears[0], shape=shape),))
+
+
+def test_gears_of_varying_ratio_whose_laws_have_no_formula_go_the_other_way() -> None:
+    base = elliptic(-1.0, 0.2)
+    path, figure = "gears[1].shape.eccentricity", Figure("drive_torque", "rms")
+    assert can_compute(base, [path, "gears[1].shape.phase"], figure)
+    shape = replace(base.gears[0].shape, kind="eccentric")
+    circle = replace(base, gears=(replace(base.gears[0], shape=shape),))
+    assert can_compute(circle, ["gears[1].shape.phase"], figure)
+    assert not can_compute(circle, [path], figure)
+    assert not can_compute(circle, ["gears[1].shape.cosines[1]"], figure)
+
+
+@pytest.mark.parametrize("mean", [-1.0, 0.5])
+def test_pitch_curves_that_cannot_be_made(mean: float, numpy_engine: None) -> None:
+    """Gears that would jam or cut their ring, on either side of where they begin to."""
+    base = elliptic(mean, 0.1)
+    path, e = "gears[1].shape.eccentricity", np.linspace(-0.1, 1.1, 61)[:, None]
+    _, reasons = Batch(base, [path], RMS, angles=60)(e)
+    told = []
+    for (one,) in e:
+        try:
+            elliptic(mean, float(one))
+        except ModelError:
+            told.append(4)
+        else:
+            told.append(0)
+    assert reasons.tolist() == told
+    assert len(set(told)) == 2
 
 
 @pytest.mark.parametrize("kind", WRITTEN)

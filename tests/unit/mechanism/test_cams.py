@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from math import pi, radians, sqrt
 from typing import Any
@@ -12,10 +13,13 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.mechanism import assemble
+from equipoise.mechanism.assembly.cam_fits import fits_of
 from equipoise.mechanism.dynamics.cam_contacts import let_go
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment
 from equipoise.mechanism.parts.machine import FRAME
+from equipoise.schema.files import json_text
+from support.printing import words
 from unit.mechanism.build import ORIGIN, heavy, machine, refused
 
 MASS, HIGH, GRAVITY = 0.5, 0.02, 9.80665
@@ -125,6 +129,80 @@ def test_a_spring_presses_the_tappet_on() -> None:
     (loose,) = let_go(eq.analyze(tappet(cam(closed_by="spring"), gravity=(0.0, 5.0))).forces)
     assert loose.speed == 0
     assert loose.ranges == ((pytest.approx(0), pytest.approx(2 * pi)),)
+
+
+SPRUNG = {
+    "tappet": lambda: tappet(
+        cam("roller", lift=RISE, closed_by="spring"),
+        springs=(eq.Spring("tappet", "R", "S", 2000.0, 0.3),),
+    ),
+    "arm": lambda: eq.load("cam-pusher"),
+}
+
+
+@pytest.mark.parametrize("name", SPRUNG)
+def test_at_the_lift_off_speed_the_contact_force_touches_zero(name: str) -> None:
+    """Analysed at that speed and a hundredth beside it."""
+    given = SPRUNG[name]()
+    (cam,) = given.cams
+    (told,) = eq.analyze(given).cams.values()
+    assert told.lost == () and told.lift_off_speed > abs(given.drive.speed)
+
+    def least(speed: float) -> tuple[float, float, eq.Analysis]:
+        found = eq.analyze(given, speed=speed)
+        k = int(np.argmin(found.forces.cams[cam.name].normal))
+        return found.forces.cams[cam.name].normal[k], found.crank_angle[k], found
+
+    force, at, _ = least(told.lift_off_speed)
+    assert (force, at) == (pytest.approx(0, abs=1e-9), pytest.approx(told.lift_off_at))
+    assert least(0.99 * told.lift_off_speed)[0] > 0
+    force, at, beyond = least(1.01 * told.lift_off_speed)
+    assert force < 0
+    assert any(begin < at < end for begin, end in beyond.cams[cam.name].lost)
+
+
+def test_figures_of_a_cam_stand_in_plain_data() -> None:
+    """Those of lifting off are null where ribs close it, or where masses are missing."""
+    given = eq.load("cam-pusher")
+    found = eq.analyze(given, speed=65.0)
+    told = json.loads(json_text(found.to_dict()))["cams"]["crank to pusher"]
+    ((begin, end),) = found.cams["crank to pusher"].lost
+    assert told["lost"] == [{"from": begin, "to": end}]
+    radius = found.summary["cams.crank to pusher.curvature"]
+    assert told["least_radius"] == pytest.approx(1 / radius.max, rel=1e-3)
+    assert told["lift_off_speed"] == pytest.approx(found.cams["crank to pusher"].lift_off_speed)
+    ribbed = replace(given, cams=(replace(given.cams[0], closed_by="ribs"),))
+    for other in (ribbed, given.with_link("arm", mass=None, center_of_mass=None, inertia=None)):
+        (told,) = eq.analyze(other).cams.values()
+        assert (told.lift_off_speed, told.lift_off_at, told.lost) == (None, None, ())
+
+
+@pytest.mark.parametrize("rides", ["flat", "roller", "knife"])
+@pytest.mark.parametrize("kind", ["tappet", "lever"])
+def test_curvature_is_that_of_the_profile(kind: str, rides: str) -> None:
+    """By differences of its points, in machines whose cam and carrier turn."""
+    if kind == "tappet":
+        given = tappet(cam(rides))
+    else:
+        given = lever(rides=rides, **({"normal": pi / 2} if rides == "flat" else {}))
+    motion = eq.move(given, 24)
+    (told,) = motion.curvatures.values()
+    (fit,) = fits_of(given, motion.linkage.joints)
+    step = 1e-3
+    before, here, after = (fit.shape(motion.crank_angle + k * step).surface for k in (-1, 0, 1))
+    first, second = (after - before) / (2 * step), (after - 2 * here + before) / step**2
+    bend = np.abs((np.conj(first) * second).imag) / np.abs(first) ** 3
+    np.testing.assert_allclose(np.abs(told), bend, rtol=1e-4)
+
+
+def test_pull_of_a_return_spring() -> None:
+    spring = eq.Spring("tappet", "R", "S", 1000.0, 0.3)
+    found = eq.analyze(tappet(cam(closed_by="spring"), springs=(spring,)))
+    length = 0.2 - found.motion.points["R"].y
+    told = found.outputs["springs.1.length"], found.outputs["springs.1.pull"]
+    np.testing.assert_allclose(told[0].values, length, rtol=1e-14)
+    np.testing.assert_allclose(told[1].values, 1000.0 * (length - 0.3), rtol=1e-13)
+    assert "Springs" in words(found.blocks())
 
 
 def test_pressure_angle_of_a_machine() -> None:

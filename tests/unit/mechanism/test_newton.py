@@ -14,7 +14,7 @@ import equipoise as eq
 from equipoise.errors import EquipoiseError, ModelError, MotionError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.newton import LoopGroup
-from laws.subjects import family_of, is_force, outputs, sizes
+from laws.subjects import families_of, is_force, outputs, sizes
 from laws.transforms import shifted, turned
 from support.machines import make
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, refused, two_gears
@@ -335,7 +335,7 @@ def test_the_driver_comes_first() -> None:
 def test_split_and_regressor_go_through_loops() -> None:
     found = eq.analyze(TRIAD, ANGLES).forces
     force, _ = sizes(found)
-    rows = dict(family_of("joints", eq.mechanism.regressor(found.motion).joints))
+    rows = dict(families_of(eq.mechanism.regressor(found.motion)))
     values = eq.mechanism.regressor(found.motion).values
     for name, joint in found.joints.items():
         got = values @ rows[f"joints/{name}/value"]

@@ -20,7 +20,7 @@ from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Wei
 from equipoise.present.composition import report_page
 from equipoise.present.findings import Findings
 from equipoise.results.blocks import Column, Table
-from equipoise.results.outputs import documented, documented_strokes, unit_of
+from equipoise.results.outputs import documented, documented_cams, documented_strokes, unit_of
 from equipoise.schema.documents import dumps
 from equipoise.schema.files import json_text, to_csv
 from equipoise.studies.figures import dimension_of
@@ -31,7 +31,7 @@ from support.printing import words
 
 DOCS = Path(__file__).parents[3] / "docs" / "output.md"
 BEGIN, END = "<!-- declared {} -->\n", "<!-- end of declared {} -->\n"
-TABLES = {"outputs": documented, "strokes": documented_strokes}
+TABLES = {"outputs": documented, "strokes": documented_strokes, "cams": documented_cams}
 POWER = "drive_power"
 
 

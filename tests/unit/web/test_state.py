@@ -86,6 +86,11 @@ def test_figures_of_sliders_and_rockers_are_told_in_the_units_of_tables() -> Non
     assert told["lever: time ratio"]["text"] == "1.710"
     assert told["lever: dwell"]["unit"] == "°"
     assert "block on lever: least mechanical advantage" not in told
+    session, _ = opened("cam-pusher")
+    told = {one["name"]: one for reply in session.tell_more() for one in reply.content["figures"]}
+    one = told["cams.crank to pusher.lift_off_speed"]
+    assert (one["label"], one["unit"]) == ("crank → pusher: lift-off speed of the crank", "rpm")
+    assert one["value"] == pytest.approx(583.6, rel=1e-3)
 
 
 def test_strokes_and_planting_are_told_before_and_after() -> None:

@@ -178,6 +178,13 @@ class Shape:
         with np.errstate(divide="ignore"):
             return 1 / self.curvature - self.radius
 
+    @property
+    def surface_curvature(self) -> Array:
+        """One over that (N,), 1/m: 0 where the surface is straight, less where it is hollow."""
+        if self.flat:
+            return 1 / self.radius_of_curvature
+        return self.curvature / (1 - self.curvature * self.radius)
+
     def at(self, angle: Array) -> Shape:
         """The same at other angles."""
         return replace(self, angle=angle)

@@ -190,6 +190,7 @@ HOLDERS = {
     r"(links)\.(.+)": {"mass", "inertia", "length", "plane"},
     r"(bearings)\.(.+)": {"plane"},
     r"(sliders)\[([1-9]\d*)\]": {"direction", "angle"},
+    r"(gears)\[([1-9]\d*)\]\.(shape)": {"eccentricity", "phase", "cosines", "sines"},
     r"(gears)\[([1-9]\d*)\]": {"start", "pressure_angle"},
     r"(belts)\[([1-9]\d*)\]": {"start", "tension"},
     r"(racks)\[([1-9]\d*)\]": {"angle", "travel", "pressure_angle"},
@@ -200,11 +201,17 @@ HOLDERS = {
 these are names."""
 
 
+_LISTED = re.compile(r"\[[1-9]\d*\]$")
+"""Place in a list of numbers."""
+
+
 def _holder(whole: str, parts: Set[str]) -> tuple[str, ...]:
     """The steps to what has these numbers; a `KeyError` where they may be no columns."""
     for pattern, keys in HOLDERS.items():
         found = re.fullmatch(pattern, whole)
-        if found is not None and (keys is None or parts <= keys):
+        if found is not None and (
+            keys is None or {_LISTED.sub("", part) for part in parts} <= keys
+        ):
             return found.groups()
     raise KeyError(whole)
 
@@ -236,6 +243,7 @@ def with_columns(machine: Machine, columns: Columns) -> Machine:
             steps = _holder(whole, found.keys())
             machine = changed(machine, steps, partial(_filled, found), _with)
             _check_outlines(machine)
+            _check_shapes(machine)
         except (KeyError, IndexError):
             told = " and ".join(f"{whole}.{part}".lstrip(".") for part in found)
             raise UsageError(
@@ -250,15 +258,34 @@ def _filled(parts: Mapping[str, Array], held: Any) -> Any:
         return _pair(held, parts)
     if isinstance(held, Mapping) and parts.keys() <= held.keys():
         return {**held, **parts}
-    if not isinstance(held, Frozen) or any(getattr(held, name) is None for name in parts):
+    if not isinstance(held, Frozen):
         raise KeyError
-    return _with(held, **held.following(dict(parts)))
+    fields: dict[str, Any] = {}
+    for part, column in parts.items():
+        name, _, place = part.rstrip("]").partition("[")
+        value = fields.get(name, getattr(held, name))
+        if value is None or bool(place) != isinstance(value, tuple):
+            raise KeyError
+        if place and int(place) > len(value):
+            raise KeyError
+        fields[name] = (*value[: int(place) - 1], column, *value[int(place) :]) if place else column
+    return _with(held, **held.following(fields))
 
 
 def _check_outlines(machine: Machine) -> None:
     """Whether plates keep their shape, and their holes the places, is only told of numbers."""
     for link in machine.links.values():
         if any(outlined_by_columns(body, link.points) for body in link.bodies):
+            raise KeyError
+
+
+def _check_shapes(machine: Machine) -> None:
+    """Whether the laws of gears are formulas of their numbers."""
+    shapes = [gear.shape for gear in machine.gears if gear.shape is not None]
+    if any(shape.varies for shape in shapes):
+        from equipoise.mechanism.parts import pitch_curves
+
+        if not all(map(pitch_curves.can_vary, shapes)):
             raise KeyError
 
 

@@ -16,6 +16,7 @@ from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array, planar
 from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.mechanism.parts.pitch_curves import can_roll
 from equipoise.mechanism.parts.planes import demands_across
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities.units import HUGE, TINY
@@ -55,6 +56,9 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
     toothed: tuple[Gear | Rack, ...] = (*machine.gears, *machine.racks)
     for gear in toothed:
         yield (gear.pressure_angle >= 0) & (np.asarray(gear.pressure_angle) < pi / 2)
+    for pair in machine.gears:
+        if pair.shape is not None and pair.shape.varies:
+            yield can_roll(pair.shape, pair)
     yield from demands_across(machine)
     for spring in machine.springs:
         yield (spring.stiffness > 0) & (np.asarray(spring.free_length) >= 0)

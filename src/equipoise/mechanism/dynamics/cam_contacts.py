@@ -1,16 +1,60 @@
-"""Contact of cams and followers that springs press together: where, and when, it is lost."""
+"""Figures of cams; and contact of those that springs press on: where, and when, it is lost."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from math import isfinite
+from typing import Any
 
 import numpy as np
 
+from equipoise.i18n import to_say
+from equipoise.mechanism.assembly.cam_fits import fits_of, sharpest
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.dynamics.reactions import reactions
 from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.stroke_figures import figure
 from equipoise.mechanism.parts.cams import Cam
+
+
+@dataclass(frozen=True)
+class CamFigures:
+    """Figures of a cam.
+
+    least_radius : of curvature of its surface, m; least_radius_at : angle of the cam, rad, of it.
+    lift_off_speed : size of the crank's speed, rad/s, from which its springs do not hold the
+        follower; 0 where they do not even at rest, and None where it never lifts off, or where no
+        spring, no masses or no whole cycle are there to tell.
+    lift_off_at : crank angle, rad, at which that happens.
+    lost : crank angles, rad, between which contact is lost at the speed analysed.
+    """
+
+    least_radius: float = figure(to_say("least radius of curvature"), "length")
+    least_radius_at: float = figure(to_say("least radius of curvature at cam angle"), "angle")
+    lift_off_speed: float | None = figure(to_say("lift-off speed of the crank"), "angular speed")
+    lift_off_at: float | None = figure(to_say("lifts off at crank angle"), "angle")
+    lost: tuple[tuple[float, float], ...] = ()
+
+    def told(self) -> dict[str, Any]:
+        """As plain data."""
+        return vars(self) | {"lost": [{"from": a, "to": b} for a, b in self.lost]}
+
+
+def cam_figures(motion: Motion, forces: Forces | None) -> Mapping[str, CamFigures]:
+    """Figures of every cam, by name."""
+    whole = forces if motion.whole_cycle else None
+    lifts = {} if whole is None else {one.cam.name: one for one in let_go(whole)}
+    found = {}
+    for fit in fits_of(motion.machine, motion.linkage.joints):
+        one = lifts.get(fit.cam.name)
+        limited = one is not None and isfinite(one.speed)
+        speed, at = (one.speed, one.at) if one is not None and limited else (None, None)
+        lost = () if one is None else one.ranges
+        radius, where = sharpest(fit)
+        found[fit.cam.name] = CamFigures(radius, where, speed, at, lost)
+    return found
 
 
 @dataclass(frozen=True, eq=False)

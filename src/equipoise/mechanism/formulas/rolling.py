@@ -15,14 +15,16 @@ Formulas: ``docs/theory.md``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from itertools import zip_longest
+from math import pi
 from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism.formulas.curves import Array, Curve, Curves, spline
+from equipoise.mechanism.formulas.curves import MOST_POWERS, Array, Curve, Curves, spline
+from equipoise.mechanism.formulas.rolling_kernels import half_angle, series_term
 
 Levels = tuple[Array, Array, Array]
 """Value, first and second derivative."""
@@ -41,20 +43,30 @@ class Waves:
     sines: tuple[Any, ...]
     lobes: int = 1
 
-    def __call__(self, x: Any) -> Levels:
-        return self.levels(x, 0)
+    @property
+    def terms(self) -> Iterator[tuple[Any, Any, int]]:
+        """Cosine, sine and waves in a turn of each term."""
+        pairs = zip_longest(self.cosines, self.sines, fillvalue=0.0)
+        return ((cosine, sine, k * self.lobes) for k, (cosine, sine) in enumerate(pairs, 1))
 
-    def levels(self, x: Any, lowest: int) -> Levels:
-        """Derivatives of three orders, from `lowest` on; that of the order -1 is an integral."""
-        orders = range(lowest, lowest + 3)
-        levels = [x + 0.0 if order < 0 else 0.0 * x + (order == 0) for order in orders]
+    def __call__(self, x: Any) -> Levels:
+        _, value, first = self.summed(x)
+        second = 0.0 * x
         turn, wave = np.exp(1j * self.lobes * x), 1.0
-        for k, (cosine, sine) in enumerate(zip_longest(self.cosines, self.sines, fillvalue=0.0), 1):
+        for cosine, sine, order in self.terms:
             wave = wave * turn
-            for place, order in enumerate(orders):
-                share = (cosine - 1j * sine) * wave * (1j * k * self.lobes) ** order
-                levels[place] = levels[place] + share.real
-        return levels[0], levels[1], levels[2]
+            second = second - order * order * ((cosine - 1j * sine) * wave).real
+        return value, first, second
+
+    def summed(self, x: Any) -> Levels:
+        """What it sums up to, from the mean alone on, its value and its first derivative."""
+        levels: Any = (x + 0.0, 1.0 + 0.0 * x, 0.0 * x)
+        turn, wave = np.exp(1j * self.lobes * x), 1.0
+        for cosine, sine, order in self.terms:
+            wave = wave * turn
+            levels = series_term(*levels, wave, cosine, sine, order)  # type: ignore[call-arg,no-untyped-call]
+        y, value, first = levels
+        return y, value, first
 
 
 @dataclass(frozen=True)
@@ -125,11 +137,10 @@ class HalfAngle:
 
     def __call__(self, x: Any) -> tuple[Any, Any, Any]:
         x = x - self.zero
-        z = self.depth * np.exp(1j * self.lobes * x)
-        part = 1 / (1 + z)
-        y = self.mean * x + (2 / self.lobes) * self.share * np.angle(1 + z)
-        first = self.mean + 2 * self.share * (z * part).real
-        return y, first, -2 * self.lobes * self.share * (z * part * part).imag
+        turned = np.exp(1j * self.lobes * x)
+        told = half_angle(turned, self.mean, self.share, self.depth, self.lobes)  # type: ignore[no-untyped-call]
+        y = self.mean * x + (2 / self.lobes) * self.share * np.angle(told[0])
+        return y, told[2], told[3]
 
 
 @dataclass(frozen=True)
@@ -141,7 +152,7 @@ class RatioWaves:
     zero: Any = 0.0
 
     def __call__(self, x: Any) -> tuple[Any, Any, Any]:
-        y, first, second = self.waves.levels(x - self.zero, -1)
+        y, first, second = self.waves.summed(x - self.zero)
         return self.mean * y, self.mean * first, self.mean * second
 
 
@@ -209,6 +220,17 @@ class PitchCurve:
                 break
         pieces = period * np.sum(weights * factor * radius / (1 + factor * radius), axis=1)
         return cls(mean, curve, factor, knots, np.append(0.0, np.cumsum(pieces)))
+
+    def summed(self) -> tuple[Curve, float]:
+        """The driven gear's angle as pieces between the knots, to 1e-12, and where they begin."""
+        half = 0.5 * np.diff(self.knots)
+        at = np.cos(pi * (np.arange(MOST_POWERS - 1) + 0.5) / (MOST_POWERS - 1))
+        ratio, _ = self.rate(self.knots[:-1, None] + half[:, None] * (1 + at))
+        ways = np.vander(1 + at, increasing=True)
+        levels = np.linalg.solve(ways, ratio.T).T / half[:, None] ** np.arange(MOST_POWERS - 1)
+        powers = np.column_stack([self.sums[:-1], levels / np.arange(1, MOST_POWERS)])
+        knots = self.knots - self.knots[0]
+        return Curve(knots, powers, np.zeros((len(powers), 3))), float(self.knots[0])
 
     def rate(self, x: Any) -> tuple[Any, Any]:
         """The ratio and its derivative."""

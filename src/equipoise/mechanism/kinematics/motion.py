@@ -15,14 +15,14 @@ import numpy as np
 
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism.assembly.builder import Group
-from equipoise.mechanism.assembly.cam_fits import pressure_angle
+from equipoise.mechanism.assembly.cam_fits import Fit, fits_of, pressure_angle
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.steps import Array, State, p, plain_angle, running_angle, u
 from equipoise.mechanism.checks import Named, Vector, bodies_at
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.kinematics.rates import LinkMotion, PointMotion, SliderMotion
+from equipoise.mechanism.kinematics.rates import LinkMotion, PointMotion, SliderMotion, SpringMotion
 from equipoise.mechanism.kinematics.swinging import middle_angle, solve_swinging
-from equipoise.mechanism.parts.machine import Drive, FurtherDrive, Machine, Slider
+from equipoise.mechanism.parts.machine import Drive, FurtherDrive, Machine, Slider, Spring
 from equipoise.quantities.units import HUGE
 
 MOST_ANGLES = 400_000
@@ -123,6 +123,27 @@ class Motion:
         return Named(
             "cam", ((cam.name, self._full(pressure_angle(cam, self.state))) for cam in cams)
         )
+
+    @cached_property
+    def curvatures(self) -> Mapping[str, Array]:
+        """Curvature (N,) of each cam's surface where its follower touches, 1/m."""
+        fits = fits_of(self.machine, self.linkage.joints)
+        return Named("cam", ((fit.cam.name, self._full(self._curvature(fit))) for fit in fits))
+
+    def _curvature(self, fit: Fit) -> Array:
+        links, cam = self.links, fit.cam
+        ends = [links[body].angle if body in links else 0.0 for body in (cam.driver, cam.carrier)]
+        return fit.shape(np.asarray(ends[0] - ends[1])).surface_curvature
+
+    @cached_property
+    def springs(self) -> Mapping[str, SpringMotion]:
+        """Length and pull of each spring, by its number from 1."""
+        found = enumerate(self.machine.springs, 1)
+        return Named("spring", ((str(number), self._stretched(one)) for number, one in found))
+
+    def _stretched(self, spring: Spring) -> SpringMotion:
+        length = np.abs(self.points[spring.to].place - self.points[spring.point].place)
+        return SpringMotion(length, spring.stiffness * (length - spring.free_length))
 
     def slider(self, slider: Slider) -> SliderMotion:
         """Motion of one of the sliding joints, likewise."""

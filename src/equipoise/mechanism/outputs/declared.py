@@ -99,7 +99,7 @@ of_slider(
 )
 of_slider(
     "advantage",
-    "force per torque",
+    "per length",
     to_say("mechanical advantage of {name}"),
     had="travel_1",
     members=lambda machine: guided(machine) * machine.has_crank,
@@ -178,12 +178,8 @@ of_center = alike(
     summed=False,
     sized=False,
 )
-of_center(
-    "acceleration",
-    "acceleration",
-    to_say("acceleration of the common centre of mass"),
-    ("ax", "ay"),
-)
+of_center("acceleration", "acceleration", to_say("acceleration of the common centre of mass"),
+          ("ax", "ay"))  # fmt: skip
 
 
 def _of_drive(name: str, found: Any, link: str) -> Any:
@@ -321,9 +317,17 @@ of_cam("", "force", to_say("contact force {name}"), FORCES, linear=True,
 READ = "{what} is only read; take the whole contact force instead"
 of_cam(".normal", "force", to_say("contact force along the normal {name}"), linear=READ,
        loop="{cam push:name}")  # fmt: skip
-slant = alike("cams.{}.", lambda _, found, cam: found.motion.pressure_angles[cam], **CAMMED)
-slant("pressure_angle", "angle", to_say("pressure angle {name}"), needs="motion",
-      loop="angle_of({cam forth:name}.conjugate() * {cam normal:name})")  # fmt: skip
+of_shape = alike("cams.{}.", lambda name, found, cam: getattr(found.motion, name + "s")[cam],
+                 needs="motion", **CAMMED)  # fmt: skip
+of_shape("pressure_angle", "angle", to_say("pressure angle {name}"),
+         loop="angle_of({cam forth:name}.conjugate() * {cam normal:name})")  # fmt: skip
+of_shape("curvature", "per length", to_say("curvature of the cam {name}"))
+of_spring = alike(
+    "springs.{}.", lambda name, found, number: getattr(found.motion.springs[number], name),
+    members=lambda machine: [str(k + 1) for k in range(len(machine.springs))], needs="motion",
+)  # fmt: skip
+of_spring("pull", "force", to_say("pull of spring {name}"), loop="{spring pull:name}")
+of_spring("length", "length", to_say("length of spring {name}"), loop="{spring length:name}")
 
 # -- rows and support ------------------------------------------------------------------------------
 

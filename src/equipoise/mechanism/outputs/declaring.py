@@ -46,6 +46,7 @@ GROUPS = {
     "racks": to_say("racks"),
     "belts": to_say("belts"),
     "cams": to_say("cams"),
+    "springs": to_say("springs"),
     "rows": to_say("all rows together"),
     "gauges": to_say("gauges"),
 }

@@ -18,6 +18,7 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Frozen, Key, Keys, Listing, Text, declared, inside, key
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body
+from equipoise.mechanism.formulas.rolling_kernels import followed
 
 Relation = tuple[Callable[..., tuple[Any, ...]], tuple[Any, ...]]
 """Kernel and its numbers: called with angle, first and second derivative of the driver, then of the
@@ -152,12 +153,8 @@ def coupled(
 ) -> tuple[Any, Any, Any]:
     """Angle of a driven body: seen from the carrier c it is a function of that of the driver r."""
     value, first, second = law(angle_r - angle_c)
-    slip = w_r - w_c
-    return (
-        angle_c + value + offset,
-        w_c + first * slip,
-        a_c + first * (a_r - a_c) + second * slip * slip,
-    )
+    rates = followed(first, second, w_r, a_r, w_c, a_c)  # type: ignore[no-untyped-call]
+    return (angle_c + value + offset, *rates)
 
 
 def wrong_ends(where: str, coupling: Coupling, bodies: Bodies) -> Iterator[ModelError]:

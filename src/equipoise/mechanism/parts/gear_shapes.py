@@ -125,6 +125,12 @@ class GearShape(Frozen):
         return 2 * pi / self.lobes
 
     @property
+    def varies(self) -> bool:
+        """Whether numbers of its curves, not only its phase, are columns (P, 1) of designs."""
+        given = (self.eccentricity, *self.cosines, *self.sines)
+        return not all(one is None or isinstance(one, int | float) for one in given)
+
+    @property
     def waves(self) -> int:
         """About how many waves of its ratio a lobe has."""
         return max(1, len(self.angle) // 2, 2 * len(self.cosines), 2 * len(self.sines))

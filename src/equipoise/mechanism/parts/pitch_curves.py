@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from copy import copy
 from dataclasses import replace
 from functools import lru_cache
 from math import degrees, pi
@@ -29,13 +30,24 @@ MISFIT = 1e-4
 """Share by which a table may miss that its curves close; it is spread over all of it."""
 CUT = 1e-3
 """Of the distance of the axes: more than what a drawing of curves by corners may miss."""
+COARSE, NEAR = 32, 0.1
+"""Angles of a lobe, for each of its waves, at which many designs are looked at, and how near to
+what is wrong (rad, or of a ratio) they are looked at closely."""
+FORMULAS = ("elliptic", "limacon", "ratio")
+"""Kinds of shape whose laws are formulas of their numbers; of `ratio`, of a series."""
 PIECES = 128
 """Pieces of a lobe over which a ratio is summed up, for each of its waves."""
 
 
-@lru_cache(maxsize=256)
 def law_of(shape: GearShape, mean: float) -> Rolling:
     """The driven gear's angle by the driver's, both seen from the carrier; mean : ratio."""
+    if shape.varies or np.ndim(shape.phase):
+        return replace(_law.__wrapped__(shape, mean), zero=shape.phase)
+    return _kept(shape, mean)
+
+
+@lru_cache(maxsize=256)
+def _kept(shape: GearShape, mean: float) -> Rolling:
     return replace(_law(_even(shape), mean), zero=shape.phase)
 
 
@@ -159,6 +171,44 @@ def wrong_curve(shape: GearShape, gears: Pair, distance: float | None) -> Iterat
             deepest=deepest,
         )
         yield "", told
+
+
+def can_vary(shape: GearShape) -> bool:
+    """Whether the law of a shape whose numbers are columns has a formula, but for its phase."""
+    return not shape.varies or shape.kind in FORMULAS
+
+
+def can_roll(shape: GearShape, gears: Pair) -> Array:
+    """Of which designs (P, 1), whose numbers are columns, the pitch curves roll on each other.
+
+    They are looked at closely where they are near to what is wrong, and rings always.
+    """
+    mean, e = gears.speed_ratio, shape.eccentricity
+    x = np.linspace(0.0, shape.period, COARSE * shape.waves + 1)
+    _, first, second = _law.__wrapped__(shape, mean)(x)
+    leaning = np.arctan(np.abs(kernels.pitch_slope(first, second))) + gears.pressure_angle
+    least = np.min(first / mean, axis=1, keepdims=True)
+    from_one = np.min((1 - first) * np.sign(1 - mean), axis=1, keepdims=True)
+    most = np.max(leaning, axis=1, keepdims=True)
+    good: Array = (least > 0) & (from_one > 0) & (most < pi / 2)
+    if e is not None:
+        good &= (np.asarray(e) >= 0) & (np.asarray(e) < 1)
+    far = (least > NEAR) & (from_one > NEAR) & (most < pi / 2 - NEAR) & (mean < 0)
+    for k in np.flatnonzero(good & ~far):
+        one, pair = (_design(held, int(k)) for held in (shape, gears))
+        good[k] = not [*wrong_curve(one, pair, None)]
+    return good
+
+
+def _design(held: Any, k: int) -> Any:
+    """Numbers of one of the designs, instead of columns."""
+    found = copy(held)
+    for name, value in vars(held).items():
+        several = value if isinstance(value, tuple) else (value,)
+        if any(isinstance(one, np.ndarray) for one in several):
+            of_one = tuple(float(one[k, 0]) if np.ndim(one) else one for one in several)
+            found.__dict__[name] = of_one if isinstance(value, tuple) else of_one[0]
+    return found
 
 
 @lru_cache(maxsize=64)
