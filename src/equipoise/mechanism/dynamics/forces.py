@@ -124,6 +124,7 @@ class Forces(Exerted):
         return replace(self, loads=outside, springs={}, inner={})
 
     def tension(self, belt: Belt) -> float:
+        """What both strands of a belt have anyway, N."""
         return belt.tension or 0.0
 
     @property
