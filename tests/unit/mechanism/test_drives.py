@@ -109,6 +109,7 @@ def test_a_jump_of_acceleration_is_noted_and_is_no_place_without_effect():
     ("drives", "told"),
     [
         ((FurtherDrive("follower", ratio=pi),), r"drives\[1\].ratio: got 3.14159"),
+        ((FurtherDrive("follower", ratio=-0.1428571),), r"such as -0.14285714285714285 for -1/7"),
         ((FurtherDrive("crank"),), r"drives\[1\].link: 'crank' has a drive already"),
         ((FurtherDrive("nobody"),), r"drives\[1\].link: no link is called 'nobody'"),
         ((FurtherDrive("follower", 2.0, motion=SWING),), "give either motion, or ratio and start"),
