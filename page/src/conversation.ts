@@ -58,7 +58,7 @@ const ASIDE = new Set(["entry", "tables"]);
 
 export class Conversation {
   /** Drags and held keys under way; each ends before something else is asked. */
-  readonly open = new Set<{ end(): void }>();
+  readonly open = new Set<{ end(): void; ending: boolean }>();
   private seq = Math.floor(Math.random() * 1e6) * 1000;
   private flight: Question | null = null;
   private readonly queue: Question[] = [];
@@ -94,9 +94,15 @@ export class Conversation {
     return !!this.flight || this.queue.length > 0;
   }
 
-  /** Whether everything that was asked has all its answers. */
+  /** Whether everything that was asked has all its answers, and nothing more is about to be asked. */
   get calm(): boolean {
-    return !this.busy && !this.waiting && !this.aside.size && this.whole >= this.seq;
+    const asks = [...this.open].some(({ ending }) => ending);
+    return !asks && !this.busy && !this.waiting && !this.aside.size && this.whole >= this.seq;
+  }
+
+  /** Say that all is answered, if it is. */
+  rest(): void {
+    if (this.calm) this.events.calm(true);
   }
 
   /** Ask; every question gets its answer, in this order. */
@@ -219,7 +225,7 @@ export class Conversation {
     if (this.repeating && !this.queue.length) this.repeating = false;
     question.answered?.(refusal, told);
     this.next();
-    if (this.calm) this.events.calm(true); // all else may have been told before
+    this.rest(); // all else may have been told before
   }
 
   private land(): void {

@@ -17,9 +17,14 @@ export class Gesture {
     talk.open.add(this);
   }
 
+  /** Whether it ends by itself, and will be a step of undo then. */
+  get ending(): boolean {
+    return this.timer !== 0;
+  }
+
   move(edits: Edit[], stamp: number): void {
     if (this.done) return;
-    clearTimeout(this.timer);
+    this.stay();
     this.tried = edits;
     this.talk.attempt(this.label, edits, stamp, (refusal) => {
       if (refusal === null) this.good = edits;
@@ -29,7 +34,7 @@ export class Gesture {
 
   /** End soon, unless it goes on: for keys, which have no clear end. */
   endSoon(after: number): void {
-    clearTimeout(this.timer);
+    this.stay();
     this.timer = window.setTimeout(() => this.end(), after);
   }
 
@@ -38,9 +43,16 @@ export class Gesture {
     if (this.done) return;
     this.done = true;
     this.talk.open.delete(this);
-    clearTimeout(this.timer);
+    this.stay();
     const edits = this.tried ?? this.good;
     if (edits) this.talk.ask({ type: "edit", commit: true, label: this.label, edits });
+    else this.talk.rest();
     this.ended();
+  }
+
+  /** It does not end by itself, or not yet. */
+  private stay(): void {
+    clearTimeout(this.timer);
+    this.timer = 0;
   }
 }

@@ -1,9 +1,10 @@
 /** A curve in a plane with equal scales: the shaking force's polar diagram, paths of points. */
 
-import { h, s, set, write } from "./dom";
+import { type Attributes, h, s, set, write } from "./dom";
 import type { Unit } from "./protocol";
 import { degrees, multiples, plain, round, shown, signed } from "./format";
 import { FEWEST, spacing } from "./scale";
+import { curve } from "./shapes";
 
 export interface Trace {
   /** x and y in turn. */
@@ -29,8 +30,12 @@ const EDGE = { polar: 26, path: 18 };
 const TOGETHER = 5;
 /** Between two circles of the polar diagram, pixels: the widest with enough numbers is taken. */
 const APART = [34, 28, 22];
-/** Of a number below, pixels. */
-const WIDE = 36;
+/** Between two circles where there is room for few, pixels. */
+const LEAST = 26;
+/** Of a digit, pixels. */
+const DIGIT = 7;
+/** What a step between numbers below is multiplied with for more room. */
+const WIDER = [1, 2, 2.5, 1.5, 1.25, 5];
 /** Pixels. */
 const UNSEEN = 1e-3;
 /** Steps of the crank from mark to mark in the polar diagram, degrees. */
@@ -39,6 +44,26 @@ const TWELFTH = 30;
 /** Pixels. */
 type Spot = [x: number, y: number];
 
+/** Texts of a picture: those of before are used again, as each new one is laid out. */
+class Texts {
+  readonly root = s("g", { class: "texts" });
+  private count = 0;
+
+  begin(): void {
+    this.count = 0;
+  }
+
+  add(at: Attributes, text: string): void {
+    const one = this.root.children[this.count++] ?? this.root.appendChild(s("text"));
+    set(one, at);
+    write(one, text);
+  }
+
+  end(): void {
+    while (this.root.children.length > this.count) this.root.lastChild?.remove();
+  }
+}
+
 /** An SVG picture, `polar` with circles and an arrow from the origin. */
 export class Plane {
   readonly root: HTMLElement;
@@ -46,10 +71,10 @@ export class Plane {
   private readonly grid = s("path", { class: "grid" });
   private readonly axes = s("path", { class: "axes" });
   private readonly ground = s("rect", { class: "soil" });
-  private readonly texts = s("g", { class: "texts" });
+  private readonly texts = new Texts();
   private readonly curves = s("g", { class: "curves" });
   private readonly marks = s("path", { class: "marks" });
-  private readonly numbers = s("g", { class: "texts" });
+  private readonly numbers = new Texts();
   private readonly arrow = s("path", { class: "arrow" });
   private readonly dot = s("circle", { class: "dot", r: 3.5 });
   private readonly reading = h("span", { class: "legend" });
@@ -65,8 +90,8 @@ export class Plane {
     private readonly polar: boolean,
     control?: HTMLElement,
   ) {
-    this.svg.append(this.ground, this.grid, this.axes, this.texts);
-    this.svg.append(this.curves, this.marks, this.numbers, this.arrow, this.dot);
+    this.svg.append(this.ground, this.grid, this.axes, this.texts.root);
+    this.svg.append(this.curves, this.marks, this.numbers.root, this.arrow, this.dot);
     this.root = h(
       "figure",
       { class: "strip square", "aria-label": title },
@@ -103,7 +128,7 @@ export class Plane {
       });
       const [size, turn] = [Math.hypot(x, y), Math.round(degrees(Math.atan2(y, x)))];
       // What nobody sees is rounding, and points nowhere.
-      const told = `${shown(size * factor, 3)} ${unit} ∠ ${plain(turn)}°`;
+      const told = `${shown(size * factor, 3)} ∠ ${plain(turn)}°`;
       write(this.reading, size * this.scale < UNSEEN ? `0 ${unit}` : told);
     } else {
       const places = (this.size[0] / this.scale) * factor > 60 ? 0 : 1;
@@ -160,35 +185,26 @@ export class Plane {
     const { plot } = this;
     if (!plot || !this.size[0]) return;
     this.fit(plot);
-    this.texts.replaceChildren();
     this.along(plot);
+    this.texts.begin();
     const [width, height] = this.size;
-    this.texts.append(s("text", { x: width - 4, y: height - 4, "text-anchor": "end" }, plot.unit));
+    this.texts.add({ x: width - 4, y: height - 4, "text-anchor": "end" }, plot.unit);
     if (this.polar) this.circles(plot);
     else this.lines(plot);
+    this.texts.end();
+    const place = (x: number, y: number) => this.place(x, y);
     const kept = this.curves.children;
     plot.traces.forEach((trace, i) => {
       const path = kept[i] ?? this.curves.appendChild(s("path"));
-      set(path, { class: `curve ${trace.kind}`, d: this.path(trace) });
+      set(path, { class: `curve ${trace.kind}`, d: curve(trace.points, place, trace.closed) });
     });
     while (kept.length > plot.traces.length) kept[kept.length - 1]?.remove();
-  }
-
-  private path(trace: Trace): string {
-    const { points } = trace;
-    const step = Math.max(Math.round(points.length / 720), 1) * 2;
-    let d = "";
-    for (let i = 0; i + 1 < points.length; i += step) {
-      const [x, y] = this.place(points[i] as number, points[i + 1] as number);
-      d += `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`;
-    }
-    return d && trace.closed ? `${d}Z` : d;
   }
 
   /** Dots at equal steps of the crank; in the polar diagram with numbers at its quarters. */
   private along(plot: Plot): void {
     const points = this.now();
-    this.numbers.replaceChildren();
+    this.numbers.begin();
     this.named = [];
     let d = "";
     const count = points ? points.length / 2 : 0;
@@ -206,6 +222,7 @@ export class Plane {
     set(this.marks, { d });
     const curve = quarters.length ? this.sampled() : [];
     for (const [spot, angles] of quarters) this.crank(spot, angles, curve);
+    this.numbers.end();
   }
 
   /** Some places along the curve "now". */
@@ -247,7 +264,7 @@ export class Plane {
     if (!best) return;
     this.named.push(best);
     const at = { class: "crank", x: best[0].toFixed(1), y: (best[1] + 4).toFixed(1) };
-    this.numbers.append(s("text", { ...at, "text-anchor": "middle" }, text));
+    this.numbers.add({ ...at, "text-anchor": "middle" }, text);
   }
 
   private circles(plot: Plot): void {
@@ -255,14 +272,24 @@ export class Plane {
     const [width, height] = this.size;
     const reach = Math.hypot(Math.max(ox, width - ox), Math.max(oy, height - oy));
     let radii: number[] = [];
+    let [ux, uy] = [1, 0];
     let numbers: [radius: number, x: number, y: number][] = [];
-    for (const apart of APART) {
-      const step = round((apart / this.scale) * plot.factor) / plot.factor;
+    const take = (step: number, along?: [number, number]) => {
       radii = multiples(step, step, reach / this.scale).map((radius) => radius * this.scale);
-      const [ux, uy] = this.freest(radii.slice(0, FEWEST));
+      [ux, uy] = along ?? this.freest(radii.slice(0, FEWEST));
       numbers = radii.map((r) => [r, ox + ux * r, oy + uy * r]);
       numbers = numbers.filter(([, x, y]) => this.inside(x, y));
-      if (numbers.length >= FEWEST) break;
+      return numbers.length >= FEWEST;
+    };
+    const found = APART.some((apart) =>
+      take(round((apart / this.scale) * plot.factor) / plot.factor),
+    );
+    if (!found) {
+      // Two circles and the origin, then: as far as there is room in that direction.
+      let far = 0;
+      while (this.inside(ox + ux * (far + 1), oy + uy * (far + 1))) far++;
+      const step = spacing(0, (far / this.scale) * plot.factor, Infinity, far / LEAST + 1);
+      take(step / plot.factor, [ux, uy]);
     }
     if (numbers.length < FEWEST) this.text(ox + 6, oy - 3, 0);
     for (const [r, x, y] of numbers) this.text(x, y + 4, (r / this.scale) * plot.factor);
@@ -303,16 +330,13 @@ export class Plane {
     const rising = (py: number) => ((height / 2 - py) / this.scale + this.middle[1]) * factor;
     const most = round((34 / this.scale) * factor);
     let d = "";
-    const across = spacing(metres(40), metres(width - 34), most);
-    const named: Spot[] = [];
-    for (const x of multiples(across, metres(0), metres(width))) {
-      const [px] = this.place(x / factor, 0);
-      d += `M${px.toFixed(1)} 0V${height}`;
-      if (px >= 40 && px <= width - 34) named.push([px, x]);
-    }
-    // Where they are close, every other one is enough.
-    const every = named.length > 4 && (across / factor) * this.scale < WIDE ? 2 : 1;
-    for (const [i, [px, x]] of named.entries()) if (i % every === 0) this.text(px, height - 4, x);
+    const step = spacing(metres(40), metres(width - 34), most);
+    const across = (by: number): Spot[] =>
+      multiples(step * by, metres(0), metres(width)).map((x) => [this.place(x / factor, 0)[0], x]);
+    const named = (by: number) => across(by).filter(([px]) => px >= 40 && px <= width - 34);
+    const by = WIDER.find((one) => named(one).length >= FEWEST && apart(named(one))) ?? 1;
+    for (const [px] of across(by)) d += `M${px.toFixed(1)} 0V${height}`;
+    for (const [px, x] of named(by)) this.text(px, height - 4, x);
     const up = spacing(rising(height - 14), rising(8), most);
     for (const y of multiples(up, rising(height), rising(0))) {
       const [, py] = this.place(0, y / factor);
@@ -328,6 +352,13 @@ export class Plane {
 
   private text(x: number, y: number, value: number, anchor = "middle"): void {
     const at = { x: x.toFixed(1), y: y.toFixed(1), "text-anchor": anchor };
-    this.texts.append(s("text", at, plain(value)));
+    this.texts.add(at, plain(value));
   }
+}
+
+/** Whether numbers (place, value) stand beside each other with room between them. */
+function apart(numbers: Spot[]): boolean {
+  const wide = (i: number) => DIGIT * plain(numbers[i]?.[1] ?? 0).length;
+  const between = (i: number) => (numbers[i]?.[0] ?? 0) - (numbers[i - 1]?.[0] ?? 0);
+  return numbers.every((_, i) => !i || between(i) > (wide(i - 1) + wide(i)) / 2 + DIGIT / 2);
 }

@@ -12,6 +12,9 @@ export function quarters(radius: number): string {
   return `M0 0V${-r}A${r} ${r} 0 0 1 ${r} 0ZM0 0V${r}A${r} ${r} 0 0 1 ${-r} 0Z`;
 }
 
+/** Samples of a curve nearer than this to the last one that is drawn are left out, pixels. */
+const NEAR = 1;
+
 /** A curve through x and y in turn; every so many samples suffice. */
 export function curve(
   points: Float32Array,
@@ -19,9 +22,13 @@ export function curve(
   closed: boolean,
 ): string {
   const step = Math.max(Math.round(points.length / 720), 1) * 2;
-  let d = "";
+  let [d, x0, y0] = ["", 0, 0];
   for (let i = 0; i + 1 < points.length; i += step) {
-    d += (i ? "L" : "M") + at(px(points[i] as number, points[i + 1] as number));
+    const [x, y] = px(points[i] as number, points[i + 1] as number);
+    const ends = !i || i + step + 1 >= points.length;
+    if (!ends && (x - x0) ** 2 + (y - y0) ** 2 < NEAR ** 2) continue;
+    d += (i ? "L" : "M") + at([x, y]);
+    [x0, y0] = [x, y];
   }
   return d && closed ? `${d}Z` : d;
 }

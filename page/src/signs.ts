@@ -48,7 +48,7 @@ export class Piece {
     runs(sign.shapes).forEach((run, i) => {
       const element = this.parts[i] as SVGElement;
       const [, , radius, grown, corners] = run[0] as Shape;
-      if (!(radius + grown)) return element.setAttribute("d", run.map(shapePath(scale)).join(""));
+      if (!(radius + grown)) return set(element, { d: run.map(shapePath(scale)).join("") });
       const [cx, cy] = corner(corners, 0, scale);
       const r = (radius * scale + grown).toFixed(2);
       set(element, { cx: cx.toFixed(2), cy: cy.toFixed(2), r });

@@ -117,10 +117,15 @@ function series(curve: Curve, look: Look, theme: Theme, i: number, count: number
   return curve.before ? [before, bars] : [bars];
 }
 
+/** What bars have been filled with, by colour and size. */
+const tiles = new Map<string, CanvasPattern>();
+
 /** Lines across, that fill a bar. */
 function hatching(ctx: CanvasRenderingContext2D, colour: string): CanvasPattern | string {
-  const tile = document.createElement("canvas");
   const side = Math.round(4 * devicePixelRatio);
+  const known = tiles.get(`${colour} ${side}`);
+  if (known) return known;
+  const tile = document.createElement("canvas");
   tile.width = tile.height = side;
   const pen = tile.getContext("2d");
   if (!pen) return colour;
@@ -131,7 +136,9 @@ function hatching(ctx: CanvasRenderingContext2D, colour: string): CanvasPattern 
     pen.lineTo(shift + side + 1, -1);
   }
   pen.stroke();
-  return ctx.createPattern(tile, "repeat") ?? colour;
+  const pattern = ctx.createPattern(tile, "repeat");
+  if (pattern) tiles.set(`${colour} ${side}`, pattern);
+  return pattern ?? colour;
 }
 
 /** The line of zero, a little stronger than the grid. */

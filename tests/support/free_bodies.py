@@ -201,7 +201,9 @@ def solved(system: System, passing: list[Contact | Strands]) -> dict[str, Array]
         for one in passing:
             size, forces = (1, 1) if isinstance(one, tuple) else (one.size, len(one.directions))
             couples += [k == forces for k in range(size)]
-        units = np.where([*couples, False], extent(system.machine), 1.0)
+        units = np.where(
+            [*couples, *[False] * len(system.machine.driven)], extent(system.machine), 1.0
+        )
         pairs = zip(matrix * units, system.known, strict=True)
         found = units * np.array([np.linalg.lstsq(*pair)[0] for pair in pairs])
     return {name: found[:, [o == name for o in owners]] for name in dict.fromkeys(owners)}

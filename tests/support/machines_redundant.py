@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from equipoise.mechanism.parts.machine import FRAME, Gear, Slider
+from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Gear, Slider
 from support.machines import Case, Draft, _draft, _spot, _unit, slider_crank
 from support.newton import Constraints, closed
 from support.poses import Array
@@ -131,7 +131,21 @@ def double_guide(rng: np.random.Generator) -> Case:
 
 
 def planet_train(rng: np.random.Generator) -> Case:
-    """Two to four planets between a ring and a sun; their arm is driven, or the sun."""
+    """Two to four planets between a ring and a sun; their arm is driven."""
+    return _planets(rng, FRAME)
+
+
+def planet_differential(rng: np.random.Generator) -> Case:
+    """The same whose ring is driven too; teeth push along the pitch circles, so that flanks do not
+    depend on how planets share.
+    """
+    case = _planets(rng, "ring")
+    gears = tuple(replace(gear, pressure_angle=0.0) for gear in case.machine.gears)
+    ring = FurtherDrive("ring", float(rng.integers(-30, 30)) / 12)
+    return replace(case, machine=replace(case.machine, gears=gears, drives=(ring,)))
+
+
+def _planets(rng: np.random.Generator, outer: str) -> Case:
     draft = _draft(rng)
     count, a = int(rng.integers(2, 5)), draft.size
     sun, planet = (int(k) for k in rng.choice([12, 18, 24, 36], 2))
@@ -142,12 +156,15 @@ def planet_train(rng: np.random.Generator) -> Case:
     laying, start = Laying(draft), draft.turns["crank"]
     laying.lay("crank", start, "A", np.zeros(2))
     laying.lay("sun", draft.turns["sun"], "A", np.zeros(2))
+    if outer != FRAME:
+        draft.add(outer, A=(0, 0), R=a * np.array(_spot(rng)))
+        laying.lay(outer, draft.turns[outer], "A", np.zeros(2))
     for k, way in enumerate(ways):
         name = f"planet {k}"
         draft.add(name, **{f"P{k}": (0, 0), f"T{k}": 0.3 * a * np.array(_spot(rng))})
         laying.lay(name, draft.turns[name], f"P{k}", a * _unit(start + way))
         ring, mesh = (sun + 2 * planet, planet), (planet, sun)
-        draft.gears += [Gear(FRAME, name, teeth=ring, mesh="internal", carrier="crank"),
+        draft.gears += [Gear(outer, name, teeth=ring, mesh="internal", carrier="crank"),
                         Gear(name, "sun", teeth=mesh, carrier="crank")]  # fmt: skip
     return laying.case()
 
@@ -200,5 +217,6 @@ def crossed_yokes(rng: np.random.Generator) -> Case:
     return laying.case()
 
 
-MAKERS = (parallel_cranks, straw_walker, double_guide, planet_train, rocking_screen, crossed_yokes)
+MAKERS = (parallel_cranks, straw_walker, double_guide, planet_train, planet_differential,
+          rocking_screen, crossed_yokes)  # fmt: skip
 REDUNDANT = {one.__name__: one for one in MAKERS}

@@ -61,6 +61,17 @@ def test_no_module_imports_itself_by_way_of_others() -> None:
     assert len(tuple(TopologicalSorter(graph).static_order())) == len(modules)
 
 
+def test_modules_are_imported_by_statements() -> None:
+    """An import by a text is seen by no contract: results draw and print themselves by it, keys
+    and formats are declared as texts, and nothing else may.
+    """
+    names = {
+        file.relative_to(ROOT).as_posix() for file in FILES if "import_module" in text_of(file)
+    }
+    assert names == {"errors.py", "guarding.py", "results/result.py", "figures/pictures.py",
+                     "exchange/export.py", "keys/kinds.py"}  # fmt: skip
+
+
 def test_lines_and_modules() -> None:
     count = sum(len(text_of(file).splitlines()) for file in FILES)
     assert count <= LINES

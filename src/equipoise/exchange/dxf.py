@@ -16,7 +16,8 @@ import numpy as np
 from equipoise.errors import UsageError, needed
 from equipoise.exchange.formats import Job
 from equipoise.exchange.parts import Part, parts
-from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.assembly.cam_fits import fits_of
+from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.symbols.scene import Scene
 
@@ -33,10 +34,12 @@ def made(job: Job) -> str:
     drawing = needed("ezdxf", "DXF").new("R2010", units=4)
     space = drawing.modelspace()
     angles = move(job.machine, ANGLES).crank_angle
-    scene = Scene.of(move(job.machine, [job.crank_angle, *angles]))
+    motion = move(job.machine, [job.crank_angle, *angles])
+    scene = Scene.of(motion)
     if job.machine.rows:
         job.leave_out("rows: one linkage is drawn")
     _linkage(space, scene)
+    _pitch_curves(space, scene, motion)
     _paths(space, scene)
     try:
         _parts(space, parts(job), scene)
@@ -93,6 +96,17 @@ def _linkage(space: Any, scene: Scene) -> None:
         held = FRAME if name in scene.frame else "points"
         space.add_point(spot, dxfattribs=_layer(held))
         space.add_text(name, height=letter, dxfattribs=_layer("names")).set_placement(spot)
+
+
+def _pitch_curves(space: Any, scene: Scene, motion: Motion) -> None:
+    """The way of each roller's centre round its cam, as a cutter of its radius goes."""
+    turn = np.linspace(0.0, 2 * np.pi, ANGLES, endpoint=False)
+    for fit in fits_of(motion.machine, motion.linkage.joints):
+        if fit.cam.rides == "roller":
+            turned = scene.angles[fit.cam.driver][0] if fit.cam.driver != FRAME else 0.0
+            curve = scene.places[fit.cam_pin][0] + fit.shape(turn).pitch * np.exp(1j * turned)
+            layer = _layer("pitch curve", fit.cam.name)
+            space.add_lwpolyline(_points(curve), close=True, dxfattribs=layer)
 
 
 def _paths(space: Any, scene: Scene) -> None:

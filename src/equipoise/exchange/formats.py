@@ -95,8 +95,8 @@ FORMATS: Mapping[str, Format] = {
             ".dxf",
             "drawing (DXF)",
             "the linkage at a crank angle, paths of its points, pitch circles of gears, strands of "
-            "belts, racks, parts to be cut: outlines and holes of links made of bodies, and of "
-            "counterweights; in mm",
+            "belts, racks, surfaces of cams and the curves of their rollers' centres, parts to be "
+            "cut: outlines and holes of links made of bodies, and of counterweights; in mm",
             needs="ezdxf",
         ),
         Format(
@@ -159,7 +159,7 @@ class Job:
         ------
         UsageError : they do.
         """
-        if joints.mobility < 1:
+        if joints.surplus:
             raise UsageError(
                 "joints hold more than the motion needs, so that the equations of this format have "
                 "no single solution; give another format, or leave cranks or guides out"

@@ -2,6 +2,18 @@
 
 from __future__ import annotations
 
-from equipoise.guarding import attach
+from typing import Any
 
+from equipoise.guarding import attach
+from equipoise.mechanism.parts import commanded
+
+
+def _found(machine: Any) -> Any:
+    """The angles of links that are pushed."""
+    from equipoise.mechanism.kinematics import cylinders, pushed_together
+
+    return (pushed_together if machine.drives else cylinders).commanded(machine)
+
+
+commanded.finders.append(_found)
 __getattr__, __dir__, __all__ = attach(__name__, __file__)

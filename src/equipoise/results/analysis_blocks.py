@@ -88,7 +88,7 @@ def motion_blocks(analysis: Analysis) -> Iterator[Block]:
         for name, link in analysis.motion.links.items()
     )
     yield Table.of(say("Links: angle, angular velocity and acceleration"), columns, rows)
-    yield points_table(analysis)
+    yield from points_table(analysis)
 
 
 def strokes_table(analysis: Analysis) -> Table:

@@ -270,8 +270,8 @@ def angles_told(analysis: Analysis) -> str:
     )
 
 
-def points_table(analysis: Analysis) -> Table:
-    """Places of moving points, and how fast they become."""
+def points_table(analysis: Analysis) -> Iterator[Table]:
+    """Places of moving points, and how fast they become; nothing where there are none."""
     theta = analysis.crank_angle
     rows: list[tuple[Cell, ...]] = []
     for name, point in analysis.motion.points.items():
@@ -288,7 +288,8 @@ def points_table(analysis: Analysis) -> Table:
         Column(say("acceleration"), "acceleration"),
     )
     title = say("Moving points: places, largest velocity and acceleration (at crank angle)")
-    return Table.of(title, columns, rows)
+    if rows:
+        yield Table.of(title, columns, rows)
 
 
 def four_bar_table(found: FourBar) -> Table:

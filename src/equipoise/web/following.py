@@ -109,7 +109,10 @@ def _placed(machine: Machine, places: Mapping[Spot, complex]) -> Machine:
         body: {point: (places[body, point].real, places[body, point].imag) for point in points}
         for body, points in machine.bodies.items()
     }
-    links = {name: link.altered(points=bodies[name]) for name, link in machine.links.items()}
+    links = {
+        name: link if link.points == bodies[name] else link.altered(points=bodies[name])
+        for name, link in machine.links.items()
+    }
     return replace(machine, frame=bodies[FRAME], links=links)
 
 

@@ -12,6 +12,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.exchange.parts import along
+from equipoise.exchange.reading.formats import import_machine
 
 START = 0.4
 SAME = 1e-9
@@ -82,6 +83,15 @@ def test_cams_are_drawn_by_their_surfaces(tmp_path: Path) -> None:
     reach = [abs(complex(x - axis.x, y - axis.y)) for x, y, *_ in surface.get_points()]
     assert min(reach) == pytest.approx(18, abs=1e-3)
     assert max(reach) == pytest.approx(18 + 12, abs=0.01)
+    (pitch,) = on_layer(drawing, "pitch curve crank to pusher")
+    assert pitch.closed
+    cut, way = (np.array([place for place, _ in corners(one)]) for one in (surface, pitch))
+    apart = np.min(np.abs(cut[:, None] - way), axis=0)
+    np.testing.assert_allclose(apart, 6.0, atol=0.01)
+    (roller,) = (one.dxf.insert for one in on_layer(drawing, "names") if one.dxf.text == "R")
+    assert np.min(np.abs(way - complex(roller.x, roller.y))) < 0.2
+    links = import_machine(tmp_path / "x.dxf").outline.links
+    assert {*links} == {*eq.load("cam-pusher").links, "block1"}
 
 
 @pytest.mark.parametrize("name", BALANCED)

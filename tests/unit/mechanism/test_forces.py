@@ -13,6 +13,7 @@ import equipoise as eq
 from equipoise.errors import MassError, ModelError, UsageError
 from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.mechanism.dynamics.loads import load_at, work_in_cycle
+from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment
 from equipoise.mechanism.parts.machine import FRAME
 from laws.transforms import renamed
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
@@ -354,6 +355,16 @@ def test_what_loads_do_in_a_cycle_is_what_the_drive_does(outside: Outside) -> No
     torque = eq.analyze(given, samples).forces.drive_torque
     assert abs(work) > 0.1
     assert np.mean(torque) * 2 * pi == pytest.approx(-work, abs=2e-3)
+
+
+def test_a_steady_load_does_no_work_where_accelerations_jump() -> None:
+    """Nor a trace of it, whatever falls between the crank angles at which it is summed."""
+    ways = ((2.0, 1.0), (1.5, 1.0), (2 * pi - 3.5, 0.0))
+    swing = AngleLaw(segments=[AngleSegment(over, to, "trapezoid") for over, to in ways])
+    load = eq.Load("rocker", "C", force=(3.0, -9.0))
+    given = replace(crank_rocker(), loads=(load,)).with_drive(motion=swing)
+    work = work_in_cycle(given, load)
+    assert abs(work.net) < 1e-13 * work.both
 
 
 def test_a_load_of_two_turns_makes_a_cycle_of_two() -> None:

@@ -13,8 +13,10 @@ from equipoise.errors import EquipoiseError, MobilityError, ModelError, UsageErr
 from equipoise.exchange import mjcf, modelica
 from equipoise.exchange.formats import Job
 from equipoise.mechanism.dynamics.undecided import undecided
-from equipoise.mechanism.parts.machine import FRAME, Link, Slider, Vector
+from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Link, Slider, Vector
 from equipoise.mechanism.parts.sliders import JointStiffness
+from support.machines import make
+from support.machines_redundant import REDUNDANT
 from unit.mechanism.build import ORIGIN, four_bar, heavy, machine
 
 CRANK, PIVOTS = 0.1, ((0.0, 0.0), (1.0, 0.0), (0.4, 0.3))
@@ -320,6 +322,43 @@ def test_what_statics_decides_does_not_depend_on_the_rule() -> None:
     np.testing.assert_allclose(one.frame_force.value, two.frame_force.value, atol=1e-9)
     for name in ("P", "Q", "R"):
         np.testing.assert_allclose(one.joints[name].value, two.joints[name].value, atol=1e-9)
+
+
+@pytest.mark.parametrize("kind", REDUNDANT)
+def test_of_all_kinds_both_rules_tell_alike_what_statics_decides(kind: str) -> None:
+    given = make(kind, 1).machine
+    linkage = eq.mechanism.assemble(given)
+    rng, names = np.random.default_rng(1), linkage.shared.names
+    stiff = tuple(JointStiffness(name, float(rng.uniform(1e5, 1e6))) for name in names)
+    one, two = (eq.analyze(each, 24).forces for each in (given, replace(given, joints=stiff)))
+    told, scale = undecided(linkage).open, max(np.max(joint.size) for joint in one.joints.values())
+    assert told
+    size = scale * linkage.shared.group.size
+    both = one.solved.exerted, two.solved.exerted
+    off = {
+        name: max(
+            np.max(np.abs(both[0][name].value - both[1][name].value)) / scale,
+            np.max(
+                np.abs(getattr(both[0][name], "moment", 0) - getattr(both[1][name], "moment", 0))
+            )
+            / size,
+        )
+        for name in both[0]
+    }
+    assert max(off.values()) > 1e-6
+    assert all(apart < 1e-9 for name, apart in off.items() if name not in told)
+    for name, torque in one.drives.items():
+        np.testing.assert_allclose(two.drives[name], torque, atol=1e-9 * size)
+    np.testing.assert_allclose(two.frame_force.value, one.frame_force.value, atol=1e-9 * scale)
+    np.testing.assert_allclose(two.frame_moment, one.frame_moment, atol=1e-9 * size)
+
+
+def test_drives_that_share_a_torque_are_told() -> None:
+    """Both crankshafts of coupling rods are driven alike: nothing tells who bears what."""
+    with pytest.raises(ModelError, match="statics does not tell how their drives share the torque"):
+        eq.analyze(cranks(drives=(FurtherDrive("crank1"),)))
+    off = told(cranks(drives=(FurtherDrive("crank1", start=0.1),)))
+    assert "and the others bring the pins 990.0042 to 1009.996 mm apart" in off
 
 
 def with_rocker(given: eq.Machine) -> eq.Machine:

@@ -13,6 +13,7 @@ from equipoise.errors import UsageError
 from equipoise.figures.forces import torque
 from equipoise.mechanism.parts.support import Row
 from equipoise.results.analysis import Analysis
+from equipoise.results.blocks import Table
 from equipoise.results.outputs import unit_of
 
 NAMES = sorted(eq.examples("linkage"))
@@ -53,6 +54,13 @@ def test_every_array_has_one_value_a_crank_angle(name: str) -> None:
         assert one.values.shape == found.crank_angle.shape, one.name
         assert one.values.dtype == float, one.name
         assert np.all(np.isfinite(one.values)) or one.declared.unbounded, one.name
+
+
+def test_no_table_is_empty() -> None:
+    """A shaft that bears no point moves none."""
+    shaft = eq.Link({"A": (0.0, 0.0)}, 1.0, (0.1, 0.0), 0.2)
+    found = eq.analyze(eq.Machine("", eq.Drive("shaft", 9.0), {"A": (0.0, 0.0)}, {"shaft": shaft}))
+    assert all(table.rows for table in found.blocks() if isinstance(table, Table))
 
 
 def test_values_are_those_of_the_analysis() -> None:

@@ -25,7 +25,7 @@ NEARLY = 0.01
 FRAMES = ("frame", "ground", "fixed", "base")
 GUIDES = ("guide", "slider", "rail")
 """Names of what stands still, and of lines on which ends slide, where none are told."""
-BESIDE = ("path", "part", "springs", "gears", "names")
+BESIDE = ("path", "part", "springs", "gears", "belts", "racks", "cams", "pitch", "names")
 """First words of layers of what `export` draws beside the links."""
 WORDS = "names"
 """Layer of names of points, among them."""
@@ -150,8 +150,8 @@ class _Skeleton:
         taken = {id(one) for one in (*self.grounds, *self.guides)}
         beside = [one for one in every if _first((*one.names, "")[0]) in BESIDE]
         if beside:
-            left = "lines and circles of paths, parts, springs and gears are left out"
-            drawing.note(f"{len(beside)} {left}")
+            drawn = "paths, parts, springs, gears, belts, racks and cams"
+            drawing.note(f"{len(beside)} lines and circles of {drawn} are left out")
         taken |= {id(one) for one in beside}
         lines = [one for one in drawing.strokes if id(one) not in taken]
         rings = [one for one in drawing.rings if one not in beside]

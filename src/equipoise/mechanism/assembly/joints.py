@@ -23,12 +23,14 @@ class Structure:
 
     bodies : the frame, then the links in file order.
     pins : point -> bodies that share it, in the order of `bodies`; two at least.
+    drives : how many there are.
     """
 
     bodies: tuple[str, ...]
     pins: Mapping[str, tuple[str, ...]]
     sliders: tuple[Slider, ...]
     couplings: tuple[Coupling, ...]
+    drives: int = 1
 
     def freedom(self, links: Iterable[str], known: Iterable[str]) -> int:
         """Free motions of some links when the known bodies move as they must."""
@@ -53,6 +55,11 @@ class Structure:
         return self.freedom(self.bodies[1:], [FRAME])
 
     @property
+    def surplus(self) -> bool:
+        """Whether joints hold the links more often than counting allows for the drives."""
+        return self.mobility < self.drives
+
+    @property
     def needed(self) -> Structure:
         """The same without all but the first of the sliding joints between two bodies."""
         first = {frozenset((one.link, one.on)): one for one in reversed(self.sliders)}
@@ -64,9 +71,9 @@ class Structure:
 
 def structure(machine: Machine) -> Structure:
     """Read joints off the names that bodies share."""
-    result = joined(machine.bodies, machine.sliders, machine.couplings)
-    _check_apart(machine, result.pins)
     drives = [drive.link for drive in machine.driven]
+    result = replace(joined(machine.bodies, machine.sliders, machine.couplings), drives=len(drives))
+    _check_apart(machine, result.pins)
     _check_mobility(result, drives, _alike(machine.bodies, result.pins))
     return result
 
@@ -196,7 +203,7 @@ def _alike(bodies: Bodies, pins: Iterable[str]) -> Note | str:
 
 def _check_mobility(joints: Structure, drives: Sequence[str], alike: Note | str) -> None:
     mobility = joints.mobility
-    if mobility == len(drives) or (mobility < 1 and len(drives) == 1):
+    if mobility <= len(drives):
         return  # whether joints hold too much, lengths decide
     if len(drives) > 1:
         raise MobilityError(
@@ -235,6 +242,13 @@ def _count(joints: Structure) -> Note | str:
 
 def no_motion(joints: Structure) -> Note:
     """Say that the joints hold the links, as far as counting tells."""
+    if joints.mobility > 0:
+        return Note(
+            "joints leave a mobility of {mobility} for {drives} drives ({count})",
+            mobility=joints.mobility,
+            drives=joints.drives,
+            count=_count(joints),
+        )
     return Note(
         "the linkage has no free motion (count {mobility}: {count})",
         mobility=joints.mobility,

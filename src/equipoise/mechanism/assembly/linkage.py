@@ -163,7 +163,7 @@ def ordered(
     from equipoise.mechanism.assembly import sides
 
     builder, groups, choices = _grouped(machine, joints, start or {}, assumed)
-    held_kinds = ("pointed", "loops") if joints.mobility < 1 else ("pointed",)
+    held_kinds = ("pointed", "loops") if joints.surplus else ("pointed",)
     held_at = {point for group in groups if group.kind in held_kinds
                for link in group.links for point in machine.links[link].points}  # fmt: skip
     asked = builder.sides | held_at  # of links that more joints hold lengths decide the side
@@ -222,7 +222,7 @@ def _grouped(
         told = Note("got {leaf!r}; give {choice}", leaf=mode, choice=choice(MODES))
         raise ModelError(f"assembly.{MODE}", told)
     if mode not in MODES:
-        mode = MODES[0] if joints.mobility < 1 else None
+        mode = MODES[0] if joints.surplus else None
     drives = {machine.drive.link: drive_pivot(joints, machine.drive.link)}
     pushed = []
     for number, one in enumerate(machine.drives, 1):
@@ -233,7 +233,7 @@ def _grouped(
     points, running = set(machine.frame), {FRAME, *drives}
     builder = Builder(machine, points=points, running=running, told=start, mode=mode)
     surplus: frozenset[str] = frozenset()
-    if joints.mobility < 1:
+    if joints.surplus:
         surplus, joints = surplus_cranks(machine, joints), joints.needed
     builder.add({FRAME: drives[machine.drive.link], **drives})
     unknown = [link for link in machine.links if link not in drives]

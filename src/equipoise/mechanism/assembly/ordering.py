@@ -26,7 +26,7 @@ def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group
     if group is not None:
         return group
     outers = {link: outer_joints(builder, joints, link) for link in unknown}
-    for held in outers.values() if joints.mobility < 1 else ():
+    for held in outers.values() if joints.surplus else ():
         pins = [outer for outer in held if outer.guide is None]
         if len(pins) > 1 and (group := pointed(builder, pins)):
             return group
@@ -53,7 +53,7 @@ def _loops(builder: Builder, joints: Structure, unknown: list[str]) -> Group | N
     """
     from equipoise.mechanism.assembly.loopgroup import loop_group
 
-    surplus = joints.mobility < 1
+    surplus = joints.surplus
     for links in subsets(joints, unknown):
         freedom = joints.freedom(links, builder.rank)
         if freedom > 0:
@@ -133,7 +133,7 @@ def _coupled(builder: Builder, joints: Structure, unknown: list[str]) -> Group |
     for one in joints.couplings:
         ready = one.driven in unknown and {one.driver, one.carrier} <= known.keys()
         freedom = joints.freedom([one.driven], known) if ready else 1
-        if freedom == 0 or (freedom < 0 and joints.mobility < 1):
+        if freedom == 0 or (freedom < 0 and joints.surplus):
             group: Group = contact_of(builder, joints, one).group(builder, joints, one)
             return group
     return None

@@ -18,15 +18,16 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import MobilityError, ModelError
-from equipoise.i18n import Note, all_of
+from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.assembly.builder import Builder, Group
 from equipoise.mechanism.assembly.joints import Structure, name_in_outputs, no_motion
+from equipoise.mechanism.assembly.least import least, parts_of
 from equipoise.mechanism.assembly.loop_forces import LoopForces
 from equipoise.mechanism.assembly.loopgroup import Maker
 from equipoise.mechanism.assembly.loops import Poses, SlideLoop
 from equipoise.mechanism.assembly.misfits import AGREES, Fit
 from equipoise.mechanism.assembly.newton import LoopGroup, poses_in
-from equipoise.mechanism.assembly.steps import Array, State, planar
+from equipoise.mechanism.assembly.steps import Array, Reaction, State, planar
 from equipoise.mechanism.checks import numbered, unknown
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.machine import FRAME, Machine
@@ -34,23 +35,25 @@ from equipoise.mechanism.parts.sliders import OF_FORCES
 
 OPEN = 1e-9
 """Share of a joint in forces that hold each other, up to which it has none."""
-ROUNDING = 1e-11
-"""Share of a singular value in the largest that rounding explains."""
-CLEAR = 1e-8
-"""The same of rows that clearly do not depend on each other."""
-APART = 1e5
-"""By how much, at most, products of rows let errors grow."""
 WEAK = 1e-6
 """Smallest over largest stiffness against motion, up to which joints do not hold the machine."""
 BESIDE = 1e-3
 """rad: how far from a change point it is looked at which forces grow without bound there."""
 
 
+SHARE = to_say(
+    "joints let {links} move in one way only, so that statics does not tell how their drives share "
+    "the torque; drive one of them"
+)
+LINED_UP = Note("parallel linkages go on through their change points with one drive only")
+
+
 @dataclass(frozen=True)
 class Shared(LoopForces):
     """The free bodies of links whose joints share what statics leaves open.
 
-    group : these links and their joints.  pivot : the drive's.
+    group : these links and their joints.  pivot : of the first drive.
+    drives : driven links.
     count : says that the joints hold too much; empty where they do not.
     names : joints as outputs call them, each with the name of its force.
     compliance : of each joint, m/N, by name of its force; empty where none is given.
@@ -58,6 +61,7 @@ class Shared(LoopForces):
     """
 
     pivot: str
+    drives: tuple[str, ...]
     count: Note | str
     names: Mapping[str, str]
     compliance: Mapping[str, float]
@@ -65,7 +69,6 @@ class Shared(LoopForces):
     decided: tuple[Group, ...]
 
     def run(self, state: State) -> None:
-        drive = self.group.links[0]
         force, moment = self.demanded(state)
         by_work = sum(
             kernels.drive_torque(state[f"p1({anchor})"], state[f"w({link})"],
@@ -73,14 +76,27 @@ class Shared(LoopForces):
             for link, anchor in zip(self.group.links, self.group.anchors, strict=True)
         )  # fmt: skip
         super().run(state)
-        turns_evenly = np.ndim(state[f"w({drive})"]) == 0  # else it may stand still, doing no work
-        torque = by_work if turns_evenly else state["drive torque"]
-        state[f"F({drive})"], state[f"M({drive})"] = state[self.reactions[0].force], torque
-        state[f"F({FRAME})"] = state[f"F({FRAME})"] + force - state[f"F({drive})"]
-        state[f"M({FRAME})"] = state[f"M({FRAME})"] + moment - torque
+        alone = len(self.drives) == 1
+        turns_evenly = np.ndim(state[f"w({self.drives[0]})"]) == 0  # else it may do no work
+        for drive, pin in self.pins.items():
+            torque = by_work if alone and turns_evenly else state[f"torque({drive})"]
+            own = state[pin.force]
+            state[f"F({drive})"], state[f"M({drive})"] = own, torque
+            if pin.by == FRAME:
+                lever = state[f"p({pin.at})"] - state[f"p({self.pivot})"]
+                force, moment = force - own, moment - torque - kernels.cross(lever, own)
+        state[f"F({FRAME})"] = state[f"F({FRAME})"] + force
+        state[f"M({FRAME})"] = state[f"M({FRAME})"] + moment
         poses = self.poses(state)
         for loop, reaction in zip(self.loops, self.reactions, strict=True):
             state.setdefault(f"p({reaction.at})", loop.place(poses))
+
+    @property
+    def pins(self) -> dict[str, Reaction]:
+        """The pin about which each driven link turns, by the link."""
+        anchors = dict(zip(self.group.links, self.group.anchors, strict=True))
+        pins = {(one.on, one.at): one for one in self.reactions if one.kind == "pin"}
+        return {drive: pins[drive, anchors[drive]] for drive in self.drives}
 
     def demanded(self, state: State) -> tuple[Any, Any]:
         """Force and moment about the pivot that these links together need."""
@@ -100,12 +116,15 @@ class Shared(LoopForces):
         demand = self.demand(state) / rows
         right = np.moveaxis(demand.reshape(-1, *demand.shape[-2:]), 0, -1)
         if self.compliance:
-            told = self.by_stiffness(*_parts(matrix)) @ right
+            told = self.by_stiffness(*parts_of(matrix)) @ right
         else:
-            told = _least(matrix, right)
+            told = least(matrix, right)
         found = np.moveaxis(told, (-1, 1), (1, 0)).reshape(len(units), *demand.shape[:-1])
         found = found * units.reshape(-1, *np.ones(demand.ndim - 1, int))
-        state["drive torque"], strengths = found[-1], iter(found)
+        count = len(self.drives)
+        state.update((f"torque({drive})", one)
+                     for drive, one in zip(self.drives, found[-count:], strict=True))  # fmt: skip
+        strengths = iter(found)
         return [[next(strengths) for _ in range(loop.unknowns)] for loop in self.loops]
 
     def balance(
@@ -115,7 +134,7 @@ class Shared(LoopForces):
         and (m,) of unknowns: moments are counted as forces at the largest distance
         of two points of a body.
 
-        The last unknown is the torque of the drive.
+        The last unknowns are the torques of the drives.
         """
         size = self.group.size
         couples = [
@@ -123,10 +142,12 @@ class Shared(LoopForces):
             for loop in self.loops
             for part in range(loop.unknowns)
         ]
-        units = np.where([*couples, True], size, 1.0)
+        count = len(self.drives)
+        units = np.where([*couples, *[True] * count], size, 1.0)
         rows = np.tile([1.0, 1.0, size], len(self.group.links))
-        matrix = self.matrix(state, poses, senses, more=1)
-        matrix[:, 2, -1] = 1.0
+        matrix = self.matrix(state, poses, senses, more=count)
+        for column, drive in enumerate(self.drives, -count):
+            matrix[:, 3 * self.group.links.index(drive) + 2, column] = 1.0
         matrix *= units / rows[:, None]
         return matrix, rows, units
 
@@ -138,12 +159,25 @@ class Shared(LoopForces):
             return
         if told := self.fit.misfit(state, self.poses(state)):
             raise MobilityError(Note("{count}: {told}", count=self.count, told=told))
+        if len(self.drives) > 1:
+            self.check_drives(state)
         if self.compliance:
             self.check_stiffness(state)
 
+    def check_drives(self, state: State) -> None:
+        """Raise a `ModelError` where statics does not tell the torque of each drive."""
+        _, loose = parts_of(self.unsensed(state))
+        share = np.max(np.abs(loose), axis=(0, -1), initial=0.0)[-len(self.drives) :]
+        if np.any(share > OPEN):
+            ones = zip(self.drives, share > OPEN, strict=True)
+            names = [repr(link) for link, is_open in ones if is_open]
+            raise ModelError("drives", Note(SHARE, links=all_of(names)))
+        if np.min(self.strength(state)) < WEAK:
+            raise ModelError("drives", LINED_UP)
+
     def check_stiffness(self, state: State) -> None:
         """Raise a `ModelError` where the stiffness of joints leaves forces open."""
-        _, loose = _parts(self.unsensed(state))
+        _, loose = parts_of(self.unsensed(state))
         _, energy = self.energy(loose)
         sizes, ways = np.linalg.eigh(energy)
         if np.any(sizes[..., 0] < AGREES * max(self.compliance.values())):
@@ -170,7 +204,7 @@ class Shared(LoopForces):
             self.compliance.get(reaction.force, 0.0)
             for loop, reaction in zip(self.loops, self.reactions, strict=True)
             for _ in range(loop.unknowns)
-        ] + [0.0])  # fmt: skip
+        ] + [0.0] * len(self.drives))  # fmt: skip
         weighed = np.swapaxes(loose * soft[:, None], -1, -2)
         return weighed, weighed @ loose
 
@@ -178,7 +212,7 @@ class Shared(LoopForces):
 
     def open_joints(self, state: State) -> frozenset[str]:
         """Names of forces that statics leaves open at some crank angle."""
-        _, loose = _parts(self.unsensed(state))
+        _, loose = parts_of(self.unsensed(state))
         if not loose.shape[-1]:
             return frozenset()
         share = np.max(np.abs(loose), axis=(0, -1))
@@ -208,49 +242,6 @@ class Shared(LoopForces):
         return frozenset(force for force, some in owners if any(some))
 
 
-def _least(matrix: Array, right: Array) -> Array:
-    """Least solutions (N, m, k) of equations (N, n, m) with right sides (N, n, k): by the products
-    of rows, and by the rows themselves where products lose digits.
-    """
-    across = np.swapaxes(matrix, -1, -2)
-    products = matrix @ across
-    probe = np.cos(np.arange(matrix.shape[1]))  # of no meaning: shows how much errors can grow
-    probe = np.broadcast_to(probe[:, None], (*matrix.shape[:2], 1))
-    try:
-        told = np.linalg.solve(products, np.concatenate([right, probe], axis=-1))
-    except np.linalg.LinAlgError:
-        return _least_by_rows(matrix, right)
-    found = np.asarray(across @ told[..., :-1])
-    sizes = np.max(np.abs(told[..., -1]), axis=-1) * np.trace(products, axis1=1, axis2=2)
-    if not np.all(apart := sizes < APART):
-        found[~apart] = _least_by_rows(matrix[~apart], right[~apart])
-    return found
-
-
-def _least_by_rows(matrix: Array, right: Array) -> Array:
-    """The same by QR, and by singular values where rows nearly depend on each other."""
-    across, triangle = np.linalg.qr(np.swapaxes(matrix, -1, -2))
-    sizes = np.abs(np.diagonal(triangle, axis1=-2, axis2=-1))
-    clear = np.min(sizes, axis=-1) > CLEAR * np.max(sizes, axis=-1)
-    triangle[~clear] = np.eye(triangle.shape[-1])
-    found = across @ np.linalg.solve(np.swapaxes(triangle, -1, -2), right)
-    if not np.all(clear):
-        found[~clear] = _parts(matrix[~clear])[0] @ right[~clear]
-    return np.asarray(found)
-
-
-def _parts(matrix: Array) -> tuple[Array, Array]:
-    """Least-squares inverse of matrices (N, n, m), and unknowns (N, m, k) that they make nothing
-    of.
-    """
-    left, sizes, right = np.linalg.svd(matrix, full_matrices=True)
-    rank = sizes.shape[-1]
-    kept = sizes > ROUNDING * sizes[:, :1]
-    over = np.where(kept, 1 / np.where(kept, sizes, 1.0), 0.0)
-    right = np.swapaxes(right, -1, -2)
-    return right[..., :rank] * over[:, None] @ np.swapaxes(left, -1, -2), right[..., rank:]
-
-
 def _largest_distance(machine: Machine) -> float:
     """Between two points of a body, m, however its axes lie; 1 where all bodies are points."""
     bodies = [[planar(place) for place in points.values()] for points in machine.bodies.values()]
@@ -261,16 +252,15 @@ def shared(
     builder: Builder, joints: Structure, pivot: str, groups: tuple[Group, ...]
 ) -> Shared | None:
     """The free bodies of a machine whose groups cannot tell the forces one after the other."""
-    count = no_motion(joints) if joints.mobility < 1 else ""
+    count = no_motion(joints) if joints.surplus else ""
     if not count and builder.machine.joints:
         raise ModelError(
             "joints", "statics decides all joint forces of this linkage; leave their stiffness out"
         )
     if not count and not any(group.through for group in groups):
         return None
-    if builder.machine.drives:
-        told = Note("parallel linkages go on through their change points with one drive only")
-        raise ModelError("drives", told)
+    if builder.machine.drives and not count:
+        raise ModelError("drives", LINED_UP)
     decided = _decided(builder, joints, groups)
     apart = {link for group in decided for link in group.links}
     links = tuple(body for body in builder.rank if body not in (FRAME, *apart))
@@ -289,7 +279,10 @@ def shared(
     compliance = dict(_compliances(builder.machine, named))
     starts = {one.name: one.start for one in joints.couplings}
     fit = Fit(whole.equations, groups, size, starts)
-    return Shared(whole, whole.equations, reactions, pivot, count, named, compliance, fit, decided)
+    drives = tuple(drive.link for drive in builder.machine.driven if drive.link in links)
+    return Shared(
+        whole, whole.equations, reactions, pivot, drives, count, named, compliance, fit, decided
+    )
 
 
 def _decided(builder: Builder, joints: Structure, groups: tuple[Group, ...]) -> tuple[Group, ...]:

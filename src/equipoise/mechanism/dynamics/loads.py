@@ -67,26 +67,31 @@ def work_in_cycle(machine: Machine, load: Load) -> Work:
     """What a load does in a whole cycle.
 
     Gauss's quadrature between its rows, its ends and the angles of a grid, so that what sets in or
-    ends suddenly is no trouble; from the motion alone, without masses.
+    ends suddenly is no trouble; from the motion alone, without masses.  What the mean of a load
+    does is known: a force nothing, as its point comes back, a torque itself times the link's turns.
 
     Raises
     ------
     MotionError : the crank cannot turn fully.
     """
-    edges = _edges(load, assemble(machine).cycle.turns)
+    cycle = assemble(machine).cycle
+    edges = _edges(load, cycle.turns)
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
     half = 0.5 * np.diff(edges)
     theta = (edges[:-1] + half + half * nodes[:, None]).ravel()
     motion = move(machine, theta)
     force, torque = load_at(load, theta)
-    by_angle = torque * motion.links[load.link].angle_1
-    if load.point is not None:
-        by_angle = by_angle + kernels.dot(force, motion.points[load.point].place_1)
-    parts = (half * weights[:, None]).ravel() * by_angle
+    turning = motion.links[load.link].angle_1
+    way = turning * 0j if load.point is None else motion.points[load.point].place_1
+    share = (half * weights[:, None]).ravel()
+    parts = share * (torque * turning + kernels.dot(force, way))
+    steady = share @ force / edges[-1], share @ torque / edges[-1]
+    summed = np.sum(parts - share * (steady[1] * turning + kernels.dot(steady[0], way)))
     # just behind and just before each edge, where what is linear between them is largest
     ends = (load_at(load, at) for at in (edges, edges - 3 * ROUNDING))
     sizes = [np.hypot(abs(force), torque) for force, torque in ends]
-    net = float(np.sum(parts)) * (1 if machine.drive.speed >= 0 else -1)
+    whole = summed + steady[1] * 2 * pi * cycle.windings[load.link]
+    net = float(whole) * (1 if machine.drive.speed >= 0 else -1)
     return Work(net, float(np.sum(np.abs(parts))), float(np.max(sizes)))
 
 

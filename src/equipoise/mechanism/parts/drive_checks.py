@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from fractions import Fraction
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
@@ -38,13 +39,17 @@ def wrong_further(
         if drive.ratio != 1 or drive.start:
             yield ModelError(where, Note("give either motion, or ratio and start"))
     elif as_fraction(drive.ratio) is None or drive.turns > MOST_TURNS:
+        near = Fraction(drive.ratio).limit_denominator(MOST_TURNS)
         yield ModelError(
             f"{where}.ratio",
             Note(
                 "got {ratio!r}, with which the motion does not repeat within {most} turns of the "
-                "crank; give a fraction of small whole numbers",
+                "crank; give a fraction of small whole numbers to all digits, such as {near!r} for "
+                "{fraction}",
                 ratio=drive.ratio,
                 most=MOST_TURNS,
+                near=float(near),
+                fraction=str(near),
             ),
         )
 

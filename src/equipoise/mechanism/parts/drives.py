@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cached_property
-from importlib import import_module
 from math import copysign
 from typing import Any, ClassVar, Literal
 
@@ -21,6 +20,7 @@ from equipoise.keys import (
     key,
 )
 from equipoise.mechanism.checks import Bodies, bodies_at
+from equipoise.mechanism.parts import commanded
 from equipoise.mechanism.parts.couplings import as_fraction
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.laws import AngleLaw, LengthLaw
@@ -228,11 +228,7 @@ class Driven:
     @cached_property
     def turning(self) -> Any:
         """What tells the angles of links that are pushed; None where none is."""
-        if not self.pushers:
-            return None
-        room = "pushed_together" if self.drives else "cylinders"
-        pushed = import_module(f"equipoise.mechanism.kinematics.{room}")  # which needs this
-        return pushed.commanded(self)
+        return commanded.finders[0](self) if self.pushers else None
 
     def moved(self, crank_angle: Any) -> dict[str, tuple[Any, Any, Any]]:
         """Angle of each driven link at crank angles (...), and its two derivatives by them."""
