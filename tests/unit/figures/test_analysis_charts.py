@@ -114,6 +114,9 @@ def test_what_links_beside_each_other_bear_is_drawn() -> None:
     assert [panel.title for panel in panels[-2:]] == ["bearing front", "bearing rear"]
     every = [values for panel in panels for values in signals(panel)]
     assert all(has(every, bearing.size) for bearing in across.bearings.values())
+    rows = eq.load("twin-engine").with_rows((Row(0.0), Row(1.0, lateral=0.3)))
+    above, *below = forces.moment(eq.analyze(rows, 36)).panels  # with both rows above alone
+    assert len(signals(above)) > len(signals(below[0]))
 
 
 def test_curves_are_the_forces() -> None:
