@@ -92,7 +92,7 @@ export class Charts {
     this.width = width;
     for (const strip of this.strips) strip.resize(width);
     this.outputs.resize(width);
-    const side = Math.floor((width - 12) / 2);
+    const side = Math.floor((width - 8) / 2);
     const height = Math.max(Math.min(side, 216), 150);
     this.polar.resize(side, height);
     this.path.resize(this.polar.root.hidden ? width : side, height);
@@ -103,8 +103,11 @@ export class Charts {
     this.asleep = !state.status.finished;
     if (this.asleep) return;
     this.state = state;
-    if (other) this.heard = null;
     const forces = state.numbers.has("shaking_force");
+    if (other || !state.scene.reference || !forces) {
+      this.heard = null;
+      this.draw([], { state, numbers: state.numbers, before: false }, this.answers, other);
+    }
     show(this.polar.root, forces);
     this.squares.classList.toggle("alone", !forces);
     // Rows that stand still have no forces together.

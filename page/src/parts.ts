@@ -48,8 +48,8 @@ export class Parts {
     if (!state || !this.root.open || state.seq === this.seen) return;
     this.seen = state.seq;
     this.page.talk.ask({ type: "tables" }, (refusal) => {
+      this.select.hidden = refusal !== null; // nothing can be added yet
       if (refusal === null) return;
-      this.select.replaceChildren();
       this.list.replaceChildren(h("p", { class: "quiet" }, refusal));
     });
   }

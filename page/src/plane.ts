@@ -30,8 +30,12 @@ const EDGE = { polar: 26, path: 18 };
 const TOGETHER = 5;
 /** Between two circles of the polar diagram, pixels: the widest with enough numbers is taken. */
 const APART = [34, 28, 22];
-/** Of a number below, pixels. */
-const WIDE = 36;
+/** Between two circles where there is room for few, pixels. */
+const LEAST = 26;
+/** Of a digit, pixels. */
+const DIGIT = 7;
+/** What a step between numbers below is multiplied with for more room. */
+const WIDER = [1, 2, 2.5, 1.5, 1.25, 5];
 /** Pixels. */
 const UNSEEN = 1e-3;
 /** Steps of the crank from mark to mark in the polar diagram, degrees. */
@@ -124,7 +128,7 @@ export class Plane {
       });
       const [size, turn] = [Math.hypot(x, y), Math.round(degrees(Math.atan2(y, x)))];
       // What nobody sees is rounding, and points nowhere.
-      const told = `${shown(size * factor, 3)} ${unit} ∠ ${plain(turn)}°`;
+      const told = `${shown(size * factor, 3)} ∠ ${plain(turn)}°`;
       write(this.reading, size * this.scale < UNSEEN ? `0 ${unit}` : told);
     } else {
       const places = (this.size[0] / this.scale) * factor > 60 ? 0 : 1;
@@ -268,14 +272,24 @@ export class Plane {
     const [width, height] = this.size;
     const reach = Math.hypot(Math.max(ox, width - ox), Math.max(oy, height - oy));
     let radii: number[] = [];
+    let [ux, uy] = [1, 0];
     let numbers: [radius: number, x: number, y: number][] = [];
-    for (const apart of APART) {
-      const step = round((apart / this.scale) * plot.factor) / plot.factor;
+    const take = (step: number, along?: [number, number]) => {
       radii = multiples(step, step, reach / this.scale).map((radius) => radius * this.scale);
-      const [ux, uy] = this.freest(radii.slice(0, FEWEST));
+      [ux, uy] = along ?? this.freest(radii.slice(0, FEWEST));
       numbers = radii.map((r) => [r, ox + ux * r, oy + uy * r]);
       numbers = numbers.filter(([, x, y]) => this.inside(x, y));
-      if (numbers.length >= FEWEST) break;
+      return numbers.length >= FEWEST;
+    };
+    const found = APART.some((apart) =>
+      take(round((apart / this.scale) * plot.factor) / plot.factor),
+    );
+    if (!found) {
+      // Two circles and the origin, then: as far as there is room in that direction.
+      let far = 0;
+      while (this.inside(ox + ux * (far + 1), oy + uy * (far + 1))) far++;
+      const step = spacing(0, (far / this.scale) * plot.factor, Infinity, far / LEAST + 1);
+      take(step / plot.factor, [ux, uy]);
     }
     if (numbers.length < FEWEST) this.text(ox + 6, oy - 3, 0);
     for (const [r, x, y] of numbers) this.text(x, y + 4, (r / this.scale) * plot.factor);
@@ -316,16 +330,13 @@ export class Plane {
     const rising = (py: number) => ((height / 2 - py) / this.scale + this.middle[1]) * factor;
     const most = round((34 / this.scale) * factor);
     let d = "";
-    const across = spacing(metres(40), metres(width - 34), most);
-    const named: Spot[] = [];
-    for (const x of multiples(across, metres(0), metres(width))) {
-      const [px] = this.place(x / factor, 0);
-      d += `M${px.toFixed(1)} 0V${height}`;
-      if (px >= 40 && px <= width - 34) named.push([px, x]);
-    }
-    // Where they are close, every other one is enough.
-    const every = named.length > 4 && (across / factor) * this.scale < WIDE ? 2 : 1;
-    for (const [i, [px, x]] of named.entries()) if (i % every === 0) this.text(px, height - 4, x);
+    const step = spacing(metres(40), metres(width - 34), most);
+    const across = (by: number): Spot[] =>
+      multiples(step * by, metres(0), metres(width)).map((x) => [this.place(x / factor, 0)[0], x]);
+    const named = (by: number) => across(by).filter(([px]) => px >= 40 && px <= width - 34);
+    const by = WIDER.find((one) => named(one).length >= FEWEST && apart(named(one))) ?? 1;
+    for (const [px] of across(by)) d += `M${px.toFixed(1)} 0V${height}`;
+    for (const [px, x] of named(by)) this.text(px, height - 4, x);
     const up = spacing(rising(height - 14), rising(8), most);
     for (const y of multiples(up, rising(height), rising(0))) {
       const [, py] = this.place(0, y / factor);
@@ -343,4 +354,11 @@ export class Plane {
     const at = { x: x.toFixed(1), y: y.toFixed(1), "text-anchor": anchor };
     this.texts.add(at, plain(value));
   }
+}
+
+/** Whether numbers (place, value) stand beside each other with room between them. */
+function apart(numbers: Spot[]): boolean {
+  const wide = (i: number) => DIGIT * plain(numbers[i]?.[1] ?? 0).length;
+  const between = (i: number) => (numbers[i]?.[0] ?? 0) - (numbers[i - 1]?.[0] ?? 0);
+  return numbers.every((_, i) => !i || between(i) > (wide(i - 1) + wide(i)) / 2 + DIGIT / 2);
 }

@@ -104,7 +104,11 @@ function powers([low, high]: Pair, room: number): number[] {
   const fine = range(first - 1, last, 1).flatMap((power) =>
     [1, 2, 5].map((part) => part * 10 ** power),
   );
-  return fine.filter((value) => value >= low * 0.9999 && value <= high * 1.0001);
+  const all = fine.filter((value) => value >= low * 0.9999 && value <= high * 1.0001);
+  // Where there is no room for all, each is as many times the one before.
+  const some = [1, 2, 3].map((every) => all.filter((_, i) => i % every === 0));
+  const enough = some.filter(({ length }) => length >= FEWEST);
+  return enough.find(({ length }) => length <= room) ?? enough.pop() ?? all;
 }
 
 function range(first: number, last: number, step: number): number[] {

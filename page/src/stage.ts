@@ -16,8 +16,10 @@ const LAYERS = ["far", "paths", "signs", "ghost", "grips", "labels"] as const;
 const SWUNG = ["paths", "ghost", "grips", "labels"] as const;
 /** Pixels from a point to the middle of its name. */
 const AWAY = 20;
-/** Of a name, pixels: others stand no closer. */
-const [WIDE, HIGH] = [16, 8];
+/** Of a letter of a name, and how high one is, pixels: others stand no closer. */
+const [WIDE, HIGH] = [9, 12];
+/** Half of a handle of a joint, pixels. */
+const KNOB = 6;
 
 interface Named {
   name: string;
@@ -241,16 +243,21 @@ export class Stage {
 
   /** Names stand outside of the links that meet at the point, or where other names let them. */
   private poseLabels(spot: (name: string) => Pair): void {
-    const taken: Pair[] = [];
+    const taken: [...Pair, wide: number][] = [];
+    const joints = this.labels.map(({ name }) => spot(name));
     for (const { name, element, near, footed } of this.labels) {
       const [x, y] = spot(name);
       const [dx, dy] = outside([x, y], near.map(spot), footed);
       const ways = [[dx, dy], [dx, -dy], [dy, dx], [-dy, -dx], [-dx, dy]] as const;
       const places = ways.map(([across, up]): Pair => [x + across * AWAY, y + up * AWAY + 4]);
-      const free = ([px, py]: Pair) =>
-        taken.every(([ox, oy]) => Math.abs(px - ox) > WIDE || Math.abs(py - oy) > HIGH);
-      const place = places.find(free) ?? (places[0] as Pair);
-      taken.push(place);
+      const wide = (WIDE * name.length) / 2;
+      const apart = ([px, py]: Pair) =>
+        taken.every(([ox, oy, other]) => Math.abs(px - ox) > wide + other || Math.abs(py - oy) > HIGH);
+      const beside = ([px, py]: Pair) =>
+        joints.every(([ox, oy]) => Math.abs(px - ox) > wide + KNOB || Math.abs(py - 4 - oy) > HIGH / 2 + KNOB);
+      const free = places.filter(apart);
+      const place = free.find(beside) ?? free[0] ?? (places[0] as Pair);
+      taken.push([...place, wide]);
       move(element, place);
     }
   }

@@ -1,4 +1,4 @@
-/** Colours for canvases, which know no style sheets: read from the sheet's own variables. */
+/** Colours for canvases and pictures, which know no style sheets: read from the sheet's own variables. */
 
 export interface Colours {
   quiet: string;
@@ -18,7 +18,7 @@ export class Theme {
 
   /** `changed` is told after colours have become others. */
   constructor(
-    root: HTMLElement,
+    private readonly root: HTMLElement,
     private readonly changed: () => void,
   ) {
     this.probe.hidden = true;
@@ -44,6 +44,8 @@ export class Theme {
       this.probe.style.color = `var(--${name})`;
       this.colours[name] = style.color;
     }
+    this.probe.style.color = "light-dark(#fff, #000)";
+    this.root.classList.toggle("dark", style.color === "rgb(0, 0, 0)");
     return Object.values(this.colours).join() !== before;
   }
 }

@@ -10,7 +10,7 @@ from playwright.sync_api import expect
 import equipoise as eq
 from browser.live import Live
 
-SHOWN = "yamashita-rig", "class-three", "transplanter", "slider-crank-engine", "drag-link"
+SHOWN = "yamashita-rig", "class-three", "transplanter", "stephenson-six-bar", "watt-six-bar"
 AXES = """() => {
     const box = (one) => one.getBoundingClientRect();
     const apart = (all) => all.every((one, i) => all.slice(i + 1).every((other) =>
@@ -30,6 +30,10 @@ AXES = """() => {
     });
 }"""
 """Of each axis of each chart: whose it is, how many numbers it has, whether they stand apart."""
+CLIPPED = """() => [...document.querySelectorAll(".charts figcaption")]
+    .filter((one) => one.checkVisibility() && one.scrollWidth > one.clientWidth)
+    .map((one) => one.innerText)"""
+"""Headings of charts for which there is no room."""
 
 
 def test_every_axis_has_three_numbers(live: Live) -> None:
@@ -38,6 +42,8 @@ def test_every_axis_has_three_numbers(live: Live) -> None:
         expect(live.page.get_by_role("heading", name=eq.load(name).title)).to_be_visible()
         if eq.load(name).support is not None:
             expect(live.page.get_by_text("against speed").first).to_be_visible()
+        else:  # nor those of the machine before
+            expect(live.page.get_by_text("against speed").first).to_be_hidden()
         for width in (400, 1280):
             live.page.set_viewport_size({"width": width, "height": 900})
             live.settled()
@@ -45,6 +51,7 @@ def test_every_axis_has_three_numbers(live: Live) -> None:
             axes = live.page.evaluate(AXES)
             assert len(axes) > 8
             assert [one for one in axes if one[1] < 3 or not one[2]] == [], width
+            assert live.page.evaluate(CLIPPED) == [], width
 
 
 def test_any_output_is_drawn_over_the_crank_angle(live: Live) -> None:

@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 from PIL import Image
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Locator, Page, expect
 
 from browser.live import FITS, SCREENSHOTS, Live
 from surface.running import equipoise, succeeded
@@ -30,9 +30,9 @@ CLIPPED = """() => [...document.querySelectorAll(".equipoise *:not(.unseen)")]
 """What holds more than it shows."""
 
 
-def brightness(page: Page) -> float:
-    """Return how bright the page is as it is seen, 0 to 255."""
-    return float(np.mean(Image.open(io.BytesIO(page.screenshot())).convert("L")))
+def brightness(seen: Page | Locator) -> float:
+    """Return how bright a page, or a part of it, is as it is seen, 0 to 255."""
+    return float(np.mean(Image.open(io.BytesIO(seen.screenshot())).convert("L")))
 
 
 def test_the_page(live: Live) -> None:
@@ -47,6 +47,18 @@ def test_the_page(live: Live) -> None:
         assert live.page.evaluate(CLIPPED) == []
         assert (brightness(live.page) > 128) == (scheme == "light")
         assert live.findings() == []
+
+
+def test_a_side_view_is_as_dark_as_the_page(live: Live) -> None:
+    live.page.get_by_role("combobox", name="Example").select_option("twin-engine")
+    across = live.page.get_by_role("img", name="The planes of links")
+    for width, scheme in zip(WIDTHS, SCHEMES, strict=True):
+        live.page.set_viewport_size({"width": width, "height": 900})
+        live.page.emulate_media(color_scheme=scheme)
+        expect(across).to_be_visible()
+        live.settled()
+        assert live.page.evaluate(CLIPPED) == []
+        assert (brightness(across) > 128) == (scheme == "light")
 
 
 def test_a_report(new_page: Callable[..., Page], tmp_path: Path) -> None:

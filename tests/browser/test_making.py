@@ -100,12 +100,19 @@ def sheet(live: Live) -> Sheet:
 
 
 def test_a_four_bar_is_made_by_mouse(sheet: Sheet) -> None:
+    parts = sheet.live.page.get_by_text("Parts of the model")
+    add = sheet.live.page.get_by_role("combobox", name="Add to the model")
+    parts.click()
+    expect(sheet.live.page.get_by_text("the machine has no links yet")).to_be_visible()
+    expect(add).to_be_hidden()
     sheet.take("Point")
     sheet.click((0, 0), (11, -87))
     expect(sheet.live.joint("B")).to_be_visible()
     sheet.take("Link")
     sheet.click((0, 0), (33, 0))
     sheet.says("no drive: choose the driven link (crank)")
+    expect(add).to_be_visible()
+    parts.click()
     sheet.click((33, 0), (83, -52))
     sheet.says("free motions too many: 1; coupler hangs free: pin D to something")
     sheet.click((11, -87), (83, -52))

@@ -6,8 +6,7 @@ real, or complex where it is a vector in the plane.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -17,13 +16,10 @@ from equipoise.balancing.design_variables import DesignVariables, FreeSpring, Li
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.across import Across
+from equipoise.mechanism.dynamics.exerted import Exerted
 from equipoise.mechanism.dynamics.forces import Forces, demand_of_inertia, forces
 from equipoise.mechanism.dynamics.reactions import (
-    BeltForce,
-    CamForce,
     Demand,
-    JointForce,
-    MeshForce,
     Pass,
     VectorSignal,
     demands_of,
@@ -237,8 +233,8 @@ class Effects:
 
 
 @dataclass(frozen=True)
-class Solved(ABC):
-    """Forces of joints and couplings, and of the drive, as outputs are read of them.
+class Solved(Exerted):
+    """Outputs of a machine, or of what is added to it.
 
     about : point about which moments are taken, m.
     """
@@ -246,44 +242,7 @@ class Solved(ABC):
     effects: Effects
     about: complex
 
-    @property
-    @abstractmethod
-    def solved(self) -> Pass: ...
-
-    @property
-    def drive_torque(self) -> Array:
-        return self.solved.drive_torque
-
-    @property
-    def drives(self) -> Mapping[str, Array]:
-        return self.solved.drives
-
-    @property
-    def drive_force(self) -> Array:
-        return self.solved.drive_force
-
-    @property
-    def joints(self) -> Mapping[str, JointForce]:
-        return self.solved.joints
-
-    @property
-    def gears(self) -> Mapping[str, MeshForce]:
-        return self.solved.gears
-
-    @property
-    def racks(self) -> Mapping[str, MeshForce]:
-        return self.solved.racks
-
-    @property
-    def belts(self) -> Mapping[str, BeltForce]:
-        return self.solved.belts(self.tension)
-
-    @property
-    def cams(self) -> Mapping[str, CamForce]:
-        return self.solved.cams
-
     def tension(self, belt: Belt) -> float:
-        """What both strands of a belt have anyway."""
         return 0.0
 
 

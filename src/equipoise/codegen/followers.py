@@ -6,9 +6,11 @@ law is evaluated at each design's own angle: its piece is looked up in tables, w
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from functools import partial
-from math import ceil
+from itertools import pairwise
+from math import ceil, pi
 from typing import Any
 
 import numpy as np
@@ -22,6 +24,8 @@ from equipoise.mechanism.formulas.curves import ROUNDING, Curve
 
 FEW = 12
 """Pieces of a curve that are told apart by comparing, which handles several angles at once."""
+ALIKE = 1e-14
+"""Of the largest of some values: what differs by less than this does so by rounding."""
 MOST_BINS = 20_000
 """Parts of a curve's length, of which none has more than one of its knots."""
 NOWHERE = 1e300
@@ -56,6 +60,7 @@ def _displaced(
 
 def write_curve(writer: Writer, curve: Curve, angle: str, outputs: Sequence[str]) -> None:
     """Write a curve, and its two derivatives, at an angle that is each design's own."""
+    curve, counted = _from_the_start(_rested(curve))
     sheet, near, length = writer.sheet, ROUNDING * curve.length, curve.length
     name = outputs[0]
 
@@ -66,7 +71,7 @@ def write_curve(writer: Writer, curve: Curve, angle: str, outputs: Sequence[str]
     rounds = put("rounds", f"floored(({x} + {near!r}) * {1 / length!r})")
     since = put("since", f"{x} - {rounds} * {length!r}")
     pieces = _Pieces(writer, curve, name, put("ahead", f"{since} + {near!r}"))
-    way = put("way", f"{since} - {pieces.beginning()}")
+    way = since if counted else put("way", f"{since} - {pieces.beginning()}")
     powers = [pieces.value(f"c{k}", values) for k, values in enumerate(curve.powers.T)]
     amplitude, rate, phase = (
         pieces.value(what, values)
@@ -82,6 +87,29 @@ def write_curve(writer: Writer, curve: Curve, angle: str, outputs: Sequence[str]
         sheet.put(name, f"{sheet.name(found[0])} + {curve.rise!r} * {rounds}")
 
 
+def _rested(curve: Curve) -> Curve:
+    """A curve with one piece for each rest, whatever law the rest is given by."""
+    still = ~np.any(curve.powers[:, 1:], axis=1) & (curve.waves[:, 0] == 0)
+    same = np.abs(np.diff(curve.powers[:, 0])) <= ALIKE * np.max(np.abs(curve.powers[:, 0]))
+    kept = np.append(True, ~(still[1:] & still[:-1] & same))
+    knots = np.append(curve.knots[:-1][kept], curve.knots[-1])
+    return Curve(knots, curve.powers[kept], curve.waves[kept])
+
+
+def _from_the_start(curve: Curve) -> tuple[Curve, bool]:
+    """A curve of parabolas and waves with the ways counted from its start, so that there is less to
+    choose; of higher powers that would lose digits, and the curve stays as it is.
+    """
+    c0, c1, c2 = curve.powers.T[:3]
+    if len(curve.powers) > FEW or np.any(curve.powers[:, 3:]):
+        return curve, False
+    begins, powers, waves = curve.knots[:-1], np.zeros_like(curve.powers), curve.waves.copy()
+    powers[:, :3] = np.transpose([c0 - (c1 - c2 * begins) * begins, c1 - 2 * c2 * begins, c2])
+    phases = waves[:, 2] - waves[:, 1] * begins + pi * (waves[:, 0] < 0)
+    waves[:, 0], waves[:, 2] = np.abs(waves[:, 0]), np.remainder(phases, 2 * pi)
+    return Curve(curve.knots, powers, waves), True
+
+
 def _waves(curve: Curve) -> Array:
     """Waves of the pieces (K, 3); those of pieces without one are like that before, so that there
     is less to choose.
@@ -93,6 +121,16 @@ def _waves(curve: Curve) -> Array:
     return waves
 
 
+def _alike(values: list[float]) -> list[float]:
+    """Values of which those that differ by rounding are the same."""
+    least = ALIKE * max(map(abs, values))
+    found: list[float] = []
+    for value in values:
+        near = (one for one in found if abs(one - value) <= least)
+        found.append(next(near, value))
+    return found
+
+
 class _Pieces:
     """What differs from piece to piece of a curve: chosen by comparing where there are few, else
     picked from tables.
@@ -101,6 +139,7 @@ class _Pieces:
     def __init__(self, writer: Writer, curve: Curve, name: str, since: str) -> None:
         """since : identifier of the way from the curve's beginning, rounding ahead."""
         self.sheet, self.name, self.curve = writer.sheet, name, curve
+        self.flags: dict[str, str] = {}
         self.few, self.even = len(curve.powers) <= FEW, False
         if self.few:
             self.behind = [
@@ -134,16 +173,26 @@ class _Pieces:
 
     def value(self, what: str, values: Array) -> str:
         """What the piece has of values (K,)."""
-        numbers = [repr(float(one)) for one in values]
+        numbers = [repr(one) for one in _alike(values.tolist())]
         if len({*numbers}) == 1:
             return numbers[0]
         if not self.few:
             return self.picked(what, values, self.piece)
-        chosen = numbers[0]
-        for flag, before, number in zip(self.behind, numbers, numbers[1:], strict=False):
-            if number != before:
-                chosen = f"chosen({flag}, {number}, {chosen})"
+        (chosen, _), *others = Counter(numbers).most_common()
+        for number, _ in others:
+            chosen = f"chosen({self.those([one == number for one in numbers])}, {number}, {chosen})"
         return self.put(what, chosen)
+
+    def those(self, pieces: Sequence[bool]) -> str:
+        """Flag of some of the pieces: from the first one on it turns at each knot beside them."""
+        turns = [k for k, both in enumerate(pairwise(pieces)) if both[0] != both[1]]
+        what = f"among {' '.join(map(str, turns))} {pieces[0]}"
+        if what not in self.flags:
+            flag = self.behind[turns[0]]
+            for k in turns[1:]:
+                flag = f"({flag} != {self.behind[k]})"
+            self.flags[what] = self.put(what, f"{flag} != True" if pieces[0] else flag)
+        return self.flags[what]
 
 
 def _bins(curve: Curve) -> int:

@@ -73,7 +73,7 @@ def over_crank(
             label,
             dimension,
             {role: over(analysis, values) for role, values in signals.items()},
-            beside=np.ravel([values for one, values in every if one == dimension]),
+            beside=np.concatenate([v for one, values in every if one == dimension for v in values]),
             low=0.0 if label == say("size") else None,
         )
         for label, dimension, signals in panels

@@ -57,7 +57,8 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
     """Every picture of an analysis by name, which also does for a file.
 
     ``linkage``; ``side`` where links lie beside each other; ``curves`` and ``hodograph`` where
-    points move; ``centrodes`` where links roll; where masses are known ``polar``, ``force``,
+    points move; ``centrodes`` where links roll; ``gears-LINK`` where a ratio varies, ``belt-LINK``
+    where belts pull; where masses are known ``polar``, ``force``,
     ``moment``, ``torque`` (``torque-2`` and so on of further drives), ``joints`` and
     ``joint-polars``, with ``joints-2`` and so on where there are many; ``spectrum`` where the crank
     angles are those of a whole cycle, at least 90 in a turn.
@@ -66,7 +67,7 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
 
     at : crank angles (rad) at which the linkage is drawn; where they are not given, a clear one.
     """
-    from equipoise.figures import forces, points
+    from equipoise.figures import couplings, forces, points
     from equipoise.figures.analysis import joint_polars, joints
     from equipoise.figures.linkage import centrodes, linkage, rolling
     from equipoise.figures.side import side
@@ -80,8 +81,10 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
         found |= {"curves": points.curves(analysis), "hodograph": points.hodograph(analysis)}
     if rolling(analysis):
         found["centrodes"] = centrodes(analysis)
+    found |= {chart.name: chart for chart in couplings.ratios(analysis)}
     if analysis.solved is None:
         return found
+    found |= {chart.name: chart for chart in couplings.strands(analysis)}
     for chart in (forces.polar, forces.force, forces.moment):
         found[chart.__name__] = chart(analysis)
     found |= {chart.name: chart for chart in forces.torques(analysis)}

@@ -83,6 +83,7 @@ def _model(found: Findings, at: Sequence[float] | None) -> Iterator[Entry]:
 
 
 def _motion(found: Findings) -> Iterator[Entry]:
+    from equipoise.figures.couplings import ratios
     from equipoise.figures.linkage import centrodes, rolling
     from equipoise.figures.points import curves, hodograph, main_kinematics
 
@@ -98,6 +99,9 @@ def _motion(found: Findings) -> Iterator[Entry]:
     for chart in main_kinematics(analysis) if len(analysis.crank_angle) > 1 else ():
         told = partial(seen.kinematic, analysis, chart.name)
         yield Entry(chart.name, caption, partial(made, chart), told)
+    caption = to_say("Speed ratio of gears over crank angle.")
+    for chart in ratios(analysis) if len(analysis.crank_angle) > 1 else ():
+        yield Entry(chart.name, caption, partial(made, chart))
 
 
 def _planting(found: Findings) -> Iterator[Entry]:
@@ -179,7 +183,11 @@ def _joints(found: Findings) -> Iterator[Entry]:
     if found.analysis.solved is None or not found.analysis.forces.joints:
         return
     from equipoise.figures.analysis import joint_polars, joints
+    from equipoise.figures.couplings import strands
 
+    caption = to_say("Tension of the strands of belts over crank angle.")
+    for chart in strands(found.analysis):
+        yield Entry(chart.name, caption, partial(made, chart))
     caption = to_say("Forces in the joints over crank angle.")
     yield from pages(
         "joints",

@@ -107,7 +107,7 @@ def figure_name(steps: Sequence[Step]) -> Any:
 def scale(values: Values, steps: Sequence[Step]) -> float:
     """By what the error of a figure is measured: the RMS of the signal that it is a figure of.
 
-    A turn where it is a crank angle, 1 where it is a number by itself.
+    A turn where it is a crank angle, itself where it is of a cam, 1 where it is another number.
     """
     if figure_name(steps) in PLACES or "phases" in steps:
         return 2 * pi
@@ -116,7 +116,7 @@ def scale(values: Values, steps: Sequence[Step]) -> float:
         return rms if isfinite(rms) else 1.0
     if isinstance(steps[-1], Of):
         return read(values, (*steps[:-1], Of("rms")))
-    return 1.0
+    return abs(read(values, steps)) or 1.0 if steps[0] == "cams" else 1.0
 
 
 def _of_order(numbers: Any, order: float, orders: Any, key: Step) -> Any:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from equipoise.mechanism.assembly.cam_fits import Fit, fits_of
+from equipoise.mechanism.assembly.cam_fits import Fit, fits_of, sharpest
 from equipoise.mechanism.assembly.cam_shapes import Shape
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.formulas.kernels import cross
@@ -15,6 +15,8 @@ from equipoise.symbols.shapes import Array, Mark, circle, line
 
 CORNERS = 360
 """Of a cam's surface."""
+RIB = 0.12
+"""Thickness of a rib as it is drawn, over the base radius; sharp cams have thinner ones."""
 BEYOND = 0.15
 """How much farther a flat face reaches than the cam touches it, over the base radius."""
 
@@ -24,10 +26,15 @@ def cams_of(machine: Machine, joints: Structure) -> Iterator[Mark]:
     turn = np.linspace(0.0, 2 * np.pi, CORNERS, endpoint=False)
     cut = [(fit, fit.shape(turn)) for fit in fits_of(machine, joints)]
     for fit, shape in cut:
-        flanks = [shape.outer] * (fit.cam.closed_by == "groove") + [shape.surface]
-        for flank in flanks:
+        cam = fit.cam
+        grooved = [shape.beside(2 * shape.radius)] * (cam.closed_by == "groove")
+        for flank in [*grooved, shape.surface]:
             around = line("cam", *flank, closed=True)
-            yield Mark(fit.cam.driver, fit.cam_pin, around, (fit.cam.table, fit.cam.name))
+            yield Mark(cam.driver, fit.cam_pin, around, (cam.table, cam.name))
+        if cam.closed_by == "ribs":
+            inside = -min(RIB * cam.base_radius, sharpest(fit)[0] / 2)
+            rib = line("rib", *shape.beside(inside), closed=True)
+            yield Mark(cam.driver, fit.cam_pin, rib)
     for fit, shape in cut:
         if fit.cam.rides == "roller":
             roller = circle("rider", 0j, fit.cam.roller_radius)

@@ -79,6 +79,7 @@ LOOKS = {
     "pitch": Look(None, "faint", 1.2, (5.0, 3.0)),
     "spoke": Look(None, "faint", 3.0),
     "cam": Look("wheel", "lines", 1.4),
+    "rib": Look(None, "lines", 1.0),
     "cam-edge": Look(None, "lines", 1.4),
     "rider": Look("paper", "lines", 1.4),
     "face": Look(None, "lines", 3.0),

@@ -197,4 +197,5 @@ def with_drive(sketch: Sketch, link: str) -> Sketch:
             )
         )
     drive = sketch.drive or Drive(link, USUAL_SPEED)
-    return replace(sketch, drive=replace(drive, link=link))
+    drive = Drive(link, drive.speed) if drive.pushes else replace(drive, link=link)
+    return replace(sketch, drive=drive)

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager
+from dataclasses import replace
 from threading import Lock
-from typing import Protocol
+from typing import Any, Protocol
 
-from equipoise.web.drawn import Drawn, plain_of, with_entry
+from equipoise.quantities import clean, format_exact
+from equipoise.web.drawn import Drawn, plain_of, sketch_of, with_entry
 from equipoise.web.edits import Solved
-from equipoise.web.messages import Message
+from equipoise.web.messages import Entry, Message
 from equipoise.web.replies import Reply
+from equipoise.web.sketch import Sketch
 from equipoise.web.tables import tables_of
+
+LONGER = 0.1
+"""By how much a stroke is longer at its other end, over what it is."""
 
 
 class Session(Protocol):
@@ -32,6 +38,36 @@ class Session(Protocol):
         """Tell of what is shown."""
 
 
+def stroked(sketch: Sketch, entry: Entry) -> Entry:
+    """The same; but a drive that is to push, and has no stroke yet, gets one, which begins as it is
+    drawn: neither can be there without the other.
+    """
+    values, place = entry.values, entry.place
+    if values is None or not (place == ("drive",) or place[:1] == ("drives",) == place[:-1]):
+        return entry
+    drives = (sketch.drive,) if len(place) == 1 else sketch.rest.get("drives", ())
+    drive = dict(enumerate(drives)).get(0 if len(place) == 1 else int(place[1]))
+    length = _pushed(sketch, values)
+    if length is None or (drive is not None and drive.pushes):
+        return entry
+    ends = length, length + LONGER * (abs(length) or sketch.extent)
+    told = [format_exact(clean(end, "length"), "length") for end in ends]
+    found: dict[str, Any] = {**values, "stroke": {"between": told}}
+    if values.get("link") in sketch.links:
+        angle = clean(sketch.poses[str(values["link"])].angle, "angle")
+        found.setdefault("start", format_exact(angle, "angle"))
+    return replace(entry, values=found)
+
+
+def _pushed(sketch: Sketch, values: Mapping[str, Any]) -> float | None:
+    """Length of the cylinder, or travel of the sliding joint, that is to be driven, as drawn, m."""
+    between, places = values.get("between"), sketch.places
+    if isinstance(between, list) and len(between) == 2 and {*map(str, between)} <= places.keys():
+        return abs(places[between[1]] - places[between[0]])
+    named = (one for one in sketch.sliders if one.name == values.get("slider"))
+    return next((sketch.travel(one) for one in named), None)
+
+
 def _tables(session: Session, message: Message) -> Iterator[Reply]:
     with session.telling():
         told = tables_of(plain_of(session.base()))
@@ -40,7 +76,9 @@ def _tables(session: Session, message: Message) -> Iterator[Reply]:
 
 def _entry(session: Session, message: Message) -> Iterator[Reply]:
     with session.lock, session.telling():
-        session.go_to(with_entry(session.base(), message.entry()), message.label)
+        base = session.base()
+        entry = stroked(sketch_of(base, 0), message.entry())
+        session.go_to(with_entry(base, entry), message.label)
     yield from session.told(message.seq)
 
 

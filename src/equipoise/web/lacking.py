@@ -50,7 +50,7 @@ def _loose(sketch: Sketch, joints: Structure) -> str:
             points = _listed(free, OR)
             return say("{link} hangs free: pin {points} to something", link=link, points=points)
     links = _listed(left or [*sketch.links], AND)
-    return say("{links} can move freely: add a link or a joint", links=links)
+    return say("{links} can move freely: add a link, a joint or another drive", links=links)
 
 
 def _pivoted(sketch: Sketch) -> list[str]:

@@ -151,19 +151,25 @@ def without_coupling(table: str, sketch: Sketch, name: str) -> Sketch:
 def _tidied(sketch: Sketch) -> Sketch:
     """Without what names points or links that are gone."""
     kept = [(key, one) for key, one in sketch.entries() if _held(key, one, sketch.bodies)]
-    if sketch.drive is not None and sketch.drive.link not in sketch.links:
+    if sketch.drive is not None and not _there(sketch, sketch.drive):
         sketch = replace(sketch, drive=None)
+    drives = tuple(one for one in sketch.rest.get("drives", ()) if _there(sketch, one))
     gone = {
         key: None
         for key in TABLES
         for value in [sketch.rest.get(key)]
-        if not (named_in(value, "point") <= sketch.places.keys()
-                and named_in(value, "link") <= sketch.links.keys())
+        if not _there(sketch, value)
     }  # fmt: skip
     bearings = sketch.rest.get("bearings") or {}
     kept_on = {name: one for name, one in bearings.items() if one.link in sketch.links}
-    sketch = replace(sketch, rest={**sketch.rest, **gone, "bearings": kept_on})
-    return sketch.with_entries(kept)
+    rest = {**sketch.rest, **gone, "bearings": kept_on, "drives": drives}
+    return replace(sketch, rest=rest).with_entries(kept)
+
+
+def _there(sketch: Sketch, value: Any) -> bool:
+    """Whether all points and links are there that a table names."""
+    return (named_in(value, "point") <= sketch.places.keys()
+            and named_in(value, "link") <= sketch.links.keys())  # fmt: skip
 
 
 def _held(key: str, entry: Any, bodies: Bodies) -> bool:

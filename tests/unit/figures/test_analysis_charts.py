@@ -114,6 +114,9 @@ def test_what_links_beside_each_other_bear_is_drawn() -> None:
     assert [panel.title for panel in panels[-2:]] == ["bearing front", "bearing rear"]
     every = [values for panel in panels for values in signals(panel)]
     assert all(has(every, bearing.size) for bearing in across.bearings.values())
+    rows = eq.load("twin-engine").with_rows((Row(0.0), Row(1.0, lateral=0.3)))
+    above, *below = forces.moment(eq.analyze(rows, 36)).panels  # with both rows above alone
+    assert len(signals(above)) > len(signals(below[0]))
 
 
 def test_curves_are_the_forces() -> None:
@@ -323,3 +326,16 @@ def test_the_stay_in_the_soil_is_shaded_and_its_events_told(name: str) -> None:
     told = words(drawn(name)["velocity"])
     for event in ("entry", "lowest", "exit"):
         assert event in told and f"{degrees(figures[f'{event}.crank_angle']):.1f}°" in told
+
+
+def test_ratios_and_strands_over_the_crank() -> None:
+    """A ratio that varies stays between its ends; the strands of a belt differ by its pull."""
+    analysis = analysis_of("elliptic-quick-return")
+    (panel,) = charts_of("elliptic-quick-return")["gears-crank"].panels
+    (ratio,) = (values for values in signals(panel))
+    ends = analysis.machine.gears[0].ratios
+    assert (ratio.min(), ratio.max()) == pytest.approx(sorted(ends), rel=1e-3)
+    (belt,) = analysis_of("knife-drive").forces.belts.values()
+    left, right = (next(iter(signals(p))) for p in charts_of("knife-drive")["belt-crank"].panels)
+    assert has([left], belt.left)
+    assert has([right], belt.right)

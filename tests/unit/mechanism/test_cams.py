@@ -119,6 +119,15 @@ def test_from_which_speed_the_tappet_lifts_off() -> None:
     assert let_go(eq.analyze(tappet()).forces) == ()
 
 
+def test_a_tappet_that_nothing_presses_on_lifts_off_at_once() -> None:
+    """Where it dwells it is just there, and its force is 0; that is no place where it is lost."""
+    loose = tappet(cam("roller", lift=RISE, closed_by="spring"), gravity=(0.0, 0.0))
+    (found,) = let_go(eq.analyze(loose, acceleration=0.0).forces)
+    middle = [(radians(30), radians(60)), (radians(180), radians(210))]
+    assert found.ranges == tuple(pytest.approx(pair, abs=radians(1)) for pair in middle)
+    assert found.speed == 0
+
+
 def test_a_spring_presses_the_tappet_on() -> None:
     """Its force at the top adds to the weight; without gravity and it nothing holds."""
     spring = eq.Spring("tappet", "R", "S", 1000.0, 0.3)

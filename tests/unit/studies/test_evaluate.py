@@ -493,3 +493,10 @@ def test_dimensions_of_an_analysis(name: str) -> None:
 )
 def test_dimensions(model: str, of: str, path: str, dimension: str | None) -> None:
     assert dimension_of(template(model).base(), of, path) == dimension
+
+
+def test_figures_of_cams_stand_still_to_a_share_of_themselves() -> None:
+    """A lift-off speed is hundreds of rad/s, and to 1e-4 rad/s it never stands still."""
+    found = eq.analyze(eq.load("cam-pusher")).to_dict()
+    steps = resolve(found, "cams.crank to pusher.lift_off_speed")
+    assert scale(found, steps) == read(found, steps) > 50

@@ -94,3 +94,19 @@ def test_the_cam_is_in_sight_and_has_a_key() -> None:
         assert low.real <= np.min(places.real) - radius <= np.max(places.real) + radius <= high.real
         assert low.imag <= np.min(places.imag) - radius <= np.max(places.imag) + radius <= high.imag
     assert ("cam", "cams") in [*keys_of(scene)]
+
+
+def test_ribs_are_drawn_inside_of_the_surface() -> None:
+    """A rib lies within the cam, and no other closure has one."""
+    motion, _, _ = drawn("camshaft_tappet", "roller")
+    (cam,) = motion.machine.cams
+    for closed_by in ("ribs", "groove", "spring"):
+        closed = replace(motion.machine, cams=(replace(cam, closed_by=closed_by),))
+        scene = Scene.of(eq.move(closed, COUNT))
+        by_role = {one.role: one for one in placed(scene, pieces(scene), 0)}
+        assert ("rib" in by_role) == (closed_by == "ribs")
+        if closed_by == "ribs":
+            apart = [distance(place, by_role["cam"].places) for place in by_role["rib"].places]
+            np.testing.assert_allclose(apart, apart[0], rtol=0.05)
+            reach = [np.max(np.abs(by_role[role].places)) for role in ("rib", "cam")]
+            assert reach[0] < reach[1]

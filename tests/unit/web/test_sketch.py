@@ -388,6 +388,42 @@ def test_tables_of_a_file_are_added_while_a_machine_is_unfinished() -> None:
     assert page.machine.links["crank"].mass == 0.2
 
 
+def entered(page: Maker, place: list[str | int], **values: object) -> str:
+    """Fill in a form, and return what is told of the machine."""
+    told = ask(page.session, "entry", place=place, values=values, label="x")[0]
+    return str(state(told).content["status"]["text"])
+
+
+def test_a_cylinder_pushes_from_where_it_is_drawn() -> None:
+    page = Maker()
+    page.do("new")
+    page.do("link", **{"from": at(0j, "frame"), "to": at(0.2 + 0.02j)})
+    page.do("point", spot=at(0.05 - 0.1j))
+    page.do("point", spot=at(0.12 + 0.01j), on="crank")
+    told = entered(page, ["drive"], link="crank", speed="6 rpm", between=["C", "D"])
+    assert told == "cylinder C to D from 130.4 to 143.4 mm and back, 6.000 cycles a minute"
+    assert eq.move(page.machine, np.zeros(1)).points["D"].place[0] == pytest.approx(0.12 + 0.01j)
+    told = entered(page, ["drive", "stroke"], between=["130 mm", "150 mm"])
+    assert told == "cylinder C to D from 130.0 to 150.0 mm and back, 6.000 cycles a minute"
+    assert page.do("drive", link="crank") == "1 free motion; crank turns fully"
+    entered(page, ["drive"], link="crank", speed="6 rpm", between=["C", "D"])
+    assert page.do("delete", what="point", name="C") == "no drive: choose the driven link (crank)"
+
+
+def test_a_second_drive_goes_with_its_link() -> None:
+    page = Maker()
+    page.do("new")
+    for start, end in ((0j, 0.03 + 0j), (0.1 + 0j, 0.12 + 0.01j)):
+        page.do("link", **{"from": at(start, "frame"), "to": at(end)})
+    page.do("link", **{"from": spot("B"), "to": at(0.06 + 0.08j)})
+    page.do("link", **{"from": spot("D"), "to": spot("E")})
+    told = page.do("drive", link="crank")
+    assert told.endswith("can move freely: add a link, a joint or another drive")
+    assert "rocker turns 2.000 times" in entered(page, ["drives", 0], link="rocker", ratio=2)
+    page.do("delete", what="link", name="rocker")
+    assert page.session.base().design.rest["drives"] == ()
+
+
 def test_a_new_machine_takes_the_place_of_a_tool() -> None:
     desk = Desk()
     told = [*desk.receive(message_of({"type": "open", "seq": 1, "example": "pole-saw"}))]

@@ -232,7 +232,7 @@ def check_shape(fit: Fit, where: str) -> None:
     for demand in _demands(fit.cam):
         least, angle = lowest(fit.shape(knots), demand.value, knots)
         if least <= 0:
-            raise ModelError(where, demand.told(least, degrees(angle % (2 * pi))))
+            raise ModelError(where, demand.told(least, degrees(angle)))
 
 
 def can_be_made(fit: Fit) -> Array:

@@ -135,12 +135,14 @@ class Shape:
         """The cam's surface in the cam's own axes, from its axis; complex, m."""
         return self.contact[0] * self._back
 
-    @property
-    def outer(self) -> Array:
-        """The far flank of a groove, like `surface`."""
+    def beside(self, away: float) -> Array:
+        """The curve that keeps this distance, m, from `surface`; less than 0 inside of it.
+
+        That of twice the roller's radius is the far flank of a groove.
+        """
         at, normal = self.contact
-        flank: Array = (at + 2 * self.radius * normal) * self._back
-        return flank
+        curve: Array = (at + away * normal) * self._back
+        return curve
 
     @property
     def pitch(self) -> Array:
@@ -215,4 +217,4 @@ def lowest(shape: Shape, value: Callable[[Shape], Array], knots: Array) -> tuple
         k = int(highest_at(-values, smooth=False))
         best = min(best, (float(values[k]), float(angles[k])))
         angles, width = best[1] + np.linspace(-width, width, 41), width / 18
-    return best
+    return best[0], best[1] % (2 * pi)

@@ -17,6 +17,7 @@ from equipoise.mechanism.dynamics.reactions import reactions
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.stroke_figures import figure
 from equipoise.mechanism.parts.cams import Cam
+from equipoise.signals import ROUNDING
 
 
 @dataclass(frozen=True)
@@ -113,17 +114,19 @@ def _let_go(cam: Cam, motion: Motion, normal: Array, per_speed2: Array) -> LetGo
 
 def _ranges(theta: Array, normal: Array) -> tuple[tuple[float, float], ...]:
     """Between which crank angles a force is negative, by straight lines between its samples."""
-    if len(theta) < 2 or not np.any(normal < 0):
+    none = ROUNDING * np.max(np.abs(normal), initial=0.0)
+    if len(theta) < 2 or not np.any(normal < -none):
         return ()
     period = theta[-1] - theta[0] + theta[1] - theta[0]
     x = np.append(theta, theta[0] + period)
     y = np.append(normal, normal[0])
-    if np.all(normal < 0):
+    below = y < -none
+    if np.all(below):
         return ((float(x[0]), float(x[-1])),)
-    k = np.flatnonzero(np.sign(y[:-1]) * np.sign(y[1:]) < 0)
+    k = np.flatnonzero(below[:-1] != below[1:])
     crossings = x[k] - y[k] * (x[k + 1] - x[k]) / (y[k + 1] - y[k])
-    down = crossings[y[k] > 0]
-    up = crossings[y[k] < 0]
+    down = crossings[below[k + 1]]
+    up = crossings[below[k]]
     if up[0] < down[0]:
         up = np.append(up[1:], up[0] + period)
     return tuple((float(a), float(b)) for a, b in zip(down, up, strict=True))

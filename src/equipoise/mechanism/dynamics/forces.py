@@ -26,12 +26,9 @@ from equipoise.mechanism.dynamics.across import (
     pushes_across,
     springs_across,
 )
+from equipoise.mechanism.dynamics.exerted import Exerted
 from equipoise.mechanism.dynamics.reactions import (
-    BeltForce,
-    CamForce,
     Demand,
-    JointForce,
-    MeshForce,
     Pass,
     VectorSignal,
     demands_of,
@@ -48,7 +45,7 @@ from equipoise.mechanism.parts.places import in_frame
 
 
 @dataclass(frozen=True, eq=False)
-class Forces:
+class Forces(Exerted):
     """Forces of a machine in motion; arrays (N,), one value for each crank angle.
 
     motion : what they belong to.
@@ -126,20 +123,9 @@ class Forces:
         outside = demands_of(self.motion, acting.outer_loads(self.motion))
         return replace(self, loads=outside, springs={}, inner={})
 
-    @property
-    def drive_torque(self) -> Array:
-        """Torque of the first drive on its link, N m; times that link's speed it is its power."""
-        return self.solved.drive_torque
-
-    @property
-    def drives(self) -> Mapping[str, Array]:
-        """Torque of each drive on its link, N m, or its force, N, by the name of the link."""
-        return self.solved.drives
-
-    @property
-    def drive_force(self) -> Array:
-        """Force with which a drive pushes its ends apart, N; of one that does."""
-        return self.solved.drive_force
+    def tension(self, belt: Belt) -> float:
+        """What both strands of a belt have anyway, N."""
+        return belt.tension or 0.0
 
     @property
     def power(self) -> Array:
@@ -156,31 +142,6 @@ class Forces:
     def _work_by_angle(self) -> dict[str, Array]:
         """Work of each drive by crank angle (N,), N m, by the name of its link."""
         return {link: one * self.motion.way(link) for link, one in self.drives.items()}
-
-    @cached_property
-    def joints(self) -> Mapping[str, JointForce]:
-        """Force in each pin and slider, by name, on the later body by the earlier one."""
-        return self.solved.joints
-
-    @cached_property
-    def gears(self) -> Mapping[str, MeshForce]:
-        """Force between the teeth of each pair of gears, on the driven gear by the driver."""
-        return self.solved.gears
-
-    @cached_property
-    def racks(self) -> Mapping[str, MeshForce]:
-        """Force between the teeth of each rack and its pinion, on the driven of them."""
-        return self.solved.racks
-
-    @cached_property
-    def belts(self) -> Mapping[str, BeltForce]:
-        """Pull and tensions of each belt on its driven link."""
-        return self.solved.belts(lambda belt: belt.tension or 0.0)
-
-    @cached_property
-    def cams(self) -> Mapping[str, CamForce]:
-        """Force of each cam on its follower."""
-        return self.solved.cams
 
     @cached_property
     def across(self) -> Across:
