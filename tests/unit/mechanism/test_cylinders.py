@@ -198,3 +198,30 @@ def test_the_page_draws_barrel_and_rod_which_keep_their_lengths() -> None:
     assert [one["name"] for one in state["charts"] if one["name"].startswith("drive")] == [
         "drive_force"
     ]
+
+
+def test_a_stroke_beside_other_drives_hangs_on_geared_links() -> None:
+    """Lengths are as commanded, and without loads both drives together do no work in a cycle; a
+    gear whose driver is pushed itself is refused.
+    """
+    law = LengthLaw(between=(0.55, 0.65))
+    links = {
+        "crank": heavy(A=ORIGIN, B=(0.1, 0.0)),
+        "wheel": heavy(D=ORIGIN, W=(0.05, 0.0), V=(-0.05, 0.0)),
+        "arm": heavy(W=ORIGIN, T=(0.4, 0.0)),
+        "pinion": heavy(V=ORIGIN, S=(0.1, 0.0)),
+    }
+    frame = {"A": ORIGIN, "D": (0.5, 0.0), "Q": (0.9, -0.6)}
+    lifted = FurtherDrive("arm", between=("Q", "T"), stroke=law)
+    gears, drive = (eq.Gear("crank", "wheel", -1.0),), Drive("crank", 5.0)
+    more = eq.Gear("arm", "pinion", 2.0, carrier="wheel")
+    with pytest.raises(ModelError, match="links that are driven by their angle"):
+        eq.analyze(machine(frame, links, drive=drive, gears=(*gears, more), drives=(lifted,)))
+    del links["pinion"]
+    found = eq.analyze(machine(frame, links, drive=drive, gears=gears, drives=(lifted,)), 360)
+    ends = (found.motion.points[name].place for name in "QT")
+    lengths = np.abs(next(ends) - next(ends))
+    np.testing.assert_allclose(lengths, law.value(found.crank_angle)[0], atol=1e-14)
+    work = found.forces.work
+    assert abs(work["crank"]) > 1e-3
+    assert sum(work.values()) == pytest.approx(0.0, abs=1e-12)

@@ -36,6 +36,13 @@ NO_LEVER = 1e-9
 """Of the longest, the smallest lever over which strokes are told from one another."""
 
 
+FOLLOWED = Note(
+    "a stroke beside other drives goes with pins, guides and dyads, and with gears, belts and "
+    "racks whose driver and carrier are the frame or links that are driven by their angle; "
+    "others, and groups of loops, need one drive to be followed by"
+)
+
+
 @dataclass(frozen=True)
 class Held:
     """Links that stand still at the angles at which they start."""
@@ -168,9 +175,9 @@ def commanded(machine: Machine) -> Followed:
     bare = replace(machine, loads=(), planting=None, balance=None, support=None, rows=())
     bare.__dict__["turning"] = Held(start)
     linkage = assemble(bare)
-    if machine.couplings or any(group.kind == "loops" for group in linkage.groups):
-        told = Note("a stroke beside other drives goes with pins, guides and dyads alone")
-        raise ModelError("drives", told)
+    moved = {end for one in machine.couplings for end in (one.driver, one.carrier)}
+    if linkage.needed_references or moved & start.keys():
+        raise ModelError("drives", FOLLOWED)
     turns = np.lcm.reduce([drive.turns for drive in machine.driven])
     of = Together(linkage, pushers, float(2 * pi * turns))
     return _followed(of, np.array([*start.values()])[:, None], POINTS * int(turns))
