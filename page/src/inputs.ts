@@ -172,7 +172,7 @@ function namesOf(of: Asking["of"], on: string | undefined, around: Around): stri
   if (of === "link") return links;
   if (of === "body") return [FRAME, ...links];
   const body = on === FRAME ? FRAME : on ? String(around.beside(on) ?? "") : "";
-  const whole = body ? [body] : on ? [FRAME, ...links] : links;
+  const whole = body ? [body] : on ? [FRAME, ...links] : [...links, FRAME];
   return [...new Set(whole.flatMap((one) => Object.keys(bodies[one] ?? {})))];
 }
 

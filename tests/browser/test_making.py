@@ -237,6 +237,24 @@ def test_a_cam_and_its_follower_are_made_by_mouse(sheet: Sheet) -> None:
     sheet.says("free motions too many: 1")
 
 
+def test_a_cylinder_is_made_by_its_form(sheet: Sheet) -> None:
+    sheet.take("Point")
+    sheet.click((0, 0), (50, -100))
+    sheet.take("Link")
+    sheet.click((0, 0), (100, 20))
+    page = sheet.live.page
+    page.get_by_text("Parts of the model").click()
+    page.get_by_role("button", name="drive link crank").click()
+    form = page.get_by_role("form", name="drive")
+    form.locator("[data-key=speed] input").fill("6 rpm")
+    ends = form.locator("[data-key=between] select")
+    for end, point in enumerate("BC"):  # the first is a point of the frame alone
+        ends.nth(end).select_option(point)
+    form.get_by_role("button", name="Save", exact=True).click()
+    sheet.says("cylinder B to C from 130.0 to 143.0 mm and back")
+    assert sheet.live.machine().drive.between == ("B", "C")
+
+
 def test_a_cam_and_a_sliding_face_are_made_by_keys(sheet: Sheet) -> None:
     live, keys = sheet.live, sheet.live.page.keyboard
     sheet.take("Point")

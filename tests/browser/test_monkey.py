@@ -12,12 +12,14 @@ import io
 import os
 import random
 import re
+import shutil
 import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import cycle
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
@@ -25,6 +27,7 @@ from playwright.sync_api import CDPSession, Error, Locator, Page, expect
 
 import equipoise as eq
 from browser.live import SCREENSHOTS, Live
+from equipoise import Machine
 from equipoise.mechanism.kinematics.swings import swing
 from equipoise.schema.files import to_csv
 
@@ -50,6 +53,8 @@ KEYS = (
     *("Control+y", "Space", "End", "Delete", "v", "p", "l", "j", "x", "s", "g", "d", "?"),
 )
 SIZES = ((400, 700), (1280, 900), (1920, 1000))
+TABLES = [*Path(eq.__file__).parent.glob("examples/*.csv")]
+"""That examples name; a page gives them beside its model."""
 LONGEST = 1000
 """ms that the monkey waits for one thing."""
 MISTAKE = b"went wrong inside the program"
@@ -231,7 +236,7 @@ class Monkey:
             live.button("Undo").click()
             live.settled()
         shown = self._download("csv")
-        machine = eq.loads(self._download("model"))
+        machine = self._model()
         swings = swing(machine)  # as commands let it, too, where the crank cannot turn
         analysis = eq.analyze(swings.machine if swings else machine)
         angles = (shown.count("\n") - 1) // analysis.motion.turns
@@ -242,6 +247,15 @@ class Monkey:
         near = 1e-6 * np.nanmax(np.abs(of_model), axis=0) + 1e-12  # a file has 12 digits
         assert np.all((np.abs(of_page - of_model) <= near) | np.isnan(of_model))
         self.checked += 1
+
+    def _model(self) -> Machine:
+        """The machine of the model that the page gives, beside the tables of all examples."""
+        with TemporaryDirectory() as folder:
+            for table in TABLES:
+                shutil.copy(table, folder)
+            file = Path(folder, "model.toml")
+            file.write_text(self._download("model"), encoding="utf-8")
+            return eq.load(file)
 
     def _download(self, kind: str) -> str:
         """The text of one of the downloads, past any that the monkey has asked for before."""

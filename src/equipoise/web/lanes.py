@@ -31,10 +31,24 @@ def share_heaps() -> None:
     Else each has its own, where what it has freed is kept for itself in pieces, and a server that
     lives long grows though it holds no more than before.
     """
-    library = ctypes.CDLL(None) if sys.platform == "linux" else None
-    if library is not None and hasattr(library, "mallopt"):  # musl has none
+    if mallopt := _of_heaps("mallopt"):
         for option in HEAPS, LARGE:
-            library.mallopt(*option)
+            mallopt(*option)
+
+
+def give_back() -> None:
+    """Give the system the memory that is free, where the C library can be told to.
+
+    What took long may have needed hundreds of MB, of which pieces that are in use keep the rest.
+    """
+    if trim := _of_heaps("malloc_trim"):
+        trim(0)
+
+
+def _of_heaps(name: str) -> Callable[..., int] | None:
+    """A function of glibc; other C libraries have none of the name."""
+    library = ctypes.CDLL(None) if sys.platform == "linux" else None
+    return getattr(library, name, None)
 
 
 class EndedError(BaseException):

@@ -16,7 +16,7 @@ from starlette.websockets import WebSocketDisconnect
 
 from equipoise.errors import UsageError
 from equipoise.web.desk import Desk
-from equipoise.web.lanes import MOMENT, Lanes, Work
+from equipoise.web.lanes import MOMENT, Lanes, Work, give_back
 from equipoise.web.messages import SLOW, Message, read
 from equipoise.web.replies import Reply, packed, refused, told
 
@@ -123,6 +123,7 @@ class Page:
             message = await self.questions.get()
             await self._answer(self.desk.receive(message), message, self.lanes.long)
             self._go_on(message)
+            await asyncio.get_running_loop().run_in_executor(self.lanes.long, give_back)
 
     def _go_on(self, message: Message) -> None:
         self.answered = max(self.answered, message.seq or 0)

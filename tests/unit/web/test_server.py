@@ -191,13 +191,15 @@ def test_pages_do_not_disturb_each_other(here: Here) -> None:
 def test_dragging_goes_on_while_something_takes_long(
     here: Here, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    dragged = threading.Event()
+    """And afterwards the memory that it needed is given back."""
+    dragged, given_back = threading.Event(), threading.Event()
 
     def slowly(design: Design, hold: bool) -> Balanced:
         assert dragged.wait(20)
         return balanced(design, hold)
 
     monkeypatch.setattr(balanced_module, "balanced", slowly)
+    monkeypatch.setattr(page_module, "give_back", given_back.set)
     with here.page() as page:
         hear(page)
         assert ask(page, {"type": "balance", "seq": 1})["type"] == "busy"
@@ -209,6 +211,7 @@ def test_dragging_goes_on_while_something_takes_long(
         assert "was changed while" in late["message"]
         rest = iter(lambda: hear(page), {"type": "told", "seq": 2})  # both are answered by now
         assert "told" not in {one["type"] for one in rest}
+        assert given_back.wait(20)
 
 
 def test_a_question_too_many_has_all_its_answers_too(
