@@ -128,7 +128,7 @@ export class App {
       tool: (message, numbers) => {
         this.opened = "";
         this.views.showTool(message, numbers);
-        this.name({ ...message, has_forces: false, file: null });
+        this.name({ ...message, has_forces: false });
       },
       stores: (message) => this.gallery.stored(message),
       study: (message, numbers) => {
@@ -164,7 +164,7 @@ export class App {
       talk: this.talk,
       full: this.full,
       shown: () => this.named,
-      say: (text, bad) => this.board.say(text, bad),
+      say: (text, bad) => this.tell(text, bad),
       open: (asked, name) => void this.open(asked, name),
     });
     this.hands = new Hands(page, (dress) => new Stage(dress));
@@ -448,9 +448,14 @@ export class App {
     else this.board.clear(false);
   }
 
+  /** Say something wherever it is seen. */
+  private tell(text: string, bad: boolean): void {
+    this.views.say(text, bad);
+    this.board.say(text, bad);
+  }
+
   private refuse(message: string, edit: number | null): void {
-    this.views.say(message);
-    this.board.say(message, true);
+    this.tell(message, true);
     if (edit !== null) {
       this.hands.refused();
       this.frames.draw(edit); // what is shown of the attempt is its answer

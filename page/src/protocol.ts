@@ -349,6 +349,7 @@ export interface ToolMessage {
   undo: string | null;
   redo: string | null;
   steps: [past: number, future: number];
+  file: State["file"];
   length: Unit;
   fields: Field[];
   scene: ToolScene;

@@ -55,9 +55,10 @@ export class ToolView {
     this.watcher.observe(this.charts);
   }
 
-  /** A sentence about what cannot be; it goes with the next change. */
-  say(message: string): void {
+  /** A sentence, on what cannot be if `bad`; it goes with the next change. */
+  say(message: string, bad = false): void {
     write(this.wrong, message);
+    this.wrong.classList.toggle("bad", bad);
     this.wrong.hidden = !message;
   }
 

@@ -59,8 +59,8 @@ export class Views {
   }
 
   /** A sentence about what cannot be, where a machine's own drawing is not seen. */
-  say(message: string): void {
-    this.tool.say(message);
+  say(message: string, bad: boolean): void {
+    this.tool.say(message, bad);
     this.study.say(message);
   }
 

@@ -65,6 +65,28 @@ def test_a_file_is_saved_and_its_steps_outlive_the_server(free_page: Page, tmp_p
         expect(other.get_by_text("was changed here before")).to_be_hidden()
 
 
+def test_the_file_of_a_tool_is_saved_and_its_steps_outlive_the_server(
+    free_page: Page, tmp_path: Path
+) -> None:
+    path, page, port = tmp_path / "mine.toml", free_page, free_port()
+    path.write_text(example_text("brush-cutter"), encoding="utf-8")
+    live = Live(page)
+    with serving(path, "--port", port) as address:
+        page.goto(address)
+        expect(live.button("Save")).to_be_disabled()
+        live.type(live.field("shaft outer diameter"), "30 mm")
+        assert page.evaluate(LEAVES) is False
+        live.button("Save").click()
+        page.get_by_role("dialog", name="Question").get_by_role("button", name="Save").click()
+        expect(live.told("mine.toml is saved")).to_be_visible()
+        expect(live.button("Save")).to_be_disabled()
+    with serving(path, "--port", port) as address:
+        page.goto(address)
+        live.button("Undo").click()
+        expect(live.field("shaft outer diameter")).to_have_value("26 mm")
+        expect(live.button("Save")).to_be_enabled()
+
+
 def test_what_was_done_in_a_closed_tab_is_offered(live: Live, address: str) -> None:
     live.type(live.field("crank mass"), "333 g")
     expect(live.button("Undo")).to_be_enabled()

@@ -18,39 +18,12 @@ from equipoise.i18n import Note
 from equipoise.keys import Frozen, Key, Named, Table, Tables, Whole, all_keys, innermost, keys_of
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.schema.files import printable
-from equipoise.schema.models import Beside, machine_of, plain_of
+from equipoise.schema.models import Held, machine_of, plain_of
 from equipoise.schema.places import Context, Place, written_place
 from equipoise.schema.reading import read_table
-from equipoise.schema.tables import parse_table
 from equipoise.schema.template import named_parts
 
 Content = dict[str, Any]
-
-
-class Held(Beside):
-    """Reads what lies beside a file out of what is held already, by sort and name; of no disk.
-
-    tables : those that there are.  texts : of CSV files that are given now, by name.
-    """
-
-    def __init__(self, tables: Mapping[tuple[str, str], Any], texts: Mapping[str, str]) -> None:
-        super().__init__(None)
-        self.tables, self.texts = tables, texts
-
-    def read(self, sort: str, file: str) -> Any:
-        if file in self.texts:
-            return parse_table(sort, self.texts[file], file)
-        if (sort, file) not in self.tables:
-            raise ModelError(
-                "",
-                Note(
-                    "got {file!r}, which is not known here; choose that file, or drop it together "
-                    "with the model",
-                    file=printable(file),
-                ),
-            )
-        return self.tables[sort, file]
 
 
 @dataclass(frozen=True)

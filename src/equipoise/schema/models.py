@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.i18n import Note
 from equipoise.keys import Frozen
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.shown_units import units_of
@@ -157,6 +158,33 @@ class Beside:
             return opened(self.folder / file)
         except ModelError as error:
             raise ModelError("", f"{printable(file)}: {error.what}") from error
+
+
+class Held(Beside):
+    """Reads what lies beside a file out of what is held already, by sort and name; of no disk.
+
+    tables : those that there are.  texts : of CSV files that are given now, by name.
+    """
+
+    def __init__(self, tables: Mapping[tuple[str, str], Any], texts: Mapping[str, str]) -> None:
+        super().__init__(None)
+        self.tables, self.texts = tables, texts
+
+    def read(self, sort: str, file: str) -> Any:
+        from equipoise.schema.tables import parse_table
+
+        if file in self.texts:
+            return parse_table(sort, self.texts[file], file)
+        if (sort, file) not in self.tables:
+            raise ModelError(
+                "",
+                Note(
+                    "got {file!r}, which is not known here; choose that file, or drop it together "
+                    "with the model",
+                    file=printable(file),
+                ),
+            )
+        return self.tables[sort, file]
 
 
 # -- writing ---------------------------------------------------------------------------------------

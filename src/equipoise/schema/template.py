@@ -22,7 +22,7 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.kinematics.swings import SWUNG, swing
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.finding import Found, all_numbers, find, replaced, unit_in, with_changes
-from equipoise.schema.models import Beside, machine_of, parts_of, plain_of, text_of, tool_of
+from equipoise.schema.models import Beside, Held, machine_of, parts_of, plain_of, text_of, tool_of
 from equipoise.schema.numbers import Number
 from equipoise.schema.opening import Kind, Opened, in_file, kind_of, model_content, opened
 from equipoise.schema.places import Place, written_place
@@ -46,6 +46,7 @@ class Template:
     source : name for it in errors.
     folder : where its tables and linkages are.
     known : those that are there already.
+    texts : of its CSV files by name, where they are given with it; then no disk is read.
 
     Raises
     ------
@@ -61,13 +62,14 @@ class Template:
         source: str = "model",
         folder: Path | None = None,
         known: Known | None = None,
+        texts: Mapping[str, str] | None = None,
     ) -> None:
         self.text, self.source = text, source
         self._known: Known = dict(known or {})
         self._found: dict[str, Found] = {}
         with in_file(source):
             self._content = model_content(text)
-            self._base = self._read(self._content, _Carried(folder, self._known))
+            self._base = self._read(self._content, _Carried(folder, self._known, texts))
 
     def swinging(self) -> Template:
         """The same, with a crank that swings where it cannot turn; `swings` tells that then.
@@ -259,13 +261,16 @@ class Template:
 class _Carried(Beside):
     """Reads what lies beside a model file once, and gives that from then on."""
 
-    def __init__(self, folder: Path | None, known: Known) -> None:
+    def __init__(
+        self, folder: Path | None, known: Known, texts: Mapping[str, str] | None = None
+    ) -> None:
         super().__init__(folder)
         self.known = known
+        self.tables = Beside(folder) if texts is None else Held(known, texts)
 
     def read(self, sort: str, file: str) -> Any:
         if sort != "linkage" and (sort, file) not in self.known:
-            self.known[sort, file] = super().read(sort, file)
+            self.known[sort, file] = self.tables.read(sort, file)
         return self.linkage(file) if sort == "linkage" else self.known[sort, file]
 
     def linkage(self, file: str) -> Machine:

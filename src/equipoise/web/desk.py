@@ -18,6 +18,7 @@ from equipoise.schema.opening import kind_of_text, opened
 from equipoise.schema.template import Template
 from equipoise.web.design import Design
 from equipoise.web.disk import on_disk
+from equipoise.web.edits import solved
 from equipoise.web.messages import Message
 from equipoise.web.openings import opened_file
 from equipoise.web.replies import Reply, refused
@@ -83,7 +84,7 @@ class Desk:
     def _turn_to(self, message: Message) -> None:
         """Open what a message wants to be open."""
         if message.kind == "open":
-            self.tool, self.studied = tool_asked(message), False
+            self.tool, self.studied = tool_asked(message, self.session.disk), False
         if message.kind not in ("study", "design"):
             return
         self.store = self._store_of(message.optional("store"))
@@ -169,15 +170,28 @@ def begun(file: str | None) -> Callable[[], Desk]:
     if kind_of_text(opened(file).text) == "tool":
         tool = tool_of_file(file)
         _ = tool.first.figures.whole
-        return lambda: Desk(Session(), tool.again, folder=folder)
+        kept = on_disk(file, tool.first.tool)
+
+        def begin_tool() -> Desk:
+            own = kept and kept.now()
+            again = (
+                tool.again if own is None or own.text == tool.template.text else tool_of_file(file)
+            )
+            again.disk = own
+            return Desk(Session(disk=own), again, folder=folder)
+
+        return begin_tool
     first = Session()
     first.open(opened_file(file))
-    disk = on_disk(file, first.shown)
+    disk = on_disk(file, first.shown.design.machine)
 
     def begin() -> Desk:
         own = disk and disk.now()
         session = Session(disk=own)
-        found = first.shown if own is None else own.found
+        found = first.shown
+        if disk is not None and own is not None and own.text != disk.text:
+            assert isinstance(own.model, Machine)
+            found = solved(Design(found.design.name, own.model))
         session.open(found.design, found)
         return Desk(session, folder=folder)
 

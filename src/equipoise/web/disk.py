@@ -10,15 +10,18 @@ from threading import Lock
 from typing import Any
 
 from equipoise.errors import EquipoiseError, UsageError
+from equipoise.handheld.model import Tool
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.schema.documents import dumps
+from equipoise.schema.documents import dumps, load
 from equipoise.schema.files import FileError, printable, read_text, write
 from equipoise.schema.models import Beside, parts_of
 from equipoise.web.design import Design
-from equipoise.web.edits import Solved, solved
-from equipoise.web.openings import opened_file
+from equipoise.web.edits import solved
+from equipoise.web.replies import Reply
+from equipoise.web.tool_state import ToolFigures
 
+NOT_OF_FILE = Note("this machine was not opened from a file; download the model instead")
 COMMENT = re.compile(r"^\s*#|\s#\s", re.MULTILINE)
 
 
@@ -28,13 +31,13 @@ class Disk:
 
     Each page has one of its own, so that none writes over what another one has saved.
 
-    path : of the file.  text : what it holds.  found : the design in it, computed.
+    path : of the file.  text : what it holds.  model : that is in it.
     lock : held while it is written, since pages share the file.
     """
 
     path: str
     text: str
-    found: Solved
+    model: Machine | Tool
     lock: Lock = field(default_factory=Lock)
 
     @property
@@ -52,32 +55,44 @@ class Disk:
         """Whether saving would lose comments, which a model does not hold."""
         return COMMENT.search(self.text) is not None
 
-    def kept(self, found: object) -> dict[str, Any]:
-        """Name of the file, and whether it tells just this design, which may be unfinished."""
-        machine = found.design.machine if isinstance(found, Solved) else None
-        saved = machine is not None and self.found.design.machine == machine
-        return {"name": self.name, "saved": saved, "comments": self.has_comments}
+    def kept(self, model: Machine | Tool | None) -> dict[str, Any]:
+        """Name of the file, and whether it tells just this model; none is unfinished."""
+        return {"name": self.name, "saved": self.model == model, "comments": self.has_comments}
+
+    def told(self, seq: int | None, text: str) -> Reply:
+        """That it is saved; `text` is the model that the page's steps began with."""
+        saved = {"name": self.name, "base": self.base, "text": text}
+        return Reply({"type": "saved", "seq": seq, **saved})
 
     def now(self) -> Disk:
-        """The same for another page, with what the file holds by now, where that is a machine."""
+        """The same for another page, with what the file holds by now, where that is of its kind."""
         text = self._on_disk()
         if text is None or text == self.text:
             return replace(self)
         try:
-            return replace(self, text=text, found=solved(opened_file(self.path)))
+            model = load(self.path)
+            if isinstance(model, Machine):
+                solved(Design(self.name, model))
+            else:
+                _ = ToolFigures(model).whole
         except EquipoiseError:
             return replace(self)
+        return (
+            replace(self, text=text, model=model)
+            if type(model) is type(self.model)
+            else replace(self)
+        )
 
-    def save(self, found: Solved) -> None:
-        """Put a design in the place of what the file holds.
+    def save(self, model: Machine | Tool) -> None:
+        """Put a model in the place of what the file holds.
 
         Raises
         ------
         UsageError : somebody else has changed the file meanwhile, or it cannot be written, or
             lacks a table beside it.
-        ModelError : the machine has what no file can tell.
+        ModelError : it has what no file can tell.
         """
-        text = dumps(found.design.machine)
+        text = dumps(model)
         with self.lock:
             if self._on_disk() != self.text:
                 raise UsageError(
@@ -88,14 +103,13 @@ class Disk:
                         name=self.name,
                     )
                 )
-            self._check_tables(found.design.machine)
+            self._check_tables(model)
             write(self.path, text)
-            design = Design(found.design.name, found.design.machine)
-            self.text, self.found = text, solved(design)
+            self.text, self.model = text, model
 
-    def _check_tables(self, machine: Machine) -> None:
+    def _check_tables(self, model: Machine | Tool) -> None:
         """Nothing but the model file is written: its tables have to lie beside it."""
-        for part in parts_of(machine):
+        for part in parts_of(model):
             try:
                 beside = Beside(os.path.dirname(self.path)).read(part.sort, part.file)
             except EquipoiseError:
@@ -118,8 +132,8 @@ class Disk:
             return None
 
 
-def on_disk(path_or_name: str, found: Solved) -> Disk | None:
-    """The file that a design was read from; None of a bundled example."""
+def on_disk(path_or_name: str, model: Machine | Tool) -> Disk | None:
+    """The file that a model was read from; None of a bundled example."""
     if not os.path.isfile(path_or_name):
         return None
-    return Disk(os.path.abspath(path_or_name), read_text(path_or_name), found)
+    return Disk(os.path.abspath(path_or_name), read_text(path_or_name), model)

@@ -7,10 +7,10 @@ from contextlib import AbstractContextManager
 from typing import Protocol
 
 from equipoise.errors import UsageError
-from equipoise.i18n import Note, say
+from equipoise.i18n import say
 from equipoise.schema.documents import dumps
 from equipoise.web.design import Design
-from equipoise.web.disk import Disk
+from equipoise.web.disk import NOT_OF_FILE, Disk
 from equipoise.web.downloads import downloaded
 from equipoise.web.edits import Solved
 from equipoise.web.gallery import pictured
@@ -51,15 +51,12 @@ class Session(Protocol):
 def _save(session: Session, message: Message) -> Iterator[Reply]:
     found, disk, history = session.current(), session.disk, session.history
     if disk is None or history is None:
-        raise UsageError(
-            Note("this machine was not opened from a file; download the model instead")
-        )
+        raise UsageError(NOT_OF_FILE)
     first = history.first
     text = dumps(first.machine) if isinstance(first, Design) else disk.text
-    disk.save(found)
+    disk.save(found.design.machine)
     yield from session.told(message.seq)
-    saved = {"name": disk.name, "base": disk.base, "text": text}
-    yield Reply({"type": "saved", "seq": message.seq, **saved})
+    yield disk.told(message.seq, text)
 
 
 def _download(session: Session, message: Message) -> Iterator[Reply]:

@@ -5,16 +5,17 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from types import MappingProxyType
+from typing import Any
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
-from equipoise.schema.entries import Held
 from equipoise.schema.files import printable
-from equipoise.schema.models import load_linkage, loads_linkage, machine_of
+from equipoise.schema.models import Held, load_linkage, loads_linkage, machine_of
 from equipoise.schema.opening import content_of, examples, in_file, kind_of_text, opened
 from equipoise.web.design import Design
 
 NO_FILES: Mapping[str, str] = MappingProxyType({})
+NO_TABLES: Mapping[tuple[str, str], Any] = MappingProxyType({})
 TOOLS = "this is the file of a hand-held tool; give that of a linkage, or `equipoise serve` it"
 
 
@@ -44,14 +45,19 @@ def opened_file(path_or_name: str | os.PathLike[str]) -> Design:
     return Design(printable(os.path.basename(path_or_name)), machine)
 
 
-def opened_text(name: str, text: str, files: Mapping[str, str] = NO_FILES) -> Design:
+def opened_text(
+    name: str,
+    text: str,
+    files: Mapping[str, str] = NO_FILES,
+    tables: Mapping[tuple[str, str], Any] = NO_TABLES,
+) -> Design:
     """A machine from the text of a model file.
 
-    files : texts of the CSV files that it names.
+    files : texts of the CSV files that it names.  tables : others that there are.
     """
     shown = printable(name)
     if kind_of_text(text) == "tool":
         raise ModelError("", TOOLS, shown)
     with in_file(shown):
         content = content_of(text.removeprefix("\ufeff"), "linkage")
-        return Design(shown, machine_of(content, Held({}, files)))
+        return Design(shown, machine_of(content, Held(tables, files)))

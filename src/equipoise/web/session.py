@@ -17,6 +17,7 @@ from equipoise.mechanism.kinematics.outline import USUAL_SIZE
 from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
 from equipoise.schema.files import LARGEST
+from equipoise.schema.template import named_parts
 from equipoise.web import balanced, entering, kept
 from equipoise.web.block import Values
 from equipoise.web.design import Design
@@ -95,15 +96,15 @@ class Session:
 
     def _open(self, message: Message) -> Iterator[Reply]:
         design: Design | Sketch
+        disk = self.disk if message.flag("file", False) else None
         if message.flag("new", False):
             design = Sketch()
         elif "example" in message.values:
             design = opened_example(message.text("example"))
         else:
-            design = opened_text(
-                message.text("name", "machine.toml"), message.text("text"), message.files
-            )
-        disk = self.disk if message.flag("file", False) else None
+            tables = {} if disk is None else named_parts(disk.model)[1]
+            name, text = message.text("name", "machine.toml"), message.text("text")
+            design = opened_text(name, text, message.files, tables)
         try:
             self.open(design)
         except EquipoiseError as error:
@@ -309,7 +310,7 @@ class Session:
             fields = fields_of(found.design).values()
             content["fields"] = [self.scale.told(one) for one in fields]
         now = self.found if self.preview is None else None
-        file = self.disk and self.disk.kept(now)
+        file = self.disk and self.disk.kept(now.design.machine if isinstance(now, Solved) else None)
         steps = [len(history.past), len(history.future)]
         told = {"undo": history.undo, "redo": history.redo, "steps": steps, "file": file}
         return Reply({"type": "state", "seq": seq, **told, **content}, data)

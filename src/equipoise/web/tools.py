@@ -18,7 +18,8 @@ from equipoise.schema.files import printable
 from equipoise.schema.models import taken_along
 from equipoise.schema.numbers import Number, format_share, parse_share
 from equipoise.schema.opening import kind_of_text, opened
-from equipoise.schema.template import Template
+from equipoise.schema.template import Template, named_parts
+from equipoise.web.disk import NOT_OF_FILE, Disk
 from equipoise.web.messages import Message, Setting
 from equipoise.web.openings import tool_titles
 from equipoise.web.replies import Reply
@@ -52,6 +53,7 @@ class ToolDesk:
 
     name : of its file.  template : in which numbers are put.
     past, now, future : what was done.  preview : while a slider is held.
+    disk : its file, if it can be saved.
     """
 
     name: str
@@ -60,6 +62,7 @@ class ToolDesk:
     past: tuple[ToolStep, ...] = ()
     future: tuple[ToolStep, ...] = ()
     preview: ToolStep | None = None
+    disk: Disk | None = None
 
     @property
     def first(self) -> ToolStep:
@@ -92,6 +95,8 @@ class ToolDesk:
         elif message.kind == "download":
             yield self._download(message)
             return
+        elif message.kind == "save":
+            self._save()
         elif message.kind == "record":
             raise UsageError(
                 Note(
@@ -102,6 +107,13 @@ class ToolDesk:
         elif message.kind not in ("ready", "open"):
             raise UsageError(Note("{kind} is for linkages; a tool is open", kind=message.kind))
         yield self.told(message.seq)
+        if message.kind == "save" and self.disk is not None:
+            yield self.disk.told(message.seq, self.template.text)
+
+    def _save(self) -> None:
+        if self.disk is None:
+            raise UsageError(NOT_OF_FILE)
+        self.disk.save(self.now.tool)
 
     def _edit(self, message: Message) -> None:
         commit, values = message.flag("commit", True), dict(self.now.values)
@@ -196,6 +208,7 @@ class ToolDesk:
             "undo": self.now.label if self.past else None,
             "redo": self.future[0].label if self.future else None,
             "steps": [len(self.past), len(self.future)],
+            "file": self.disk and self.disk.kept(None if self.preview else self.now.tool),
         }
         fields = [*self._fields()]
         told = {"type": "tool", "seq": seq, "name": self.name, "fields": fields, **history}
@@ -256,8 +269,11 @@ def _written(number: Number, value: float, unit: str) -> Values:
     return {"text": text, "shown": read, "unit": shown.unit, "factor": shown.factor}
 
 
-def tool_asked(message: Message) -> ToolDesk | None:
-    """The tool that a message of the kind `open` wants; None where it wants something else."""
+def tool_asked(message: Message, disk: Disk | None) -> ToolDesk | None:
+    """The tool that a message of the kind `open` wants; None where it wants something else.
+
+    disk : the file that the page began with.
+    """
     if "example" in message.values:
         name = message.text("example")
         return tool_of_file(name) if name in tool_titles() else None
@@ -266,13 +282,13 @@ def tool_asked(message: Message) -> ToolDesk | None:
     text = message.text("text")
     if kind_of_text(text) != "tool":
         return None
-    return tool_of_text(message.text("name", "tool.toml"), text)
-
-
-def tool_of_text(name: str, text: str) -> ToolDesk:
-    """The tool of a file's text."""
-    shown = printable(name)
-    return ToolDesk.of(shown, Template(text.removeprefix("\ufeff"), shown))
+    own = disk if message.flag("file", False) else None
+    known = None if own is None else named_parts(own.model)[1]
+    name = printable(message.text("name", "tool.toml"))
+    template = Template(text.removeprefix("\ufeff"), name, known=known, texts=message.files)
+    tool = ToolDesk.of(name, template)
+    tool.disk = own
+    return tool
 
 
 def tool_of_file(path_or_name: str | os.PathLike[str]) -> ToolDesk:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -28,7 +29,7 @@ def session_of(path: Path | str) -> Session:
     """What a page of `equipoise serve FILE` begins with."""
     session = Session()
     session.open(opened_file(path))
-    session.disk = on_disk(str(path), session.shown)
+    session.disk = on_disk(str(path), session.shown.design.machine)
     return session
 
 
@@ -107,3 +108,15 @@ def test_nothing_but_the_opened_file_is_written(path: Path) -> None:
     assert kept["file"]["saved"] is False
     ask(again, "save")
     assert eq.load(path) == eq.load("watt-six-bar")
+
+
+def test_what_was_done_goes_on_with_the_tables_of_the_file(tmp_path: Path) -> None:
+    path, name = tmp_path / "engine.toml", "four-stroke-gas.csv"
+    path.write_text(example_text("four-stroke-engine"), encoding="utf-8")
+    table = files("equipoise").joinpath("examples", name).read_text(encoding="utf-8")
+    (tmp_path / name).write_text(table, encoding="utf-8")
+    session = begun(str(path))().session
+    text = path.read_text(encoding="utf-8")
+    kept = state(ask(session, "open", name="engine.toml", text=text, file=True)[0]).content
+    assert kept["file"]["saved"]
+    assert "is not known here" in refusal(ask(session, "open", name="engine.toml", text=text))

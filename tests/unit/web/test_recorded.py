@@ -91,6 +91,7 @@ ROWS = "\n".join(f"{k},{k}" for k in range(20))
     ("text", "said"),
     [
         ("", None),
+        ("\n", "run.csv, line 1: "),
         (f"place [m],{NAME} [N]\n{ROWS}", "run.csv, line 1: got 'place [m]'; the header is"),
         (f"time [mm],{NAME} [N]\n{ROWS}", "run.csv, line 1: got 'time [mm]'; the header is"),
         (f"time [s],{NAME} [mm]\n{ROWS}", f"column {NAME}: got another unit; give one such as N"),

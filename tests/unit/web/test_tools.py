@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,12 @@ from equipoise.web.messages import message_of
 from surface.running import TOOLS, example_text
 
 PATH = "shaft.outer_diameter"
+OWN = """mass = "150 g"
+stiffness = { vertical = "9 kN/m", lateral = "7 kN/m" }
+damping = "90 N s/m"
+"""
+HELD = example_text("brush-cutter").replace(OWN, 'impedance = "hand.csv"\n')
+HAND = "frequency [Hz],resistance [N s/m],reactance [N s/m]\n1,90,-1400\n5000,90,-1\n"
 
 
 def ask(desk: Desk, asked: str, /, **values):
@@ -123,3 +130,46 @@ def test_tools_and_machines_are_opened_in_turn() -> None:
     assert spoken["language"] == "ja"
     told = shown(ask(desk, "open", example="pole-saw"))
     assert figures(told)["mass"]["label"] != "mass of the tool"
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    """A tool that is held by hands whose impedance was measured."""
+    path = tmp_path / "mine.toml"
+    path.write_text(HELD, encoding="utf-8")
+    path.with_name("hand.csv").write_text(HAND, encoding="utf-8")
+    return path
+
+
+def test_the_file_of_a_tool_is_saved_in_place(path: Path) -> None:
+    begin = begun(str(path))
+    one, other = begin(), begin()
+    assert shown(ask(one, "ready"))["file"] == {"name": path.name, "saved": True, "comments": True}
+    base = one.hello().content["base"]
+    assert shown(setting(one, "30 mm"))["file"]["saved"] is False
+    setting(other, "31 mm")
+    told, saved = ask(one, "save")
+    assert shown([told])["file"] == {"name": path.name, "saved": True, "comments": False}
+    assert saved.content["base"] == one.hello().content["base"] != base
+    assert eq.load(path) == one.tool.now.tool != other.tool.now.tool
+    (refused,) = ask(other, "save")
+    assert "by another page or program" in refused.content["message"]
+    again = begin()
+    assert again.tool.now.tool == one.tool.now.tool
+    first = {"name": path.name, "text": saved.content["text"], "file": True}
+    assert shown(ask(again, "open", **first))["file"]["saved"] is False
+    ask(again, "save")
+    assert eq.load(path).shaft == eq.load("brush-cutter").shaft
+    (refused,) = ask(begun("pole-saw")(), "save")
+    assert "not opened from a file" in refused.content["message"]
+
+
+def test_a_tool_that_is_dropped_takes_its_tables_along() -> None:
+    desk = begun(None)()
+    asked = {"name": "mine.toml", "text": HELD}
+    (refused,) = ask(desk, "open", **asked)
+    assert "choose that file, or drop it together with the model" in refused.content["message"]
+    assert shown(ask(desk, "open", **asked, files={"hand.csv": HAND}))["file"] is None
+    setting(desk, "30 mm")
+    (file,) = ask(desk, "download", kind="model")
+    assert list(file.content["files"]) == ["hand.csv"]
