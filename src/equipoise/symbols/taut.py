@@ -22,7 +22,7 @@ SLOPE = tan(radians(20))
 
 
 def strands_of(joints: Structure, bodies: Bodies) -> Iterator[Mark]:
-    """Both strands of every belt whose pulleys let it have two: in a sketch one may cover another."""
+    """Both strands of every belt, but where one pulley covers the other, as it may in a sketch."""
     for belt in (one for one in joints.couplings if one.table == "belts"):
         driver, driven = coupling_pins(joints, belt)
         points = bodies[belt.carrier]
