@@ -27,6 +27,7 @@ EXAMPLES = sorted(eq.examples("linkage"))
 RANDOM = [f"{kind}:{seed}" for kind in (*KINDS, *REDUNDANT) for seed in range(10)]
 PLANTED = [f"{kind} in soil:{seed}" for kind in KINDS for seed in range(2)]
 APART = [f"{kind} apart:{seed}" for kind in KINDS for seed in range(2)]
+APART += [name.replace(":", " apart:") for name in machines_strokes.PUSHED]
 CAMMED = [f"{kind}:{seed}" for kind in machines_cams.ALL for seed in range(2)]
 every_subject = pytest.mark.parametrize("name", [*EXAMPLES, *RANDOM, *PLANTED])
 """Bundled examples, and random machines by kind and seed, also with a point in the soil."""
@@ -70,12 +71,11 @@ def subject_of(name: str) -> Subject:
     kind, _, seed = name.partition(":")
     if not seed:
         return analysed(eq.load(name))
-    if name in machines_strokes.PUSHED:
-        case = machines_strokes.named(name)
-        return analysed(case.machine, case)
     kind, soil, _ = kind.partition(" in soil")
     kind, apart, _ = kind.partition(" apart")
-    case = make(kind, int(seed))
+    drawn = f"{kind}:{seed}"
+    pushed = drawn in machines_strokes.PUSHED
+    case = machines_strokes.named(drawn) if pushed else make(kind, int(seed))
     machine = case.machine
     if apart:
         machine = set_apart(machine, np.random.default_rng([*name.encode()]))

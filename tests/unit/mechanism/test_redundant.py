@@ -13,6 +13,7 @@ from equipoise.errors import EquipoiseError, MobilityError, ModelError, UsageErr
 from equipoise.exchange import mjcf, modelica
 from equipoise.exchange.formats import Job
 from equipoise.mechanism.assembly.shared import IDLE
+from equipoise.mechanism.dynamics.across import exerted_in
 from equipoise.mechanism.dynamics.undecided import idle_told, undecided
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Link, Slider, Vector
 from equipoise.mechanism.parts.sliders import JointStiffness
@@ -335,7 +336,7 @@ def test_of_all_kinds_both_rules_tell_alike_what_statics_decides(kind: str) -> N
     told, scale = undecided(linkage).open, max(np.max(joint.size) for joint in one.joints.values())
     assert told
     size = scale * linkage.shared.group.size
-    both = one.solved.exerted, two.solved.exerted
+    both = exerted_in(one.solved), exerted_in(two.solved)
     off = {
         name: max(
             np.max(np.abs(both[0][name].value - both[1][name].value)) / scale,
