@@ -52,7 +52,8 @@ def pairs(subject: Subject) -> dict[str, tuple[str, str]]:
 def same_forces(subject: Subject) -> None:
     """Compare every force and moment with the solution of the free bodies."""
     machine, poses, forces = subject.machine, subject.poses, subject.forces
-    solved = free_bodies.solve(machine, poses, pairs(subject))
+    pushes = {name: vector(mesh) for name, mesh in forces.gears.items()}
+    solved = free_bodies.solve(machine, poses, pairs(subject), pushes)
     force, moment = FLOOR * force_size(machine, poses), FLOOR * moment_size(machine, poses)
     assert set(forces.joints) == set(solved.joints)
     for family in ("gears", "racks"):

@@ -14,7 +14,7 @@ from equipoise.errors import MassError
 from equipoise.mechanism.parts.field import PlantingArm, Soil, SoilTable
 from equipoise.mechanism.parts.machine import Machine
 from support import machines_cams, machines_strokes
-from support.loads import springs_on_links
+from support.loads import loaded_long, springs_on_links
 from support.machines import KINDS, Case, make
 from support.machines_planes import set_apart
 from support.machines_redundant import REDUNDANT
@@ -27,9 +27,12 @@ EXAMPLES = sorted(eq.examples("linkage"))
 RANDOM = [f"{kind}:{seed}" for kind in (*KINDS, *REDUNDANT) for seed in range(10)]
 PLANTED = [f"{kind} in soil:{seed}" for kind in KINDS for seed in range(2)]
 APART = [f"{kind} apart:{seed}" for kind in KINDS for seed in range(2)]
+APART += [name.replace(":", " apart:") for name in machines_strokes.PUSHED]
 CAMMED = [f"{kind}:{seed}" for kind in machines_cams.ALL for seed in range(2)]
-every_subject = pytest.mark.parametrize("name", [*EXAMPLES, *RANDOM, *PLANTED])
-"""Bundled examples, and random machines by kind and seed, also with a point in the soil."""
+LONG = [f"{kind} long:{seed}" for kind in ("crank_rocker", "quick_return") for seed in range(4)]
+every_subject = pytest.mark.parametrize("name", [*EXAMPLES, *RANDOM, *PLANTED, *LONG])
+"""Bundled examples, and random machines by kind and seed, also with a point in the soil, or a load
+over several turns."""
 every_followed = pytest.mark.parametrize("name", [*machines_strokes.PUSHED, *CAMMED])
 """Random machines that are pushed, and such with cams."""
 every_apart = pytest.mark.parametrize("name", APART)
@@ -59,8 +62,12 @@ class Subject:
 
 
 def analysed(machine: Machine, case: Case | None = None) -> Subject:
-    """Analyse a machine at the crank angles of the comparison."""
-    analysis = eq.analyze(machine, angles=ANGLES)
+    """Analyse a machine at the crank angles of the comparison, in all turns of tables of loads."""
+    tables = (load.table.crank_angle for load in machine.loads if load.table is not None)
+    turns = max((int(np.ptp(one) // (2 * np.pi)) + 1 for one in tables), default=1)
+    angles = np.concatenate([ANGLES + 2 * np.pi * k for k in range(turns)])
+    analysis = eq.analyze(machine, angles=angles)
+    assert analysis.motion.turns % turns == 0
     return Subject(machine, analysis.motion, analysis, case)
 
 
@@ -70,13 +77,15 @@ def subject_of(name: str) -> Subject:
     kind, _, seed = name.partition(":")
     if not seed:
         return analysed(eq.load(name))
-    if name in machines_strokes.PUSHED:
-        case = machines_strokes.named(name)
-        return analysed(case.machine, case)
     kind, soil, _ = kind.partition(" in soil")
     kind, apart, _ = kind.partition(" apart")
-    case = make(kind, int(seed))
+    kind, long, _ = kind.partition(" long")
+    drawn = f"{kind}:{seed}"
+    pushed = drawn in machines_strokes.PUSHED
+    case = machines_strokes.named(drawn) if pushed else make(kind, int(seed))
     machine = case.machine
+    if long:
+        machine = loaded_long(machine, np.random.default_rng([*name.encode()]))
     if apart:
         machine = set_apart(machine, np.random.default_rng([*name.encode()]))
     return analysed(planted(machine, np.random.default_rng(int(seed))) if soil else machine, case)

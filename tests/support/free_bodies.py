@@ -106,7 +106,10 @@ class System:
 
 
 def solve(
-    machine: Machine, poses: Poses, pairs: Mapping[str, tuple[str, str]] | None = None
+    machine: Machine,
+    poses: Poses,
+    pairs: Mapping[str, tuple[str, str]] | None = None,
+    told: Mapping[str, Array] | None = None,
 ) -> FreeBodies:
     """Solve the free bodies of a machine.
 
@@ -114,6 +117,8 @@ def solve(
     ----------
     pairs : for points that join more than two bodies, "POINT/link" -> (acted on, acting), one
         pair fewer than bodies.  Without it the first body of all holds the others.
+    told : forces on driven gears (N, 2) to be tried, where joints share them: their flanks are
+        taken, and those that vanish are left out.  What is found has to push on the same flanks.
     """
     joints = [*pin_contacts(machine, poses, pairs or {}), *slider_contacts(machine, poses)]
     joints += [cam_contact(cam, machine, poses) for cam in machine.cams]
@@ -125,9 +130,20 @@ def solve(
     unknowns = solved(system, passing)
     unknown = sum(1 if isinstance(one, tuple) else one.size for one in passing)
     if unknown + len(machine.driven) > system.known.shape[1]:  # least squares weigh whole pushes
-        slanted = [leant(gear, one, machine, poses, unknowns)
+        tried = (
+            {
+                gear.name: np.sum(told[gear.name] * one.directions[0], 1, keepdims=True)
+                for gear, one in zip(machine.gears, gears, strict=True)
+            }
+            if told
+            else unknowns
+        )
+        slanted = [leant(gear, one, machine, poses, tried)
                    for gear, one in zip(machine.gears, gears, strict=True)]  # fmt: skip
         unknowns = solved(system, [*joints, *slanted, *racks, *belts])
+        sizes = [np.max(np.abs(unknowns[gear.name])) for gear in machine.gears]
+        for gear in machine.gears:
+            assert np.all(unknowns[gear.name] * np.sign(tried[gear.name]) >= -1e-9 * max(sizes))
         return gathered(machine, poses, joints, (gears, racks, belts), unknowns)
     for gear, contact in zip(machine.gears, gears, strict=True):
         tangential = unknowns[gear.name][:, 0]
@@ -147,10 +163,13 @@ def solve(
 def leant(
     gear: Gear, contact: Contact, machine: Machine, poses: Poses, unknowns: Mapping[str, Array]
 ) -> Contact:
-    """Return teeth whose push per unit of its tangential part has what separates them."""
-    sense = np.sign(unknowns[gear.name][:, 0])
+    """Return teeth whose push per unit of its tangential part has what separates them; nothing
+    where they do not push.
+    """
+    push = unknowns[gear.name][:, 0]
+    sense = np.where(np.abs(push) > 1e-12 * np.max(np.abs(push)), np.sign(push), 0.0)
     apart = separating(gear, machine, poses, sense) * sense[:, None]
-    return replace(contact, directions=(contact.directions[0] + apart,))
+    return replace(contact, directions=(abs(sense)[:, None] * contact.directions[0] + apart,))
 
 
 def equations(machine: Machine, poses: Poses) -> System:

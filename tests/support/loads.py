@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import chain
 
 import numpy as np
@@ -14,6 +15,18 @@ from equipoise.mechanism.parts.machine import FRAME, Load, LoadTable, Machine, S
 from support.poses import Array, Poses, cross
 
 TURN = 2 * np.pi
+
+
+def loaded_long(machine: Machine, rng: np.random.Generator) -> Machine:
+    """Give a machine a load whose table takes two or three turns."""
+    turns, link = int(rng.integers(2, 4)), str(rng.choice(list(machine.links)))
+    rows = np.sort(rng.uniform([0, *[0.4] * 6, turns - 0.5], [0.4, *[turns - 0.5] * 6, turns]))
+    forces = bool(rng.random() < 0.7)
+    columns = rng.normal(size=(1 + forces, rows.size)) * 100
+    table = LoadTable(tuple((TURN * rows).tolist()), tuple(map(tuple, columns.tolist())))
+    point = str(rng.choice(list(machine.links[link].points))) if forces else None
+    outside = ("zero", "hold", "wrap")[rng.integers(3)]
+    return replace(machine, loads=(*machine.loads, Load(link, point, table=table, outside=outside)))
 
 
 def force_and_torque(load: Load, crank_angle: Array) -> tuple[Array, Array]:

@@ -16,7 +16,7 @@ from equipoise.mechanism.parts.bodies import Body, inertia_of
 from equipoise.mechanism.parts.links import Link
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.sliders import Bearing
-from support.free_bodies import FreeBodies
+from support.free_bodies import FreeBodies, cylinder
 from support.loads import has_soil, on_links, springs_on_links, tips_of
 from support.poses import Array, Poses
 
@@ -113,12 +113,31 @@ def solve(machine: Machine, poses: Poses, flat: FreeBodies) -> Spatial:
         for body, sign in ((one.on, 1.0), (one.by, -1.0)):
             if body != FRAME:
                 asked[body] = asked[body] - sign * moment
+    for body, moment in thrusts(machine, poses, flat, planes):
+        asked[body] = asked[body] - moment
     couples = tilted(machine, flat, asked, held)
     shafts = {one.link for one in machine.bearings.values()}
     bearings = {}
     for shaft in shafts:
         bearings |= borne(machine, shaft, flat, planes, couples)
     return Spatial(rocking, on_frame, couples, bearings)
+
+
+def thrusts(
+    machine: Machine, poses: Poses, flat: FreeBodies, planes: Mapping[str, float]
+) -> Iterator[tuple[str, Array]]:
+    """Moments about x and y of drives that push on either link of theirs, (N, 2)."""
+    for drive in machine.driven:
+        if drive.stroke is None:
+            continue
+        line = cylinder(machine, drive, poses)
+        ends = {line.by: 0, line.on: 1}
+        plane = planes.get(drive.slider, 0.0)
+        if drive.between is not None:
+            each = [(k, drive.between[end]) for k, end in ends.items() if k != FRAME]
+            plane = float(np.mean([point_plane(machine, *one) for one in each]))
+        moment = about_axes(plane, flat.drives[drive.link][:, None] * line.directions[0])
+        yield from ((k, (1.0, -1.0)[k == line.by] * moment) for k in ends if k != FRAME)
 
 
 def rocking_of(machine: Machine, poses: Poses, name: str) -> tuple[Array, Array]:

@@ -136,13 +136,10 @@ def planet_train(rng: np.random.Generator) -> Case:
 
 
 def planet_differential(rng: np.random.Generator) -> Case:
-    """The same whose ring is driven too; teeth push along the pitch circles, so that flanks do not
-    depend on how planets share.
-    """
+    """The same whose ring is driven too."""
     case = _planets(rng, "ring")
-    gears = tuple(replace(gear, pressure_angle=0.0) for gear in case.machine.gears)
     ring = FurtherDrive("ring", float(rng.integers(-30, 30)) / 12)
-    return replace(case, machine=replace(case.machine, gears=gears, drives=(ring,)))
+    return replace(case, machine=replace(case.machine, drives=(ring,)))
 
 
 def _planets(rng: np.random.Generator, outer: str) -> Case:

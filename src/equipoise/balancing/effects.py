@@ -15,7 +15,7 @@ import numpy as np
 from equipoise.balancing.design_variables import DesignVariables, FreeSpring, LinkParameters
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics.across import Across
+from equipoise.mechanism.dynamics.across import Across, exerted_in
 from equipoise.mechanism.dynamics.exerted import Exerted
 from equipoise.mechanism.dynamics.forces import Forces, demand_of_inertia, forces
 from equipoise.mechanism.dynamics.reactions import (
@@ -221,7 +221,7 @@ class Effects:
         for spring, rows in self.springs:
             plane = links[spring.link].plane_of(spring.choice.point)
             springs[spring.link][rows] = -plane * spring.pulls(self.motion)
-        return Across(self.motion, inertia, weights, {}, springs, self.solved.exerted)
+        return Across(self.motion, inertia, weights, {}, springs, exerted_in(self.solved))
 
     def moment(self, demands: Demand, about: complex) -> Array:
         """Moment on the frame (K, N) of demands."""
@@ -276,7 +276,7 @@ class Present(Solved):
 
     @property
     def across(self) -> Across:
-        return replace(self.effects.start.across, exerted=self.solved.exerted)
+        return replace(self.effects.start.across, exerted=exerted_in(self.solved))
 
 
 class Unit(Solved):

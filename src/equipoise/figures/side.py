@@ -11,12 +11,12 @@ from equipoise.figures.linkage import told_angle
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.mechanism.checks import FRAME
-from equipoise.mechanism.dynamics.statics import contacts
+from equipoise.mechanism.dynamics.statics import contacts, pushing
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.body_checks import outlines
 from equipoise.mechanism.parts.planes import masses_of
 from equipoise.results.charts import Array, Axis, Chart, Mark, Panel
-from equipoise.symbols.shapes import PIN, Shape, block, circle, line, mass, pivot
+from equipoise.symbols.shapes import PIN, Shape, block, circle, cylinder, line, mass, pivot
 
 if TYPE_CHECKING:
     from equipoise.mechanism.kinematics.motion import Motion
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 ROOM = 0.06
 """Around what is drawn, over its size: for the signs of bearings and masses."""
+BARREL = 0.6
+"""Part of a cylinder's length that its barrel covers."""
 BEYOND = 10.0
 """Units: how far pins reach beyond the middle of what they carry."""
 
@@ -74,7 +76,7 @@ class _View:
             for name, link in self.machine.links.items()
         }
         self.solids, self.loose = [*self._solids()], [*self._loose()]
-        self.rooms = [*self._rooms()]
+        self.rooms, self.pushing = [*self._rooms()], [*self._cylinders()]
 
     def _spread(self, part: str) -> Array:
         """How far links reach along an axis of the frame, (N,)."""
@@ -123,6 +125,19 @@ class _View:
                 ends = high - weight.radius, high + weight.radius
                 yield _box("room", z, weight.thickness, *ends)
 
+    def _cylinders(self) -> Iterator[Shape]:
+        """Cylinders that drive, in their planes."""
+        for one, drive in zip(pushing(self.motion.linkage), self.machine.pushers, strict=True):
+            if drive.between is None:
+                continue
+            a, b = (complex(one.plane, self.height(point)) for point in drive.between)
+            if length := abs(b - a):
+                way = (b - a) / length
+                rod, barrel = cylinder(BARREL * length, BARREL * length)
+                for shape, base, turn in ((rod, b, -way), (barrel, a, way)):
+                    places, offsets = base + turn * shape.places, turn * shape.offsets
+                    yield Shape(shape.role, places, offsets, shape.closed)
+
     def _loose(self) -> Iterator[complex]:
         """Centres of masses of which no outline is known."""
         for name, link in self.machine.links.items():
@@ -153,6 +168,7 @@ class _View:
         for name in self.machine.links:
             for role in ("edge", "body"):
                 yield from self._bars(name, role)
+        yield from self.pushing
         yield from self._held()
         for body, point, plane in self.pins:
             if body != FRAME:
@@ -186,7 +202,9 @@ class _View:
         """The view with its axes and names."""
         places = [node for nodes in self.nodes.values() for node in nodes.values()]
         places += [*self.loose, *(one.plane + 1j * 0 for one in self.machine.bearings.values())]
-        every = np.concatenate([places, *(one.places for one in (*self.solids, *self.rooms))])
+        every = np.concatenate(
+            [places, *(one.places for one in (*self.solids, *self.rooms, *self.pushing))]
+        )
         low, high = (complex(end(every.real), end(every.imag)) for end in (np.min, np.max))
         room = ROOM * abs(high - low) * (1 + 1j)
         size = [abs(high - low)]

@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
-from equipoise.mechanism.dynamics.undecided import undecided
+from equipoise.mechanism.dynamics.undecided import idle_told, undecided
 from equipoise.mechanism.outputs.spoken import body_named, joint_named
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest
@@ -24,6 +24,7 @@ def joint_blocks(analysis: Analysis) -> Iterator[Block]:
     if analysis.forces.joints or analysis.forces.gears:
         yield joint_table(analysis)
     told = [*undecided(analysis.motion.linkage).told()]
+    told += idle_told(analysis.motion.linkage, analysis.forces.solved.state)
     if analysis.machine.has_planes:
         told += analysis.forces.across.statics.told()
     if told:

@@ -22,11 +22,13 @@ SLOPE = tan(radians(20))
 
 
 def strands_of(joints: Structure, bodies: Bodies) -> Iterator[Mark]:
-    """Both strands of every belt."""
+    """Both strands of every belt, but where one pulley covers the other, as it may in a sketch."""
     for belt in (one for one in joints.couplings if one.table == "belts"):
         driver, driven = coupling_pins(joints, belt)
         points = bodies[belt.carrier]
         strands = belt.strands(complex(*points[driven]) - complex(*points[driver]))  # type: ignore[attr-defined]
+        if not strands.distance > abs(strands.radius - strands.other):
+            continue
         for side in (LEFT, RIGHT):
             strand = line("strand", *strands.ends(side))
             yield Mark(belt.carrier, driver, strand, (belt.table, belt.name))

@@ -105,6 +105,17 @@ def test_planes_from_the_side() -> None:
     assert [s.places[0] for s in loose.panels[0].signs if s.role == "stand"] == [0j]
 
 
+def test_a_cylinder_from_the_side() -> None:
+    """It lies in the plane of its point of the boom, from there to its point of the frame."""
+    machine = eq.load("hydraulic-loader").with_link("boom", planes={"B": 0.3})
+    analysis = eq.analyze(machine, [0.0])
+    (panel,) = analysis_pictures(analysis, at=[0.0])["side"].panels
+    found = {one.role: one.places for one in panel.signs if one.role in ("piston", "barrel")}
+    ends = [found["barrel"][0], found["piston"][0]]
+    heights = [machine.frame["A"][0], analysis.motion.points["B"].x[0]]
+    assert np.allclose(ends, 0.3 + 1j * np.array(heights))
+
+
 def test_what_links_beside_each_other_bear_is_drawn() -> None:
     charts, across = charts_of("twin-engine"), analysis_of("twin-engine").forces.across
     drawn = [values for panel in charts["moment"].panels[1:] for values in signals(panel)]

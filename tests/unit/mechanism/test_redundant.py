@@ -12,7 +12,9 @@ import equipoise as eq
 from equipoise.errors import EquipoiseError, MobilityError, ModelError, UsageError
 from equipoise.exchange import mjcf, modelica
 from equipoise.exchange.formats import Job
-from equipoise.mechanism.dynamics.undecided import undecided
+from equipoise.mechanism.assembly.shared import IDLE
+from equipoise.mechanism.dynamics.across import exerted_in
+from equipoise.mechanism.dynamics.undecided import idle_told, undecided
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Link, Slider, Vector
 from equipoise.mechanism.parts.sliders import JointStiffness
 from support.machines import make
@@ -334,7 +336,7 @@ def test_of_all_kinds_both_rules_tell_alike_what_statics_decides(kind: str) -> N
     told, scale = undecided(linkage).open, max(np.max(joint.size) for joint in one.joints.values())
     assert told
     size = scale * linkage.shared.group.size
-    both = one.solved.exerted, two.solved.exerted
+    both = exerted_in(one.solved), exerted_in(two.solved)
     off = {
         name: max(
             np.max(np.abs(both[0][name].value - both[1][name].value)) / scale,
@@ -351,6 +353,34 @@ def test_of_all_kinds_both_rules_tell_alike_what_statics_decides(kind: str) -> N
         np.testing.assert_allclose(two.drives[name], torque, atol=1e-9 * size)
     np.testing.assert_allclose(two.frame_force.value, one.frame_force.value, atol=1e-9 * scale)
     np.testing.assert_allclose(two.frame_moment, one.frame_moment, atol=1e-9 * size)
+
+
+@pytest.mark.parametrize("kind", ["planet_train", "planet_differential"])
+def test_teeth_push_as_their_flanks_lie(kind: str) -> None:
+    """Where they share; idle are those alone that push back on either flank."""
+    forces = eq.analyze(make(kind, 1).machine, 24).forces
+    linkage, state = forces.motion.linkage, dict(forces.solved.state)
+    names = [gear.name for gear in linkage.machine.gears]
+    least = -1e-9 * max(np.max(np.abs(state[f"T({name})"])) for name in names)
+    assert all(np.all(state[f"T({name})"] * state[f"flank({name})"] >= least) for name in names)
+    for link in linkage.machine.links:
+        causes = (forces.inertia, forces.weights, forces.loads, forces.springs)
+        parts = [cause[link] for cause in causes if link in cause]
+        state[f"F({link})"], state[f"M({link})"] = map(sum, zip(*parts, strict=True))
+    shared, idle_ones = linkage.shared, []
+    poses = shared.poses(state)
+    for name in names:
+        idle = state[IDLE.format(name)]
+        assert np.all(state[f"T({name})"][idle] == 0)
+        idle_ones += [name] * bool(np.any(idle))
+        loop = [one.name for one in shared.loops].index(name)
+        for sense in (1.0, -1.0):
+            tried = {**state, f"flank({name})": sense, IDLE.format(name): np.zeros_like(idle)}
+            senses = [tried.get(f"flank({one.name})", 0.0) for one in shared.loops]
+            push = shared.solve(tried, poses, senses)[loop][0]
+            assert np.all(sense * push[idle] < -least)
+    (told,) = idle_told(linkage, state)
+    assert idle_ones and all(name in str(told) for name in idle_ones)
 
 
 def test_drives_that_share_a_torque_are_told() -> None:

@@ -12,7 +12,7 @@ import equipoise as eq
 from equipoise.web.desk import Desk
 from equipoise.web.messages import message_of
 from equipoise.web.session import Session
-from unit.web.pages import ask, opened, refusal, state
+from unit.web.pages import ask, edit, move, opened, refusal, state
 
 Content = dict[str, Any]
 SAME = 1e-12
@@ -473,3 +473,14 @@ def test_what_goes_with_a_point_is_told() -> None:
     page.do("delete", what="point", name=spring.point, at=0)
     told = "gone with it, because they named it: [[springs]]"
     assert page.seen.content["notes"][0].startswith(told)
+
+
+def test_pulleys_of_a_sketch_may_lie_on_each_other() -> None:
+    """No strand is drawn where one covers the other, and the page goes on."""
+    maker = Maker(opened("knife-drive")[0])
+    maker.do("delete", what="link", name="rod")
+    for place, strands in ((-0.3, 2), (0.0, 0), (-0.1, 2)):
+        shown = edit(maker.session, move("S", complex(place), 0))
+        signs = [sign["shapes"] for sign in shown.content["scene"]["signs"]]
+        drawn = [role for shapes in signs for role, *_ in shapes]
+        assert drawn.count("strand") == strands

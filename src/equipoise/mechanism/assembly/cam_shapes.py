@@ -19,7 +19,7 @@ import numpy as np
 
 from equipoise.mechanism.formulas import cam_kernels as kernels
 from equipoise.mechanism.formulas.kernels import cross, dot
-from equipoise.signals import highest_at
+from equipoise.signals import ROUNDING, highest_at
 
 Array = np.ndarray[Any, Any]
 Law = Callable[[Any], tuple[Any, Any, Any]]
@@ -215,6 +215,7 @@ def lowest(shape: Shape, value: Callable[[Shape], Array], knots: Array) -> tuple
             found = np.broadcast_to(value(shape.at(angles)), angles.shape)
         values = np.nan_to_num(found, nan=-np.inf)
         k = int(highest_at(-values, smooth=False))
-        best = min(best, (float(values[k]), float(angles[k])))
+        if not values[k] >= best[0] - ROUNDING * abs(best[0]):  # else lower by rounding alone
+            best = float(values[k]), float(angles[k])
         angles, width = best[1] + np.linspace(-width, width, 41), width / 18
     return best[0], best[1] % (2 * pi)

@@ -19,12 +19,13 @@ import numpy as np
 
 from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note, all_of, to_say
+from equipoise.mechanism.assembly.agreeing import agreeing
 from equipoise.mechanism.assembly.builder import Builder, Group
 from equipoise.mechanism.assembly.joints import Structure, name_in_outputs, no_motion
 from equipoise.mechanism.assembly.least import least, parts_of
 from equipoise.mechanism.assembly.loop_forces import LoopForces
 from equipoise.mechanism.assembly.loopgroup import Maker
-from equipoise.mechanism.assembly.loops import Poses, SlideLoop
+from equipoise.mechanism.assembly.loops import CouplingLoop, Poses, SlideLoop
 from equipoise.mechanism.assembly.misfits import AGREES, Fit
 from equipoise.mechanism.assembly.newton import LoopGroup, poses_in
 from equipoise.mechanism.assembly.steps import Array, Reaction, State, planar
@@ -39,7 +40,8 @@ WEAK = 1e-6
 """Smallest over largest stiffness against motion, up to which joints do not hold the machine."""
 BESIDE = 1e-3
 """rad: how far from a change point it is looked at which forces grow without bound there."""
-
+IDLE = "flank({}) idle"
+"""Where teeth bear nothing on either flank (N,), in the state."""
 
 SHARE = to_say(
     "joints let {links} move in one way only, so that statics does not tell how their drives share "
@@ -111,14 +113,43 @@ class Shared(LoopForces):
         group = self.group
         return poses_in(state, (*group.known, *zip(group.links, group.anchors, strict=True)))
 
+    def senses(self, state: State, poses: Poses) -> list[Any]:
+        """The same, with pushes that agree with it once they are shared."""
+        pairs = [(k, loop.name) for k, loop in enumerate(self.loops)
+                 if isinstance(loop, CouplingLoop) and self.reactions[k].kind != "cam"]  # fmt: skip
+        known = all(f"flank({name})" in state for _, name in pairs)
+        senses = super().senses(state, poses)
+        if known or not self.count:
+            return senses
+
+        def pushes(flanks: Array, idle: Array) -> Array:
+            for (k, name), flank, off in zip(pairs, flanks, idle, strict=True):
+                state[f"flank({name})"] = senses[k] = flank
+                state[IDLE.format(name)] = off
+            found = self.solve(state, poses, senses)
+            return np.array([found[k][0] for k, _ in pairs])
+
+        agreeing(pushes, np.array([senses[k] for k, _ in pairs]))
+        return senses
+
+    def idle(self, state: State) -> Array:
+        """Unknowns that bear nothing (N, m): pushes of idle teeth."""
+        none = np.zeros(np.shape(state["theta"]), bool)
+        parts = [state.get(IDLE.format(loop.name), none)
+                 for loop in self.loops for _ in range(loop.unknowns)]  # fmt: skip
+        return np.stack([*parts, *[none] * len(self.drives)], axis=-1)
+
     def solve(self, state: State, poses: Poses, senses: Sequence[Any]) -> list[list[Array]]:
         matrix, rows, units = self.balance(state, poses, senses)
+        idle = self.idle(state)
+        matrix *= ~idle[:, None]
         demand = self.demand(state) / rows
         right = np.moveaxis(demand.reshape(-1, *demand.shape[-2:]), 0, -1)
         if self.compliance:
-            told = self.by_stiffness(*parts_of(matrix)) @ right
+            told = self.by_stiffness(*parts_of(matrix), idle) @ right
         else:
             told = least(matrix, right)
+        told = told * ~idle[..., None]  # of rounding
         found = np.moveaxis(told, (-1, 1), (1, 0)).reshape(len(units), *demand.shape[:-1])
         found = found * units.reshape(-1, *np.ones(demand.ndim - 1, int))
         count = len(self.drives)
@@ -193,19 +224,22 @@ class Shared(LoopForces):
                 ),
             )
 
-    def by_stiffness(self, inverse: Array, loose: Array) -> Array:
-        """Of solutions that differ by `loose` forces (N, m, k), the one of least energy."""
-        weighed, energy = self.energy(loose)
+    def by_stiffness(self, inverse: Array, loose: Array, idle: Array) -> Array:
+        """Of solutions that differ by `loose` forces (N, m, k), the one of least energy, in which
+        those that are `idle` (N, m) vanish.
+        """
+        weighed, energy = self.energy(loose, idle)
         return np.asarray(inverse - loose @ np.linalg.solve(energy, weighed @ inverse))
 
-    def energy(self, loose: Array) -> tuple[Array, Array]:
+    def energy(self, loose: Array, idle: Any = False) -> tuple[Array, Array]:
         """What unknowns (N, k, m), and loose forces themselves (N, k, k), store with loose ones."""
         soft = np.array([
             self.compliance.get(reaction.force, 0.0)
             for loop, reaction in zip(self.loops, self.reactions, strict=True)
             for _ in range(loop.unknowns)
         ] + [0.0] * len(self.drives))  # fmt: skip
-        weighed = np.swapaxes(loose * soft[:, None], -1, -2)
+        soft = np.where(idle, np.max(soft), soft)
+        weighed = np.swapaxes(loose * soft[..., None], -1, -2)
         return weighed, weighed @ loose
 
     # -- what statics decides ----------------------------------------------------------------------

@@ -16,11 +16,20 @@ import numpy as np
 from equipoise.mechanism.assembly.steps import p, u
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dynamics.acting import acting_springs, acting_strands
-from equipoise.mechanism.dynamics.reactions import Acting, JointForce, VectorSignal, full
+from equipoise.mechanism.dynamics.reactions import (
+    PUSH,
+    Acting,
+    JointForce,
+    Pass,
+    VectorSignal,
+    full,
+)
 from equipoise.mechanism.dynamics.statics import Statics, statics
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.pushing import pushes
 from equipoise.mechanism.parts.planes import moments_across
+from equipoise.mechanism.parts.sliders import JOINTS
 
 Needed = Mapping[str, Any]
 """Link -> sum of planes times the forces that it needs, N m, complex (..., N)."""
@@ -98,6 +107,23 @@ class Across:
             lever = (other - pin.plane) * force.value - self._couples[pin.name]
             found[name] = replace(force, value=lever / (other - bearing.plane))
         return Named("bearing", found.items())
+
+
+def exerted_in(solved: Pass) -> dict[str, JointForce]:
+    """Force in each joint, and whatever else bodies push each other with, by name."""
+    motion, found = solved.motion, dict(solved.joints)
+
+    def put(name: str, force: Any, on: str, by: str) -> None:
+        found[name] = JointForce(full(motion, force, complex), on, by)
+
+    for name, one in motion.linkage.named_reactions:
+        if one.kind not in JOINTS:
+            put(name, solved.state[one.force], one.on, one.by)
+    for drive in motion.machine.pushers:
+        (on, _, way), (by, *_) = pushes(motion, drive)
+        name = PUSH.format(drive.link)
+        put(name, solved.state[name] * way, on, by)
+    return found
 
 
 def needed_by_inertia(motion: Motion, link: str, own: tuple[Any, Any]) -> Any:

@@ -17,7 +17,7 @@ from equipoise.mechanism.dynamics.reactions import reactions
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.stroke_figures import figure
 from equipoise.mechanism.parts.cams import Cam
-from equipoise.signals import ROUNDING
+from equipoise.signals import ROUNDING, highest_at
 
 
 @dataclass(frozen=True)
@@ -99,15 +99,15 @@ def _let_go(cam: Cam, motion: Motion, normal: Array, per_speed2: Array) -> LetGo
     """From the normal force, and the share of it that a speed of 1 rad/s asks for."""
     theta, speed = motion.crank_angle, motion.speed
     at_rest = normal - per_speed2 * speed**2
-    worst = int(np.argmin(at_rest))
+    worst = int(highest_at(-at_rest))
     if at_rest[worst] <= 0:
         limit, place = 0.0, worst
     else:
         with np.errstate(divide="ignore"):
             squares = np.where(per_speed2 < 0, -at_rest / per_speed2, np.inf)
-        place = int(np.argmin(squares))
+        place = int(highest_at(-squares, smooth=False))
         limit = float(np.sqrt(squares[place]))
-    k = int(np.argmin(normal))
+    k = int(highest_at(-normal))
     least = float(normal[k]), float(theta[k])
     return LetGo(cam, _ranges(theta, normal), least, limit, float(theta[place]))
 

@@ -22,6 +22,7 @@ from equipoise.mechanism.dynamics import acting
 from equipoise.mechanism.dynamics.across import (
     Across,
     apart,
+    exerted_in,
     masses_across,
     pushes_across,
     springs_across,
@@ -150,7 +151,9 @@ class Forces(Exerted):
         loads = pushes_across(motion, acting.acting_loads(motion))
         springs = springs_across(motion)
         outer = pushes_across(motion, acting.outer_loads(motion))
-        return Across(motion, *masses_across(motion), loads, springs, self.solved.exerted, outer)
+        return Across(
+            motion, *masses_across(motion), loads, springs, exerted_in(self.solved), outer
+        )
 
     @cached_property
     def split(self) -> Split:
@@ -277,7 +280,7 @@ def split(whole: Forces) -> Split:
         solved.racks,
         solved.belts(tension_told),
         solved.cams,
-        apart(whole.across, solved.exerted, shape) if motion.machine.has_planes else None,
+        apart(whole.across, exerted_in(solved), shape) if motion.machine.has_planes else None,
         links,
         drive_force=pushed(solved),
     )

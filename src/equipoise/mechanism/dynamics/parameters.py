@@ -21,7 +21,7 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.assembly.steps import Array, planar
-from equipoise.mechanism.dynamics.across import Across, needed_by_inertia
+from equipoise.mechanism.dynamics.across import Across, exerted_in, needed_by_inertia
 from equipoise.mechanism.dynamics.acting import spring_direction, spring_vector
 from equipoise.mechanism.dynamics.forces import (
     Forces,
@@ -156,7 +156,7 @@ def _across(motion: Motion, solved: Pass) -> Across:
             found[name][rows][: len(ACROSS)] = part
     exerted = {
         name: replace(one, value=np.pad(one.value, ((0, len(ACROSS) * count), (0, 0))))
-        for name, one in solved.exerted.items()
+        for name, one in exerted_in(solved).items()
     }
     return Across(motion, inertia, weights, {}, {}, exerted)
 

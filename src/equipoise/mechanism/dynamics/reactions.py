@@ -198,16 +198,6 @@ class Pass:
         cams = (r for r in self.motion.linkage.reactions if r.kind == "cam")
         return Named("cam", ((r.name, self._pressed(r)) for r in cams))
 
-    @cached_property
-    def exerted(self) -> dict[str, JointForce]:
-        """All of these, and whatever else bodies push each other with, by name."""
-        named = self.motion.linkage.named_reactions
-        pushes = {name: one for name, one in named if one.kind not in JOINTS}
-        return self.joints | {name: self._push(one) for name, one in pushes.items()}
-
-    def _push(self, one: Reaction) -> JointForce:
-        return JointForce(full(self.motion, self.state[one.force], complex), one.on, one.by)
-
     @property
     def flanks(self) -> State:
         """Which flank of each pair of gears is in contact, and which strand of each belt pulls, by

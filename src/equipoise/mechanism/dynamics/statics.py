@@ -21,6 +21,8 @@ import numpy as np
 
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.checks import FRAME
+from equipoise.mechanism.dynamics.reactions import PUSH
+from equipoise.mechanism.kinematics.pushing import ends_of
 from equipoise.mechanism.parts.planes import masses_of
 from equipoise.mechanism.parts.sliders import JOINTS, Mechanism
 
@@ -41,7 +43,7 @@ class Contact:
 
 
 def contacts(linkage: Any) -> tuple[Contact, ...]:
-    """Every joint and push of a linkage, as `Pass.exerted` has them.
+    """Every joint and push of a linkage, as `exerted_in` has them.
 
     A joint lies in the plane of the link that no joint holds in the frame; one with the frame in
     that of its link; one of two links that are alike midway between them.
@@ -64,6 +66,22 @@ def contacts(linkage: Any) -> tuple[Contact, ...]:
     return tuple(found)
 
 
+def pushing(linkage: Any) -> Iterator[Contact]:
+    """Every drive that pushes: along a sliding joint in the plane of that, and between two points
+    in the plane of a link's, midway between those of two links.
+    """
+    machine, planes = linkage.machine, {one.name: one.plane for one in contacts(linkage)}
+    for drive in machine.pushers:
+        by, on = ends_of(machine, drive)
+        if drive.slider:
+            plane = planes[drive.slider]
+        else:
+            points = zip((by, on), drive.between, strict=True)
+            held = [machine.links[body].plane_of(one) for body, one in points if body != FRAME]
+            plane = sum(held) / len(held)
+        yield Contact(PUSH.format(drive.link), on, by, plane, False)
+
+
 def _ends(reaction: Any) -> tuple[str, str]:
     return reaction.on, reaction.by
 
@@ -81,7 +99,7 @@ def _plane_between(machine: Mechanism, points: Mapping[str, str], held: set[str]
 class Statics:
     """Couples across the plane as sums of what the links need and of what the joints exert.
 
-    contacts : K of them, of which J bear couples.
+    contacts : K of them, pushing drives last, of which J bear couples.
     by_needed : (J, L) of sums Q of each link.
     by_plane : (J, K) of each contact's plane times force.
     """
@@ -159,7 +177,7 @@ def _signs(links: Sequence[str], joints: Sequence[Contact]) -> Array:
 
 def statics(linkage: Any) -> Statics:
     """How couples go from link to link in a linkage."""
-    machine, all_of = linkage.machine, contacts(linkage)
+    machine, all_of = linkage.machine, (*contacts(linkage), *pushing(linkage))
     links, bearing = tuple(machine.links), [one for one in all_of if one.bears]
     signs = _signs(links, bearing)
     fixed = np.array([FRAME in (one.on, one.by) for one in bearing])

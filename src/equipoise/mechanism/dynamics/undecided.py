@@ -12,7 +12,7 @@ import numpy as np
 from equipoise.errors import RangeError, UsageError
 from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.shared import BESIDE, WEAK
+from equipoise.mechanism.assembly.shared import BESIDE, IDLE, WEAK
 from equipoise.mechanism.assembly.steps import State, run
 from equipoise.mechanism.kinematics.motion import Motion
 
@@ -74,6 +74,18 @@ class Undecided:
 def undecided(linkage: Linkage) -> Undecided:
     """What statics does not tell of the joints of a linkage; kept with it."""
     return _kept(linkage, _found)
+
+
+def idle_told(linkage: Linkage, solved: State) -> Iterator[Note]:
+    """A sentence on teeth that bear nothing at some crank angles, as neither flank agrees."""
+    names = [one.name for one in linkage.joints.couplings]
+    idle = [name for name in names if np.any(solved.get(IDLE.format(name), False))]
+    if idle:
+        yield Note(
+            "at some crank angles {names} would push back on either flank as joints share forces, "
+            "and are told to bear nothing there",
+            names=all_of(idle, commas=True),
+        )
 
 
 def refuse_unbounded(linkage: Linkage, output: str) -> None:

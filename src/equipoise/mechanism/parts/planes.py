@@ -53,14 +53,6 @@ def _told_of_pins(machine: Mechanism) -> Iterator[tuple[str, list[tuple[str, flo
 
 def wrong_planes(machine: Mechanism) -> Iterator[ModelError]:
     """Everything that is wrong with planes of pins and with bearings."""
-    if machine.pushers and machine.has_planes:
-        yield ModelError(
-            "drive",
-            Note(
-                "a drive that pushes is computed with in one plane; leave out plane and planes of "
-                "links and bodies, and bearings"
-            ),
-        )
     for point, told in _told_of_pins(machine):
         for (one, here), (other, there) in combinations(told, 2):
             if here != there:
