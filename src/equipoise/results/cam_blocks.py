@@ -57,8 +57,11 @@ def cam_blocks(analysis: Analysis) -> Iterator[Block]:
         yield Notes(lost)
 
 
-def lost_told(one: LetGo) -> Note:
-    """Where the springs of a cam's follower do not keep it there, at the speed analysed."""
+def lost_told(one: LetGo, sprung: bool) -> Note:
+    """Where nothing keeps a cam's follower there, at the speed analysed.
+
+    sprung : whether the file has springs at all, which may then be too weak.
+    """
     ranges = [
         Note("at every crank angle")
         if b - a >= 2 * pi
@@ -72,19 +75,28 @@ def lost_told(one: LetGo) -> Note:
         cam=body_named(one.cam.driver),
         ranges=all_of(ranges),
         force=told(-one.least[0], "force"),
-        limit=Note("its springs are too weak even at rest")
-        if one.speed == 0
-        else Note("its springs hold it up to {speed:.4g} rpm", speed=one.speed / PER_RPM),
+        limit=_limit(one.speed, sprung),
     )
+
+
+def _limit(speed: float, sprung: bool) -> Note:
+    if speed == 0 and sprung:
+        return Note("its springs are too weak even at rest")
+    if speed == 0:
+        return Note("no [[springs]] press on it")
+    rpm = speed / PER_RPM
+    if sprung:
+        return Note("its springs hold it up to {speed:.4g} rpm", speed=rpm)
+    return Note("without [[springs]] it stays there up to {speed:.4g} rpm", speed=rpm)
 
 
 def cams_told(machine: Machine, joints: Structure) -> Iterator[str]:
     """What each cam is, a sentence each."""
     for fit in fits_of(machine, joints):
         cam, (radius, where) = fit.cam, sharpest(fit)
-        law = f"{told(cam.law.curve.extremes[1], cam.law.dimension)} at most"
+        low, high = (told(one, cam.law.dimension) for one in cam.law.curve.extremes)
         yield (
-            f"cam: {cam.driver} moves {cam.driven} by {law}, {cam.rides}, closed by "
+            f"cam: {cam.driver} moves {cam.driven} from {low} to {high}, {cam.rides}, closed by "
             f"{cam.closed_by}; least radius of curvature {told(radius, 'length', 'mm')}, at cam "
             f"angle {degrees(where):.4g} deg"
         )
@@ -98,4 +110,5 @@ def where_lost(machine: Machine) -> tuple[Note, ...]:
 
 
 def _where_lost(found: Forces) -> tuple[Note, ...]:
-    return tuple(lost_told(one) for one in let_go(found) if one.ranges)
+    sprung = bool(found.motion.machine.springs)
+    return tuple(lost_told(one, sprung) for one in let_go(found) if one.ranges)

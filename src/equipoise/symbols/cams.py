@@ -27,9 +27,11 @@ def cams_of(machine: Machine, joints: Structure) -> Iterator[Mark]:
     cut = [(fit, fit.shape(turn)) for fit in fits_of(machine, joints)]
     for fit, shape in cut:
         cam = fit.cam
-        grooved = [shape.beside(2 * shape.radius)] * (cam.closed_by == "groove")
-        for flank in [*grooved, shape.surface]:
-            around = line("cam", *flank, closed=True)
+        flanks = {"cam": shape.surface}
+        if cam.closed_by == "groove":
+            flanks = {"groove": shape.beside(2 * shape.radius), **flanks}
+        for role, flank in flanks.items():
+            around = line(role, *flank, closed=True)
             yield Mark(cam.driver, fit.cam_pin, around, (cam.table, cam.name))
         if cam.closed_by == "ribs":
             inside = -min(RIB * cam.base_radius, sharpest(fit)[0] / 2)

@@ -78,6 +78,7 @@ LOOKS = {
     "wheel": Look("wheel", "lines", 1.0),
     "pitch": Look(None, "faint", 1.2, (5.0, 3.0)),
     "spoke": Look(None, "faint", 3.0),
+    "groove": Look("paper", "lines", 1.4),
     "cam": Look("wheel", "lines", 1.4),
     "rib": Look(None, "lines", 1.0),
     "cam-edge": Look(None, "lines", 1.4),
@@ -128,6 +129,7 @@ LOOKS = {
 
 LAYERS = {
     "strand": {"springs": "strand"},
+    "groove": {"wheels": "groove", "springs": "cam-edge"},
     "cam": {"wheels": "cam", "springs": "cam-edge"},
     "rider": {"riders": "rider"},
     "face": {"riders": "face"},

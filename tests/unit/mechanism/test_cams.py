@@ -18,6 +18,8 @@ from equipoise.mechanism.dynamics.cam_contacts import let_go
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.laws import AngleLaw, AngleSegment, LengthLaw, LengthSegment
 from equipoise.mechanism.parts.machine import FRAME
+from equipoise.quantities import PER_RPM
+from equipoise.results.cam_blocks import where_lost
 from equipoise.schema.files import json_text
 from equipoise.signals import highest_at
 from support.printing import words
@@ -118,6 +120,9 @@ def test_from_which_speed_the_tappet_lifts_off() -> None:
     assert (begin, end) == (pytest.approx(beyond, abs=1e-6), pytest.approx(2 * pi - beyond))
     assert found.least == (pytest.approx(MASS * GRAVITY * -3), pytest.approx(pi))
     assert let_go(eq.analyze(tappet()).forces) == ()
+    fast = replace(light, drive=replace(light.drive, speed=2 * limit))
+    (told,) = where_lost(fast)
+    assert str(told).endswith(f"without [[springs]] it stays there up to {limit / PER_RPM:.4g} rpm")
 
 
 def test_a_tappet_that_nothing_presses_on_lifts_off_at_once() -> None:
@@ -139,6 +144,8 @@ def test_a_spring_presses_the_tappet_on() -> None:
     (loose,) = let_go(eq.analyze(tappet(cam(closed_by="spring"), gravity=(0.0, 5.0))).forces)
     assert loose.speed == 0
     assert loose.ranges == ((pytest.approx(0), pytest.approx(2 * pi)),)
+    (told,) = where_lost(tappet(cam(closed_by="spring"), gravity=(0.0, 5.0)))
+    assert str(told).endswith("; no [[springs]] press on it")
 
 
 SPRUNG = {
