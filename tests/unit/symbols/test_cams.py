@@ -70,7 +70,8 @@ def test_both_flanks_of_a_groove_touch_its_roller() -> None:
     grooved = replace(motion.machine, cams=(replace(cam, closed_by="groove"),))
     scene = Scene.of(eq.move(grooved, COUNT))
     for k in range(COUNT):
-        shapes = [one for one in placed(scene, pieces(scene), k) if one.role in ("groove", "cam", "rider")]
+        roles = ("groove", "cam", "rider")
+        shapes = [one for one in placed(scene, pieces(scene), k) if one.role in roles]
         *flanks, roller = shapes
         apart = [distance(roller.places[0], one.places) - roller.radius for one in flanks]
         np.testing.assert_allclose(apart, [0, 0], atol=1e-3 * cam.base_radius)
