@@ -1,6 +1,6 @@
 """Couplings that are added to a machine that is made: gears, belts, racks.
 
-Each function takes a sketch to another one, or refuses in a `UsageError`.  Links keep the places in
+Each function takes a sketch to another one, or refuses in an `EquipoiseError`.  Links keep the places in
 which they are drawn; what a drawing tells, such as the radius of a pinion, nobody has to say.
 """
 
@@ -12,7 +12,8 @@ from math import pi
 
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.belts import Belt, wrong_belt
+from equipoise.mechanism.parts.gears import wrong_gear
 from equipoise.mechanism.parts.machine import FRAME, Gear
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities import clean
@@ -31,6 +32,8 @@ def with_gears(
     """A pair of gears in external mesh."""
     carrier = _carrier(sketch, driver, driven, carrier)
     gear = Gear(driver, driven, teeth=teeth, carrier=carrier)
+    for wrong in wrong_gear("gears", gear, sketch.bodies):
+        raise wrong
     return replace(sketch, gears=(*sketch.gears, gear))
 
 
@@ -39,10 +42,13 @@ def with_belt(
 ) -> Sketch:
     """An open chain of the largest usual pitch for which there is room between both pins."""
     carrier = _carrier(sketch, driver, driven, carrier)
+    belt = Belt(driver, driven, teeth=teeth, pitch=PITCHES[0], carrier=carrier)
+    for wrong in wrong_belt("belts", belt, sketch.bodies):
+        raise wrong
     one, other = (sketch.places[_pin(sketch, body, carrier)] for body in (driver, driven))
     room = FILLED * 2 * pi * abs(one - other) / sum(teeth)
     pitch = next((one for one in PITCHES if one <= room), clean(room, "length"))
-    return _added(sketch, "belts", Belt(driver, driven, teeth=teeth, pitch=pitch, carrier=carrier))
+    return _added(sketch, "belts", replace(belt, pitch=pitch))
 
 
 def with_rack(sketch: Sketch, driver: str, driven: str) -> Sketch:

@@ -74,6 +74,7 @@ class Session:
 
     def receive(self, message: Message) -> Iterator[Reply]:
         """Answer a message; what takes long comes last, and may be left unasked."""
+        good = self.history, self.found, self.preview
         try:
             for asked in (kept.ASKED, entering.ASKED, balanced.ASKED, ASKED):
                 if message.kind in asked:
@@ -82,6 +83,10 @@ class Session:
             yield from getattr(self, f"_{message.kind}")(message)
         except EquipoiseError as error:
             yield refused(message.seq, error, self.language)
+        except Exception:  # a mistake of the program; what cannot be told must not stay
+            if message.kind not in balanced.ASKED:  # beside which other steps are made
+                self.history, self.found, self.preview = good
+            raise
 
     # -- what a page may ask -----------------------------------------------------------------------
 

@@ -484,3 +484,27 @@ def test_pulleys_of_a_sketch_may_lie_on_each_other() -> None:
         signs = [sign["shapes"] for sign in shown.content["scene"]["signs"]]
         drawn = [role for shapes in signs for role, *_ in shapes]
         assert drawn.count("strand") == strands
+
+
+def test_couplings_have_teeth() -> None:
+    """What the tool's fields hold is checked before anything is drawn of it."""
+    maker = Maker(opened("knife-drive")[0])
+    maker.do("delete", what="belts", name="shaft to crank")
+    for teeth in ((20, 0), (0, 0), (-3, 20)):
+        told = f"got {list(teeth)}; give two positive numbers"
+        for tool in ("belt", "gears"):
+            ends = {"driver": "shaft", "driven": "crank"}
+            asked = {**ends, "teeth": teeth[0], "driven_teeth": teeth[1]}
+            assert told in maker.refused(tool, **asked)
+
+
+def test_a_step_that_the_program_cannot_draw_is_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The page is told of the mistake, and goes on with the last machine that it showed."""
+    maker = Maker(opened("knife-drive")[0])
+    good = maker.session.found, maker.session.history
+    with monkeypatch.context() as broken:
+        broken.setattr("equipoise.web.session.state_of_sketch", lambda *_: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            ask(maker.session, "make", do="delete", what="link", name="rod")
+    assert (maker.session.found, maker.session.history) == good
+    assert "turns fully" in str(state(ask(maker.session, "ready")[1]).content["status"]["text"])
