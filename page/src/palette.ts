@@ -179,8 +179,8 @@ export class Palette {
       h("div", { class: "tools", role: "toolbar", "aria-label": say("Tools") }, make, ...tools),
       this.meshing,
       this.riding,
-      this.name,
       this.status,
+      this.name,
       this.next,
     );
   }
