@@ -518,7 +518,7 @@ export class App {
   private step(type: "undo" | "redo"): void {
     this.talk.release();
     // What was held until now is a step of its own, which the state does not tell yet.
-    if (!this.talk.busy && !this.named?.[type]) return;
+    if (!this.named || !(this.talk.busy || this.named[type])) return;
     this.board.say("", false);
     this.inspector.forget();
     this.talk.ask({ type });

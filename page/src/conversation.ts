@@ -68,7 +68,8 @@ export class Conversation {
   /** The last question of which all is told. */
   private whole = 0;
   private late = 0;
-  private repeating = false;
+  /** The last question of a story that is done again. */
+  private repeats = 0;
 
   /** `shelf` is where what was done outlives a reload. */
   constructor(
@@ -131,7 +132,7 @@ export class Conversation {
     if (!question) return;
     if (question === this.waiting) this.waiting = null;
     // What follows a balance in a story was done to its result.
-    if (SLOW.has(question.asked.type) && !this.repeating) this.aside.set(question.seq, question);
+    if (SLOW.has(question.asked.type) && !this.repeated(question.seq)) this.aside.set(question.seq, question);
     else this.flight = question;
     this.events.calm(false);
     if (this.flight) this.late ||= window.setTimeout(() => this.events.waiting(true), PATIENCE);
@@ -177,7 +178,7 @@ export class Conversation {
       case "side":
         return this.events.side(told);
       case "refused":
-        if (!this.repeating) this.refuse(told.seq, told.message);
+        if (!this.repeated(told.seq)) this.refuse(told.seq, told.message);
         return this.end(told.seq, told.message, told);
       case "tables":
         this.events.tables(told);
@@ -218,11 +219,10 @@ export class Conversation {
     if (question === this.flight) this.land();
     else if (this.aside.delete(seq)) this.events.busy(null);
     // Without what a story began with, nothing of it can be done.
-    if (this.repeating && refusal !== null && OPENS.has(question.asked.type)) {
-      this.queue.length = 0;
+    if (this.repeated(seq) && refusal !== null && OPENS.has(question.asked.type)) {
+      this.queue.splice(0, this.repeats - seq);
       this.story.forget();
     }
-    if (this.repeating && !this.queue.length) this.repeating = false;
     question.answered?.(refusal, told);
     this.next();
     this.rest(); // all else may have been told before
@@ -248,7 +248,7 @@ export class Conversation {
     const { seq } = state;
     const asked = (this.flight?.seq === seq ? this.flight : this.aside.get(seq))?.asked;
     const tried = asked?.type === "edit" && !asked.commit;
-    if (asked && !this.repeating && !tried && !IDLE.has(asked.type))
+    if (asked && !this.repeated(seq) && !tried && !IDLE.has(asked.type))
       this.story.remember(asked, state);
     this.story.heard(state);
     this.end(seq, null);
@@ -269,9 +269,14 @@ export class Conversation {
     return this.story.offered(base);
   }
 
+  /** Whether a question is of a story, and not of who sits here now. */
+  private repeated(seq: number): boolean {
+    return seq <= this.repeats;
+  }
+
   private repeat(story: Asked[]): boolean {
-    this.repeating = story.length > 0;
     for (const asked of story) this.queue.push({ seq: ++this.seq, asked });
+    this.repeats = this.seq;
     this.next();
     return story.length > 0;
   }

@@ -53,6 +53,8 @@ export class Toolbar {
     this.balance = button(say("Balance"), "balance", () => commands.balance());
     this.save = button("", "disk", () => commands.save(), say("Save"));
     this.save.hidden = true;
+    // Nothing is open yet.
+    for (const one of [this.undo, this.redo, this.balance]) one.disabled = true;
     this.menu = downloads(commands);
     const help = button("", "keys", () => commands.help(), say("Keys"));
     this.root = h(

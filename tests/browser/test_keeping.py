@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import socket
 from collections.abc import Callable
 from pathlib import Path
 
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, WebSocketRoute, expect
 
 import equipoise as eq
 from browser.live import Live
@@ -85,6 +86,68 @@ def test_the_file_of_a_tool_is_saved_and_its_steps_outlive_the_server(
         live.button("Undo").click()
         expect(live.field("shaft outer diameter")).to_have_value("26 mm")
         expect(live.button("Save")).to_be_enabled()
+
+
+def test_nothing_is_undone_before_there_is_anything(
+    new_page: Callable[..., Page], address: str
+) -> None:
+    page, held = new_page(), list[str]()
+
+    def join(line: WebSocketRoute) -> None:
+        server = line.connect_to_server()
+
+        def pass_on(message: str | bytes) -> None:
+            if '"speak"' in str(message):
+                server.send(message)
+            else:
+                held.append(str(message))
+
+        line.on_message(pass_on)
+
+    page.route_web_socket("**/live*", join)
+    page.goto(address)
+    for name in ("Undo", "Redo", "Balance"):
+        expect(Live(page).button(name)).to_be_disabled()
+    page.keyboard.press("Control+z")
+    while not held:
+        page.wait_for_timeout(20)
+    assert [json.loads(one)["type"] for one in held] == ["ready"]
+
+
+def test_an_undo_while_a_page_comes_back_is_of_the_last_step(
+    new_page: Callable[..., Page], address: str
+) -> None:
+    """And it is kept like every other."""
+    page, slow, late = new_page(), False, list[Callable[[], None]]()
+
+    def join(line: WebSocketRoute) -> None:
+        server = line.connect_to_server()
+
+        def pass_on(message: str | bytes) -> None:
+            if slow and '"edit"' in str(message):
+                late.append(lambda: server.send(message))
+            else:
+                server.send(message)
+
+        line.on_message(pass_on)
+
+    page.route_web_socket("**/live*", join)
+    live = Live.open(page, address)
+    live.type(live.field("crank mass"), "300 g")
+    slow = True
+    page.reload()
+    while not late:
+        page.wait_for_timeout(20)
+    page.keyboard.press("Control+z")
+    late.pop()()
+    slow = False
+    for _ in range(2):
+        expect(live.field("crank mass")).to_have_value("199 g")
+        expect(live.button("Redo")).to_be_enabled()
+        expect(live.button("Undo")).to_be_disabled()
+        page.reload()
+    live.button("Redo").click()
+    expect(live.field("crank mass")).to_have_value("300 g")
 
 
 def test_what_was_done_in_a_closed_tab_is_offered(live: Live, address: str) -> None:
