@@ -15,8 +15,8 @@ from typing import Any
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.builder import Guide
-from equipoise.mechanism.assembly.cam_fits import check_shape, fitted
-from equipoise.mechanism.assembly.joints import place_in_file
+from equipoise.mechanism.assembly.cam_demands import check_shape
+from equipoise.mechanism.assembly.cam_fits import fitted
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.mechanism.kinematics.outline import Pose
@@ -163,8 +163,8 @@ def _cut(sketch: Sketch, cam: Cam, pin: str, joint: Slider | str) -> Sketch:
         cams = (*sketch.rest.get("cams", ()), one)
         found = replace(sketch, rest={**sketch.rest, "cams": cams})
         try:
-            fit = fitted(found.machine(), found.joints, one)
-            check_shape(fit, place_in_file(found.joints, one))
+            machine = found.machine()
+            check_shape(machine, found.joints, fitted(machine, found.joints, one))
         except ModelError as error:
             refused = error
         else:

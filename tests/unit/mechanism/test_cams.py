@@ -364,6 +364,47 @@ def test_least_radius_of_an_undercut_cam() -> None:
     assert float(np.min(radius)) * 1e3 == pytest.approx(-66.45, abs=5e-3)
 
 
+NOD = AngleLaw(
+    segments=(
+        AngleSegment(1.0, 0.1, "cycloidal"),
+        AngleSegment(1.0, 0.0, "cycloidal"),
+        AngleSegment(2 * pi - 2.0, 0.0),
+    )
+)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        tappet(cam(lift=RISE)),
+        tappet(cam("roller", lift=RISE, base_radius=0.005, roller_radius=0.03)),
+        lever(rides="flat", normal=pi / 2, swing=NOD, base_radius=0.02),
+        lever(swing=NOD, base_radius=0.002, roller_radius=0.015),
+    ],
+    ids=("flat tappet", "roller tappet", "flat lever", "roller lever"),
+)
+def test_the_least_base_radius_that_does(given: eq.Machine) -> None:
+    """With it the cam is made; of 0.1 % less it is said again that it cannot be."""
+    with pytest.raises(ModelError) as caught:
+        assemble(given)
+    told, _, rest = caught.value.what.rpartition("; ")
+    least = float(rest.removesuffix(" mm is the least base_radius that does")) / 1e3
+    assert "undercut" in told
+    right, small = (
+        replace(given, cams=(replace(given.cams[0], base_radius=radius),))
+        for radius in (least, 0.999 * least)
+    )
+    assemble(right)
+    with pytest.raises(ModelError, match="undercut"):
+        assemble(small)
+
+
+def test_no_base_radius_that_does() -> None:
+    """The follower swings by so much that it jams on a cam of any size that it reaches."""
+    with pytest.raises(ModelError, match="no base_radius up to 3000 mm does"):
+        assemble(lever(swing=AngleLaw(between=(0.0, 3.0))))
+
+
 def test_a_cam_moved_by_its_own_follower() -> None:
     """The drive moves the lever, and nothing the cam."""
     given = replace(lever(), drive=eq.Drive("tappet", 3.0))

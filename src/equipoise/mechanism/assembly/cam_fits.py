@@ -1,11 +1,8 @@
-"""A cam in its place: how its follower moves in the carrier, and whether it can be made."""
+"""A cam in its place: how its follower moves in the carrier."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
-from math import degrees, pi, radians
 from typing import Any
 
 import numpy as np
@@ -14,13 +11,11 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.builder import Guide
 from equipoise.mechanism.assembly.cam_shapes import (
-    BESIDE,
     Array,
     Path,
     Shape,
     Sliding,
     Swinging,
-    design,
     lowest,
 )
 from equipoise.mechanism.assembly.joints import Structure, place_in_file
@@ -31,11 +26,6 @@ from equipoise.mechanism.parts.machine import Machine
 
 STEEPEST = 1e-6
 """Cosine of the pressure angle at which the follower jams."""
-NEAR, FEWEST, WIDEST = 0.1, 8, radians(3)
-"""Of a value's size: what is lower may be below 0 between angles of a cam that are this far apart,
-and so many in each piece of its law."""
-AT_ONCE = 128
-"""Designs that are looked at together, so that their values stay in the processor's cache."""
 BOTH = {(1, 0), (0, 1)}
 """Numbers of sliding joints and pins between follower and carrier: one of them."""
 
@@ -65,6 +55,12 @@ class Fit:
     def joint(self) -> str:
         """The point of the follower about which its joint's moments are taken."""
         return self.pin if self.guide is None else self.guide.point
+
+    @property
+    def knots(self) -> Array:
+        """Cam angles (K,), rad, at which the law changes."""
+        law = self.cam.law
+        return law.curve.knots[:-1] + law.origin
 
     def shape(self, angle: Array) -> Shape:
         """The cam under its follower at angles (N,), rad, by which it has turned."""
@@ -114,7 +110,7 @@ def fitted(machine: Machine, joints: Structure, cam: Cam) -> Fit:
 
 
 def _is(flag: Any) -> bool:
-    """Whether it is so of one machine; of columns of designs `can_be_made` tells."""
+    """Whether it is so of one machine; of columns of designs `cam_demands` tells."""
     return np.ndim(flag) == 0 and bool(flag)
 
 
@@ -200,119 +196,4 @@ def pressure_angle(cam: Cam, state: State) -> Array:
 
 def sharpest(fit: Fit) -> tuple[float, float]:
     """Least radius of curvature of a cam's surface, m, and the cam angle, rad, of it."""
-    knots = _knots(fit)
-    return lowest(fit.shape(knots), lambda one: abs(one.radius_of_curvature), knots)
-
-
-def _knots(fit: Fit) -> Array:
-    """Cam angles (K,), rad, at which the law changes."""
-    law = fit.cam.law
-    return law.curve.knots[:-1] + law.origin
-
-
-# -- what cannot be made ---------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Demand:
-    """Something (N,) that has to be above 0 all over a cam.
-
-    told : what is said where it is not, of its least value and the cam angle of that, deg.
-    size : that it has far from 0.
-    """
-
-    value: Callable[[Shape], Array]
-    told: Callable[[float, float], Note]
-    size: Any = 1.0
-
-
-def check_shape(fit: Fit, where: str) -> None:
-    """Raise an error where the follower jams or the cam is undercut."""
-    knots = _knots(fit)
-    for demand in _demands(fit.cam):
-        least, angle = lowest(fit.shape(knots), demand.value, knots)
-        if least <= 0:
-            raise ModelError(where, demand.told(least, degrees(angle)))
-
-
-def can_be_made(fit: Fit) -> Array:
-    """Of which designs (P, 1), whose numbers are columns, the cam can be made."""
-    cam = fit.cam
-    made: Array = np.isfinite(fit.rest) & (np.asarray(cam.base_radius) > 0)
-    if cam.rides == "roller":
-        made = made & (np.asarray(cam.roller_radius) > 0)
-    count, knots = np.size(fit.rest), _knots(fit)
-    shape = fit.shape(_spread(knots))
-    with np.errstate(all="ignore"):
-        for begin in range(0, count, AT_ONCE):
-            some = slice(begin, begin + AT_ONCE)
-            for demand in _demands(cam):
-                least = np.min(demand.value(shape.of(some)), axis=-1, keepdims=True)
-                made[some] &= least > 0
-                near = made[some] & (least < NEAR * design(demand.size, some))
-                for k in begin + np.flatnonzero(near):
-                    made[k] = lowest(shape.of(k), demand.value, knots)[0] > 0
-    return made
-
-
-def _spread(knots: Array) -> Array:
-    """Cam angles, rad, between which no value is lower by as much as `NEAR`."""
-    ends = np.append(knots, knots[0] + 2 * pi)
-    counts = np.maximum(FEWEST, np.ceil(np.diff(ends) / WIDEST)).astype(int)
-    pairs = zip(ends + BESIDE, ends[1:] - BESIDE, counts, strict=False)
-    return np.concatenate([np.linspace(*one) for one in pairs])
-
-
-def _demands(cam: Cam) -> Iterator[Demand]:
-    if cam.rides == "flat":
-        yield Demand(
-            lambda one: 1 - STEEPEST - one.ride.turn_1,
-            lambda _, angle: Note(
-                "at cam angle {angle:.4g} deg the follower turns as fast as the cam, which no flat "
-                "face can do; give it less swing there, or more time",
-                angle=angle,
-            ),
-        )
-    yield Demand(
-        lambda one: np.cos(one.pressure_angle) - STEEPEST,
-        lambda _, angle: Note(
-            "the follower jams at cam angle {angle:.4g} deg, where the pressure angle is 90 "
-            "deg; give a larger base_radius, or another place of the follower",
-            angle=angle,
-        ),
-    )
-    if cam.rides == "flat":
-        yield Demand(lambda one: one.radius_of_curvature, _undercut_flat, cam.base_radius)
-        return
-    # the curve of a roller's centre bends less than the roller, outward and in a groove inward
-    for sign in (1.0, -1.0) if cam.closed_by == "groove" else (1.0,):
-        yield Demand(
-            partial(_blunt, sign),
-            partial(_undercut_round, cam.roller_radius),
-        )
-
-
-def _blunt(sign: float, shape: Shape) -> Array:
-    return 1 - sign * shape.curvature * shape.radius
-
-
-def _undercut_flat(least: float, angle: float) -> Note:
-    return Note(
-        "the cam is undercut at cam angle {angle:.4g} deg, where its radius of curvature "
-        "would be {radius:.4g} mm; a flat face needs more than 0: give a larger "
-        "base_radius, or more time there",
-        angle=angle,
-        radius=least * 1e3,
-    )
-
-
-def _undercut_round(roller: float, least: float, angle: float) -> Note:
-    return Note(
-        "the cam is undercut at cam angle {angle:.4g} deg, where the curve of the "
-        "roller's centre has a radius of {radius:.4g} mm, and the roller one of "
-        "{roller:.4g} mm; give a larger base_radius, a smaller roller, or more time "
-        "there",
-        angle=angle,
-        radius=1e3 * roller / (1 - least),
-        roller=roller * 1e3,
-    )
+    return lowest(fit.shape(fit.knots), lambda one: abs(one.radius_of_curvature), fit.knots)

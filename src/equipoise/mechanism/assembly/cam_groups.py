@@ -10,8 +10,9 @@ import numpy as np
 
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.builder import Builder, Group, guide_reaction
-from equipoise.mechanism.assembly.cam_fits import Fit, check_shape, fitted
-from equipoise.mechanism.assembly.joints import Structure, place_in_file
+from equipoise.mechanism.assembly.cam_demands import check_shape
+from equipoise.mechanism.assembly.cam_fits import Fit, fitted
+from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.loops import CouplingLoop, End, Poses
 from equipoise.mechanism.assembly.steps import (
     Call,
@@ -54,7 +55,7 @@ def push_of(builder: Builder, joints: Structure, cam: Cam) -> Push:
     """
     fit = fitted(builder.machine, joints, cam)
     if np.ndim(fit.rest) == 0:  # else `refusing` tells which designs can be made
-        check_shape(fit, place_in_file(joints, cam))
+        check_shape(builder.machine, joints, fit)
     return Push(fit)
 
 
