@@ -19,6 +19,7 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import ALTERNATIVES, unknown
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.swings import SWUNG, swing
+from equipoise.mechanism.parts.drives import Pushing
 from equipoise.mechanism.parts.machine import Machine, Position, Vector
 from equipoise.quantities import clean, clean_place
 from equipoise.results.analysis import LEAST_ANGLES, Analysis, analyze
@@ -33,8 +34,8 @@ ANGLES, MOST_SAMPLES = 720, 2880
 """Crank angles in a turn, and in a cycle of several turns, which has fewer in each."""
 OTHER_SIDE = {one: other for pair in ALTERNATIVES for one, other in (pair, pair[::-1])}
 HELD = to_say(
-    "the stroke of the drive sets where {name} is at this crank angle, and it comes as near as it can; "
-    "change the stroke, or other points"
+    "the stroke of the drive sets where {name} is at this crank angle, and it comes as near as it "
+    "can; change the stroke, or other points"
 )
 THERE = 1e-5
 """Of the size of the machine: how near a dragged point has to come to where it was put."""
@@ -300,7 +301,8 @@ def _told(found: Solved, goals: Goals) -> Solved:
     """The same, with why the end of a cylinder, or a driven block, is not where it was put."""
     machine = found.design.own
     points = {one.name: one.point for one in machine.sliders}
-    for drive in (machine.drive, *machine.drives):
+    pushing: list[Pushing] = [machine.drive, *machine.drives]
+    for drive in pushing:
         for name in {*(drive.between or ()), points.get(drive.slider)} & {*_missed(found, goals)}:
             return replace(found, held=Note(HELD, name=name))
     return found
