@@ -145,9 +145,11 @@ export class Form {
       event.stopPropagation();
       this.events.closed();
     });
-    // What is typed here has its own undo.
     this.root.addEventListener("input", ({ target }) => {
+      // What is typed here has its own undo.
       if (target instanceof HTMLInputElement) target.dataset.typed = "";
+      // At once: a row that went only when the mouse is pressed would take its click from the button below.
+      this.follow();
     });
   }
 
