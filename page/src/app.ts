@@ -128,14 +128,14 @@ export class App {
       tool: (message, numbers) => {
         this.opened = "";
         this.views.showTool(message, numbers);
-        this.name({ ...message, has_forces: false });
+        this.name({ ...message, has_forces: false, downloads: ["model", "report"] });
       },
       stores: (message) => this.gallery.stored(message),
       study: (message, numbers) => {
         this.opened = "";
         this.views.showStudy(message, numbers);
         const { name } = message;
-        this.name({ name, undo: null, redo: null, has_forces: false, file: null });
+        this.name({ name, undo: null, redo: null, has_forces: false, file: null, downloads: [] });
       },
       saved: (name) => this.keeping.saved(name),
       line: (up) => this.line(up),
@@ -348,6 +348,7 @@ export class App {
     if (other || !state.beside) this.across.hidden = true;
     if (!state.before) this.balance.hide();
     this.board.clear(this.held || other);
+    if (state.held) this.board.say(state.held, true);
     this.hands.accepted();
     this.show(state, other);
   }

@@ -77,7 +77,9 @@ export class Keeping {
   /** Write the file; where there is none, the model is downloaded. */
   async save(): Promise<void> {
     const { page } = this;
-    const file = page.shown()?.file;
+    const shown = page.shown();
+    if (!shown) return;
+    const { file } = shown;
     page.talk.release();
     if (!file) return page.talk.ask({ type: "download", kind: "model" });
     if (file.saved) return page.say(say("{name} is saved", { name: file.name }), false);

@@ -267,6 +267,8 @@ export interface StateMessage {
   least: number;
   orders: number[];
   notes: string[];
+  /** Why a point is not where it was dragged to. */
+  held?: string | null;
   /** Whether curves of another design are drawn behind; whether figures of one are told. */
   before: boolean;
   status: Status;

@@ -23,8 +23,8 @@ export class Piece {
     const number = scene.bodies.findIndex(({ name }) => name === sign.link);
     const kind = sign.link ? ` body tint-${number % TINTS}` : "";
     this.parts = runs(sign.shapes).map(([first]) => {
-      const [role, , radius, grown] = first as Shape;
-      const element = radius + grown ? s("circle") : s("path");
+      const [role] = first as Shape;
+      const element = isRound(first as Shape) ? s("circle") : s("path");
       element.style.cssText = scene.looks[role] ?? "";
       return element;
     });
@@ -48,7 +48,7 @@ export class Piece {
     runs(sign.shapes).forEach((run, i) => {
       const element = this.parts[i] as SVGElement;
       const [, , radius, grown, corners] = run[0] as Shape;
-      if (!(radius + grown)) return set(element, { d: run.map(shapePath(scale)).join("") });
+      if (!isRound(run[0] as Shape)) return set(element, { d: run.map(shapePath(scale)).join("") });
       const [cx, cy] = corner(corners, 0, scale);
       const r = (radius * scale + grown).toFixed(2);
       set(element, { cx: cx.toFixed(2), cy: cy.toFixed(2), r });
@@ -103,7 +103,7 @@ export function build(scene: Scene): string {
     link,
     part,
     hold && [hold.point, hold.link, hold.guide, hold.to, hold.mount],
-    runs(shapes).map(([first]) => first?.[0]),
+    runs(shapes).map(([first]) => [first?.[0], isRound(first as Shape)]),
   ]);
   return JSON.stringify(drawn);
 }
@@ -113,11 +113,16 @@ export function runs(shapes: Shape[]): Shape[][] {
   const found: Shape[][] = [];
   for (const shape of shapes) {
     const last = found[found.length - 1];
-    const alike = last && last[0]?.[0] === shape[0] && !(shape[2] + shape[3]);
+    const alike = last && last[0]?.[0] === shape[0] && !isRound(shape);
     if (alike) last.push(shape);
     else found.push([shape]);
   }
   return found;
+}
+
+/** Whether a shape is a circle, and no outline. */
+function isRound([, , radius, grown]: Shape): boolean {
+  return radius + grown > 0;
 }
 
 /** The outline of a shape with so many pixels a metre. */

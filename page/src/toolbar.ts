@@ -15,7 +15,10 @@ const ICONS = {
 };
 
 /** What is told of whatever is open. */
-export type Opened = Pick<State, "name" | "undo" | "redo" | "has_forces" | "file">;
+export type Opened = Pick<State, "name" | "undo" | "redo" | "has_forces" | "file"> & {
+  /** Downloads that there are; all where it is left out. */
+  downloads?: FileKind[];
+};
 
 export interface Commands {
   example(name: string): void;
@@ -53,9 +56,10 @@ export class Toolbar {
     this.balance = button(say("Balance"), "balance", () => commands.balance());
     this.save = button("", "disk", () => commands.save(), say("Save"));
     this.save.hidden = true;
+    this.menu = downloads(commands);
     // Nothing is open yet.
     for (const one of [this.undo, this.redo, this.balance]) one.disabled = true;
-    this.menu = downloads(commands);
+    this.menu.inert = true;
     const help = button("", "keys", () => commands.help(), say("Keys"));
     this.root = h(
       "header",
@@ -93,6 +97,10 @@ export class Toolbar {
     label(this.undo, say("Undo"), state.undo);
     label(this.redo, say("Redo"), state.redo);
     this.balance.disabled = !state.has_forces;
+    const { downloads } = state;
+    this.menu.inert = downloads?.length === 0;
+    for (const item of this.menu.querySelectorAll<HTMLButtonElement>("[data-kind]"))
+      item.hidden = !!downloads && !downloads.includes(item.dataset.kind as FileKind);
     this.save.hidden = !state.file;
     this.save.disabled = state.file?.saved !== false;
   }
@@ -137,6 +145,7 @@ function downloads(commands: Commands): HTMLDetailsElement {
       "button",
       {
         type: "button",
+        "data-kind": kind,
         onclick: () => close(() => commands.download(kind, language.value, format)),
       },
       text,

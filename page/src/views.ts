@@ -9,8 +9,8 @@ import { ToolView } from "./tool";
 import { say } from "./words";
 
 export class Views {
-  /** Of a machine; filled by who makes it. */
-  readonly body = h("div", { class: "body" });
+  /** Of a machine; filled by who makes it, and of no use before there is one. */
+  readonly body = h("div", { class: "body", inert: true });
   /** The way back to the designs, while one of them is open. */
   readonly back: HTMLButtonElement;
   private readonly tool: ToolView;
@@ -44,6 +44,7 @@ export class Views {
   }
 
   machine(): void {
+    this.body.inert = false;
     this.turn(null);
   }
 

@@ -108,7 +108,11 @@ def test_nothing_is_undone_before_there_is_anything(
     page.goto(address)
     for name in ("Undo", "Redo", "Balance"):
         expect(Live(page).button(name)).to_be_disabled()
+    for name in ("Download", "Tools"):  # what is inert is nowhere to those who hear the page
+        expect(page.get_by_label(name, exact=True)).to_be_visible()
+        assert page.get_by_label(name, exact=True).evaluate("one => !!one.closest('[inert]')")
     page.keyboard.press("Control+z")
+    page.keyboard.press("Control+s")
     while not held:
         page.wait_for_timeout(20)
     assert [json.loads(one)["type"] for one in held] == ["ready"]

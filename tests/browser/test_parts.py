@@ -71,6 +71,23 @@ def boxes(path: str) -> list[tuple[float, ...]]:
     return found
 
 
+def test_wheels_become_ellipses_and_circles_again(live: Live) -> None:
+    page = live.page
+    page.get_by_role("combobox", name="Example").select_option("elliptic-quick-return")
+    rims = page.locator(".signs [data-what=gears] circle")
+    expect(page.locator(".signs [data-what=gears]")).to_have_count(2)
+    expect(rims).to_have_count(0)
+    page.get_by_text("Parts of the model").click()
+    page.get_by_role("button", name="Delete shape of gears 1").click()
+    expect(rims).to_have_count(2)
+    form = add(live, "shape of gears 1")
+    assert page.evaluate("document.documentElement.scrollHeight <= innerHeight")  # columns scroll
+    form.get_by_label("kind", exact=True).select_option("elliptic")
+    form.get_by_label("eccentricity", exact=True).fill("0.2")
+    press(form, "Save")
+    expect(rims).to_have_count(0)
+
+
 def test_a_spring_and_a_body_are_added_changed_and_deleted(live: Live) -> None:
     page = live.page
     page.get_by_text("Parts of the model").click()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,12 +16,17 @@ from equipoise.studies import run_study
 from support.chromium import serving
 from unit.web.test_stores import STUDY
 
+LONG = f"{'a_name_that_cannot_be_broken_' * 3}.zarr"
+
 
 @pytest.fixture(scope="module")
 def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """The address of a server with a store."""
     path: Path = tmp_path_factory.mktemp("studies") / "lengths.zarr"
     run_study(eq.loads(STUDY), path, workers=1)
+    long = path.with_name(LONG)
+    long.mkdir()
+    shutil.copy(path / "zarr.json", long)
     with serving(str(path)) as address:
         yield address
 
@@ -91,6 +97,12 @@ def test_designs_are_brushed_and_opened(browser: Browser, store: str) -> None:
     expect(live.joint("B")).to_be_visible()
     expect(page.get_by_role("combobox", name="Example")).to_have_value(re.compile("lengths.zarr "))
     page.get_by_role("button", name="Open", exact=True).click()
+    long = page.get_by_role("button", name=LONG)
+    page.set_viewport_size({"width": 400, "height": 800})
+    expect(long).to_be_visible()
+    dialog = page.get_by_role("dialog", name="Open a machine")
+    assert dialog.evaluate("one => one.scrollWidth <= one.clientWidth")
+    page.set_viewport_size({"width": 1280, "height": 900})
     page.get_by_role("button", name="lengths.zarr", exact=True).click()
     expect(told).to_be_visible()
     page.get_by_role("button", name="Open", exact=True).click()

@@ -18,6 +18,11 @@ def test_a_tool_is_seen_and_changed(live: Live) -> None:
     page.get_by_role("combobox", name="Example").select_option("brush-cutter")
     side = page.get_by_role("img", name=re.compile("front-handle 550.0 mm"))
     expect(side).to_be_visible()
+    menu = page.locator("details.menu")
+    menu.locator("summary").click()
+    names = ["Download model", "Download report", "Copy link"]  # nothing that would be refused
+    expect(menu.locator("button:visible")).to_have_text(names)
+    page.keyboard.press("Escape")
     shown = page.get_by_role("combobox", name="What is shown")
     expect(shown.locator("option")).to_have_count(6)  # at rest, at work, four modes
     expect(page.get_by_text("displacement drawn")).to_be_visible()

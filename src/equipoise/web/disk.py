@@ -11,7 +11,7 @@ from typing import Any
 
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.handheld.model import Tool
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.documents import dumps, load
 from equipoise.schema.files import FileError, printable, read_text, write
@@ -21,7 +21,7 @@ from equipoise.web.edits import solved
 from equipoise.web.replies import Reply
 from equipoise.web.tool_state import ToolFigures
 
-NOT_OF_FILE = Note("this machine was not opened from a file; download the model instead")
+NOT_OF_FILE = to_say("{name} was not opened from a file; download the model instead")
 COMMENT = re.compile(r"^\s*#|\s#\s", re.MULTILINE)
 
 

@@ -14,11 +14,12 @@ from functools import cached_property
 import numpy as np
 
 from equipoise.errors import EquipoiseError, MobilityError, ModelError, MotionError, UsageError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import ALTERNATIVES, unknown
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.swings import SWUNG, swing
+from equipoise.mechanism.parts.drives import Pushing
 from equipoise.mechanism.parts.machine import Machine, Position, Vector
 from equipoise.quantities import clean, clean_place
 from equipoise.results.analysis import LEAST_ANGLES, Analysis, analyze
@@ -32,6 +33,10 @@ from equipoise.web.messages import Change, Drag, Setting
 ANGLES, MOST_SAMPLES = 720, 2880
 """Crank angles in a turn, and in a cycle of several turns, which has fewer in each."""
 OTHER_SIDE = {one: other for pair in ALTERNATIVES for one, other in (pair, pair[::-1])}
+HELD = to_say(
+    "the stroke of the drive sets where {name} is at this crank angle, and it comes as near as it "
+    "can; change the stroke, or other points"
+)
 THERE = 1e-5
 """Of the size of the machine: how near a dragged point has to come to where it was put."""
 
@@ -43,6 +48,7 @@ class Solved:
     stand : crank angle at which it was drawn, rad; None where it has not just been made.
     swings : that its crank cannot turn, and how far it is let swing; None where it can.
     along : which points went along with what was changed, so that joints agree, if any did.
+    held : why a point did not come to where it was dragged, if a drive holds it.
     """
 
     design: Design
@@ -50,6 +56,7 @@ class Solved:
     stand: float | None = None
     swings: Note | None = None
     along: Note | None = None
+    held: Note | None = None
 
     @property
     def motion(self) -> Motion:
@@ -121,7 +128,7 @@ def edited(base: Solved, changes: Iterable[Change], near: Solved | None = None) 
                 return found
     near = near or base
     try:
-        return _assembled(design, goals, near, base.swings is not None)
+        return _told(_assembled(design, goals, near, base.swings is not None), goals)
     except (MobilityError, ModelError):
         if (found := _agreeing(base, design, goals, near)) is None:
             raise
@@ -277,9 +284,25 @@ def _moves(machine: Machine, joint: str, points: Iterable[str]) -> bool:
 
 
 def _reaches(found: Solved, goals: Goals) -> bool:
-    points = found.motion.points
-    return all(
-        at < len(points[name].place)
-        and abs(points[name].place[at] - to) <= THERE * extent_of(found.design.own)
+    return not _missed(found, goals)
+
+
+def _missed(found: Solved, goals: Goals) -> list[str]:
+    """Points that are not where they were put."""
+    points, near = found.motion.points, THERE * extent_of(found.design.own)
+    return [
+        name
         for name, (at, to) in goals.items()
-    )
+        if at >= len(points[name].place) or abs(points[name].place[at] - to) > near
+    ]
+
+
+def _told(found: Solved, goals: Goals) -> Solved:
+    """The same, with why the end of a cylinder, or a driven block, is not where it was put."""
+    machine = found.design.own
+    points = {one.name: one.point for one in machine.sliders}
+    pushing: list[Pushing] = [machine.drive, *machine.drives]
+    for drive in pushing:
+        for name in {*(drive.between or ()), points.get(drive.slider)} & {*_missed(found, goals)}:
+            return replace(found, held=Note(HELD, name=name))
+    return found

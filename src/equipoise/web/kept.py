@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager
 from typing import Protocol
 
 from equipoise.errors import UsageError
-from equipoise.i18n import say
+from equipoise.i18n import Note, say
 from equipoise.schema.documents import dumps
 from equipoise.web.design import Design
 from equipoise.web.disk import NOT_OF_FILE, Disk
@@ -51,7 +51,7 @@ class Session(Protocol):
 def _save(session: Session, message: Message) -> Iterator[Reply]:
     found, disk, history = session.current(), session.disk, session.history
     if disk is None or history is None:
-        raise UsageError(NOT_OF_FILE)
+        raise UsageError(Note(NOT_OF_FILE, name=found.design.name))
     first = history.first
     text = dumps(first.machine) if isinstance(first, Design) else disk.text
     disk.save(found.design.machine)

@@ -82,6 +82,7 @@ def state_of(
             *(said(note) for note in (found.along, found.swings) if note),
             *([massless(machine)] if analysis.solved is None else []),
         ],
+        "held": said(found.held) if found.held else None,
         "before": before is not None,
         "status": status_of(found),
         "compared": against is not None,

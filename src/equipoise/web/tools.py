@@ -112,7 +112,7 @@ class ToolDesk:
 
     def _save(self) -> None:
         if self.disk is None:
-            raise UsageError(NOT_OF_FILE)
+            raise UsageError(Note(NOT_OF_FILE, name=self.name))
         self.disk.save(self.now.tool)
 
     def _edit(self, message: Message) -> None:

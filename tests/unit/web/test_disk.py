@@ -101,7 +101,7 @@ def test_nothing_but_the_opened_file_is_written(path: Path) -> None:
     begun = session_of(path)
     assert state(ask(begun, "open", new=True)[0]).content["file"] is None
     example = session_of("yamashita-1")
-    assert "not opened from a file" in refusal(ask(example, "save"))
+    assert "yamashita-1 was not opened from a file" in refusal(ask(example, "save"))
     again = session_of(path)
     text = example_text("watt-six-bar")  # what a page has kept of the same file
     kept = state(ask(again, "open", name="mine.toml", text=text, file=True)[0]).content

@@ -256,6 +256,14 @@ def test_a_crank_that_cannot_turn_swings_and_can_be_dragged() -> None:
     assert told["type"] == "balanced" and told["aims"][0]["after"] < told["aims"][0]["before"]
 
 
+def test_what_a_drive_holds_is_told_where_it_is_dragged() -> None:
+    session, first = opened("hydraulic-loader")
+    assert first.content["held"] is None
+    told = edit(session, move("B", 0.95 - 0.05j, at=90)).content["held"]
+    assert told.startswith("the stroke of the drive sets where B is at this crank angle")
+    assert edit(session, move("Q", -0.1 + 0.32j, at=90)).content["held"] is None
+
+
 @pytest.mark.parametrize(
     ("given", "told"),
     [

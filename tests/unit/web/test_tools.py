@@ -161,7 +161,7 @@ def test_the_file_of_a_tool_is_saved_in_place(path: Path) -> None:
     ask(again, "save")
     assert eq.load(path).shaft == eq.load("brush-cutter").shaft
     (refused,) = ask(begun("pole-saw")(), "save")
-    assert "not opened from a file" in refused.content["message"]
+    assert "pole-saw was not opened from a file" in refused.content["message"]
 
 
 def test_a_tool_that_is_dropped_takes_its_tables_along() -> None:
