@@ -152,7 +152,7 @@ def merged(plan: Balance, values: Mapping[str, Pair]) -> dict[Objective, Pair]:
 def figures_of(machine: Machine) -> dict[str, float]:
     """Figures by name, such as ``shaking_force.rms``, but for those of planting; SI units.
 
-    Moments are about the drive's pivot; areas are those under the absolute value over a turn, in J.
+    Moments are about the drive's pivot; areas are under the absolute value over 360 deg, in J.
     """
     motion = move(machine, ANGLES, acceleration=0.0)
     figures = {"mass": machine.mass}

@@ -73,7 +73,7 @@ def analyze(
     dwell: Annotated[Any, read_by(tolerance, '"0.5 mm"')] = None,
     outputs: Printed = Printed(),
 ) -> None:
-    """Motion, shaking force and moment, drive torque and every joint force over a turn.
+    """Motion, shaking force and moment, drive torque and every joint force over a cycle.
 
     Parameters
     ----------

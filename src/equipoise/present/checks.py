@@ -45,10 +45,12 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     free = "one free motion" if not machine.drives else f"{len(machine.driven)} free motions"
     yield Text(f"{len(machine.links)} moving links, {free}; driven: {told}")
     yield from map(Text, _build_up(linkage))
+    crank = machine.crank_turns
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
+    after = turns if crank else f"{360 * cycle.turns} deg of crank angle"
     repeats = "motion repeats" if turns_given(machine) == 1 else "motion and loads repeat"
-    fully = "" if drive.pushes or drive.motion is not None else "the crank turns fully; "
-    yield Text(f"{fully}the {repeats} after {turns}")
+    fully = "the crank turns fully; " if crank else ""
+    yield Text(f"{fully}the {repeats} after {after}")
     yield from bodies_tables(machine)
     parts = (
         *_springs(machine),

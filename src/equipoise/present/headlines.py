@@ -50,17 +50,18 @@ def heaviest(analysis: Analysis) -> str:
 
 
 def longest(analysis: Analysis) -> str:
-    """Which point of a moving link goes farthest in a turn of the crank."""
-    turns = analysis.motion.turns
+    """Which point of a moving link goes farthest in a turn of the crank, or a cycle without one."""
+    turns = analysis.motion.turns if analysis.machine.crank_turns else 1
     lengths = {
         name: float(np.sum(np.abs(point.place - np.roll(point.place, 1)))) / turns
         for name, point in analysis.motion.points.items()
     }
     name, length = largest_of(lengths)
     size = told(length, "length", digits=3)
-    return say(
-        "{point} goes farthest: {length} in a turn of the crank", point=named(name), length=size
-    )
+    in_turn = to_say("{point} goes farthest: {length} in a turn of the crank")
+    in_cycle = to_say("{point} goes farthest: {length} in a cycle")
+    template = in_turn if analysis.machine.crank_turns else in_cycle
+    return say(template, point=named(name), length=size)
 
 
 def fastest(analysis: Analysis) -> str:

@@ -261,6 +261,9 @@ def angles_told(analysis: Analysis) -> str:
     count = len(motion.crank_angle)
     if not motion.whole_cycle:
         return say("{angles} crank angles", angles=count)
+    if not analysis.machine.crank_turns:
+        cycle = 360 * motion.turns
+        return say("{angles} crank angles in a cycle of {cycle} deg", angles=count, cycle=cycle)
     if motion.turns == 1:
         return say("{angles} crank angles in a turn, after which everything repeats", angles=count)
     return say(

@@ -39,7 +39,7 @@ CHARTS = {
         "Phases between the rows change it."
     ),
     "spectrum": to_say(
-        "How much of the signal comes once, twice and more often in a turn of the crank. A "
+        "How much of the signal comes once, twice and more often in 360° of crank angle. A "
         "counterweight on the crank acts on order 1 alone; an order that meets a natural frequency "
         "of the support shakes it most."
     ),

@@ -12,15 +12,17 @@ import pytest
 
 import equipoise as eq
 from equipoise.i18n import LANGUAGES
+from equipoise.present.checks import machine_blocks
 from equipoise.present.composition import SHORT, build
 from equipoise.present.findings import Findings, find
-from equipoise.present.headlines import caused, ordered, pushed
+from equipoise.present.headlines import caused, longest, ordered, pushed
 from equipoise.present.pages import Document, page, paired, pdf
 from equipoise.present.shaking import Shaking
 from equipoise.present.summary import answers, tiles
 from equipoise.quantities import brief
 from equipoise.results.analysis_blocks import orders_table
 from equipoise.results.blocks import Drawn, Table, Value
+from equipoise.results.machine_blocks import angles_told
 from support.found import found as found_of
 
 
@@ -51,6 +53,21 @@ def test_lines_are_of_this_machine_at_this_speed() -> None:
     assert slow["forces"] == "Up to 23.2 N shakes the frame"
     assert slow["forces"] != fast["forces"] and slow["motion"] == fast["motion"]
     assert "70.9 N" in slow["joints"] and " %" in slow["balance"]
+
+
+@pytest.mark.parametrize(
+    ("name", "length"), [("hydraulic-loader", "in a cycle"), ("four-stroke-engine", "in a turn")]
+)
+def test_a_turn_is_told_only_where_a_crank_turns(name: str, length: str) -> None:
+    """Of a cylinder's stroke the way of a whole cycle is told, there and back."""
+    analysis = eq.analyze(eq.load(name), 72)
+    told, places = longest(analysis), [one.place for one in analysis.motion.points.values()]
+    way = max(float(np.sum(np.abs(place - np.roll(place, 1)))) for place in places)
+    turns = analysis.motion.turns if length == "in a turn" else 1
+    (size,) = re.findall(rf": ([\d.]+) mm {length}", told)
+    assert float(size) == pytest.approx(way / turns * 1e3, rel=5e-3)
+    lines = [angles_told(analysis), *(str(one) for one in machine_blocks(analysis.machine))]
+    assert any(" turn" in line for line in lines) == (length == "in a turn")
 
 
 @pytest.mark.parametrize(

@@ -122,7 +122,7 @@ class FullTurn:
         for begin in starts:
             later = [stop for stop in stops if stop > begin]
             ranges.append((begin, min(later)) if later else (begin - period, min(stops)))
-        if self.machine.drive.pushes or self.machine.drive.motion is not None:
+        if not self.machine.crank_turns:
             return RangeError(self.beyond(dip, names), tuple(ranges))
         told = all_of(
             [

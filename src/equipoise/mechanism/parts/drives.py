@@ -262,4 +262,9 @@ class Driven:
     @property
     def has_crank(self) -> bool:
         """Whether one link alone is driven and turns with the crank angle."""
-        return not (self.drives or self.drive.motion or self.drive.pushes)
+        return not self.drives and self.crank_turns
+
+    @property
+    def crank_turns(self) -> bool:
+        """Whether the first driven link turns evenly; else the crank angle is a phase alone."""
+        return not (self.drive.motion or self.drive.pushes)

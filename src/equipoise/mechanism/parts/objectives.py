@@ -31,7 +31,7 @@ from equipoise.quantities import NUMBER, Dimension, pattern
 
 MEASURES: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak", "area")
 """Root of the mean square, the same about the mean, largest size, largest minus smallest value, and
-area under the absolute value over one turn of the crank."""
+area under the absolute value over 360 degrees of crank angle."""
 MEASURED_IN: tuple[Dimension, ...] = ("force", "torque", "power", "energy", "length", "angle")
 """What measures of outputs can be."""
 OF_ROWS = tuple(
@@ -65,8 +65,8 @@ class Objective(Frozen):
     measure: Measure = key(
         Text(MEASURES),
         "`rms`: root of the mean square; `ripple`: the same about the mean; `peak`: largest size; "
-        "`peak_to_peak`: largest minus smallest value; `area`: under the size, over one turn of "
-        "the crank",
+        "`peak_to_peak`: largest minus smallest value; `area`: under the size, over 360 "
+        "degrees of crank angle",
         default="rms",
     )
     orders: tuple[float, ...] = key(
