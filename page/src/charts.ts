@@ -37,6 +37,8 @@ export class Charts {
   private state: State | null = null;
   /** An unfinished machine has nothing to draw. */
   private asleep = false;
+  /** The charts that come first. */
+  private leads: State["first"] | null = null;
   /** Of a design that is drawn pale. */
   private ghost: Numbers | null = null;
   private heard: [ResponseMessage, Numbers] | null = null;
@@ -112,7 +114,7 @@ export class Charts {
     this.squares.classList.toggle("alone", !forces);
     // Rows that stand still have no forces together.
     show(this.whoseRow, state.numbers.has(`${ROWS}shaking_force`));
-    if (other) this.arrange(state.first);
+    if (state.first !== this.leads) this.arrange(state.first);
     if (other) this.offer(state);
     this.again(other);
   }
@@ -152,6 +154,7 @@ export class Charts {
 
   /** Charts in their order, but first those that tell what the machine is for. */
   private arrange(first: State["first"]): void {
+    this.leads = first;
     const { squares, forces, answers } = this;
     const groups = { squares, forces, output: this.outputs.root, answers };
     this.root.append(this.whoseRow, ...Object.values(groups));

@@ -202,6 +202,19 @@ def test_the_whole_and_its_lists_keep_what_is_not_in_their_form() -> None:
     )  # fmt: skip
 
 
+def test_bearings_come_and_go_in_twos() -> None:
+    session, _ = opened("yamashita-1")
+    crank = group(tables(session), "links")["entries"][0]
+    enter(session, ["links", "crank"], {**crank["values"], "plane": "10 mm"})
+    enter(session, ["bearings", "front"], {"link": "crank", "plane": "-20 mm"})
+    planes = {name: one.plane for name, one in session.shown.design.own.bearings.items()}
+    assert planes == {"front": -0.02, "front2": pytest.approx(0.04)}
+    enter(session, ["bearings", "front2"], {"link": "crank", "plane": "30 mm"}, name="back")
+    assert session.shown.design.own.bearings["back"].plane == 0.03
+    enter(session, ["bearings", "front"], None)
+    assert not session.shown.design.own.bearings
+
+
 # -- refusals --------------------------------------------------------------------------------------
 
 
