@@ -83,16 +83,20 @@ export class Form {
     this.root.querySelector<HTMLElement>("input, select")?.focus();
   }
 
-  /** Say at its key why it is not taken, with the form's words in place of the file's. */
+  /** Say at its key why it is not taken. */
   refused(message: string, told: Refused | null): void {
     const { path, what } = told ?? {};
     const key = path === undefined ? null : keyOf(path, this.subject.where);
     const here = key !== null || path === this.subject.where;
-    let text = here ? (what ?? message) : message;
-    for (const { key, word } of this.controls)
-      if (key.includes("_")) text = text.replace(new RegExp(`\\b${key}\\b`, "g"), word);
+    const text = this.inWords(here ? (what ?? message) : message);
     if (key !== null && this.errors.has(key)) this.wrong(key, text)?.focus();
     else this.say(this.problem, text);
+  }
+
+  /** A sentence with the names that keys have in the form, in place of those of the file. */
+  private inWords(sentence: string): string {
+    const named = this.controls.filter(({ key }) => key.includes("_"));
+    return named.reduce((text, { key, word }) => text.replace(new RegExp(`\\b${key}\\b`, "g"), word), sentence);
   }
 
   /** Say at a key what is wrong, and give back what it is typed into. */
@@ -212,7 +216,7 @@ export class Form {
       { class: "key", "data-key": key },
       h("span", { class: "word" }, word, marked, unit ? h("span", { class: "unit" }, ` ${unit}`) : null),
       one.element,
-      h("p", { class: "quiet", id: told }, text),
+      h("p", { class: "quiet", id: told }, this.inWords(text)),
       this.lineOf(key),
     );
     this.rows.set(key, row);

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import count
@@ -25,6 +26,8 @@ APART = 0.05
 MOST_WORDS = 4
 """Keys of an entry that are told where it is listed."""
 LONGEST_VALUE = 40
+MANY_DIGITS = re.compile(r"^-?\d*\.\d{6,}(?:e-?\d+)?(?= )")
+"""A computed number before its unit."""
 WHOLE = to_say("machine"), to_say("title, gravity and what else is of the whole")
 """What the table around all others is called, and what it holds."""
 
@@ -176,6 +179,7 @@ def _brief(value: Any) -> str:
         text = " ".join(map(_brief, value))
     else:
         text = value if isinstance(value, str) else value_text(value)
+        text = MANY_DIGITS.sub(lambda found: f"{float(found[0]):.6g}", text)
     return text if len(text) <= LONGEST_VALUE else f"{text[: LONGEST_VALUE - 1]}…"
 
 
