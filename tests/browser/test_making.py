@@ -123,6 +123,7 @@ def test_a_four_bar_is_made_by_mouse(sheet: Sheet) -> None:
     sheet.take("Point")
     sheet.click((60, -28))
     expect(sheet.live.field("coupler E, x")).to_be_visible()
+    expect(sheet.live.page.get_by_role("combobox", name="Path of")).to_have_value("E")
     numbers = {"frame A to B": "88 mm", "frame A to B, direction": "-83 deg"}
     numbers |= {"crank A to C": "33.5 mm", "coupler C to D": "71.5 mm", "rocker B to D": "80 mm"}
     sheet.type(**numbers, **{"coupler E, x": "-160 mm", "coupler E, y": "-40 mm"})
