@@ -142,7 +142,7 @@ def test_a_four_bar_is_made_by_mouse(sheet: Sheet) -> None:
 
 
 def test_a_slider_crank_is_made_by_finger(new_page: Callable[..., Page], address: str) -> None:
-    live = Live.open(new_page(has_touch=True), address)
+    live = Live.open(new_page(has_touch=True, viewport={"width": 400, "height": 800}), address)
     live.button("New").tap()
     sheet = Sheet(live, finger=True)
     sheet.take("Point")
