@@ -37,6 +37,11 @@ export class Charts {
   private state: State | null = null;
   /** An unfinished machine has nothing to draw. */
   private asleep = false;
+  /** Paths that are offered. */
+  private paths = "";
+  private firstPath = "";
+  /** The charts that come first. */
+  private leads: State["first"] | null = null;
   /** Of a design that is drawn pale. */
   private ghost: Numbers | null = null;
   private heard: [ResponseMessage, Numbers] | null = null;
@@ -112,8 +117,8 @@ export class Charts {
     this.squares.classList.toggle("alone", !forces);
     // Rows that stand still have no forces together.
     show(this.whoseRow, state.numbers.has(`${ROWS}shaking_force`));
-    if (other) this.arrange(state.first);
-    if (other) this.offer(state);
+    if (state.first !== this.leads) this.arrange(state.first);
+    this.offer(state, other);
     this.again(other);
   }
 
@@ -152,13 +157,14 @@ export class Charts {
 
   /** Charts in their order, but first those that tell what the machine is for. */
   private arrange(first: State["first"]): void {
+    this.leads = first;
     const { squares, forces, answers } = this;
     const groups = { squares, forces, output: this.outputs.root, answers };
     this.root.append(this.whoseRow, ...Object.values(groups));
     this.whoseRow.after(groups[first]);
   }
 
-  private offer(state: State): void {
+  private offer(state: State, other: boolean): void {
     const names = state.numbers.names("place.").map((name) => name.slice(6));
     const moving = names.filter((name) => !state.scene.frame.includes(name));
     const first = state.traced;
@@ -168,7 +174,17 @@ export class Charts {
       say("{point} over ground", { point }),
     ]);
     const paths = points.map((point): [string, string] => [point, say("Path of {point}", { point })]);
-    this.pathOf.offer([...ground, ...paths]);
+    const options = [...ground, ...paths];
+    const shape = JSON.stringify(options);
+    if (shape === this.paths && !other) return;
+    const chosen = this.pathOf.value;
+    const leads = options[0]?.[0] ?? "";
+    this.paths = shape;
+    this.pathOf.offer(options);
+    // The first is what the machine is for: until that is another, what was chosen stays.
+    if (!other && leads === this.firstPath && this.pathOf.has(chosen)) this.pathOf.value = chosen;
+    this.firstPath = leads;
+    if (!other) return;
     this.whose.offer([
       [ROWS, say("Forces of all rows together")],
       ["", say("Forces of one row")],

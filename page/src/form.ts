@@ -35,12 +35,17 @@ export interface FormEvents {
 
 /** What a value is given in. */
 const GIVEN = "input, select";
+/** In place of a key, the name of what is edited. */
+const NAME = "";
 
 export class Form {
   readonly root: HTMLFormElement;
   private readonly inputs = new Map<string, Input>();
   private readonly errors = new Map<string, HTMLElement>();
   private readonly rows = new Map<string, HTMLElement>();
+  private readonly controls: Control[];
+  /** Keys that have to be given. */
+  private readonly needed = new Set<string>();
   private readonly name: HTMLInputElement | null;
   private readonly problem = h("p", { class: "error", role: "alert", hidden: true });
   private readonly files: Record<string, string> = {};
@@ -56,7 +61,8 @@ export class Form {
     this.root.append(h("h2", {}, heading), h("p", { class: "quiet" }, text));
     if (this.name) this.root.append(this.named(this.name, subject.name ?? ""));
     const around = this.around(tables);
-    for (const control of tables.forms[subject.form]?.controls ?? [])
+    this.controls = tables.forms[subject.form]?.controls ?? [];
+    for (const control of this.controls)
       this.root.append(this.row(control, around));
     this.root.append(
       this.problem,
@@ -81,26 +87,48 @@ export class Form {
   refused(message: string, told: Refused | null): void {
     const { path, what } = told ?? {};
     const key = path === undefined ? null : keyOf(path, this.subject.where);
-    const line = key === null ? undefined : this.errors.get(key);
-    if (!line) return this.say(this.problem, message);
-    this.say(line, what ?? message);
+    const here = key !== null || path === this.subject.where;
+    const text = this.inWords(here ? (what ?? message) : message);
+    if (key !== null && this.errors.has(key)) this.wrong(key, text)?.focus();
+    else this.say(this.problem, text);
+  }
+
+  /** A sentence with the names that keys have in the form, in place of those of the file. */
+  private inWords(sentence: string): string {
+    const named = this.controls.filter(({ key }) => key.includes("_"));
+    return named.reduce((text, { key, word }) => text.replace(new RegExp(`\\b${key}\\b`, "g"), word), sentence);
+  }
+
+  /** Say at a key what is wrong, and give back what it is typed into. */
+  private wrong(key: string, text: string): HTMLElement | null {
+    const line = this.errors.get(key) as HTMLElement;
+    this.say(line, text);
     const row = line.parentElement as HTMLElement;
     const first = row.querySelector<HTMLElement>(GIVEN);
     set(first ?? row, { "aria-invalid": "true", "aria-errormessage": line.id });
-    first?.focus();
+    return first;
+  }
+
+  /** Ask at its field for each thing that has to be given, and is not; whether any is. */
+  private asks(values: Values, name: string | null): boolean {
+    const lacking = this.controls.filter(({ key }) => this.needed.has(key) && !(key in values));
+    const fields = lacking.map((control) => this.wrong(control.key, wantOf(control)));
+    if (name === "") fields.unshift(this.wrong(NAME, say("Give it a name.")));
+    fields[0]?.focus();
+    return fields.length > 0;
   }
 
   /** Show the keys that go with what is given, and mark those that have to be. */
   private follow(): void {
     const { form, below } = this.subject;
     const beside = Object.fromEntries(below.map((key) => [key, true]));
-    const { rule = {}, controls = [] } = this.tables.forms[form] ?? {};
-    const { needed, out } = demandsOf(rule, { ...this.given(), ...beside });
-    for (const { key, required } of controls) {
-      const row = this.rows.get(key);
-      if (!row) continue;
+    const { needed, out } = demandsOf(this.tables.forms[form]?.rule ?? {}, { ...this.given(), ...beside });
+    this.needed.clear();
+    for (const { key, required } of this.controls) {
+      const row = this.rows.get(key) as HTMLElement;
       row.hidden = out.has(key);
-      row.querySelector(".needed")?.toggleAttribute("hidden", !required && !needed.has(key));
+      if (!row.hidden && (required || needed.has(key))) this.needed.add(key);
+      row.querySelector(".needed")?.toggleAttribute("hidden", !this.needed.has(key));
     }
     this.inputs.forEach((one) => one.refresh?.());
   }
@@ -137,7 +165,7 @@ export class Form {
       this.hush();
       const values = this.given();
       const name = this.name ? this.name.value.trim() : null;
-      this.events.saved(this.subject.place, values, name, this.files);
+      if (!this.asks(values, name)) this.events.saved(this.subject.place, values, name, this.files);
     });
     this.root.addEventListener("change", () => this.follow());
     this.root.addEventListener("keydown", (event) => {
@@ -169,17 +197,16 @@ export class Form {
   private named(field: HTMLInputElement, name: string): HTMLElement {
     field.value = name;
     set(field, { "aria-label": say("name"), autocomplete: "off", spellcheck: "false" });
-    return h("div", { class: "key" }, h("span", { class: "word" }, say("name")), field);
+    const word = h("span", { class: "word" }, say("name"));
+    return h("div", { class: "key" }, word, field, this.lineOf(NAME));
   }
 
   private row(control: Control, around: Around): HTMLElement {
     const { key, word, text, required, unit } = control;
     const told = fresh("told");
-    const error = h("p", { class: "error", id: fresh("error"), role: "alert", hidden: true });
     const one = input(control, word, around, hintOf(control));
     one.set(this.subject.values[key]);
     this.inputs.set(key, one);
-    this.errors.set(key, error);
     const first = one.element.matches(GIVEN) ? one.element : one.element.querySelector(GIVEN);
     if (first) set(first, { "aria-describedby": told });
     const needed = { class: "needed", title: say("required"), hidden: !required };
@@ -189,11 +216,18 @@ export class Form {
       { class: "key", "data-key": key },
       h("span", { class: "word" }, word, marked, unit ? h("span", { class: "unit" }, ` ${unit}`) : null),
       one.element,
-      h("p", { class: "quiet", id: told }, text),
-      error,
+      h("p", { class: "quiet", id: told }, this.inWords(text)),
+      this.lineOf(key),
     );
     this.rows.set(key, row);
     return row;
+  }
+
+  /** The line for what is wrong at a key. */
+  private lineOf(key: string): HTMLElement {
+    const line = h("p", { class: "error", id: fresh("error"), role: "alert", hidden: true });
+    this.errors.set(key, line);
+    return line;
   }
 }
 
@@ -202,6 +236,13 @@ function hintOf({ default: usual, example, required, kind }: Control): string {
   const shown = usual ?? (required || kind === "choice" || kind === "name" ? null : example);
   if (shown === null || kind === "list" || kind === "names" || kind === "place") return "";
   return usual === null ? say("such as {example}", { example: brief(shown) }) : brief(shown);
+}
+
+/** What to do at a key that has to be given. */
+function wantOf({ example, kind }: Control): string {
+  if (kind === "choice" || kind === "name") return say("Choose one.");
+  const plain = example !== null && typeof example !== "object";
+  return plain ? say("Give it, such as {example}.", { example: brief(example) }) : say("Give it.");
 }
 
 function brief(value: Plain): string {

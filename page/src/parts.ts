@@ -204,14 +204,9 @@ export class Parts {
     name: string | null,
     files: Record<string, string>,
   ): void {
-    const fresh = subject.name === "";
     // What is as it was is no step.
     if (subject.known && name === subject.name && same(values, subject.values)) return this.close();
-    if (fresh && name === "") {
-      const message = say("Give it a name.");
-      return this.form?.refused(message, null);
-    }
-    const at = fresh ? [...place.slice(0, -1), name ?? ""] : place;
+    const at = subject.name === "" ? [...place.slice(0, -1), name ?? ""] : place;
     const more = { ...(name && { name }), ...(Object.keys(files).length && { files }) };
     this.put(at, values, subject.heading, more);
   }

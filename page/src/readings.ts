@@ -191,7 +191,7 @@ export function comparison(
       ),
       h("td", {}, before),
       h("td", { class: "after" }, after),
-      h("td", { class: way }, change),
+      h("td", { class: way }, unbroken(change)),
     ),
   );
   const head = heads.map((text) => h("th", { scope: "col" }, text));

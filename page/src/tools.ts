@@ -179,7 +179,8 @@ export class Tools {
       if (now.pointerId !== event.pointerId) return;
       for (const name of ["pointerup", "pointercancel"] as const) svg.removeEventListener(name, stop);
       const end = this.spot(now);
-      const far = Math.hypot(end[0] - start[0], end[1] - start[1]) > FAR;
+      // On the screen: where lines above wrap, the sheet moves below a finger that rests.
+      const far = Math.hypot(now.clientX - event.clientX, now.clientY - event.clientY) > FAR;
       if (now.type !== "pointerup" || !far) return;
       this.soon(() => begun && this.pending && this.put(this.at(end, now.shiftKey)));
     };

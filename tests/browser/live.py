@@ -97,7 +97,7 @@ class Live:
     def download(self, name: str) -> tuple[str, str]:
         """Choose one of the downloads, and return its file's name and text."""
         self.settled()
-        self.page.get_by_text("Download", exact=True).click()
+        self.page.get_by_title("Download", exact=True).click()
         with self.page.expect_download() as coming:
             self.button(name).click()
         return coming.value.suggested_filename, coming.value.path().read_text(encoding="utf-8")

@@ -123,6 +123,7 @@ def test_a_four_bar_is_made_by_mouse(sheet: Sheet) -> None:
     sheet.take("Point")
     sheet.click((60, -28))
     expect(sheet.live.field("coupler E, x")).to_be_visible()
+    expect(sheet.live.page.get_by_role("combobox", name="Path of")).to_have_value("E")
     numbers = {"frame A to B": "88 mm", "frame A to B, direction": "-83 deg"}
     numbers |= {"crank A to C": "33.5 mm", "coupler C to D": "71.5 mm", "rocker B to D": "80 mm"}
     sheet.type(**numbers, **{"coupler E, x": "-160 mm", "coupler E, y": "-40 mm"})
@@ -141,7 +142,7 @@ def test_a_four_bar_is_made_by_mouse(sheet: Sheet) -> None:
 
 
 def test_a_slider_crank_is_made_by_finger(new_page: Callable[..., Page], address: str) -> None:
-    live = Live.open(new_page(has_touch=True), address)
+    live = Live.open(new_page(has_touch=True, viewport={"width": 400, "height": 800}), address)
     live.button("New").tap()
     sheet = Sheet(live, finger=True)
     sheet.take("Point")

@@ -92,6 +92,10 @@ def test_a_spring_and_a_body_are_added_changed_and_deleted(live: Live) -> None:
     page = live.page
     page.get_by_text("Parts of the model").click()
     form = add(live, "springs:")
+    press(form, "Save")
+    expect(form.locator("[data-key=link] .error")).to_have_text("Choose one.")
+    expect(form.locator("[data-key=stiffness] .error")).to_contain_text("Give it, such as ")
+    expect(form.get_by_label("link", exact=True)).to_be_focused()
     press(form, "Show point on the drawing")
     x, y = live.spot(live.joint("P"))
     page.mouse.click(x + 3, y - 2)

@@ -209,7 +209,7 @@ GEARED = ("lee-kim-b", "--geared-counterweight", "rocker", "--pitch-radius", "50
 def test_a_geared_counterweight_of_one_ratio() -> None:
     words = (*GEARED, "--ratio", "0.8", "--radius", "74.257 mm")
     text = run(*words, "-o", "geared.toml")
-    assert cells(text, "shaking moment, area over 360 deg, J")[:2] == ["14.31", "9.928"]
+    assert cells(text, "shaking moment, area over a full angle, J")[:2] == ["14.31", "9.928"]
     assert "counterweight: a shaft at (186.5, 0) mm of the frame, geared to rocker" in text
     assert "geared to rocker, no choice makes " in text
     assert cells(text, "force in joint counterweight-axis, peak, N")[-1] == "new"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from math import pi
 from typing import TYPE_CHECKING
 
 from equipoise.errors import ModelError
@@ -14,7 +15,7 @@ from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.loads import work_in_cycle
 from equipoise.mechanism.parts.support import idle_parts
-from equipoise.quantities import PER_RPM, SI, Dimension, display, number, told
+from equipoise.quantities import PER_RPM, SI, Dimension, angle, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import cams_told, where_lost
 from equipoise.results.drive_blocks import driven
@@ -47,7 +48,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     yield from map(Text, _build_up(linkage))
     crank = machine.crank_turns
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
-    after = turns if crank else f"{360 * cycle.turns} deg of crank angle"
+    after = turns if crank else f"{angle(2 * pi * cycle.turns, 0)} of crank angle"
     repeats = "motion repeats" if turns_given(machine) == 1 else "motion and loads repeat"
     fully = "the crank turns fully; " if crank else ""
     yield Text(f"{fully}the {repeats} after {after}")

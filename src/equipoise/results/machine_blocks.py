@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -262,8 +263,8 @@ def angles_told(analysis: Analysis) -> str:
     if not motion.whole_cycle:
         return say("{angles} crank angles", angles=count)
     if not analysis.machine.crank_turns:
-        cycle = 360 * motion.turns
-        return say("{angles} crank angles in a cycle of {cycle} deg", angles=count, cycle=cycle)
+        cycle = angle(2 * pi * motion.turns, 0)
+        return say("{angles} crank angles in a cycle of {cycle}", angles=count, cycle=cycle)
     if motion.turns == 1:
         return say("{angles} crank angles in a turn, after which everything repeats", angles=count)
     return say(

@@ -240,7 +240,7 @@ MEASURES = {
     "ripple": to_say("RMS about the mean"),
     "peak": to_say("peak"),
     "peak_to_peak": to_say("peak to peak"),
-    "area": to_say("area over 360 deg"),
+    "area": to_say("area over a full angle"),
 }
 FIGURES = MEASURES | {
     "mean": to_say("mean"),

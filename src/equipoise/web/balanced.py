@@ -29,8 +29,9 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note, said, say
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective
+from equipoise.mechanism.parts.bodies import Body
 from equipoise.mechanism.parts.machine import Link, Machine
-from equipoise.quantities import clean, display, told
+from equipoise.quantities import clean, clean_place, display, told
 from equipoise.results.outputs import objective_named, shown_in
 from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
 from equipoise.web.drawn import Drawn
@@ -106,6 +107,10 @@ def nothing_gained(found: Balanced) -> str | None:
     return f"nothing to gain: balancing would not make {aims_told(found)} smaller by {share}"
 
 
+KEPT = 9
+"""Digits of a place: a program finds -1e-12 m beside 40 mm for 0."""
+
+
 def balanced_design(base: Design, found: Balanced) -> Design:
     """The balanced machine, whose masses on pins of the frame can be changed further.
 
@@ -120,7 +125,7 @@ def balanced_design(base: Design, found: Balanced) -> Design:
         if own is not None and _same(own, link):
             links[name] = base.own.links[name]
             continue
-        links[name] = link  # which has its counterweight in it
+        links[name] = link if own is None else _clean(own, link)  # with its counterweight in it
         whole = whole and name not in {one.link for one in found.plan.masses}
         if weight is not None:
             weights[name] = replace(weight, mass=0.0)
@@ -129,12 +134,27 @@ def balanced_design(base: Design, found: Balanced) -> Design:
     return Design(base.name, own_machine, MappingProxyType(weights), plan)
 
 
+def _clean(own: Link, link: Link) -> Link:
+    """A link whose point masses that are new have numbers as somebody would have given them."""
+    bodies = [one if one in own.bodies else _rounded(one) for one in link.bodies]
+    return link.altered(bodies=tuple(bodies)) if bodies else link
+
+
+def _rounded(body: Body) -> Body:
+    if not isinstance(body.at, tuple) or body.mass is None:
+        return body
+    x, y = clean_place(complex(*body.at), digits=KEPT)
+    at = clean(x, "length"), clean(y, "length")
+    return replace(body, at=at, mass=clean(body.mass, "mass"))
+
+
 def _weights(base: Design, found: Balanced) -> dict[str, Counterweight]:
     """Masses that were found about pins of the frame, by link."""
     weights = {}
     for change in found.changes:
         link, values = change.link, dict(change.values)
-        known = link in base.own.links  # and no shaft that is new
+        # No shaft that is new, and nothing beside the link's plane: a counterweight lies in it.
+        known = link in base.own.links and "plane" not in values
         if known and values.get("pieces") and values["at"] == pin_of(base.own, link):
             beyond = values["inertia"] / values["mass"] - values["radius"] ** 2
             point = beyond <= SPREAD * values["radius"] ** 2

@@ -20,9 +20,10 @@ Found = TypeVar("Found")
 
 MOMENT = 0.1
 """s of computing, below which an answer is quick."""
-HEAPS, LARGE = (-8, 2), (-3, 256 * 1024)
+HEAPS, LARGE, KEPT = (-8, 2), (-3, 4 << 20), (-1, 16 << 20)
 """Of glibc's `mallopt`: how many heaps threads share; bytes from where on memory is given back to
-the system as soon as it is free."""
+the system as soon as it is free, and how many may be free at a heap's end.  The arrays of one
+answer stay below: to get their pages anew each time takes a tenth of the time of the answer."""
 
 
 def share_heaps() -> None:
@@ -32,7 +33,7 @@ def share_heaps() -> None:
     lives long grows though it holds no more than before.
     """
     if mallopt := _of_heaps("mallopt"):
-        for option in HEAPS, LARGE:
+        for option in HEAPS, LARGE, KEPT:
             mallopt(*option)
 
 

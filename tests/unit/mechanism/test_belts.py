@@ -13,10 +13,14 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError, MotionError, UsageError
 from equipoise.mechanism import Belt, Position, Rack
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.dynamics.assessment import remarks
+from equipoise.mechanism.kinematics.crossing import crossings
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.results.analysis_blocks import analysis_blocks
 from equipoise.results.belt_blocks import slack
 from equipoise.results.blocks import Notes
+from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
 from support.machines import make
 from unit.mechanism.build import ORIGIN, crank_rocker, heavy, machine, refused
@@ -205,6 +209,30 @@ def test_a_belt_across_a_link_of_its_carrier() -> None:
             lambda: assembled(given))  # fmt: skip
 
 
+@pytest.mark.parametrize(("length", "told"), [(0.25, 235.0), (0.45, 220.0), (0.19, None)])
+def test_a_strand_across_a_link_that_turns_beside_it(length: float, told: float | None) -> None:
+    """The strands lie 0.1 m beside the line of the pins, the link's pin 0.3 m: on the arm it dips
+    below them where its sine, of the crank angle, is below -0.2 / length; a long one at the ends of
+    the strand first, where its slope is 0.2 / 0.25.  Every 5 deg are looked at.
+    """
+    links = {
+        "arm": heavy(A=ORIGIN, B=(0.25, 0.3), C=(0.5, 0.0)),
+        "rod": heavy(B=ORIGIN, D=(length, 0.0)),
+        "planet": heavy(C=ORIGIN),
+    }
+    one = Belt(FRAME, "planet", radii=(0.1, 0.1), carrier="arm")
+    gears = (eq.Gear(FRAME, "rod", ratio=-1.0, carrier="arm"),)
+    given = machine({"A": ORIGIN}, links, drive=eq.Drive("arm", 2.0), gears=gears, belts=(one,))
+    found = [str(one) for one in remarks(assemble(given)) if "strand" in str(one)]
+    sentence = (
+        "belts[1]: a strand lies across 'rod' at crank angle {} deg; move B, change the radii, or "
+        "give 'rod' a plane of its own"
+    )
+    assert found == ([sentence.format(f"{told:.4g}")] if told else [])
+    beside = {**links, "rod": replace(links["rod"], plane=0.01)}
+    assert not [*crossings(assemble(replace(given, links=beside)))]
+
+
 def test_a_belt_needs_both_pulleys_on_its_carrier() -> None:
     four = crank_rocker()
     given = replace(four, links={**four.links, "wheel": heavy(C=ORIGIN)}, belts=(belt(),))
@@ -282,6 +310,15 @@ def test_strands_and_racks_are_drawn() -> None:
     np.testing.assert_allclose(bar.imag.max(axis=1), module - 0.07, atol=1e-12)
     assert bar.real.min(axis=1).max() == pytest.approx(-0.07)
     assert bar.real.max(axis=1).min() == pytest.approx(0.07)
+
+
+@pytest.mark.parametrize(("side", "sense"), [("left", 1), ("right", -1)])
+def test_the_guide_of_a_rack_is_hatched_away_from_its_teeth(side: Any, sense: int) -> None:
+    scene = Scene.of(eq.move(racked(Rack("rocker", "ram", 0.07, side)), 12))
+    (guide,) = (piece for piece in pieces(scene) if piece.layer == "guides")
+    begin, end = (one.offsets / np.exp(0.3j) for one in (guide.shapes[0], guide.shapes[-1]))
+    assert guide.shapes[0].role == "hatch" and guide.shapes[-1].role == "rail"
+    assert np.all(begin.imag * sense < 0) and np.all(end.imag * sense > 0)
 
 
 def test_a_file_without_racks_refuses_them(tmp_path: Path) -> None:

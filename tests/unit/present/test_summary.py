@@ -84,7 +84,7 @@ def test_what_helps_most_is_what_balancing_finds():
 
 
 def test_what_gets_worse_is_told():
-    moment = "shaking moment, area over 360 deg, by 18 %"
+    moment = "shaking moment, area over a full angle, by 18 %"
     told = text_of(found_of("stephenson-six-bar"))
     assert f"In exchange these become larger, frame and drive: {moment}" in told
 

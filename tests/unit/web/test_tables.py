@@ -202,6 +202,34 @@ def test_the_whole_and_its_lists_keep_what_is_not_in_their_form() -> None:
     )  # fmt: skip
 
 
+def test_bearings_come_and_go_in_twos() -> None:
+    session, _ = opened("yamashita-1")
+    crank = group(tables(session), "links")["entries"][0]
+    enter(session, ["links", "crank"], {**crank["values"], "plane": "10 mm"})
+    enter(session, ["bearings", "front"], {"link": "crank", "plane": "-20 mm"})
+    planes = {name: one.plane for name, one in session.shown.design.own.bearings.items()}
+    assert planes == {"front": -0.02, "front2": pytest.approx(0.04)}
+    enter(session, ["bearings", "front2"], {"link": "crank", "plane": "30 mm"}, name="back")
+    assert session.shown.design.own.bearings["back"].plane == 0.03
+    enter(session, ["bearings", "front"], None)
+    assert not session.shown.design.own.bearings
+
+
+def test_masses_that_balancing_adds_beside_a_link_are_listed_in_round_numbers() -> None:
+    session, _ = opened("yamashita-1")
+    enter(session, ["balance"], {})
+    mass = {"link": "crank", "at": "A", "radius": "30 mm", "at_most": "300 g", "plane": "20 mm"}
+    enter(session, ["balance", "masses", 0], mass)
+    enter(session, ["balance", "objectives", 0], {"output": "shaking_force"})
+    ask(session, "balance")
+    *_, body = session.shown.design.own.links["crank"].bodies
+    assert body.plane == 0.02  # and no counterweight in the plane of the link
+    assert np.hypot(*body.at) == pytest.approx(0.03)
+    assert body.at == tuple(round(one, 10) for one in body.at)
+    *_, listed = group(tables(session), "links.crank.bodies")["entries"]
+    assert all(len(number) < 11 for number in listed["words"].split()), listed["words"]
+
+
 # -- refusals --------------------------------------------------------------------------------------
 
 

@@ -14,6 +14,7 @@ from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.statics import statics
 from equipoise.mechanism.dynamics.undecided import undecided
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.crossing import crossings
 from equipoise.mechanism.parts.machine import FRAME, Machine, size_of
 
 BARS = (kernels.rrr, kernels.parallelogram)
@@ -189,6 +190,7 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
     yield from undecided(linkage).told()
     if machine.has_planes:
         yield from statics(linkage).told()
+    yield from crossings(linkage)
     yield from _jerks(machine)
     through = {group.joint for group in linkage.groups if group.through}
     for joint, (number, angle) in linkage.cycle.weakest.items():
