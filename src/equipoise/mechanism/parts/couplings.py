@@ -166,6 +166,11 @@ def wrong_ends(where: str, coupling: Coupling, bodies: Bodies) -> Iterator[Model
     ):
         yield from unknown_body(f"{where}.{between}", name, bodies)
     if len({coupling.driver, coupling.driven, coupling.carrier}) < 3:
-        yield ModelError(
-            where, Note("driver, driven link and carrier must be three different bodies")
+        told = Note(
+            "driver {driver!r}, driven link {driven!r} and carrier {carrier!r} must be three "
+            "different bodies",
+            driver=coupling.driver,
+            driven=coupling.driven,
+            carrier=coupling.carrier,
         )
+        yield ModelError(where, told)
