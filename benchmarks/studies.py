@@ -54,7 +54,8 @@ LIKE_FOUR_BAR = (
 """`geared-counterweight` has its gear, and `cam-pusher` its cam, on a link that the crank moves
 unevenly; `stephenson-six-bar` has a second dyad, on the coupler; `straw-walker` has
 twice as many links, whose motion no design changes."""
-SINES = "cam-pusher by modified sines"
+LAWS = ("modified sine", "modified trapezoid", "s-curve")
+BY_PIECES = {f"cam-pusher by {law}s": law for law in LAWS}
 EXACT, CLOSE = 1e-12, 1e-9
 """Share to which the same arithmetic agrees, and other formulas."""
 Array = np.ndarray
@@ -190,7 +191,7 @@ def other_machines(table: Table) -> None:
     times = timed(tasks, 25)
     show(f"bare loop, a turn of {ANGLES} crank angles", times)
     for name in like:
-        own = {"stephenson-six-bar": 2.4, "cam-pusher": 2.5, SINES: 2.5}
+        own = {"stephenson-six-bar": 2.4, "cam-pusher": 2.5} | dict.fromkeys(BY_PIECES, 2.5)
         limit = Limit(own.get(name, 2.2))
         table.ratio(f"{name} / four-bar", times[name], times["four-bar"], limit)
     table.ratio(f"{beside} / four-bar", times[beside], times["four-bar"], Limit(2.5))
@@ -201,12 +202,15 @@ def other_machines(table: Table) -> None:
 
 
 def with_pieces() -> dict[str, Machine]:
-    """A cam whose law has eight pieces: rises and falls of three, and two rests."""
+    """A cam whose law has eight to sixteen pieces: two rises and falls, and two rests."""
     base = eq.load("cam-pusher")
     (cam,) = base.cams
     ways = ((120, 0.012), (60, 0.012), (120, 0.0), (60, 0.0))
-    parts = tuple(LengthSegment(np.radians(over), to, "modified sine") for over, to in ways)
-    return {SINES: replace(base, cams=(replace(cam, lift=LengthLaw(segments=parts)),))}
+    found = {}
+    for name, law in BY_PIECES.items():
+        parts = tuple(LengthSegment(np.radians(over), to, law) for over, to in ways)
+        found[name] = replace(base, cams=(replace(cam, lift=LengthLaw(segments=parts)),))
+    return found
 
 
 def with_shapes() -> dict[str, Machine]:

@@ -6,7 +6,6 @@ law is evaluated at each design's own angle: its piece is looked up in tables, w
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
@@ -22,10 +21,12 @@ from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array, Call, u
 from equipoise.mechanism.formulas.curves import ROUNDING, Curve
 
-FEW = 12
+FEW = 16
 """Pieces of a curve that are told apart by comparing, which handles several angles at once."""
 ALIKE = 1e-14
 """Of the largest of some values: what differs by less than this does so by rounding."""
+DIGITS = 13
+"""Of phases, rad, so that those that differ by rounding are the same."""
 MOST_BINS = 20_000
 """Parts of a curve's length, of which none has more than one of its knots."""
 NOWHERE = 1e300
@@ -105,8 +106,10 @@ def _from_the_start(curve: Curve) -> tuple[Curve, bool]:
         return curve, False
     begins, powers, waves = curve.knots[:-1], np.zeros_like(curve.powers), curve.waves.copy()
     powers[:, :3] = np.transpose([c0 - (c1 - c2 * begins) * begins, c1 - 2 * c2 * begins, c2])
-    phases = waves[:, 2] - waves[:, 1] * begins + pi * (waves[:, 0] < 0)
-    waves[:, 0], waves[:, 2] = np.abs(waves[:, 0]), np.remainder(phases, 2 * pi)
+    phases = waves[:, 2] - waves[:, 1] * begins
+    halves = np.floor(phases / pi + ROUNDING)
+    waves[:, 0] *= np.where(halves % 2, -1.0, 1.0)
+    waves[:, 2] = np.round(phases - halves * pi, DIGITS)
     return Curve(curve.knots, powers, waves), True
 
 
@@ -139,7 +142,6 @@ class _Pieces:
     def __init__(self, writer: Writer, curve: Curve, name: str, since: str) -> None:
         """since : identifier of the way from the curve's beginning, rounding ahead."""
         self.sheet, self.name, self.curve = writer.sheet, name, curve
-        self.flags: dict[str, str] = {}
         self.few, self.even = len(curve.powers) <= FEW, False
         if self.few:
             self.behind = [
@@ -178,21 +180,11 @@ class _Pieces:
             return numbers[0]
         if not self.few:
             return self.picked(what, values, self.piece)
-        (chosen, _), *others = Counter(numbers).most_common()
-        for number, _ in others:
-            chosen = f"chosen({self.those([one == number for one in numbers])}, {number}, {chosen})"
+        chosen = numbers[0]
+        for k, (before, after) in enumerate(pairwise(numbers)):
+            if before != after:
+                chosen = f"chosen({self.behind[k]}, {after}, {chosen})"
         return self.put(what, chosen)
-
-    def those(self, pieces: Sequence[bool]) -> str:
-        """Flag of some of the pieces: from the first one on it turns at each knot beside them."""
-        turns = [k for k, both in enumerate(pairwise(pieces)) if both[0] != both[1]]
-        what = f"among {' '.join(map(str, turns))} {pieces[0]}"
-        if what not in self.flags:
-            flag = self.behind[turns[0]]
-            for k in turns[1:]:
-                flag = f"({flag} != {self.behind[k]})"
-            self.flags[what] = self.put(what, f"{flag} != True" if pieces[0] else flag)
-        return self.flags[what]
 
 
 def _bins(curve: Curve) -> int:

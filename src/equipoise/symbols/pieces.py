@@ -203,7 +203,7 @@ def _stands(scene: Scene) -> Iterator[Piece]:
     for guide in scene.guides:
         if guide.on == FRAME:
             low, high = (complex(end[0]) for end in _ends(scene, guide))
-            shapes = tuple(rails(low, high, scene.unit, grounded))
+            shapes = tuple(rails(low, high, scene.unit, grounded, guide.meshing))
             yield Piece("guides", shapes, part=_part(guide))
 
 

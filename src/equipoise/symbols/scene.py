@@ -55,6 +55,7 @@ class Guide:
     on : the body that has the line.
     behind, ahead : how far the line reaches from the block against and along its way, so that it
         holds the block at all N crank angles, (N,), m.
+    meshing : 1 where a pinion lies on the left of the line, -1 on its right, 0 where none does.
     """
 
     name: str
@@ -63,6 +64,7 @@ class Guide:
     on: str
     behind: Array
     ahead: Array
+    meshing: int = 0
 
 
 @dataclass(frozen=True)
@@ -323,6 +325,7 @@ def _solids(link: Link) -> Iterator[Outline]:
 
 
 def _guides(motion: Motion) -> Iterator[Guide]:
+    meshing = {(rack.rack, rack.carrier): rack.left for rack in motion.machine.racks}
     for slider in motion.machine.sliders:
         place = motion.points[slider.point].place
         angle = 0 * motion.crank_angle
@@ -332,4 +335,5 @@ def _guides(motion: Motion) -> Iterator[Guide]:
         way = np.exp(1j * (angle + slider.direction))
         along = (place * way.conj()).real
         ends = along - along.min(), along.max() - along
-        yield Guide(slider.name, slider.point, way, slider.on, *ends)
+        side = meshing.get((slider.link, slider.on), 0)
+        yield Guide(slider.name, slider.point, way, slider.on, *ends, side)

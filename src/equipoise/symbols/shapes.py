@@ -140,13 +140,17 @@ def pivot(place: complex, grounded: bool = True, way: complex = -1j) -> list[Sha
     ]
 
 
-def rails(low: complex, high: complex, unit: float, grounded: bool = True) -> list[Shape]:
+def rails(
+    low: complex, high: complex, unit: float, grounded: bool = True, meshing: int = 0
+) -> list[Shape]:
     """The frame on both sides of a block that slides from one place to the other.
 
     unit : m, about; by which strokes of hatching are counted.
+    meshing : 1 where something meshes with the block on the left of its way, -1 on the right.
     """
     way = _direction(low, high)
     side = way * 1j if (way * 1j).imag < -1e-6 or way.imag < 0 else way * -1j
+    side = way * -1j * meshing if meshing else side
     off, over = BLOCK[1] + 1, BLOCK[0] + 4
     ends = np.array([low, high])
     found = []

@@ -20,6 +20,7 @@ from equipoise.mechanism.parts.machine import FRAME
 from equipoise.results.analysis_blocks import analysis_blocks
 from equipoise.results.belt_blocks import slack
 from equipoise.results.blocks import Notes
+from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
 from support.machines import make
 from unit.mechanism.build import ORIGIN, crank_rocker, heavy, machine, refused
@@ -282,6 +283,13 @@ def test_what_drives_tells_its_own_place() -> None:
     refused("racks[1].angle", words, lambda: racked(Rack("rocker", "ram", 0.05, "left", angle=1.0)))
 
 
+@pytest.mark.parametrize("drives", ["pinion", "rack"])
+def test_ends_of_a_rack_that_are_no_links(drives: Any) -> None:
+    for key, ends in (("rack", ("rocker", "rom")), ("pinion", ("roker", "ram"))):
+        rack = Rack(*ends, 0.05, "left", drives=drives)
+        refused(f"racks[1].{key}", "did you mean...", lambda rack=rack: racked(rack))
+
+
 # -- pictures and files ----------------------------------------------------------------------------
 
 
@@ -309,6 +317,15 @@ def test_strands_and_racks_are_drawn() -> None:
     np.testing.assert_allclose(bar.imag.max(axis=1), module - 0.07, atol=1e-12)
     assert bar.real.min(axis=1).max() == pytest.approx(-0.07)
     assert bar.real.max(axis=1).min() == pytest.approx(0.07)
+
+
+@pytest.mark.parametrize(("side", "sense"), [("left", 1), ("right", -1)])
+def test_the_guide_of_a_rack_is_hatched_away_from_its_teeth(side: Any, sense: int) -> None:
+    scene = Scene.of(eq.move(racked(Rack("rocker", "ram", 0.07, side)), 12))
+    (guide,) = (piece for piece in pieces(scene) if piece.layer == "guides")
+    begin, end = (one.offsets / np.exp(0.3j) for one in (guide.shapes[0], guide.shapes[-1]))
+    assert guide.shapes[0].role == "hatch" and guide.shapes[-1].role == "rail"
+    assert np.all(begin.imag * sense < 0) and np.all(end.imag * sense > 0)
 
 
 def test_a_file_without_racks_refuses_them(tmp_path: Path) -> None:
