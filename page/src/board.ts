@@ -13,7 +13,13 @@ export class Board {
   private since = 0;
   private later = 0;
   private readonly touch: Touch;
-  private readonly spoken = h("p", { class: "said", role: "status", "aria-live": "polite" });
+  /** It lies on the drawing, and goes when it is clicked. */
+  private readonly spoken = h("p", {
+    class: "said",
+    role: "status",
+    "aria-live": "polite",
+    onclick: () => this.say("", false),
+  });
   private readonly hinted = h("p", { class: "hint", "aria-hidden": "true" });
 
   constructor(

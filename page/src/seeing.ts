@@ -53,7 +53,7 @@ export class Seeing {
     this.root = h(
       "div",
       { class: "seeing" },
-      h("label", {}, h("span", {}, say("Arrows at")), this.at),
+      h("label", { class: "arrowed" }, h("span", {}, say("Arrows at")), this.at),
       this.kinds,
       this.support.root,
       this.variants.choice,

@@ -21,9 +21,12 @@ export function pressed(event: KeyboardEvent, page: Shortcuts): void {
     const own = typing && target.dataset.typed !== undefined;
     if (!own || event.key.toLowerCase() === "s") step(event, page);
   } else if (!typing && event.key === "?") page.help();
-  else if (!event.altKey && page.board.contains(target) && !(target instanceof HTMLButtonElement)) {
-    draw(event, page);
-  }
+  else if (!event.altKey && drawn(target, page.board)) draw(event, page);
+}
+
+/** Whether a key is meant for the drawing: it has the focus, or nothing has. */
+function drawn(target: HTMLElement, board: HTMLElement): boolean {
+  return target === document.body || (board.contains(target) && !(target instanceof HTMLButtonElement));
 }
 
 function step(event: KeyboardEvent, page: Shortcuts): void {

@@ -283,6 +283,13 @@ def test_what_drives_tells_its_own_place() -> None:
     refused("racks[1].angle", words, lambda: racked(Rack("rocker", "ram", 0.05, "left", angle=1.0)))
 
 
+@pytest.mark.parametrize("drives", ["pinion", "rack"])
+def test_ends_of_a_rack_that_are_no_links(drives: Any) -> None:
+    for key, ends in (("rack", ("rocker", "rom")), ("pinion", ("roker", "ram"))):
+        rack = Rack(*ends, 0.05, "left", drives=drives)
+        refused(f"racks[1].{key}", "did you mean...", lambda rack=rack: racked(rack))
+
+
 # -- pictures and files ----------------------------------------------------------------------------
 
 

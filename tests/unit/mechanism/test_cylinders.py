@@ -131,6 +131,13 @@ def test_a_stroke_that_cannot_be_had() -> None:
     )
 
 
+def test_points_that_stay_as_far_apart() -> None:
+    """A cylinder from the pivot of its boom."""
+    given = replace(boom(), frame={"P": ORIGIN, "A": ORIGIN})
+    refused("drive.between", "A and B are 509.9 mm apart wherever 'boom' stands; give points...",
+            lambda: eq.move(given))  # fmt: skip
+
+
 def test_links_that_come_to_a_dead_point_beyond_the_stroke() -> None:
     """Bars that are not quite parallel cannot stretch: rates are infinite where that ends."""
     whole = eq.load("hydraulic-loader")

@@ -290,6 +290,18 @@ def _chosen(drive: Drive, law: LengthLaw, branches: Sequence[Branch], shift: flo
     assert widest is not None
     ends = {"low": low, "high": high, "least": widest.low, "most": widest.high}
     size = max(map(abs, ends.values()))  # of which rounding is left where a length is 0
+    if drive.between and widest.high - widest.low < AGREES * size:
+        raise ModelError(
+            "drive.between",
+            Note(
+                "{a} and {b} are {length} apart wherever {link!r} stands; give points that come "
+                "nearer to each other as it turns",
+                a=drive.between[0],
+                b=drive.between[1],
+                length=_shown(widest.low),
+                link=drive.link,
+            ),
+        )
     raise ModelError(
         "drive.stroke",
         Note(

@@ -157,14 +157,19 @@ def coupled(
     return (angle_c + value + offset, *rates)
 
 
-def wrong_ends(where: str, coupling: Coupling, bodies: Bodies) -> Iterator[ModelError]:
-    """Everything that is wrong with driver, driven link and carrier."""
-    for between, name in (
-        ("between[1]", coupling.driver),
-        ("between[2]", coupling.driven),
-        ("carrier", coupling.carrier),
-    ):
-        yield from unknown_body(f"{where}.{between}", name, bodies)
+def wrong_ends(
+    where: str,
+    coupling: Coupling,
+    bodies: Bodies,
+    keys: tuple[str, str] = ("between[1]", "between[2]"),
+) -> Iterator[ModelError]:
+    """Everything that is wrong with driver, driven link and carrier.
+
+    keys : by which the file tells driver and driven link.
+    """
+    ends = (coupling.driver, coupling.driven, coupling.carrier)
+    for named, name in zip((*keys, "carrier"), ends, strict=True):
+        yield from unknown_body(f"{where}.{named}", name, bodies)
     if len({coupling.driver, coupling.driven, coupling.carrier}) < 3:
         told = Note(
             "driver {driver!r}, driven link {driven!r} and carrier {carrier!r} must be three "

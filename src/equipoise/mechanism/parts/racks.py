@@ -114,7 +114,8 @@ class Rack(Frozen):
 
 def wrong_rack(where: str, rack: Rack, bodies: Bodies) -> Iterator[ModelError]:
     """Everything that is wrong with a rack, but for how it is guided."""
-    yield from wrong_ends(where, rack, bodies)
+    keys = ("pinion", "rack") if rack.drives == "pinion" else ("rack", "pinion")
+    yield from wrong_ends(where, rack, bodies, keys)
     for name, drives in (("angle", "rack"), ("travel", "pinion")):
         if getattr(rack, name) and rack.drives != drives:
             yield ModelError(
