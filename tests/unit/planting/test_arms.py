@@ -102,7 +102,7 @@ def test_soil_acts_on_every_tip() -> None:
 NOT_ALIKE = "arm 2 does not do what arm 1 does: for that gears[4] would start at "
 
 
-def with_start(machine: Machine, start: float, **shape: float) -> Machine:
+def with_start(machine: eq.Machine, start: float, **shape: float) -> eq.Machine:
     """The last of the gears starts elsewhere, deg; numbers of its shape."""
     *others, last = machine.gears
     assert last.shape is not None
