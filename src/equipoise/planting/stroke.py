@@ -139,17 +139,13 @@ def _check_reach(curve: TipCurve, level: float) -> None:
     touch = TOUCH * (highest - lowest)
     tip, given = curve.arm.tip, curve.planting.depth
     if level <= lowest + touch and given is not None:
-        hint = next(nearly_alike(curve.machines[0]), None)
         told = Note(
             "got {place}; the tip {tip} never reaches the soil, its lowest point is {higher} "
-            "above that of the deepest; give more than that"
-            if hint is None
-            else "got {place}; the tip {tip} never reaches the soil, its lowest point is {higher} "
-            "above that of the deepest: {hint}",
+            "above that of the deepest; {right}",
             place=_mm(given),
             tip=tip,
             higher=_mm(lowest - level + given),
-            hint=hint,
+            right=next(nearly_alike(curve.machines[0]), Note("give more than that")),
         )
         raise ModelError("planting.depth", told)
     if level <= lowest + touch:

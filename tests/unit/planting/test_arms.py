@@ -133,7 +133,7 @@ def test_a_depth_that_one_arm_misses_is_refused_with_the_start_that_is_wrong() -
     machine = with_start(eq.load("rotary-transplanter"), 100.0).with_planting(depth=0.01)
     with pytest.raises(ModelError, match="never reaches the soil") as caught:
         plant(machine)
-    assert f"above that of the deepest: {NOT_ALIKE}-44.98" in str(caught.value)
+    assert f"above that of the deepest; {NOT_ALIKE}-44.98" in str(caught.value)
 
 
 def test_the_deepest_tip_tells_where_the_surface_is() -> None:
