@@ -56,10 +56,22 @@ def drawn(sketch: Sketch) -> Solved | Drawn:
     told = lacking(sketch)
     if not told:
         try:
-            return replace(sketch.finished(), stand=sketch.crank_angle)
+            found = sketch.finished()
+            return replace(found, stand=_stand(found, sketch))
         except EquipoiseError as error:
             told = to_paste(error.told())[0]
     return Drawn(sketch, told)
+
+
+def _stand(found: Solved, sketch: Sketch) -> float:
+    """Crank angle at which a machine is as it is drawn, rad; of a crank that cannot turn, the first
+    at which its link, which swings, is there or next to it.
+    """
+    drive = found.analysis.machine.drive
+    if found.swings is None:
+        return sketch.crank_angle
+    off = found.motion.links[drive.link].angle - sketch.poses[drive.link].angle
+    return float(found.motion.crank_angle[np.argmin(np.abs(np.sin(off / 2)))])
 
 
 def tried(sketch: Sketch) -> Drawn:
