@@ -12,6 +12,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism.assembly.family import column
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.tip import TipCurve, crossings, roots
+from equipoise.planting.twins import nearly_alike
 from equipoise.signals import EQUAL, Array, highest_at, within_period
 
 Figures = dict[str, Array]
@@ -138,16 +139,15 @@ def _check_reach(curve: TipCurve, level: float) -> None:
     touch = TOUCH * (highest - lowest)
     tip, given = curve.arm.tip, curve.planting.depth
     if level <= lowest + touch and given is not None:
-        raise ModelError(
-            "planting.depth",
-            Note(
-                "got {place}; the tip {tip} never reaches the soil, its lowest point is {higher} "
-                "above that of the deepest; give more than that",
-                place=_mm(given),
-                tip=tip,
-                higher=_mm(lowest - level + given),
-            ),
+        told = Note(
+            "got {place}; the tip {tip} never reaches the soil, its lowest point is {higher} "
+            "above that of the deepest; {right}",
+            place=_mm(given),
+            tip=tip,
+            higher=_mm(lowest - level + given),
+            right=next(nearly_alike(curve.machines[0]), Note("give more than that")),
         )
+        raise ModelError("planting.depth", told)
     if level <= lowest + touch:
         raise ModelError(
             "planting.surface",

@@ -19,9 +19,10 @@ from equipoise.mechanism.kinematics.tip import planting_of, tip_link
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array
 
-ALIKE, NEARLY = 1e-5, 0.35
-"""Gears of arms that are this far, rad, from doing the same do it to the digits of a file, or are
-meant to."""
+ALIKE = 1e-5
+"""Gears of arms that are this far, rad, from doing the same do it to the digits of a file."""
+CLOSE, LATER = 1e-3, (0.7, 1.9, 3.1, 4.3, 5.5)
+"""Gears that come closer to each other than this, rad, at these crank angles go the same way."""
 
 
 @dataclass(frozen=True)
@@ -65,10 +66,14 @@ def kept_alike(machine: Machine, twins: Sequence[Twin]) -> Machine:
 
 
 def nearly_alike(machine: Machine) -> Iterator[Note]:
-    """Gears of further arms that would be like those of the first at another start."""
-    for twin in twins_of(machine):
+    """Gears of further arms that would do what those of the first do at another start."""
+    twins = twins_of(machine)
+    met = kept_alike(machine, [replace(twin, offset=0.0) for twin in twins])
+    if not all(_goes_with(met, twin) for twin in twins):
+        return
+    for twin in twins:
         off = float(np.angle(np.exp(1j * twin.offset)))
-        if ALIKE < abs(off) < NEARLY:
+        if abs(off) > ALIKE:
             gear, mate = machine.gears[twin.gear], machine.gears[twin.mate]
             yield Note(
                 "{link} does not do what {mate} does: for that gears[{number}] would start at "
@@ -78,6 +83,13 @@ def nearly_alike(machine: Machine) -> Iterator[Note]:
                 number=twin.gear + 1,
                 start=degrees(gear.start - off),
             )
+
+
+def _goes_with(machine: Machine, twin: Twin) -> bool:
+    """Whether a gear does what its mate does at some more crank angles than that of the start."""
+    own = _angles(machine, [(twin.gear, one) for one in LATER])
+    mates = _angles(machine, [(twin.mate, one + twin.ahead) for one in LATER])
+    return bool(np.max(np.abs(np.exp(1j * own) - np.exp(1j * mates))) < CLOSE)
 
 
 def _chain(machine: Machine, link: str) -> Iterator[int]:

@@ -27,7 +27,7 @@ REFUSED = [
     ("lobes", "a circle has one...", {"kind": "eccentric", "eccentricity": 0.1, "lobes": 2}),
     (
         "lobes",
-        "the pitch curves do not close: with 1 of the driver and a mean ratio of -0.666667 "
+        "the pitch curves do not close: with 1 of the driver and a mean ratio of -0.6666666667 "
         "the driven gear would have 1.5 lobes...", {**ELLIPSE, "teeth": (20, 30)},
     ),
     (

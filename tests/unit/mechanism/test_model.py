@@ -100,7 +100,7 @@ def test_numbers_must_be_those_of_machines(value: float) -> None:
 # -- what contradicts itself -----------------------------------------------------------------------
 
 NO_NAME = "a link cannot be called {!r}; choose another name"
-THREE = "driver, driven link and carrier must be three different bodies"
+THREE = "driver {!r}, driven link {!r} and carrier {!r} must be three different bodies"
 ONE_OF = "give exactly one of force, torque and table"
 AT_A_POINT = "missing; a force acts at a point of the link"
 NOT_AT_A_POINT = "a torque acts on a link, not at a point; leave it out"
@@ -144,8 +144,8 @@ JOINTS: list[tuple[str, str, Any]] = [
     ("gears[1].between[1]", "did you mean 'crank'?...", lambda: geared(driver="cranc")),
     ("gears[1].between[2]", "did you mean 'wheel'?...", lambda: geared(driven="weel")),
     ("gears[1].carrier", "no link is called 'arm'...", lambda: geared(carrier="arm")),
-    ("gears[1]", THREE, lambda: geared(driven="crank")),
-    ("gears[1]", THREE, lambda: geared(carrier="crank")),
+    ("gears[1]", THREE.format("crank", "crank", "frame"), lambda: geared(driven="crank")),
+    ("gears[1]", THREE.format("crank", "wheel", "crank"), lambda: geared(carrier="crank")),
     ("gears[1]", "give either ratio or teeth", lambda: geared(teeth=(20, 30))),
     ("gears[1]", "give either ratio or teeth", lambda: geared(ratio=None)),
     ("gears[1].teeth", "got [0, 30]; give two positive numbers",

@@ -99,21 +99,41 @@ def test_soil_acts_on_every_tip() -> None:
     np.testing.assert_allclose(both - dry, one + np.roll(one, 180), atol=1e-12 * np.max(abs(both)))
 
 
-def test_an_arm_that_is_nearly_like_the_first_is_told_its_start() -> None:
+NOT_ALIKE = "arm 2 does not do what arm 1 does: for that gears[4] would start at "
+
+
+def with_start(machine: eq.Machine, start: float, **shape: float) -> eq.Machine:
+    """The last of the gears starts elsewhere, deg; numbers of its shape."""
+    *others, last = machine.gears
+    assert last.shape is not None
+    last = replace(last, start=np.radians(start), shape=replace(last.shape, **shape))
+    return replace(machine, gears=(*others, last))
+
+
+@pytest.mark.parametrize("begun", [-45.0, 10.0])
+def test_an_arm_that_only_starts_elsewhere_is_told_its_start(begun: float) -> None:
     rotary = eq.load("rotary-transplanter")
     shapes = [replace(gear.shape, eccentricity=0.15) for gear in rotary.gears if gear.shape]
-    machine = replace(
-        rotary,
-        gears=tuple(replace(g, shape=s) for g, s in zip(rotary.gears, shapes, strict=True)),
-    )
-    (told,) = (str(note) for note in plant(machine).notes if "does not do" in str(note))
-    start = told.removeprefix(
-        "arm 2 does not do what arm 1 does: for that gears[4] would start at "
-    ).removesuffix(" deg")
-    gears = (*machine.gears[:3], replace(machine.gears[3], start=np.radians(float(start))))
-    alike = plant(replace(machine, gears=gears))
+    gears = tuple(replace(g, shape=s) for g, s in zip(rotary.gears, shapes, strict=True))
+    machine = with_start(replace(rotary, gears=gears), begun)
+    deep = machine.with_planting(depth=0.15)
+    (told,) = (str(note) for note in plant(deep).notes if "does not do" in str(note))
+    start = told.removeprefix(NOT_ALIKE).removesuffix(" deg")
+    alike = plant(with_start(machine, float(start)))
     assert not any("does not do" in str(note) for note in alike.notes)
     assert alike["arms.Q.curve.height"] == pytest.approx(alike["curve.height"], abs=1e-7)
+
+
+def test_an_arm_that_turns_otherwise_is_told_no_start() -> None:
+    machine = with_start(eq.load("rotary-transplanter"), -44.0, eccentricity=0.1)
+    assert not any("does not do" in str(note) for note in plant(machine).notes)
+
+
+def test_a_depth_that_one_arm_misses_is_refused_with_the_start_that_is_wrong() -> None:
+    machine = with_start(eq.load("rotary-transplanter"), 100.0).with_planting(depth=0.01)
+    with pytest.raises(ModelError, match="never reaches the soil") as caught:
+        plant(machine)
+    assert f"above that of the deepest; {NOT_ALIKE}-44.98" in str(caught.value)
 
 
 def test_the_deepest_tip_tells_where_the_surface_is() -> None:

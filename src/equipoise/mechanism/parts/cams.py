@@ -126,7 +126,14 @@ def wrong_cam(where: str, cam: Cam, bodies: Bodies) -> Iterator[ModelError]:
     yield from unknown_body(f"{where}.carrier", cam.carrier, bodies)
     yield from unknown_point(f"{where}.point", cam.point, cam.driven, bodies)
     if len({cam.driver, cam.driven, cam.carrier}) < 3:
-        yield ModelError(where, Note("cam, follower and carrier must be three different bodies"))
+        told = Note(
+            "cam {driver!r}, follower {driven!r} and carrier {carrier!r} must be three different "
+            "bodies",
+            driver=cam.driver,
+            driven=cam.driven,
+            carrier=cam.carrier,
+        )
+        yield ModelError(where, told)
     if cam.lift is not None and cam.swing is not None:
         yield ModelError(where, Note("give either lift or swing, not both"))
         return

@@ -171,6 +171,11 @@ def wrong_ends(
     for named, name in zip((*keys, "carrier"), ends, strict=True):
         yield from unknown_body(f"{where}.{named}", name, bodies)
     if len({coupling.driver, coupling.driven, coupling.carrier}) < 3:
-        yield ModelError(
-            where, Note("driver, driven link and carrier must be three different bodies")
+        told = Note(
+            "driver {driver!r}, driven link {driven!r} and carrier {carrier!r} must be three "
+            "different bodies",
+            driver=coupling.driver,
+            driven=coupling.driven,
+            carrier=coupling.carrier,
         )
+        yield ModelError(where, told)

@@ -213,7 +213,7 @@ def _wrong_lobes(shape: GearShape, gears: Pair) -> Iterator[Told]:
     if exact is None or (shape.lobes / exact).denominator != 1:
         told = Note(
             "the pitch curves do not close: with {lobes} of the driver and a mean ratio of "
-            "{ratio:.6g} the driven gear would have {count:.6g} lobes, which have to be whole",
+            "{ratio:.10g} the driven gear would have {count:.10g} lobes, which have to be whole",
             lobes=shape.lobes,
             ratio=ratio,
             count=shape.lobes / abs(ratio),
