@@ -62,6 +62,8 @@ export class Stage {
   private paths: Named[] = [];
   private labels: Label[] = [];
   private readonly overlays: Overlay[] = [];
+  /** Places of what lies below the linkage, m, which are in sight where all is. */
+  beneath: () => Pair[] = () => [];
   /** How what the support carries moves; null where it is at rest. */
   swing: Swing | null = null;
 
@@ -113,7 +115,10 @@ export class Stage {
   fit(): void {
     if (!this.state || !this.view.width) return;
     this.fitted = true;
-    this.view.fit(this.state.scene.box);
+    let [x0, y0, x1, y1] = this.state.scene.box;
+    for (const [x, y] of this.beneath())
+      [x0, y0, x1, y1] = [Math.min(x0, x), Math.min(y0, y), Math.max(x1, x), Math.max(y1, y)];
+    this.view.fit([x0, y0, x1, y1]);
     this.redraw();
   }
 

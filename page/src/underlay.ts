@@ -50,6 +50,7 @@ export class Underlay {
   ) {
     this.svg.append(this.group);
     stage.watchers.push(() => this.place());
+    stage.beneath = () => this.places();
     stage.svg.before(this.svg);
   }
 
@@ -64,6 +65,15 @@ export class Underlay {
     return held.drawing.snaps.map((one) => toFrame(held, one));
   }
 
+  /** Places that it reaches, m. */
+  private places(): Pair[] {
+    const { held } = this;
+    if (!held || held.hidden) return [];
+    const [x, y] = (held.picture?.size ?? [0, 0]).map((size) => size / 2) as Pair;
+    const corners: Pair[] = [[-x, -y], [x, -y], [x, y], [-x, y]];
+    return (held.drawing?.lines.flat() ?? corners).map((one) => toFrame(held, one));
+  }
+
   /** Read a file; returns what there is to say of it. Throws an `Error` of one sentence. */
   async take(file: File): Promise<string> {
     if (file.size > LARGEST) {
@@ -76,6 +86,7 @@ export class Underlay {
     if (DXF.test(file.name)) {
       const drawing = drawingOf(await file.text(), file.name);
       this.show({ ...common, drawing, at: [0, 0], scale: 1 });
+      this.stage.fit(); // it is as large as it is
     } else {
       const href = await dataOf(file);
       const size = await sizeOf(href, file.name);

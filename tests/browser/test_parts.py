@@ -222,6 +222,9 @@ def test_a_dxf_drawing_is_snapped_to_by_keyboard_too(live: Live, tmp_path: Path)
     expect(lines).to_be_attached()
     for found, wanted in zip(boxes(lines.get_attribute("d") or ""), BOXES, strict=True):
         assert found == pytest.approx(wanted, abs=1e-3)
+    board, drawn = page.locator(".board").first.bounding_box(), lines.bounding_box()
+    assert board is not None and drawn is not None
+    assert drawn["y"] > board["y"]  # 180 mm up, and in sight
     live.button("Measure").click()
     aim = page.locator(".picking")
     expect(aim).to_be_focused()
