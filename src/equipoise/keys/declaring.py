@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
+from math import degrees
 from types import MappingProxyType
 from typing import Any, ClassVar, Self, TypeVar, dataclass_transform
 
@@ -76,11 +77,14 @@ class Key:
             right = right & (value < self.below)
         return right
 
-    @property
-    def unit(self) -> str:
-        """SI unit of its quantity behind a space; nothing of a plain number."""
+    def told(self, value: float) -> str:
+        """A number as sentences have it: with its SI unit, an angle in degrees as limits are."""
         kind = innermost(self.kind)
-        return f" {SI[kind.dimension]}" if isinstance(kind, Quantity) else ""
+        if not isinstance(kind, Quantity):
+            return f"{value:g}"
+        if kind.dimension == "angle":
+            return f"{degrees(value):g} deg"
+        return f"{value:g} {SI[kind.dimension]}"
 
     def right(self, value: float) -> Note | str:
         """What to give instead of a number beyond the limits."""

@@ -35,7 +35,7 @@ def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
             told = Note("got {leaf!r}; give {choice}", leaf=leaf, choice=choice(names))
             yield ModelError(place, told)
         elif one is not None and not isinstance(leaf, str) and not one.allows(leaf):
-            text = f"{leaf:g}{one.unit}"
+            text = one.told(leaf)
             told = Note("got {text}; {right}", text=text, right=one.right(leaf))
             yield ModelError(place, told).about(leaf, text)
 

@@ -296,7 +296,11 @@ BOTH = {"swing": AngleLaw(between=(0.0, 0.3)), "lift": LengthLaw(between=(0.0, 0
     ("changes", "where", "words"),
     [
         (BOTH, "cams[1]", "give either lift or swing, not both"),
-        ({"driver": "tappet"}, "cams[1]", "cam, follower and carrier must be ..."),
+        (
+            {"driver": "tappet"},
+            "cams[1]",
+            "cam 'tappet', follower 'tappet' and carrier 'frame' must ...",
+        ),
         ({"driver": "drum"}, "cams[1].cam", "no link is called 'drum'; ..."),
         ({"driven": "drum"}, "cams[1].follower", "no link is called 'drum'; ..."),
         ({"point": "Q"}, "cams[1].point", "no point of tappet is called 'Q'; ..."),
