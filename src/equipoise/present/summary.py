@@ -26,6 +26,7 @@ from equipoise.quantities import (
     told,
 )
 from equipoise.results.analysis_blocks import shares
+from equipoise.results.drive_blocks import pushed_named
 from equipoise.results.outputs import CAUSES, objective_named, shown_in
 from equipoise.vibration.resonance import nearest, within
 
@@ -55,8 +56,7 @@ def answers(found: Findings) -> Iterator[Answer]:
 def tiles(found: Findings) -> Iterator[Tile]:
     """The figures that are seen at once, before and after the change that helps most."""
     analysis, later = found.analysis, found.after
-    speed = abs(analysis.motion.speed) / PER_RPM
-    yield Tile(say("crank speed"), brief(speed), "rpm", found.machine.drive.link)
+    yield _pace(found)
     if analysis.solved is None:
         return
     size = Shaking.of(found).size
@@ -87,6 +87,16 @@ def tiles(found: Findings) -> Iterator[Tile]:
         what = objective_named(first, len(found.machine.rows))
         note = what if found.helped else good_already(found.balanced)
         yield Tile(say("by balancing"), told or percent(0), "%", note)
+
+
+def _pace(found: Findings) -> Tile:
+    """Speed of the crank, or how often a drive without one comes back."""
+    motion, drive = found.analysis.motion, found.machine.drive
+    rpm = abs(motion.speed) / PER_RPM
+    if found.machine.crank_turns:
+        return Tile(say("crank speed"), brief(rpm), "rpm", drive.link)
+    what = pushed_named(drive) if drive.pushes else drive.link
+    return Tile(say("cycles"), brief(rpm / motion.turns), say("a minute"), what)
 
 
 def _tile(
@@ -153,8 +163,16 @@ def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
 
 def _ordered(found: Findings, shaking: Shaking) -> str:
     order, share = shaking.loudest
-    frequency = brief(order * abs(found.analysis.motion.speed) / (2 * pi))
+    motion = found.analysis.motion
+    frequency = brief(order * abs(motion.speed) / (2 * pi))
     told = {"share": percent(share), "frequency": frequency}
+    if not found.machine.crank_turns:
+        return say(
+            "Its largest part, {share} % of the mean square, comes {order} times a cycle, at "
+            "{frequency} Hz.",
+            order=f"{order * motion.turns:.4g}",
+            **told,
+        )
     if order == 1 and share >= LEADING:
         return say("{share} % of it (mean square) comes once a turn, at {frequency} Hz.", **told)
     return say(

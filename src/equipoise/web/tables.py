@@ -5,24 +5,21 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from itertools import count
 from types import MappingProxyType
 from typing import Any
 
-from equipoise.errors import UsageError
 from equipoise.i18n import Worded, say, to_say
 from equipoise.keys import Frozen, Key, Named, Tables, Wording
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.quantities import clean, format_exact, parse, told
+from equipoise.quantities import told
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
 from equipoise.schema.places import Place, written_place
 from equipoise.schema.writing import value_text
+from equipoise.web.completing import completed
 from equipoise.web.design import Design, pin_of
 from equipoise.web.forms import Values, forms_of, text_of, word_of
 from equipoise.web.messages import Entry
 
-APART = 0.05
-"""m from a bearing in the plane of its link to the second one."""
 MOST_WORDS = 4
 """Keys of an entry that are told where it is listed."""
 LONGEST_VALUE = 40
@@ -44,35 +41,9 @@ def entered(design: Design, entry: Entry) -> Design:
         document = document.without(entry.place)
     else:
         document = document.put(entry.place, dict(entry.values), entry.name)
-    if entry.place[:1] == ("bearings",):
-        document = _in_twos(document, entry, design.own)
-    own = document.machine(entry.files)
+    own = completed(document, entry, design.own).machine(entry.files)
     plan = design.plan if own.balance == design.own.balance else None
     return replace(design, own=own, plan=plan, counterweights=_that_fit(design, own))
-
-
-def _in_twos(document: Document, entry: Entry, own: Machine) -> Document:
-    """With the second bearing of a link that got its first, which can be no sooner than that: as
-    far on the other side of the link's plane.  With one that is deleted goes the other.
-    """
-    bearings: Mapping[str, Any] = document.content.get("bearings", {})
-    if entry.values is None:
-        gone = own.bearings.get(str(entry.place[-1]))
-        for name in [name for name, one in bearings.items() if gone and one["link"] == gone.link]:
-            document = document.without(("bearings", name))
-        return document
-    name, link = str(entry.name or entry.place[-1]), entry.values.get("link")
-    if link not in own.links or [one.get("link") for one in bearings.values()].count(link) != 1:
-        return document
-    try:
-        plane = parse(entry.values.get("plane"), "length")
-    except UsageError:
-        return document  # its own reader tells what is wrong
-    middle = own.links[str(link)].plane
-    other = 2 * middle - plane if plane != middle else plane + APART
-    second = next(one for one in map(f"{name}{{}}".format, count(2)) if one not in bearings)
-    values = {"link": link, "plane": format_exact(clean(other, "length"), "length")}
-    return document.put(("bearings", second), values)
 
 
 def _that_fit(design: Design, own: Machine) -> Mapping[str, Any]:

@@ -51,6 +51,20 @@ def test_parts_that_cancel_but_for_rounding_have_no_shares() -> None:
     assert shares({"one": turning, "other": 0 * turning}) == {"one": pytest.approx(1), "other": 0.0}
 
 
+def test_cycles_are_told_of_drives_without_a_crank() -> None:
+    """The file says how long a lift, a stop and a descent take together: 10 s."""
+    found = found_of("hydraulic-loader")
+    pace = next(iter(tiles(found)))
+    assert (pace.label, pace.value, pace.unit) == ("cycles", "6.00", "a minute")
+    assert pace.note == "cylinder A to B"
+    force = found.analysis.forces.shaking_force.value
+    sizes = np.abs(np.fft.fft(force)) ** 2
+    each = sizes + np.roll(sizes[::-1], 1)  # both ways round
+    loudest = 1 + int(np.argmax(each[1 : len(force) // 2]))
+    told = f"comes {loudest} times a cycle, at {brief(loudest / 10)} Hz."
+    assert told in text_of(found) and "a turn" not in text_of(found)
+
+
 def test_rows_shake_together_as_they_do_one_by_one():
     found = found_of("riding-transplanter")
     rows = found.machine.rows

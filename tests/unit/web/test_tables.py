@@ -215,6 +215,27 @@ def test_bearings_come_and_go_in_twos() -> None:
     assert not session.shown.design.own.bearings
 
 
+def test_segments_of_a_law_fill_its_cycle() -> None:
+    session, _ = opened("yamashita-1")
+    way = ["drive", "motion"]
+    enter(session, way, {"between": ["40 deg", "120 deg"]})
+
+    def segments() -> list[float]:
+        law = session.shown.design.own.drive.motion
+        assert law is not None and law.between is None
+        return [*np.degrees([(one.over, one.to) for one in law.segments]).flat]
+
+    enter(session, [*way, "segments", 0], {"over": "100 deg", "to": "90 deg"})
+    assert segments() == pytest.approx([100, 90, 260, 40])
+    enter(session, [*way, "segments", 0], {"over": "120 deg", "to": "100 deg"})
+    assert segments() == pytest.approx([120, 100, 240, 40])
+    enter(session, [*way, "segments", 2], {"over": "60 deg", "to": "40 deg"})  # a dwell
+    assert segments() == pytest.approx([120, 100, 180, 40, 60, 40])
+    enter(session, [*way, "segments", 2], None)
+    assert segments() == pytest.approx([120, 100, 240, 40])
+    assert "come back" in refusal(enter(session, [*way, "segments", 1], None))
+
+
 def test_masses_that_balancing_adds_beside_a_link_are_listed_in_round_numbers() -> None:
     session, _ = opened("yamashita-1")
     enter(session, ["balance"], {})
