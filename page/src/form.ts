@@ -216,7 +216,7 @@ export class Form {
       { class: "key", "data-key": key },
       h("span", { class: "word" }, word, marked, unit ? h("span", { class: "unit" }, ` ${unit}`) : null),
       one.element,
-      h("p", { class: "quiet", id: told }, this.inWords(text)),
+      h("p", { class: "quiet", id: told }, text),
       this.lineOf(key),
     );
     this.rows.set(key, row);

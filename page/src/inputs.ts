@@ -35,6 +35,8 @@ export interface Picked {
 }
 
 const FRAME = "frame";
+/** In place of a key that names a body: any link, and the link in whose table the form is. */
+const [LINKS, OWN] = ["links", "own"];
 const TARGET = "M8 1.5v4M8 10.5v4M1.5 8h4M10.5 8h4M8 8h.01";
 const ANGLE = /(deg|rad|turn)$/;
 
@@ -153,7 +155,7 @@ const called: Maker = ({ of, on }, name, around, hint) => {
   const picked = ({ point, link }: Picked) => {
     const found = of === "point" ? point : link;
     if (!found) return;
-    if (of === "point" && on && on !== FRAME) {
+    if (of === "point" && on && ![FRAME, LINKS, OWN].includes(on)) {
       const has = Object.hasOwn(around.bodies[String(around.beside(on) ?? "")] ?? {}, found);
       if (!has && link) around.put(on, link);
       refresh();
@@ -171,7 +173,8 @@ function namesOf(of: Asking["of"], on: string | undefined, around: Around): stri
   const links = Object.keys(bodies).filter((body) => body !== FRAME);
   if (of === "link") return links;
   if (of === "body") return [FRAME, ...links];
-  const body = on === FRAME ? FRAME : on ? String(around.beside(on) ?? "") : "";
+  if (on === LINKS) return [...new Set(links.flatMap((one) => Object.keys(bodies[one] ?? {})))];
+  const body = on === FRAME ? FRAME : on === OWN ? around.body : on ? String(around.beside(on) ?? "") : "";
   const whole = body ? [body] : on ? [FRAME, ...links] : [...links, FRAME];
   return [...new Set(whole.flatMap((one) => Object.keys(bodies[one] ?? {})))];
 }
@@ -285,23 +288,23 @@ function step(sign: string, name: string, onclick: () => void): HTMLButtonElemen
   return h("button", { type: "button", class: "step", "aria-label": name, title: name, onclick }, sign);
 }
 
-/** Some of a kind by names of the user's. */
+/** Some of a kind by names: of the user's, or of what is there. */
 const names: Maker = (asking, name, around, hint) => {
-  const { item, listed } = asking;
+  const { item, by = { kind: "text" }, listed } = asking;
   const held = h("span", { class: "items named" });
-  const rows: { line: HTMLElement; called: HTMLInputElement; item: Input }[] = [];
+  const rows: { line: HTMLElement; called: Input; item: Input }[] = [];
   const grow = (key = "", value?: Plain) => {
     const number = rows.length + 1;
-    const own = box(say("{name} {number}, name", { name, number }), say("name"));
-    own.value = key;
-    own.classList.add("name-of");
+    const own = input(by, say("{name} {number}, name", { name, number }), around, say("name"));
+    own.set(key);
+    own.element.classList.add("name-of");
     const one = input(item as Asking, `${name} ${key || number}`, around, hint);
     one.set(value);
     const gone = () => {
       rows.splice(rows.indexOf(row), 1);
       row.line.remove();
     };
-    const line = h("span", { class: "several" }, own, one.element, step("−", say("One less"), gone));
+    const line = h("span", { class: "several" }, own.element, one.element, step("−", say("One less"), gone));
     const row = { line, called: own, item: one };
     rows.push(row);
     held.append(line);
@@ -315,11 +318,11 @@ const names: Maker = (asking, name, around, hint) => {
   return {
     element: h("span", { class: "several list" }, held, step("+", say("One more"), () => grow())),
     set: put,
-    refresh: () => rows.forEach((row) => row.item.refresh?.()),
+    refresh: () => rows.forEach((row) => [row.called, row.item].forEach((one) => one.refresh?.())),
     value: () => {
-      const given = rows.filter((row) => row.called.value.trim() || row.item.value() !== undefined);
+      const given = rows.filter((row) => (row.called.value() ?? row.item.value()) !== undefined);
       if (!given.length) return undefined;
-      const keys = given.map((row) => row.called.value.trim());
+      const keys = given.map((row) => String(row.called.value() ?? ""));
       const values = given.map((row) => row.item.value());
       if (listed && values.every((one) => one === undefined)) return keys;
       return Object.fromEntries(keys.map((key, i) => [key, values[i] ?? ""]));

@@ -515,7 +515,8 @@ export interface Asking {
   sizes?: number[];
   /** One stands without brackets. */
   bare?: boolean;
-  /** Names alone may do. */
+  /** What names are of, and whether names alone may do. */
+  by?: Asking;
   listed?: boolean;
 }
 

@@ -101,7 +101,7 @@ def test_a_spring_and_a_body_are_added_changed_and_deleted(live: Live) -> None:
     page.mouse.click(x + 3, y - 2)
     expect(form.get_by_label("link", exact=True)).to_have_value("coupler")
     expect(form.get_by_label("point", exact=True)).to_have_value("P")
-    form.get_by_label("to", exact=True).select_option("D")
+    form.get_by_label("other point", exact=True).select_option("D")
     stiffness = form.get_by_label("stiffness", exact=True)
     stiffness.fill("3 kg")
     press(form, "Save")

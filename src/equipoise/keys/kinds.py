@@ -31,7 +31,8 @@ class Text(Kind):
 
     suggested : those that editors offer; what else is wrong with it is said elsewhere.
     of : what it is the name of: ``link``, ``body`` (a link or the frame) or ``point``.
-    on : key beside it that names the body of that point, or ``frame``; any body where not given.
+    on : key beside it that names the body of that point, ``frame``, ``links`` for any link, or
+        ``own`` for the link in whose table it stands; any body where not given.
     """
 
     names: tuple[str, ...] = ()
@@ -259,10 +260,12 @@ class Named(Kind):
     """Some of a kind by names that the user chooses.
 
     listed : or a list of the names alone, where other keys tell the rest.
+    by : what the names are of, where they are of something that is there.
     """
 
     item: Kind
     listed: bool = False
+    by: Text = Text()
 
     @property
     def wanted(self) -> str:  # type: ignore[override]

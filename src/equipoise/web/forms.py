@@ -5,7 +5,9 @@ Nothing here knows a table or a key; what each kind of value takes is told in `C
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Any
 
 from equipoise import keys
@@ -30,7 +32,8 @@ def forms_of(of: type[keys.Frozen]) -> dict[str, Values]:
         one = waiting.pop()
         if one.__name__ in found:
             continue
-        controls = [control_of(key) for key in own_keys(one).values()]
+        own = own_keys(one)
+        controls = [control_of(key, own) for key in own.values()]
         found[one.__name__] = {
             "rule": one.conditions,
             "controls": sorted(controls, key=lambda control: not control["required"]),
@@ -40,13 +43,13 @@ def forms_of(of: type[keys.Frozen]) -> dict[str, Values]:
     return found
 
 
-def control_of(one: keys.Key) -> Values:
-    """What a page needs to ask for the value of a key."""
+def control_of(one: keys.Key, beside: Mapping[str, keys.Key]) -> Values:
+    """What a page needs to ask for the value of a key; beside : keys of the same table."""
     default = plain_default(one)
     return {
         "key": one.name,
         "word": word_of(one),
-        "text": text_of(one),
+        "text": text_of(one, beside),
         "required": one.required,
         "default": None if default in ([], {}) else default,
         "example": one.example,
@@ -59,9 +62,16 @@ def word_of(one: keys.Key) -> str:
     return say(one.word if one.word and "{" not in one.word else plain_word(one))
 
 
-def text_of(one: keys.Key) -> str:
-    """What a key means."""
-    return say(one.text).replace("`", "")
+def text_of(one: keys.Key, beside: Mapping[str, keys.Key] = MappingProxyType({})) -> str:
+    """What a key means; of keys beside it in what a form calls them."""
+    values = getattr(one.kind, "names", ())
+
+    def shown(found: re.Match[str]) -> str:
+        name = found[1]
+        other = beside.get(name) if name not in values else None
+        return name if other is None else say("“{name}”", name=word_of(other))
+
+    return re.sub("`([^`]*)`", shown, say(one.text))
 
 
 def _control(kind: keys.Kind) -> Values:
@@ -104,7 +114,8 @@ CONTROLS: Mapping[type[keys.Kind], Callable[[Any], Values]] = {
     keys.Flag: lambda kind: {"kind": "flag"},
     keys.Listing: _listing,
     keys.Named: lambda kind: {
-        "kind": "names", "item": _control(kind.item), "listed": kind.listed
+        "kind": "names", "item": _control(kind.item), "by": _control(kind.by),
+        "listed": kind.listed,
     },
     keys.Number: lambda kind: {"kind": "number"},
     keys.OneOr: _one_or,

@@ -159,7 +159,11 @@ JOINTS: list[tuple[str, str, Any]] = [
      lambda: geared(pressure_angle=-0.1)),
     ("assembly.C", "got 'up'; give 'left', 'right', 'forward', 'backward', 'parallel' or...",
      lambda: four_bar(1.0, 0.35, 0.9, 0.8, "up")),
-    ("position.points.X", "no point is called 'X'...", lambda: placed(points={"X": ORIGIN})),
+    (
+        "position.points.X",
+        "no point of a moving link is called 'X'...",
+        lambda: placed(points={"X": ORIGIN}),
+    ),
     ("position.angles.rokker", "did you mean 'rocker'?...", lambda: placed(angles={"rokker": 0})),
 ]  # fmt: skip
 LOADS: list[tuple[str, str, Any]] = [

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.i18n import speaking
 from equipoise.keys import Frozen, Named, Quantity, Tables
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import parse, showing
@@ -95,8 +96,36 @@ def test_names_are_chosen_from_those_that_there_are() -> None:
     controls = {one["key"]: one for one in told["forms"]["Spring"]["controls"]}
     assert (controls["link"]["of"], controls["point"]["on"]) == ("link", "link")
     assert controls["to"]["on"] == "on"
+    rough = {one["key"]: one["by"] for one in told["forms"]["Position"]["controls"] if "by" in one}
+    assert rough["points"] == {"kind": "name", "of": "point", "on": "links"}
+    assert rough["angles"]["of"] == "link"
     assert told["bodies"]["frame"]["A"] == (0.0, 0.0)
     assert own_keys(Machine).keys() == {"title", "description", "gravity", "assembly"}
+
+
+@pytest.mark.parametrize(
+    ("language", "to", "law"),
+    [
+        (
+            "en",
+            "its point on the frame, or on “other body”",
+            "nothing moves where “angle at the end”",
+        ),
+        ("ja", "フレーム、または 「相手の物体」 の上の点", "「終わりの角度」"),
+        ("ko", "프레임 또는 ‘상대 물체’ 위의 점", "‘"),
+    ],
+)
+def test_what_a_key_means_is_told_in_the_words_of_its_form(
+    language: str, to: str, law: str
+) -> None:
+    with speaking(language):
+        forms = forms_of(Machine)
+    texts = {(name, one["key"]): one for name, form in forms.items() for one in form["controls"]}
+    assert texts["Spring", "to"]["text"] == to
+    assert law in texts["AngleSegment", "law"]["text"]
+    assert "point: " in texts["Body", "shape"]["text"] or language != "en"  # a value, not its key
+    words = {one["word"] for one in texts.values()}
+    assert not words & {"to", "on", "at", "through"}
 
 
 @pytest.mark.parametrize("units", [{}, {"length": "in", "force": "lbf"}])
@@ -125,7 +154,7 @@ def test_a_spring_is_added_changed_and_deleted_each_as_one_step() -> None:
     assert added.content["undo"] == "entry"
     assert added.field("springs.1.stiffness")["value"] == 2000.0
     (entry,) = group(tables(session), "springs")["entries"]
-    assert entry["words"] == "link rocker, point C, to A, stiffness 2000 N/m"
+    assert entry["words"] == "link rocker, point C, other point A, stiffness 2000 N/m"
     enter(session, ["springs", 0], {**SPRING, "free_length": "30 mm"})
     machine = session.shown.design.machine
     assert machine == eq.loads(eq.dumps(machine))

@@ -87,7 +87,9 @@ class SpringChoice(Frozen):
     point: str = key(
         Text(of="point", on="link"), "its point, not one that is pinned to the frame", example="C"
     )
-    to: str = key(Text(of="point", on="frame"), "point of the frame", example="D2")
+    to: str = key(
+        Text(of="point", on="frame"), "point of the frame", example="D2", word=to_say("other point")
+    )
     stiffness: float = key("stiffness", "the most that it may have", example="5 kN/m", above=0)
     free_length: Pair | None = key(
         RANGE,

@@ -106,8 +106,10 @@ class PlantingArm(Frozen):
 
     called = to_say("{what} of planting arm {tip}")
 
-    tip: str = key(Text(of="point"), "point of a moving link that goes into the soil", example="Q")
-    finger_from: str | None = key(Text(of="point"), FINGER_FROM, default=None)
+    tip: str = key(
+        Text(of="point", on="links"), "point of a moving link that goes into the soil", example="Q"
+    )
+    finger_from: str | None = key(Text(of="point", on="links"), FINGER_FROM, default=None)
     release: float | None = key("angle", RELEASE, default=None)
 
 
@@ -126,7 +128,9 @@ class Planting(Frozen):
         ]
     }
 
-    tip: str = key(Text(of="point"), "point of a moving link that goes into the soil", example="P")
+    tip: str = key(
+        Text(of="point", on="links"), "point of a moving link that goes into the soil", example="P"
+    )
     forward_speed: float | None = key(
         "speed",
         "of the machine over ground, 0 or more",
@@ -163,7 +167,7 @@ class Planting(Frozen):
     surface: float | None = key(
         "length", "height of the soil's surface in the frame, instead of `depth`", default=None
     )
-    finger_from: str | None = key(Text(of="point"), FINGER_FROM, default=None)
+    finger_from: str | None = key(Text(of="point", on="links"), FINGER_FROM, default=None)
     release: float | None = key("angle", RELEASE, default=None)
     tray: tuple[Vector, Vector] | None = key(
         Listing(Point(), (2,)),

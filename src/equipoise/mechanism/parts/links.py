@@ -18,6 +18,7 @@ from equipoise.keys import (
     Quantity,
     Table,
     Tables,
+    Text,
     declared,
     key,
     lacks,
@@ -103,7 +104,7 @@ class Link(Frozen):
     )
     plane: float = key("length", "z of the plane in which it moves", default=0.0)
     planes: Mapping[str, float] = key(
-        Named(Quantity("length")),
+        Named(Quantity("length"), by=Text(of="point", on="own")),
         "z of points that lie beside that plane, such as the pins of a crankshaft: `planes.B`",
         factory=dict,
         word=to_say("plane of {name}"),

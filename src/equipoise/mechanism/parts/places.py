@@ -8,7 +8,7 @@ from typing import Any
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Frozen, Named, Point, Quantity, declared, key
+from equipoise.keys import Frozen, Named, Point, Quantity, Text, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies, Vector, unknown, unknown_link
 
 
@@ -19,9 +19,11 @@ class Position(Frozen):
     crank_angle: float = key(
         "angle", "at which it holds; 0 where gears are among these links", default=0.0
     )
-    points: Mapping[str, Vector] = key(Named(Point()), "places in the frame", factory=dict)
+    points: Mapping[str, Vector] = key(
+        Named(Point(), by=Text(of="point", on="links")), "places in the frame", factory=dict
+    )
     angles: Mapping[str, float] = key(
-        Named(Quantity("angle")), "of links in the frame", factory=dict
+        Named(Quantity("angle"), by=Text(of="link")), "of links in the frame", factory=dict
     )
 
 
@@ -60,7 +62,9 @@ def wrong_position(position: Position | None, bodies: Bodies) -> Iterator[ModelE
     known = {point: None for body, points in bodies.items() if body != FRAME for point in points}
     for point in position.points:
         if point not in known:
-            yield ModelError(f"position.points.{point}", unknown(point, known, "point"))
+            yield ModelError(
+                f"position.points.{point}", unknown(point, known, "point of a moving link")
+            )
     for name in position.angles:
         yield from unknown_link(f"position.angles.{name}", name, bodies)
 

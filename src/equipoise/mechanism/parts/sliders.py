@@ -33,8 +33,15 @@ class Slider(Frozen):
 
     link: str = key(Text(of="link"), "the sliding link", example="piston")
     point: str = key(Text(of="point", on="link"), "its point on the line", example="C")
-    on: str = key(Text(of="body"), 'the guiding link, or `"frame"`', example="frame")
-    through: str = key(Text(of="point", on="on"), "a point of the guide on the line", example="A")
+    on: str = key(
+        Text(of="body"), 'the guiding link, or `"frame"`', example="frame", word=to_say("guide")
+    )
+    through: str = key(
+        Text(of="point", on="on"),
+        "a point of the guide on the line",
+        example="A",
+        word=to_say("point of the guide"),
+    )
     direction: float = key("angle", "of the line, in the axes of the guide", example="0 deg")
     angle: float = key("angle", "of the sliding link's x axis, from the line", default=0.0)
     label: str = key(

@@ -23,7 +23,12 @@ class Spring(Frozen):
         "its point on the link, not one that is pinned to the frame",
         example="C",
     )
-    to: str = key(Text(of="point", on="on"), "its point on the frame, or on `on`", example="S")
+    to: str = key(
+        Text(of="point", on="on"),
+        "its point on the frame, or on `on`",
+        example="S",
+        word=to_say("other point"),
+    )
     stiffness: float = key("stiffness", "more than 0", example="2 kN/m", above=0)
     free_length: float = key(
         "length",
@@ -33,7 +38,9 @@ class Spring(Frozen):
         at_least=0,
         why=Note("a length cannot be negative, give 0 or more"),
     )
-    on: str = key(Text(of="body"), "the body of its other point", default=FRAME)
+    on: str = key(
+        Text(of="body"), "the body of its other point", default=FRAME, word=to_say("other body")
+    )
 
     @property
     def ends(self) -> tuple[tuple[str, str], ...]:

@@ -128,7 +128,10 @@ class AddedMass(Frozen):
 
     link: str = key(Text(of="link"), "name of the link", example="crank")
     at: str = key(
-        Text(of="point", on="link"), "point of the link, the centre of the room", example="A"
+        Text(of="point", on="link"),
+        "point of the link, the centre of the room",
+        example="A",
+        word=to_say("centre"),
     )
     weight: Weight = key(Table(Weight, flat=True))
 
