@@ -128,14 +128,16 @@ export class App {
       tool: (message, numbers) => {
         this.opened = "";
         this.views.showTool(message, numbers);
-        this.name({ ...message, has_forces: false, downloads: ["model", "report"] });
+        const lacking = say("a hand-held tool is changed by its numbers");
+        this.name({ ...message, lacking, downloads: ["model", "report"] });
       },
       stores: (message) => this.gallery.stored(message),
       study: (message, numbers) => {
         this.opened = "";
         this.views.showStudy(message, numbers);
         const { name } = message;
-        this.name({ name, undo: null, redo: null, has_forces: false, file: null, downloads: [] });
+        const lacking = say("open one of its designs first");
+        this.name({ name, undo: null, redo: null, lacking, file: null, downloads: [] });
       },
       saved: (name) => this.keeping.saved(name),
       line: (up) => this.line(up),

@@ -42,6 +42,7 @@ export class Board {
       { class: "board" },
       stage.lines,
       stage.svg,
+      stage.numbers,
       this.hinted,
       zooms,
       this.spoken,

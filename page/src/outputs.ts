@@ -69,13 +69,13 @@ export class Outputs {
   }
 
   private draw(state: State, output: Output): void {
-    const found = column(state, `${PREFIX}${output.name}`);
+    const found = column(state, `${PREFIX}${output.name}`, 1, 0, true, output.winds);
     if (!found) return;
     const { strip, button } = this.drawn.get(output.name) ?? this.make(output.name);
     const title = capital(output.label);
     button.setAttribute("aria-label", say("Close chart of {output}", { output: output.label }));
     const model = { label: "", role: THIRD, ...scaled(found, output) };
-    const seen = measured(state.numbers, output.name, 1, 0, found.values.length);
+    const seen = measured(state.numbers, output.name, 1, 0, found.values.length, output.winds);
     const curves = seen ? besides(model, times(seen, output)) : [model];
     const x = this.x.of(state.angles, state.turns);
     strip.show({ title, x, unit: output.unit, curves, log: wide(found.values) });

@@ -216,6 +216,8 @@ export interface Output extends Unit {
   label: string;
   /** Heading under which it is offered. */
   group: string;
+  /** An angle, which may turn fully. */
+  winds: boolean;
 }
 
 export interface Figure {
@@ -252,8 +254,8 @@ export interface StateMessage {
   speed: number;
   /** Unit of the drawing's lengths. */
   length: Unit;
-  has_forces: boolean;
-  missing: string[];
+  /** Why there are no forces, and nothing to balance; empty where there are. */
+  lacking: string;
   fields: Field[];
   scene: Scene;
   arrays: Arrays;

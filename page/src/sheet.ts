@@ -7,7 +7,7 @@ import type { View } from "./view";
 /** Pixels between two bold lines, at least. */
 const APART = 70;
 
-export function ruled(view: View): SVGElement[] {
+export function ruled(view: View): { lines: SVGElement[]; numbers: SVGElement[] } {
   const { width, height } = view;
   const { unit, factor } = lengths();
   const step = round((APART / view.scale) * factor) / factor;
@@ -15,7 +15,7 @@ export function ruled(view: View): SVGElement[] {
   const [x1, y1] = view.metres(width, 0);
   const across = (x: number) => view.px(x, 0)[0];
   const down = (y: number) => view.px(0, y)[1];
-  const lines = (apart: number) =>
+  const every = (apart: number) =>
     multiples(apart, x0, x1)
       .map((x) => `M${across(x).toFixed(1)} 0V${height}`)
       .join("") +
@@ -31,11 +31,11 @@ export function ruled(view: View): SVGElement[] {
     const py = down(y);
     if (py > 14 && py < height - 22) texts.push(text(6, py + 3.5, plain(y * factor), "start"));
   }
-  const paths = [
-    s("path", { class: "fine", d: lines(step / 5) }),
-    s("path", { class: "bold", d: lines(step) }),
+  const fine = [
+    s("path", { class: "fine", d: every(step / 5) }),
+    s("path", { class: "bold", d: every(step) }),
   ];
-  return [...paths, ...texts];
+  return { lines: fine, numbers: texts };
 }
 
 function text(x: number, y: number, words: string, anchor: string): SVGElement {

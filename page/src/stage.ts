@@ -44,6 +44,8 @@ export class Stage {
   readonly svg = s("svg", { class: "linkage", role: "group", "aria-label": say("Linkage") });
   /** Fine lines and scales, apart, so that they are not painted with every frame. */
   readonly lines = s("svg", { class: "sheet-lines", "aria-hidden": "true" });
+  /** Over the linkage: below its soil they could not be read. */
+  readonly numbers = s("svg", { class: "sheet-lines numbered", "aria-hidden": "true" });
   readonly view = new View();
   private readonly dims = new Dimensions();
   private readonly rim = s("circle", { class: "rim" });
@@ -107,7 +109,7 @@ export class Stage {
       ? Math.min(width / this.view.width, height / this.view.height)
       : 1;
     [this.view.width, this.view.height] = [width, height];
-    for (const svg of [this.svg, this.lines]) set(svg, { viewBox: `0 0 ${width} ${height}` });
+    for (const svg of [this.svg, this.lines, this.numbers]) set(svg, { viewBox: `0 0 ${width} ${height}` });
     if (this.fitted) this.fit();
     else this.zoom(scale);
   }
@@ -137,7 +139,9 @@ export class Stage {
   /** Everything that depends on what of the plane is shown. */
   private redraw(): void {
     if (!this.state) return;
-    this.lines.replaceChildren(...ruled(this.view));
+    const { lines, numbers } = ruled(this.view);
+    this.lines.replaceChildren(...lines);
+    this.numbers.replaceChildren(...numbers);
     for (const watch of this.watchers) watch();
     this.draw();
     this.pose(this.k);

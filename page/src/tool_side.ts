@@ -140,7 +140,8 @@ export class ToolSide {
   private draw(): void {
     const { tool, view } = this;
     if (!tool || !view.width) return;
-    this.lines.replaceChildren(...ruled(view));
+    const { lines, numbers } = ruled(view);
+    this.lines.replaceChildren(...lines, ...numbers);
     this.now = new Drawing(tool.scene, tool.along, view);
     const parts: SVGElement[] = [];
     if (tool.before) {

@@ -15,7 +15,7 @@ const ICONS = {
 };
 
 /** What is told of whatever is open. */
-export type Opened = Pick<State, "name" | "undo" | "redo" | "has_forces" | "file"> & {
+export type Opened = Pick<State, "name" | "undo" | "redo" | "lacking" | "file"> & {
   /** Downloads that there are; all where it is left out. */
   downloads?: FileKind[];
 };
@@ -57,8 +57,10 @@ export class Toolbar {
     this.save = button("", "disk", () => commands.save(), say("Save"));
     this.save.hidden = true;
     this.menu = downloads(commands);
-    // Nothing is open yet.
-    for (const one of [this.undo, this.redo, this.balance]) one.disabled = true;
+    const closed = say("nothing is open yet");
+    able(this.undo, say("Undo"), null, closed);
+    able(this.redo, say("Redo"), null, closed);
+    able(this.balance, say("Balance"), null, closed);
     this.menu.inert = true;
     const help = button("", "keys", () => commands.help(), say("Keys"));
     this.root = h(
@@ -94,15 +96,15 @@ export class Toolbar {
       this.examples.prepend(this.own);
     }
     put(this.examples, state.name);
-    label(this.undo, say("Undo"), state.undo);
-    label(this.redo, say("Redo"), state.redo);
-    this.balance.disabled = !state.has_forces;
+    able(this.undo, say("Undo"), state.undo, say("nothing has been done yet"));
+    able(this.redo, say("Redo"), state.redo, say("nothing has been taken back"));
+    able(this.balance, say("Balance"), state.lacking ? null : "", state.lacking);
     const { downloads } = state;
     this.menu.inert = downloads?.length === 0;
     for (const item of this.menu.querySelectorAll<HTMLButtonElement>("[data-kind]"))
       item.hidden = !!downloads && !downloads.includes(item.dataset.kind as FileKind);
     this.save.hidden = !state.file;
-    this.save.disabled = state.file?.saved !== false;
+    able(this.save, say("Save"), state.file?.saved === false ? state.file.name : null, say("the file holds what is shown"));
   }
 
   /** Put something beside what is open. */
@@ -198,8 +200,9 @@ function button(
   );
 }
 
-/** What a step would do is told to the eye and to the ear; a step that is not there is disabled. */
-function label(element: HTMLButtonElement, name: string, what: string | null): void {
+/** What a command would do, and why it cannot (where `what` is null), is told to the eye and to the ear. */
+function able(element: HTMLButtonElement, name: string, what: string | null, why: string): void {
   element.disabled = what === null;
-  set(element, { title: what ? `${name}: ${what}` : name, "aria-description": what ?? null });
+  const told = what ?? why;
+  set(element, { title: told ? `${name}: ${told}` : name, "aria-description": told || null });
 }

@@ -54,6 +54,12 @@ def test_every_axis_has_three_numbers(live: Live) -> None:
             assert live.page.evaluate(CLIPPED) == [], width
 
 
+def test_numbers_of_the_scale_lie_over_the_soil(live: Live) -> None:
+    later = "document.querySelector('.linkage').compareDocumentPosition"
+    assert live.page.evaluate(f"{later}(document.querySelector('.numbered'))") == 4
+    assert live.page.locator(".numbered text").count() > 6
+
+
 def test_any_output_is_drawn_over_the_crank_angle(live: Live) -> None:
     search = live.page.get_by_role("combobox", name="Any output over crank angle")
     search.fill("angle transm")  # words in any order
@@ -62,6 +68,10 @@ def test_any_output_is_drawn_over_the_crank_angle(live: Live) -> None:
     angle = np.degrees(eq.analyze(eq.load("yamashita-1"), 720).motion.transmission["C"])
     told = f"from {np.min(angle):.3g} to {np.max(angle):.3g} °"
     expect(chart).to_have_attribute("aria-label", f"Transmission angle at C: {told}")
+    search.fill("angle of crank")
+    search.press("Enter")
+    turning = live.page.get_by_role("figure", name=re.compile("^Angle of crank: from 0 to 360 °"))
+    expect(turning).to_be_visible()  # it does not fall at its end
     search.fill("no such output")
     expect(live.page.get_by_text("No output has such a name")).to_be_visible()
     search.press("Enter")

@@ -94,6 +94,9 @@ class Sheet:
 @pytest.fixture
 def sheet(live: Live) -> Sheet:
     live.button("New").click()
+    balance = live.page.get_by_role("button", name="Balance", exact=True)
+    expect(balance).to_have_attribute("aria-description", re.compile("^nothing moves yet: "))
+    expect(balance).to_be_disabled()
     sheet = Sheet(live)
     sheet.says("nothing moves yet")
     return sheet

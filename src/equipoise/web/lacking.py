@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from equipoise.i18n import say, to_say
+from equipoise.i18n import all_of, said, say, to_say
 from equipoise.mechanism.assembly.joints import Structure, held_too_often, undetermined
-from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.links import Link
+from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.schema.entries import own_keys
+from equipoise.web.forms import word_of
 from equipoise.web.sketch import Sketch
 
 AND = to_say("{names} and {last}")
@@ -31,6 +34,21 @@ def lacking(sketch: Sketch) -> str:
         links = _listed(held_too_often(joints, sketch.driven), AND)
         return say("no free motion: too many joints hold {links}; free a point", links=links)
     return _without_drive(_pivoted(sketch)) if drive is None else ""
+
+
+def forces_lack(machine: Machine) -> str:
+    """What forces need that links lack, in the words of its form; empty where none does."""
+    missing = [name for name, link in machine.links.items() if not link.has_mass]
+    if not missing:
+        return ""
+    own = own_keys(Link)
+    numbers = all_of([word_of(own[key]) for key in ("mass", "center_of_mass", "inertia")], True)
+    return say(
+        "forces need {numbers} of every link: give them, or bodies, at “{place}” for {links}",
+        numbers=said(numbers),
+        place=say("Parts of the model"),
+        links=_listed(missing, AND),
+    )
 
 
 def _without_drive(cranks: Sequence[str]) -> str:

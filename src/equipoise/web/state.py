@@ -8,7 +8,6 @@ import numpy as np
 
 from equipoise.figures.points import traced
 from equipoise.i18n import said, say
-from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.outputs.declared import GROUPS
 from equipoise.mechanism.outputs.poles import guided, pinned
 from equipoise.mechanism.parts.machine import Machine
@@ -22,6 +21,7 @@ from equipoise.web.drawing import cams_told, ground_of, moves_of, stage_of
 from equipoise.web.edits import Solved, movable
 from equipoise.web.figures import charts_of, figures_of, least_of, signals_of
 from equipoise.web.following import extent_of
+from equipoise.web.lacking import forces_lack
 from equipoise.web.measured import measured_told
 from equipoise.web.recorded import Record
 
@@ -60,6 +60,7 @@ def state_of(
     against = against or before
     compared = old if against is before else signals_of(against.analysis) if against else None
     length = display("length", [extent_of(machine)])
+    lacking = forces_lack(machine)
     content: Values = {
         "name": found.design.name,
         "title": said(machine.title),
@@ -68,8 +69,7 @@ def state_of(
         "turns": motion.turns,
         "speed": motion.speed,
         "length": {"unit": length.name, "factor": length.factor},
-        "has_forces": analysis.solved is not None,
-        "missing": [name for name, link in machine.links.items() if not link.has_mass],
+        "lacking": lacking,
         "scene": stage_of(scene, movable(machine), cams_told(machine, motion.linkage.joints)),
         "traced": traced(motion),
         "first": first_of(machine)[0],
@@ -80,7 +80,7 @@ def state_of(
         "orders": _orders(analysis),
         "notes": [
             *(said(note) for note in (found.along, found.swings) if note),
-            *([massless(machine)] if analysis.solved is None else []),
+            *([lacking] if lacking else []),
         ],
         "held": said(found.held) if found.held else None,
         "before": before is not None,
@@ -110,6 +110,7 @@ def outputs_of(analysis: Analysis) -> list[Values]:
             "name": one.name,
             "label": one.label(),
             "group": groups[one.group],
+            "winds": one.dimension == "angle",
             **told[one.dimension],
         }
         for one in analysis.outputs
@@ -198,7 +199,7 @@ def first_of(machine: Machine) -> tuple[str, tuple[str, ...]]:
     """
     moved = [link for link in pinned(machine) if len(machine.links[link].points) > 1]
     moved += guided(machine)
-    if machine.support is not None and not massless(machine):
+    if machine.support is not None and not forces_lack(machine):
         return "answers", ()
     if machine.planting is not None or len(moved) < 2:
         return "squares", ()

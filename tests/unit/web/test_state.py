@@ -145,8 +145,13 @@ def test_a_machine_on_a_support_tells_its_response() -> None:
 def test_a_machine_without_masses_moves() -> None:
     session, _ = opened("yamashita-1")
     shown = ask(session, "open", name="bare.toml", text=massless())[0].content
-    assert not shown["has_forces"]
-    assert shown["missing"] == ["crank", "coupler", "rocker"]
+    told = "forces need mass, centre of mass and inertia of every link: give them, or bodies, at "
+    assert shown["lacking"] == f"{told}“Parts of the model” for crank, coupler and rocker"
+    assert shown["lacking"] in shown["notes"]
+    links = {
+        one["label"]: one["winds"] for one in shown["outputs"] if one["name"] == "links.crank.angle"
+    }
+    assert links and all(links.values())
     assert "shaking_force" not in shown["arrays"]
     assert not [one for one in shown["fields"] if one["path"].startswith("counterweights")]
 
