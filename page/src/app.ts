@@ -50,6 +50,7 @@ export class App {
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
   private readonly planted = new FigureTable(say("Figures of the planting finger"));
+  private readonly gauges = new FigureTable(say("Figures of gauges"));
   private readonly strokes = new FigureTable(say("Figures of sliders, rockers and cams"));
   private readonly across = h("img", {
     class: "across",
@@ -245,7 +246,7 @@ export class App {
     stage.append(this.heading.about, this.tools.palette.root, this.board.root);
     stage.append(this.transport.root, this.seeing.root, this.heading.notes, this.readings.root);
     stage.append(this.seeing.variants.root);
-    stage.append(this.across, this.strokes.root, this.planted.root);
+    stage.append(this.across, this.gauges.root, this.strokes.root, this.planted.root);
     const empty = say(
       "Forces, torque and paths stand here as soon as the machine moves. What is missing is told above the drawing.",
     );
@@ -347,6 +348,7 @@ export class App {
     if (other) this.tools.anew();
     if (other || !state.planting) this.planted.hide();
     if (other) this.strokes.hide();
+    if (other || !state.shaken) this.gauges.hide();
     if (other || !state.beside) this.across.hidden = true;
     if (!state.before) this.balance.hide();
     this.board.clear(this.held || other);
@@ -361,7 +363,8 @@ export class App {
   }
 
   private plant(planted: Planted): void {
-    (planted.type === "strokes" ? this.strokes : this.planted).show(planted);
+    const tables = { strokes: this.strokes, gauges: this.gauges, planting: this.planted };
+    tables[planted.type].show(planted);
     this.add(planted.type, planted.notes);
   }
 

@@ -174,6 +174,7 @@ export class Conversation {
         return this.events.variants(told);
       case "planting":
       case "strokes":
+      case "gauges":
         return this.events.planting(told);
       case "side":
         return this.events.side(told);

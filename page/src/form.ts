@@ -186,6 +186,7 @@ export class Form {
     const body = place[0] === "links" && typeof place[1] === "string" ? place[1] : "frame";
     return {
       bodies: tables.bodies,
+      outputs: tables.outputs,
       body,
       beside: (key) => this.inputs.get(key)?.value(),
       put: (key, value) => this.inputs.get(key)?.set(value),

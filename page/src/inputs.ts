@@ -17,6 +17,8 @@ export interface Input {
 export interface Around {
   /** Points of the frame and of links, in their own axes. */
   bodies: Record<string, Record<string, Pair>>;
+  /** What outputs that balancing can take are called, by name. */
+  outputs: Record<string, string>;
   /** The link in whose table the form is, or the frame. */
   body: string;
   beside(key: string): Plain | undefined;
@@ -86,14 +88,15 @@ const number: Maker = (_, name, __, hint) => {
   return { element, value, set: (given) => (element.value = String(given ?? "")) };
 };
 
-const text: Maker = ({ options }, name, _, hint) => {
+const text: Maker = ({ options = [], of }, name, around, hint) => {
   const field = box(name, hint);
   const value = () => field.value.trim() || undefined;
   const put = (given: Plain | undefined) => (field.value = String(given ?? ""));
-  if (!options?.length) return { element: field, value, set: put };
+  const offered = of === "output" ? Object.entries(around.outputs) : options.map((one) => [String(one), ""]);
+  if (!offered.length) return { element: field, value, set: put };
   const id = fresh("options");
   set(field, { list: id });
-  const list = h("datalist", { id }, ...options.map((one) => h("option", { value: String(one) })));
+  const list = h("datalist", { id }, ...offered.map(([value, label]) => h("option", { value, label: label || null })));
   return { element: h("span", { class: "several" }, field, list), value, set: put };
 };
 

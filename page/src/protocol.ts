@@ -256,6 +256,8 @@ export interface StateMessage {
   length: Unit;
   /** Why there are no forces, and nothing to balance; empty where there are. */
   lacking: string;
+  /** Whether gauges of a support read something. */
+  shaken?: boolean;
   fields: Field[];
   scene: Scene;
   arrays: Arrays;
@@ -427,9 +429,9 @@ export interface Side {
   svg: string;
 }
 
-/** Figures of a planting finger, or of sliders and rockers; null where they are not finite. */
+/** Figures of a planting finger, of gauges, or of sliders and rockers; null where they are not finite. */
 export interface Planted {
-  type: "planting" | "strokes";
+  type: "planting" | "gauges" | "strokes";
   figures: (Pick<Figure, "name" | "label" | "unit" | "value" | "text" | "was">)[];
   /** Whether figures of another design are told beside them. */
   compared: boolean;
@@ -506,7 +508,7 @@ export interface Asking {
   unit?: string;
   options?: (string | number)[];
   /** Of what it is the name, and the key beside it that names the body of a point. */
-  of?: "link" | "body" | "point";
+  of?: "link" | "body" | "point" | "output";
   on?: string;
   /** Of places: or a point's name; with z; the key that names the link whose axes they are in. */
   named?: boolean;
@@ -581,6 +583,8 @@ export interface Tables {
   forms: Record<string, { controls: Control[]; rule: Rule }>;
   /** Points of the frame and of links, in their own axes, m. */
   bodies: Record<string, Record<string, Pair>>;
+  /** What outputs that balancing can take are called, by name. */
+  outputs: Record<string, string>;
 }
 
 export type Told =

@@ -71,7 +71,7 @@ export class Readings {
   }
 }
 
-/** Figures of a planting finger, or of sliders and rockers; they come a little after the machine. */
+/** Figures of a planting finger, of gauges, or of sliders and rockers; they come a little after the machine. */
 export class FigureTable {
   readonly root = h("div", { class: "readings planted", hidden: true });
 

@@ -30,14 +30,15 @@ class Text(Kind):
     """Text; `names` are the only ones, if there are any.
 
     suggested : those that editors offer; what else is wrong with it is said elsewhere.
-    of : what it is the name of: ``link``, ``body`` (a link or the frame) or ``point``.
+    of : what it is the name of: ``link``, ``body`` (a link or the frame), ``point``, or ``output``
+        (that balancing can take).
     on : key beside it that names the body of that point, ``frame``, ``links`` for any link, or
         ``own`` for the link in whose table it stands; any body where not given.
     """
 
     names: tuple[str, ...] = ()
     suggested: tuple[str, ...] = ()
-    of: Literal["", "link", "body", "point"] = ""
+    of: Literal["", "link", "body", "point", "output"] = ""
     on: str = ""
 
     wanted = "text"

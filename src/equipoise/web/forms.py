@@ -81,6 +81,8 @@ def _control(kind: keys.Kind) -> Values:
 def _text(kind: keys.Text) -> Values:
     if kind.names:
         return {"kind": "choice", "options": [*kind.names]}
+    if kind.of == "output":  # of which a file may have others, such as those of rows
+        return {"kind": "text", "of": kind.of}
     if kind.of:
         return {"kind": "name", "of": kind.of, "on": kind.on}
     return {"kind": "text", "options": [*kind.suggested]}

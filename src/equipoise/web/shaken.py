@@ -12,9 +12,10 @@ from equipoise.errors import EquipoiseError
 from equipoise.figures import render
 from equipoise.figures.side import side
 from equipoise.figures.swing import ModeSwing, swinging
-from equipoise.i18n import said, say
+from equipoise.i18n import said, say, to_say
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.kinematics.stroke_figures import declared_figures, dimension_of
+from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.mechanism.outputs.spoken import joint_named
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import FREEDOMS, PLANAR
@@ -153,8 +154,8 @@ class OutdatedError(Exception):
 def more(
     found: Solved, against: Solved | None, sweep: bool, outdated: Callable[[], bool]
 ) -> Iterator[tuple[Values, bytes]]:
-    """Planes from the side, strokes, planting figures, the response over speed; each as values and
-    a block of floats.
+    """Planes from the side, strokes, gauges, planting figures, the response over speed; each as
+    values and a block of floats.
 
     against : the design that figures are told against, if any.
     sweep : whether the response is wanted.
@@ -164,6 +165,8 @@ def more(
         yield {"type": "side", "svg": render(side(found.analysis)).decode()}, b""
     if found.analysis.strokes and not outdated():
         yield _told_against("strokes", _strokes, found, against), b""
+    if can_be_shaken(found.analysis.machine) and not outdated():
+        yield _told_against("gauges", _gauges, found, against), b""
     if _plants(found) and not outdated():
         planted = _told_against("planting", _planted, found, against)
         if not outdated():
@@ -225,6 +228,28 @@ def _shown(name: str, one: _Told, other: _Told | None) -> Values:
     told = {"name": name, "label": one.label, "unit": shown.name, "value": now}
     was = {} if other is None else {"was": was_of(there(other.value), now)}
     return {**told, "text": text_of(now), **was}
+
+
+READ = {"peak_to_peak": to_say("peak to peak"), "vibration_rms": to_say("RMS")}
+"""What is told of a gauge's reading; RMS is about the mean."""
+
+
+def _gauges(found: Solved) -> _Figures:
+    """Figures of what gauges read; none without a steady state, of which `response_of` tells."""
+    try:
+        gauges = responded(found).gauges
+    except EquipoiseError:
+        return {}
+    reading = DECLARED["gauges.{}"]
+    return {
+        f"gauges.{name}.{measure}": _Told(
+            say("{what}, {measure}", what=reading.say(_spoken(name)), measure=say(word)),
+            float(getattr(gauge.displacement, measure)),
+            "angle" if gauge.rotation else reading.dimension,
+        )
+        for name, gauge in gauges.items()
+        for measure, word in READ.items()
+    }
 
 
 def _strokes(found: Solved) -> _Figures:

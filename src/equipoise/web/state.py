@@ -70,6 +70,7 @@ def state_of(
         "speed": motion.speed,
         "length": {"unit": length.name, "factor": length.factor},
         "lacking": lacking,
+        "shaken": machine.support is not None and not lacking,
         "scene": stage_of(scene, movable(machine), cams_told(machine, motion.linkage.joints)),
         "traced": traced(motion),
         "first": first_of(machine)[0],

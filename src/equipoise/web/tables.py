@@ -10,7 +10,9 @@ from typing import Any
 
 from equipoise.i18n import Worded, say, to_say
 from equipoise.keys import Frozen, Key, Named, Tables, Wording
+from equipoise.mechanism.outputs.declaring import declared
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import balanced_names
 from equipoise.quantities import told
 from equipoise.schema.entries import Document, entry_of, own_keys, tables_below
 from equipoise.schema.places import Place, written_place
@@ -61,6 +63,7 @@ def tables_of(machine: Machine) -> Values:
     groups : a key below which there are tables, or can be, in the order of the file.
     forms : by the name that groups tell.
     bodies : points of the frame and of links by name, in their own axes, m.
+    outputs : those that balancing can take, each with what it is called.
     """
     document = Document.of_machine(machine)
     of = type(machine)
@@ -69,7 +72,9 @@ def tables_of(machine: Machine) -> Values:
     whole["entries"] = [_entry(of, document.content, ())]
     bodies = {name: dict(points) for name, points in machine.bodies.items()}
     groups = [whole, *_groups(machine, of, document.content, (), "")]
-    return {"groups": groups, "forms": forms_of(of), "bodies": bodies}
+    found = ((name, declared(name)) for name in balanced_names(machine))
+    outputs = {name: one[0].say(one[1]) for name, one in found if one is not None}
+    return {"groups": groups, "forms": forms_of(of), "bodies": bodies, "outputs": outputs}
 
 
 def _groups(

@@ -132,6 +132,15 @@ def test_a_machine_on_a_support_tells_its_response() -> None:
     session, _ = opened("yamashita-rig")
     _, _, reply = ask(session, "ready")
     found = eq.respond(eq.load("yamashita-rig"))
+    told = next(one.content for one in session.tell_more() if one.content["type"] == "gauges")[
+        "figures"
+    ]
+    (reading,) = found.gauges.values()
+    for one, value in zip(
+        told, (reading.displacement.peak_to_peak, reading.displacement.vibration_rms), strict=True
+    ):
+        assert one["value"] == pytest.approx(1e3 * value)
+    assert [one["label"].rpartition(", ")[2] for one in told] == ["peak to peak", "RMS"]
     (drawn,) = reply.content["charts"]
     (gauge,) = drawn["choices"]
     (curve,) = gauge["curves"]

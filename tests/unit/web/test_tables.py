@@ -99,6 +99,12 @@ def test_names_are_chosen_from_those_that_there_are() -> None:
     rough = {one["key"]: one["by"] for one in told["forms"]["Position"]["controls"] if "by" in one}
     assert rough["points"] == {"kind": "name", "of": "point", "on": "links"}
     assert rough["angles"]["of"] == "link"
+    (output,) = [one for one in told["forms"]["Objective"]["controls"] if one["key"] == "output"]
+    assert (output["kind"], output["of"]) == ("text", "output")
+    rig = tables_of(opened_example("yamashita-rig").own)["outputs"]
+    assert rig["shaking_moment"] == "shaking moment"
+    assert [name for name in rig if name.startswith("gauges.")]
+    assert not [name for name in told["outputs"] if name.startswith("gauges.")]
     assert told["bodies"]["frame"]["A"] == (0.0, 0.0)
     assert own_keys(Machine).keys() == {"title", "description", "gravity", "assembly"}
 

@@ -56,7 +56,7 @@ class Objective(Frozen):
     file_order = ("output", "measure", "orders", "about", "speeds", "weight")
 
     output: str = key(
-        Text(),
+        Text(of="output"),
         "such as `shaking_force.y`, `shaking_force`, `shaking_moment`, `drive_torque`, "
         "`frame_force`, `frame_moment`, `joints.NAME`, `gears.NAME`, `belts.NAME.pull`, "
         "`gauges.NAME`, `roll_moment`, `yaw_moment`, `rocking_moment`",
