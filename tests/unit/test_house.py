@@ -17,7 +17,7 @@ ROOT = Path(equipoise.__file__).parent
 FILES = sorted(ROOT.rglob("*.py"))
 TOP = Path(__file__).parents[2]
 PAGES = [*sorted((TOP / "docs").glob("*.md")), TOP / "README.md", TOP / "CONTRIBUTING.md"]
-LINES, MODULES, FILE, FUNCTION, NAMES = 94_600, 484, 350, 60, 40
+LINES, MODULES, FILE, FUNCTION, NAMES = 94_618, 484, 350, 60, 40
 """Most lines and modules in all, lines in a file and in a function, names at the top.
 
 The first two are what there is; half as much to know is the aim, so whoever needs more says why."""
