@@ -150,6 +150,7 @@ def test_the_page_offers_it_and_draws_it_when_asked(power: None) -> None:
         "name": POWER,
         "label": "drive power",
         "group": "frame and drive",
+        "winds": False,
         "unit": "W",
         "factor": 1.0,
     }
