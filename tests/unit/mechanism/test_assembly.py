@@ -382,3 +382,78 @@ def test_wrong_and_idle_sides_are_told_with_missing_ones() -> None:
 def test_sides_of_links_that_cannot_be_joined() -> None:
     _, lines = asked(four_bar(1.0, 0.1, 0.2, 0.2))
     assert lines.splitlines()[2:] == ['C = "left"', '# or C = "right"']
+
+
+# -- dyads at one point ----------------------------------------------------------------------------
+
+
+def block_on_the_pin(label: str = "", *, arms: int = 1, **changes: object) -> eq.Machine:
+    """Crank-rocker; on the pin of coupler and rocker are blocks, each of which slides on an arm."""
+    given = four_bar(1.0, 0.35, 0.9, 0.8)
+    frame, links, sliders = dict(given.frame), dict(given.links), []
+    for number in range(1, arms + 1):
+        frame[f"E{number}"] = (0.5, -0.8 - 0.2 * number)
+        links[f"block{number}"] = body(C=ORIGIN)
+        links[f"arm{number}"] = body(**{f"E{number}": ORIGIN})
+        slider = eq.Slider(f"block{number}", "C", f"arm{number}", f"E{number}", 0.0, label=label)
+        sliders.append(slider)
+    return replace(given, frame=frame, links=links, sliders=tuple(sliders), **changes)  # type: ignore[arg-type]
+
+
+def test_dyads_at_one_point_have_entries_of_their_own() -> None:
+    """Without entries both are asked for, and what is offered to be pasted makes the machine."""
+    given = block_on_the_pin()
+    sides, _ = asked(given)
+    assert sides.keys() == {"C", "block1 on arm1"}
+    with pytest.raises(ModelError, match='give "forward" or "backward"') as caught:
+        eq.mechanism.assemble(replace(given, assembly={"C": sides["C"]}))
+    assert caught.value.where == "assembly.block1 on arm1"
+    turned = []
+    for side in ("forward", "backward"):
+        motion = eq.move(replace(given, assembly={"C": "left", "block1 on arm1": side}), 12)
+        turned.append(np.exp(1j * motion.links["arm1"].angle))
+        assert set(motion.transmission) == {"C", "block1 on arm1"}
+        way = motion.points["C"].place - complex(*given.frame["E1"])
+        np.testing.assert_allclose(way / abs(way) * (1 if side == "forward" else -1), turned[-1])
+    np.testing.assert_allclose(turned[0], -turned[1])
+
+
+def test_two_blocks_on_one_point_lie_as_each_is_told() -> None:
+    """A word for the point is that of both, as ever; their names tell them apart."""
+    given = block_on_the_pin(arms=2)
+    names = [slider.name for slider in given.sliders]
+    assert set(asked(given)[0]) == {"C", *names}
+    others = {name: given.links[name] for name in given.links if name not in ("coupler", "rocker")}
+    free = replace(given, links=others | {"crank": body(A=ORIGIN, C=(0.35, 0.0))})
+    both = eq.move(replace(free, assembly={"C": "backward"}), 12)
+    each = eq.move(replace(free, assembly=dict.fromkeys(names, "backward")), 12)
+    apart = eq.move(
+        replace(free, assembly=dict(zip(names, ("backward", "forward"), strict=True))), 12
+    )
+    assert set(both.transmission) == set(names)
+    for name in ("arm1", "arm2"):
+        np.testing.assert_allclose(both.links[name].angle, each.links[name].angle)
+    turn = np.exp(1j * (apart.links["arm2"].angle - both.links["arm2"].angle))
+    np.testing.assert_allclose(turn, -1)
+
+
+def test_a_guide_called_as_the_pin_of_another_dyad_is_refused() -> None:
+    given = block_on_the_pin("C", assembly={"C": "left"})
+    with pytest.raises(ModelError, match="give the guide another label"):
+        eq.mechanism.assemble(given)
+
+
+@pytest.mark.parametrize("key", ["mode", "block on rocker"])
+def test_a_guide_or_its_point_may_be_called_mode(key: str) -> None:
+    quick = eq.load("quick-return")
+    slider = next(one for one in quick.sliders if one.on != FRAME)
+    label = key if key == "mode" else ""
+    sliders = tuple(replace(one, label=label) if one == slider else one for one in quick.sliders)
+    name = label or slider.name
+    entries = {
+        name if joint == slider.point else joint: side for joint, side in quick.assembly.items()
+    }
+    given = replace(quick, sliders=sliders, assembly=entries)
+    np.testing.assert_allclose(
+        eq.move(given, 12).links[slider.on].angle, eq.move(quick, 12).links[slider.on].angle
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -40,7 +40,9 @@ class Group:
     forces : steps that find the reactions in their joints, once all later groups are done.
     margin : name of the dyad's assembly margin, the squared sine of its transmission angle,
         negative where it cannot be closed; None for others.
-    joint : inner joint of the dyad.  dead : says what the links do where the margin is zero.
+    joint : key of the dyad in the table of sides, and its name in outputs: its inner joint.
+    point : of an inner joint that slides, the point that stands for it where no other dyad has
+        that.  dead : says what the links do where the margin is zero.
     through : whether they go on through change points, where the margin is zero.
     """
 
@@ -51,6 +53,7 @@ class Group:
     reactions: tuple[Reaction, ...]
     margin: str | None = None
     joint: str = ""
+    point: str = ""
     dead: Note | str = ""
     through: bool = False
 
@@ -112,11 +115,12 @@ class Builder:
     """Bodies and points known so far.
 
     rank : body -> position in the order of solution.  anchors : body -> the point from which its
-    other points are reached and about which its moments are taken.  sides : joints whose
-    assembly side was asked for.  missing : those of them that the file does not answer -> words
-    of the two sides, what they mean, what the file has.  motion : steps so far.  told :
+    other points are reached and about which its moments are taken.  sides : entries of the table
+    of sides that were asked for.  missing : joints whose side the file does not give -> words of
+    the two sides, what they mean, what the file has.  motion : steps so far.  told :
     references at crank angle 0, of a machine of the same build, whose branch is taken over.
     mode : of four-bars of equal opposite sides whose own entry is missing, one of `MODES`.
+    tried : joint -> side that is taken, whatever the file has.  pinned : inner pins of dyads.
     """
 
     machine: Machine
@@ -129,6 +133,8 @@ class Builder:
     running: set[str] = field(default_factory=set)
     told: State = field(default_factory=dict)
     mode: str | None = None
+    tried: Mapping[str, str] = field(default_factory=dict)
+    pinned: set[str] = field(default_factory=set)
     _now: State = field(init=False)
     _ran: int = field(init=False, default=0)
 
@@ -179,13 +185,26 @@ class Builder:
         """Among the known bodies at a pin, the one that carries it: the first to be solved."""
         return min((b for b in bodies if b in self.rank), key=lambda b: self.rank[b])
 
-    def side(self, joint: str, words: tuple[str, str], meaning: str) -> float:
-        """+1 or -1 for the side on which the file assembles a dyad; +1 where that is missing."""
-        side = self.machine.assembly.get(joint)
+    def short(self, slider: Slider) -> str:
+        """The point that stands for a sliding joint in the table of sides; "" where it is the
+        name of another joint.
+        """
+        names = self.pinned.union(one.name for one in self.machine.sliders)
+        return "" if slider.point in names else slider.point
+
+    def side(self, joint: str, words: tuple[str, str], meaning: str, point: str = "") -> float:
+        """+1 or -1 for the side on which the file assembles a dyad; +1 where that is missing.
+
+        point : stands for the joint where the file has no entry of the joint's own name.
+        """
+        given = self.machine.assembly
+        entry = point if point in given and joint not in given else joint
+        side = self.tried.get(joint, given.get(entry))
         if side is None and words == MODES and self.mode is not None:
             self.sides.add(joint)
-            joint, side = MODE, self.mode
-        self.sides.add(joint)
+            joint = entry = MODE
+            side = self.mode
+        self.sides.add(entry)
         if side not in words:
             self.missing[joint] = (words, meaning, side)
         return -1.0 if side == words[1] else 1.0

@@ -50,7 +50,7 @@ def _dyad(
     motion: tuple[Kernel, tuple[Any, ...]],
     forces: tuple[Kernel, tuple[str, ...], tuple[Any, ...]],
     *,
-    joint: str,
+    at: str = "",
     point: str = "",
     dead: Note | str = "",
     more: tuple[str, ...] = (),
@@ -60,15 +60,18 @@ def _dyad(
     reactions : of the outer joints, whose places are the links' anchors, and of the inner one.
     motion : kernel and its numbers; it goes on from the outer joints.
     forces : kernel, the places and rotations that it takes before the demands, and its numbers.
-    joint, dead : as in `Group`.  point : where the inner joint is, if the kernel finds that.
+    at : where the inner joint is, if the kernel finds that.  point, dead : as in `Group`.
     more : names of what the kernel of the motion takes beside the outer joints.
     """
     first, second = (outer.link for outer in outers)
-    margin = f"s({reactions[2].name})"
+    inner = reactions[2]
+    if inner.kind == "pin":
+        builder.pinned.add(inner.name)
+    margin = f"s({inner.name})"
     known = [*(name for outer in outers for name in outer.inputs), *more]
-    found = (*u(first), *u(second), *(p(point) if point else ()), margin)
+    found = (*u(first), *u(second), *(p(at) if at else ()), margin)
     reach = [step for outer in outers for step in builder.reach(outer.body, outer.point)]
-    builder.add({first: reactions[0].at, second: reactions[1].at}, [point] if point else [])
+    builder.add({first: reactions[0].at, second: reactions[1].at}, [at] if at else [])
     kernel, places, numbers = forces
     demands = (*demand_names(first), *demand_names(second))
     results = tuple(name for reaction in reactions for name in reaction.outputs)
@@ -82,7 +85,8 @@ def _dyad(
         ),
         reactions,
         margin,
-        joint,
+        inner.name,
+        point,
         dead,
     )
 
@@ -102,8 +106,7 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         (first.reaction(), second.reaction(), pin_reaction(pin, other, link)),
         (kernels.rrr, (*arms, side)),
         (joint_kernels.rrr_forces, places, ()),
-        joint=pin,
-        point=pin,
+        at=pin,
         dead=Note("{link!r} and {other!r} lie in line", link=link, other=other),
     )
 
@@ -124,8 +127,7 @@ def _through(
         (first.reaction(), second.reaction(), pin_reaction(pin, other, link)),
         (kernels.parallelogram, (*arms, side)),
         (joint_kernels.rrr_forces, places, ()),
-        joint=pin,
-        point=pin,
+        at=pin,
         more=(*p(pivot), *u(closed.here)[1:], *u(closed.there)[1:]),
     )
     return replace(found, motion=(*reach, *found.motion), through=True)
@@ -145,8 +147,7 @@ def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
         (pinned.reaction(), sliding.reaction(pin), pin_reaction(pin, other, link)),
         (kernels.rrp, (arm, guide.along, shift, guide.turn, side)),
         (joint_kernels.rrp_forces, places, (guide.along,)),
-        joint=pin,
-        point=pin,
+        at=pin,
         dead=Note("{link!r} stands square to the line of {guide!r}", link=link, guide=guide.name),
     )
 
@@ -156,7 +157,8 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
     link, on = block.link, other.link
     guide = Guide.seen_from(slider, on)
     meaning = f"{block.point} lies ahead of or behind {other.point}, along the guide's direction"
-    side = builder.side(slider.point, AHEAD, meaning)
+    short = builder.short(slider)
+    side = builder.side(slider.name, AHEAD, meaning, short)
     from_pivot = builder.arm(on, other.point, guide.base) / guide.along
     from_point = builder.arm(link, guide.point, block.point) * guide.turn
     offset, back = (from_pivot + from_point).imag, guide.along.conjugate()
@@ -167,7 +169,7 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
         (block.reaction(), other.reaction(), guide_reaction(guide, link, on, block.point)),
         (kernels.rpr, (offset, guide.turn, back, (NEAR * builder.size()) ** 2, side)),
         (joint_kernels.rpr_forces, places, (guide.turn.conjugate(),)),
-        joint=slider.point,
+        point=short,
         dead=Note(
             "{point} comes to {other}, or square to it across {slider!r}",
             point=block.point,
@@ -191,8 +193,7 @@ def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         (first.reaction(pin), second.reaction(pin), pin_reaction(pin, second.link, first.link)),
         (kernels.prp, tuple(shapes)),
         (joint_kernels.prp_forces, turns, (near.along, far.along)),
-        joint=pin,
-        point=pin,
+        at=pin,
         dead=Note("the lines of {near!r} and {far!r} are parallel", near=near.name, far=far.name),
     )
 
@@ -214,14 +215,15 @@ def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Grou
     )
     places = (f"p({pinned.point})", f"p({guide.point})", f"u({sliding.body})")
     on_inner = guide_reaction(inner, link, other, pinned.point)
+    short = builder.short(slider)
     return _dyad(
         builder,
         (pinned, sliding),
         (pinned.reaction(), sliding.reaction(guide.point), on_inner),
         (kernels.rpp, (guide.along, guide.turn, line, turn, shift)),
         (joint_kernels.rpp_forces, places, (guide.along, line)),
-        joint=slider.point,
-        point=guide.point,
+        at=guide.point,
+        point=short,
     )
 
 

@@ -7,7 +7,8 @@ order, steps for forces.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -40,7 +41,11 @@ NO_PARALLELS = Note(
     "no two links of this linkage close a four-bar of equal opposite sides with known ones, so "
     "that there are no change points to go on through; leave it out"
 )
-NOTHING: Mapping[str, tuple[int, str]] = {}
+TWICE = Note(
+    "the inner joints of two dyads are both called {name!r}, so that one entry would be of both; "
+    "rename the point, or give the guide another label"
+)
+NOTHING: Mapping[str, Any] = {}
 
 
 @dataclass(frozen=True)
@@ -152,25 +157,45 @@ def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
 def ordered(
     machine: Machine,
     joints: Structure,
-    start: State | None = None,
-    assumed: Mapping[str, tuple[int, str]] = NOTHING,
+    start: Mapping[str, Any] = NOTHING,
 ) -> Linkage:
     """Order the links into steps, whose numbers are columns where those of the machine are.
 
     start : references at crank angle 0, so that running angles begin in the same turn as those.
-    assumed : of joints, which of two sides to take where the file leaves it out, and why.
+
+    Raises
+    ------
+    MobilityError, ModelError : as of `assemble`.
     """
+    grouping = _grouped(machine, joints, start or {})
+    _check_sides(machine, joints, grouping)
+    return _linked(machine, joints, grouping)
+
+
+def _linked(machine: Machine, joints: Structure, grouping: Grouping) -> Linkage:
+    builder = grouping.builder
+    pivot, order = builder.anchors[FRAME], keyed(grouping.groups)
+    whole = shared(builder, joints, pivot, order)
+    return Linkage(machine, joints, pivot, builder.anchors, order, shared=whole)
+
+
+def _check_sides(machine: Machine, joints: Structure, grouping: Grouping) -> None:
+    """Raise a `ModelError` for sides that the file leaves out, and for entries of no dyad."""
     from equipoise.mechanism.assembly import sides
 
-    builder, groups, choices = _grouped(machine, joints, start or {}, assumed)
+    builder, groups, choices = grouping.builder, grouping.groups, grouping.choices
     held_kinds = ("pointed", "loops") if joints.surplus else ("pointed",)
     held_at = {point for group in groups if group.kind in held_kinds
                for link in group.links for point in machine.links[link].points}  # fmt: skip
     asked = builder.sides | held_at  # of links that more joints hold lengths decide the side
     idle = [joint for joint in machine.assembly if joint not in asked]
     if choices:
-        if not assumed and (decided := sides.decided(machine, choices, _turns)):
-            return ordered(machine, joints, start, decided)
+
+        def turns_fully(tried: Mapping[str, str]) -> None:
+            _ = _linked(machine, joints, _grouped(machine, joints, tried=tried)).cycle
+
+        if decided := sides.decided(choices, turns_fully):
+            choices = _grouped(machine, joints, assumed=decided).choices
         raise sides.missing(machine, choices, idle)
     for joint in idle:
         if joint == MODE and machine.assembly[joint] in MODES:
@@ -184,9 +209,26 @@ def ordered(
                 hint=hint,
             ),
         )
-    pivot, order = builder.anchors[FRAME], tuple(groups)
-    whole = shared(builder, joints, pivot, order)
-    return Linkage(machine, joints, pivot, builder.anchors, order, shared=whole)
+
+
+def keyed(groups: Sequence[Group]) -> tuple[Group, ...]:
+    """Groups, of which each dyad has a key of its own in the table of sides and in outputs: its
+    inner pin; the point of its inner sliding joint; or, where several dyads have that point, the
+    name of that joint.
+
+    Raises
+    ------
+    ModelError : a pin and a sliding joint are called the same.
+    """
+    dyads = [group.joint for group in groups if group.kind == "dyad"]
+    for name, count in Counter(dyads).items():
+        if count > 1:
+            raise ModelError("assembly", Note(TWICE, name=name))
+    points = Counter(group.point for group in groups)
+    return tuple(
+        replace(group, joint=group.point) if group.point and points[group.point] == 1 else group
+        for group in groups
+    )
 
 
 def sides_at_position(machine: Machine, turning: Any = None) -> dict[str, str]:
@@ -204,21 +246,40 @@ def sides_at_position(machine: Machine, turning: Any = None) -> dict[str, str]:
     if turning is not None:
         bare.__dict__["turning"] = turning
     joints = structure(bare)
-    _, _, choices = _grouped(bare, joints, {}, NOTHING)
-    return {one.joint: one.words[one.side] for one in choices}
+    choices = _grouped(bare, joints).choices
+    return {choice.group.joint: choice.words[choice.side] for choice in choices}
+
+
+@dataclass(frozen=True)
+class Grouping:
+    """What the drives determine, group by group.
+
+    choices : the sides that the file leaves out.
+    """
+
+    builder: Builder
+    groups: tuple[Group, ...]
+    choices: tuple[Any, ...]
 
 
 def _grouped(
     machine: Machine,
     joints: Structure,
-    start: State,
-    assumed: Mapping[str, tuple[int, str]],
-) -> tuple[Builder, list[Group], list[Any]]:
-    """What the drives determine, group by group, and the sides that the file leaves out."""
+    start: Mapping[str, Any] = NOTHING,
+    assumed: Mapping[str, tuple[int, str]] = NOTHING,
+    tried: Mapping[str, str] = NOTHING,
+) -> Grouping:
+    """What the drives determine.
+
+    start : as of `ordered`.
+    assumed : of joints, which of two sides to take where the file leaves it out, and why.
+    tried : of joints, the side to take, whatever the file has.
+    """
     from equipoise.mechanism.assembly import sides
 
     mode = machine.assembly.get(MODE)
-    if mode not in (None, *MODES) and MODE not in joints.pins:  # else it is the side of that pin
+    named = {*joints.pins, *(name for one in machine.sliders for name in (one.name, one.point))}
+    if mode not in (None, *MODES) and MODE not in named:  # else it is the side of that joint
         told = Note("got {leaf!r}; give {choice}", leaf=mode, choice=choice(MODES))
         raise ModelError(f"assembly.{MODE}", told)
     if mode not in MODES:
@@ -231,7 +292,8 @@ def _grouped(
         else:
             drives[one.link] = drive_pivot(joints, one.link, f"drives[{number}].link")
     points, running = set(machine.frame), {FRAME, *drives}
-    builder = Builder(machine, points=points, running=running, told=start, mode=mode)
+    builder = Builder(machine, points=points, running=running, told=dict(start), mode=mode,
+                      tried=tried)  # fmt: skip
     surplus: frozenset[str] = frozenset()
     if joints.surplus:
         surplus, joints = surplus_cranks(machine, joints), joints.needed
@@ -250,7 +312,7 @@ def _grouped(
             group = hung(builder, joints, waiting) or next_group(builder, joints, ready)
         except ModelError:
             if choices:  # sides come first: on a wrong one what hangs on it cannot be right
-                raise sides.missing(machine, choices) from None
+                raise sides.missing(machine, _with_keys(choices, groups)) from None
             raise
         if group.joint in builder.missing:
             choices.append(sides.chosen(builder, group, assumed))
@@ -258,8 +320,10 @@ def _grouped(
         groups.append(group)
         builder.motion += group.motion
         unknown = [link for link in unknown if link not in group.links]
-    return builder, groups, choices
+    return Grouping(builder, tuple(groups), _with_keys(choices, groups))
 
 
-def _turns(machine: Machine) -> Cycle:
-    return ordered(machine, structure(machine)).cycle
+def _with_keys(choices: Sequence[Any], groups: Sequence[Group]) -> tuple[Any, ...]:
+    """Choices of sides whose groups have their final keys."""
+    final = dict(zip((group.links for group in groups), keyed(groups), strict=True))
+    return tuple(replace(choice, group=final[choice.group.links]) for choice in choices)

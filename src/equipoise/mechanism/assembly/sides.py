@@ -47,13 +47,14 @@ TURNS = "the crank turns fully with this side alone"
 class Choice:
     """A side that the file leaves out, or gives in words of another dyad.
 
-    words : of the two sides.  meaning : what they say.  given : what the file has.
+    inner : name of the inner joint.  words : of the two sides.  meaning : what they say.
+    given : what the file has.
     side : the number of the word that is taken.  why : what tells, empty where nothing does.
     gives : what each side leads to, empty where the links cannot be joined.
     group : with the side that is taken.
     """
 
-    joint: str
+    inner: str
     words: tuple[str, str]
     meaning: str
     given: str | None
@@ -61,6 +62,11 @@ class Choice:
     why: str
     gives: tuple[str, ...]
     group: Group
+
+    @property
+    def joint(self) -> str:
+        """Key of the dyad in the table of sides."""
+        return self.group.joint
 
     @property
     def wrong(self) -> str:
@@ -176,35 +182,34 @@ def _as_drawn(builder: Builder, group: Group, state: State) -> Iterator[float]:
 
 
 def decided(
-    machine: Machine, choices: Sequence[Choice], turns_fully: Callable[[Machine], Any]
+    choices: Sequence[Choice], turns_fully: Callable[[Mapping[str, str]], Any]
 ) -> dict[str, tuple[int, str]]:
-    """By joint, the sides without which the crank cannot turn fully, where nothing else tells.
+    """By inner joint, the sides without which the crank cannot turn fully, where nothing else
+    tells.
 
-    turns_fully : raises an `EquipoiseError` for a machine whose crank does not.
+    turns_fully : raises an `EquipoiseError` where the crank does not with these sides, by joint.
     """
-    known = {one.joint: one.words[one.side] for one in choices}
+    known = {one.inner: one.words[one.side] for one in choices}
     undecided = [one for one in choices if not one.why]
     if not 0 < len(undecided) <= MOST_TRIED:
         return {}
     good: list[tuple[int, ...]] = []
     for numbers in product((0, 1), repeat=len(undecided)):
-        taken = {one.joint: one.words[k] for one, k in zip(undecided, numbers, strict=True)}
+        taken = {one.inner: one.words[k] for one, k in zip(undecided, numbers, strict=True)}
         try:
-            turns_fully(replace(machine, assembly={**machine.assembly, **known, **taken}))
+            turns_fully(known | taken)
         except EquipoiseError:
             continue
         good.append(numbers)
     found = {}
     for one, taken_sides in zip(undecided, zip(*good, strict=True), strict=False):
         alone = len(set(taken_sides)) == 1 and len(good) < 2 ** len(undecided)
-        found[one.joint] = (taken_sides[0], TURNS if alone else "")
+        found[one.inner] = (taken_sides[0], TURNS if alone else "")
     return found
 
 
 def missing(machine: Machine, choices: Sequence[Choice], idle: Iterable[str] = ()) -> ModelError:
     """One error for all sides that are missing; `idle` are entries of joints that have none."""
-    # one entry is that of all dyads whose inner joint has its name
-    choices = [*{one.joint: one for one in (*choices, *choices[::-1])}.values()]
     first = choices[0]
     if len(choices) == 1:
         where = f"assembly.{first.joint}"
