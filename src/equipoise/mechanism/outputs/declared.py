@@ -114,7 +114,7 @@ of_dyad = alike(
     items=lambda found: found.motion.transmission,
     spoken=joint_named,
 )
-of_dyad("", "angle", to_say("transmission angle at {name}"))
+of_dyad("", "angle", to_say("transmission angle at {name}"), yardstick="transmission")
 of_pair = alike(
     "centers.{}",
     lambda _, found, pair: instant_center(found.motion, pair),
@@ -134,13 +134,13 @@ def _force(name: str, found: Any) -> Any:
 
 
 linear = alike("", _force, linear=True, loop=True)
-linear("shaking_force", "force", to_say("shaking force"), XY, ordered=True, compared=FORCE)
-linear(
-    "shaking_moment", "torque", to_say("shaking moment"), about=True, ordered=True, compared=MOMENT
-)
+linear("shaking_force", "force", to_say("shaking force"), XY, ordered=True, compared=FORCE,
+       yardstick="weight")  # fmt: skip
+linear("shaking_moment", "torque", to_say("shaking moment"), about=True, ordered=True,
+       compared=MOMENT, yardstick="span")  # fmt: skip
 TURNED: dict[str, Any] = {"members": lambda machine: () if machine.drive.pushes else ("",)}
 PUSHED: dict[str, Any] = {"members": lambda machine: ("",) if machine.drive.pushes else ()}
-EFFORT: dict[str, Any] = {"ordered": True, "compared": TORQUE}
+EFFORT: dict[str, Any] = {"ordered": True, "compared": TORQUE, "yardstick": "effort"}
 linear("drive_torque", "torque", to_say("drive torque"), **TURNED, **EFFORT)
 linear("drive_force", "force", to_say("drive force"), loop=None, **PUSHED, **EFFORT)
 linear("frame_force", "force", to_say("force on the frame"), XY, summed=(True, False))
@@ -153,7 +153,8 @@ of_space = alike(
     linear=True,
     loop=True,
 )
-of_space("rocking_moment", "torque", to_say("rocking moment"), XY, ordered=True, compared=FORCE)
+of_space("rocking_moment", "torque", to_say("rocking moment"), XY, ordered=True, compared=FORCE,
+         yardstick="bearings")  # fmt: skip
 of_space(
     "frame_rocking_moment",
     "torque",
@@ -200,12 +201,14 @@ of_drive(
     to_say("drive torque of {name}"),
     loop="{drive torque:name}",
     members=lambda machine: _told(machine, "torque"),
+    yardstick="effort",
 )
 of_drive(
     "force",
     "force",
     to_say("drive force of {name}"),
     members=lambda machine: _told(machine, "force"),
+    yardstick="effort",
 )
 of_drive(
     "power",
@@ -245,6 +248,7 @@ of_joint(
     loop="{joint force:name}",
     summed=(True, False),
     compared=FORCE,
+    yardstick="acting",
 )
 RAILS: dict[str, Any] = {
     "members": slider_names,
@@ -282,6 +286,7 @@ of_bearing(
     loop="{bearing force:name}",
     summed=(True, False),
     compared=FORCE,
+    yardstick="acting",
 )
 
 
@@ -293,7 +298,8 @@ def _coupled(table: str) -> Callable[..., None]:
     return alike(table + ".{}", read, **shared)
 
 
-TOOTH: dict[str, Any] = {"loop": "{joint force:name}", "summed": (True, False), "compared": FORCE}
+TOOTH: dict[str, Any] = {"loop": "{joint force:name}", "summed": (True, False), "compared": FORCE,
+                         "yardstick": "acting"}  # fmt: skip
 PART_OF_TOOTH = {"summed": False, "linear": "{what} is only read; take the whole force instead"}
 for of_teeth in (_coupled("gears"), _coupled("racks")):
     of_teeth("", "force", to_say("tooth force {name}"), FORCES, **TOOTH)
@@ -301,7 +307,7 @@ for of_teeth in (_coupled("gears"), _coupled("racks")):
     of_teeth(".radial", "force", to_say("radial tooth force {name}"), **PART_OF_TOOTH)
 of_belt = _coupled("belts")
 of_belt(".pull", "force", to_say("effective pull {name}"), compared=FORCE,
-        loop="{belt pull:name}")  # fmt: skip
+        loop="{belt pull:name}", yardstick="acting")  # fmt: skip
 of_belt(".left", "force", to_say("tension of the left strand {name}"), compared=FORCE,
         loop="{belt left:name}")  # fmt: skip
 of_belt(".right", "force", to_say("tension of the right strand {name}"), compared=FORCE,
@@ -313,14 +319,16 @@ CAMMED: dict[str, Any] = {
 }
 of_cam = alike("cams.{}", lambda name, found, cam: _members(found.forces.cams, name, cam), **CAMMED)
 of_cam("", "force", to_say("contact force {name}"), FORCES, linear=True,
-       loop="{joint force:name}", summed=(True, False), compared=FORCE)  # fmt: skip
+       loop="{joint force:name}", summed=(True, False), compared=FORCE,
+       yardstick="acting")  # fmt: skip
 READ = "{what} is only read; take the whole contact force instead"
 of_cam(".normal", "force", to_say("contact force along the normal {name}"), linear=READ,
        loop="{cam push:name}")  # fmt: skip
 of_shape = alike("cams.{}.", lambda name, found, cam: getattr(found.motion, name + "s")[cam],
                  needs="motion", **CAMMED)  # fmt: skip
 of_shape("pressure_angle", "angle", to_say("pressure angle {name}"),
-         loop="angle_of({cam forth:name}.conjugate() * {cam normal:name})")  # fmt: skip
+         loop="angle_of({cam forth:name}.conjugate() * {cam normal:name})",
+         yardstick="pressure")  # fmt: skip
 of_shape("curvature", "per length", to_say("curvature of the cam {name}"))
 of_spring = alike(
     "springs.{}.", lambda name, found, number: getattr(found.motion.springs[number], name),
@@ -332,17 +340,19 @@ of_spring("length", "length", to_say("length of spring {name}"), loop="{spring l
 # -- rows and support ------------------------------------------------------------------------------
 
 of_rows = alike("rows.", lambda name, found: found.together[name], needs="rows", linear=True)
-of_rows("shaking_force", "force", to_say("shaking force"), XY, summed=(True, False), compared=FORCE)
-of_rows("shaking_moment", "torque", to_say("shaking moment"), compared=FORCE)
-of_rows("roll_moment", "torque", to_say("roll moment"), compared=FORCE)
-of_rows("yaw_moment", "torque", to_say("yaw moment"), compared=FORCE)
-of_rows("drive_torque", "torque", to_say("drive torque"), **TURNED)
-of_rows("drive_force", "force", to_say("drive force"), **PUSHED)
+of_rows("shaking_force", "force", to_say("shaking force"), XY, summed=(True, False), compared=FORCE,
+        yardstick="weight")  # fmt: skip
+of_rows("shaking_moment", "torque", to_say("shaking moment"), compared=FORCE, yardstick="span")
+of_rows("roll_moment", "torque", to_say("roll moment"), compared=FORCE, yardstick="bearings")
+of_rows("yaw_moment", "torque", to_say("yaw moment"), compared=FORCE, yardstick="bearings")
+of_rows("drive_torque", "torque", to_say("drive torque"), yardstick="effort", **TURNED)
+of_rows("drive_force", "force", to_say("drive force"), yardstick="effort", **PUSHED)
 DECLARED["gauges.{}"] = Declared(
     "gauges.{}",
     "length",
     to_say("reading at {name}"),
     None,
     needs="support",
+    yardstick="vibration",
     members=lambda machine: [] if machine.support is None else list(machine.support.gauges),
 )

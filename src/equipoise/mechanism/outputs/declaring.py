@@ -25,6 +25,10 @@ Array = np.ndarray[Any, Any]
 Needs = Literal["motion", "masses", "planes", "rows", "support"]
 Measure = Literal["rms", "ripple", "peak", "peak_to_peak", "area"]
 """What is told of an output as one number; see `mechanism.parts.objectives`."""
+Yardstick = Literal[
+    "", "weight", "span", "bearings", "effort", "acting", "pressure", "transmission", "vibration"
+]
+"""Against what an output is measured to say whether it is large; see `results.yardsticks`."""
 Part = Literal["", "x", "y", "size"]
 Read = Callable[..., Any]
 """From an analysis, and the name of the member for families, to values (N,), complex of vectors."""
@@ -89,6 +93,7 @@ class Declared:
     compared : measures that are told before and after balancing.
     unbounded : whether there are crank angles at which it is infinite, which NaN stands for; it is
         had by its name alone.
+    yardstick : against what it is measured to say whether it is large; empty where it is not.
     """
 
     name: str
@@ -108,6 +113,7 @@ class Declared:
     ordered: bool = False
     compared: tuple[Measure, ...] = ()
     unbounded: bool = False
+    yardstick: Yardstick = ""
 
     @property
     def unit(self) -> str:
@@ -252,7 +258,9 @@ def output(
         if parts is None:
             DECLARED[name] = replace(one, summed=of_size)
             return read
-        one_part = replace(one, summed=of_parts, compared=one.compared if of_parts else ())
+        one_part = replace(
+            one, summed=of_parts, compared=one.compared if of_parts else (), yardstick=""
+        )
         DECLARED[parts[0]] = replace(one_part, name=parts[0], part="x")
         DECLARED[parts[1]] = replace(one_part, name=parts[1], part="y")
         if sized:

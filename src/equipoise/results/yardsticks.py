@@ -1,0 +1,464 @@
+"""What is large on a machine: its figures, each against a yardstick of its own.
+
+`assess` gives them ranked, the largest first.  Which outputs are assessed, and against what, is
+declared with them (`yardstick` in `mechanism.outputs.declared`):
+
+    weight        a force that shakes the frame: peak, over the weight of the machine or the largest
+                  load from outside, whichever is larger
+    span          a moment that shakes the frame: peak, over that force at the span of the feet
+    bearings      a moment across the plane: peak, over that force at the span across the plane
+    effort        a torque: peak to peak, over its mean; where that is less than what lifts the
+                  moving links at the crank's throw, over the largest force that acts, there;
+                  a force: peak, over the largest load or the weight of the links
+    acting        a force between bodies: peak, over the largest force that acts: weight, load,
+                  spring, inertia of a link, and what the drive exerts at the crank's throw
+    pressure      a pressure angle: peak, over 30 deg, of a follower that swings 45 deg
+    transmission  a transmission angle: its distance from 90 deg, over 50 deg
+    limit         a limit that is declared: of a gauge, of the speed at which a follower lifts off
+    vibration     the velocity of a gauge without a limit: RMS, over 4.5 mm/s
+
+A ratio of 1 is the yardstick itself, and more is large.  Weights are by standard gravity where a
+machine lies flat.  The support counts where there is one.  30 and 45 deg of pressure and 40 deg of
+transmission are the usual limits (Norton, Design of Machinery, 8.6 and 4.10); 4.5 mm/s is where
+ISO 20816-3 ends zone B for machines of 15 to 300 kW on flexible supports.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import hypot, pi, radians
+from typing import Any, Protocol
+
+import numpy as np
+
+from equipoise.i18n import Note, say, to_say
+from equipoise.mechanism.assembly.steps import size_of_bodies
+from equipoise.mechanism.dynamics import acting
+from equipoise.mechanism.outputs.declared import DECLARED
+from equipoise.mechanism.parts.machine import STANDARD_GRAVITY, Machine
+from equipoise.quantities import SI, Dimension, angle, number, percent, told
+from equipoise.results.analysis import Analysis
+from equipoise.results.outputs import FIGURES, Output
+
+LARGE, NOTHING = 1.0, 1e-9
+"""Ratio from which a figure is large, and up to which it is rounding."""
+PRESSURE, SWINGING_PRESSURE, TRANSMISSION = radians(30), radians(45), radians(40)
+"""Largest pressure angles of a cam, and smallest transmission angle of a dyad, rad."""
+VIBRATION = 4.5e-3
+"""RMS of a velocity, m/s, beyond which a machine should not run for long."""
+
+
+class GaugeReading(Protocol):
+    """What a gauge reads over a period, as `Response.gauges` has it."""
+
+    @property
+    def displacement(self) -> Any: ...
+    @property
+    def velocity(self) -> Any: ...
+    @property
+    def rotation(self) -> bool: ...
+
+
+@dataclass(frozen=True)
+class FigureAssessment:
+    """A figure of a machine beside its yardstick.
+
+    figure : its path in the machine-readable output: in the summary of an analysis
+        (``shaking_force.peak``), among its cams (``cams.lift.lift_off_speed``), or in a response
+        (``gauges.cab.velocity.rms``).
+    label : what it is called.
+    value : SI units.  dimension : of it.
+    yardstick : in the same unit.  against : what that is.
+    ratio : 1 where the figure meets its yardstick; more is worse.
+    output : the output that it is a figure of.  item : of a family, its member, such as a joint.
+    crank_angle : rad, at which it is so large; None of what has no crank angle.
+    shown_unit : in which it is shown, where that is not the usual unit of its dimension.
+    is_limit : whether the machine does not do what it is meant to do beyond it: a limit that the
+        file gives, or contact that is lost.
+    """
+
+    figure: str
+    label: Note
+    value: float
+    dimension: Dimension
+    yardstick: float
+    against: Note
+    ratio: float
+    output: str
+    item: str = ""
+    crank_angle: float | None = None
+    is_limit: bool = False
+    shown_unit: str | None = None
+
+    @property
+    def unit(self) -> str:
+        """SI unit of value and yardstick."""
+        return SI[self.dimension]
+
+    @property
+    def is_large(self) -> bool:
+        """Whether it is at its yardstick or beyond."""
+        return self.ratio >= LARGE
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data, SI units and radians."""
+        return {
+            "figure": self.figure,
+            "value": self.value,
+            "unit": self.unit,
+            "yardstick": self.yardstick,
+            "against": str(self.against),
+            "ratio": self.ratio,
+            "crank_angle": self.crank_angle,
+        }
+
+
+def assess(
+    analysis: Analysis, readings: Mapping[str, GaugeReading] | None = None
+) -> tuple[FigureAssessment, ...]:
+    """Figures of a machine against their yardsticks, the largest ratio first.
+
+    Of each family, such as all joints, the largest member alone; of several rows the figures of
+    all rows together.  A machine without masses has only what its motion tells; one without any
+    yardstick an empty tuple.
+
+    Parameters
+    ----------
+    readings : of gauges by name, as in `Response.gauges`; gauges are left out where not given.
+    """
+    scales = _Scales(analysis)
+    worst: dict[str, FigureAssessment] = {}
+    for output in analysis.outputs:
+        if not output.declared.yardstick or _is_of_one_row_or_drive(output):
+            continue
+        found = OF_OUTPUT[output.declared.yardstick](scales, output)
+        family = output.declared.name
+        if found is not None and (family not in worst or found.ratio > worst[family].ratio):
+            worst[family] = found
+    entries = [*worst.values(), *_of_cams(analysis)]
+    for name, reading in (readings or {}).items():
+        entries += _of_gauge(analysis.machine, name, reading)
+    return tuple(sorted(entries, key=lambda entry: -entry.ratio))
+
+
+def verdict(entries: tuple[FigureAssessment, ...]) -> FigureAssessment | None:
+    """The figure by which a machine is judged first: a limit, else what is largest.
+
+    entries : from `assess`.
+    """
+    limits = (entry for entry in entries if entry.is_limit)
+    return next(limits, entries[0] if entries else None)
+
+
+def sentence(entry: FigureAssessment) -> str:
+    """The figure beside its yardstick, in the language that is spoken; without a point."""
+    values = {
+        "what": entry.label.said(),
+        "value": told(entry.value, entry.dimension, entry.shown_unit, digits=3),
+        "against": entry.against.said(),
+    }
+    values["what"] = values["what"][:1].upper() + values["what"][1:]
+    if entry.crank_angle is not None:
+        at = say("{value} at crank angle {angle}", value=values["value"],
+                 angle=angle(entry.crank_angle, 0))  # fmt: skip
+        values["value"] = at
+    if entry.dimension in ANGLES_AND_SPEEDS or entry.is_limit:
+        limit = told(entry.yardstick, entry.dimension, entry.shown_unit, digits=3)
+        return say("{what}: {value}; {against}: {limit}", limit=limit, **values)
+    if entry.is_large:
+        ratio = number(entry.ratio, digits=2)
+        return say("{what}: {value}, {ratio} times {against}", ratio=ratio, **values)
+    share = percent(entry.ratio, 0 if entry.ratio >= FEW else 1)
+    return say("{what}: {value}, {share} % of {against}", share=share, **values)
+
+
+ANGLES_AND_SPEEDS = ("angle", "angular speed", "speed")
+"""Dimensions of figures that are said beside their yardstick, not as a multiple of it."""
+FEW = 0.1
+"""Share below which a digit more is said."""
+
+
+def _is_of_one_row_or_drive(output: Output) -> bool:
+    """Whether all rows together, or the drives one by one, have the same output."""
+    machine = output.analysis.machine
+    one_of_drives = bool(machine.told_drives) and output.name == machine.drive.effort
+    return one_of_drives or f"rows.{output.name}" in output.analysis.outputs
+
+
+# -- yardsticks ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class _Scales:
+    """Forces and lengths of a machine, SI units, against which figures are measured."""
+
+    analysis: Analysis
+
+    @property
+    def machine(self) -> Machine:
+        return self.analysis.machine
+
+    @property
+    def rows(self) -> int:
+        return max(1, len(self.machine.rows))
+
+    @cached_property
+    def gravity(self) -> float:
+        return hypot(*self.machine.gravity) or hypot(*STANDARD_GRAVITY)
+
+    @cached_property
+    def links_weight(self) -> float:
+        """Of the moving links of one row."""
+        return self.machine.mass * self.gravity
+
+    @cached_property
+    def weight(self) -> float:
+        """Of the links of all rows, and the support."""
+        support = self.machine.support
+        carried = 0.0 if support is None else support.mass * self.gravity
+        return self.rows * self.links_weight + carried
+
+    @cached_property
+    def outer_load(self) -> float:
+        """Largest of a load from outside."""
+        return _largest(acting.outer_loads(self.analysis.motion))
+
+    @cached_property
+    def load(self) -> float:
+        """Largest of any load, those that the frame bears too."""
+        return max(self.outer_load, _largest(acting.acting_loads(self.analysis.motion)))
+
+    @cached_property
+    def steadying(self) -> tuple[float, Note]:
+        """The larger of weight and load from outside, and which it is."""
+        if self.outer_load > self.weight:
+            return self.outer_load, Note("the largest load")
+        supported = self.machine.support is not None
+        return self.weight, Note("the weight of the machine") if supported else Note(LINKS)
+
+    @cached_property
+    def lifting(self) -> tuple[float, Note]:
+        """The larger of the weight of a row's links and any load, and which it is."""
+        if self.load > self.links_weight:
+            return self.load, Note("the largest load")
+        return self.links_weight, Note(LINKS)
+
+    @cached_property
+    def undriven(self) -> tuple[float, Note]:
+        """The largest force that acts but for the drive's: weight, load, spring or inertia."""
+        force, what = self.lifting
+        summary = self.analysis.summary
+        each = self.analysis.forces.inertia.values()
+        others = {
+            to_say("the largest pull of a spring"): max(
+                (f.peak for name, f in summary.items() if _is_of(name, "springs", "pull")),
+                default=0.0,
+            ),
+            to_say("the largest force of inertia"): max(_peak(force) for force, _ in each),
+        }
+        largest = max(others, key=others.__getitem__)
+        return (others[largest], Note(largest)) if others[largest] > force else (force, what)
+
+    @cached_property
+    def acting(self) -> tuple[float, Note]:
+        """The largest of all forces that act, that of the drive too."""
+        summary = self.analysis.summary
+        pushes = [f.peak for name, f in summary.items()
+                  if name == "drive_force" or _is_of(name, "drives", "force")]  # fmt: skip
+        torques = [f.peak for name, f in summary.items() if name == "drive_torque"]
+        drive = max([*pushes, *(torque / self.throw for torque in torques)], default=0.0)
+        force, what = self.undriven
+        return (drive, Note("the force of the drive")) if drive > force else (force, what)
+
+    @cached_property
+    def span(self) -> float:
+        """How far apart the feet of the machine are, or its pins in the frame."""
+        machine, support = self.machine, self.machine.support
+        feet = [] if support is None else [m.point for m in support.mounts.values() if m.point]
+        pins = [machine.frame[point] for point in self.analysis.motion.linkage.joints.pins
+                if point in machine.frame]  # fmt: skip
+        pins += [machine.frame[one.through] for one in machine.sliders if one.on == "frame"]
+        sizes = (_extent([place[:2] for place in places]) for places in (feet, pins))
+        return next((size for size in sizes if size > 0), float(size_of_bodies(machine)))
+
+    @cached_property
+    def span_across(self) -> float:
+        """Across the plane: between bearings, of rows or of links; `span` where that is nothing."""
+        machine = self.machine
+        rows = [row.lateral for row in machine.rows]
+        bearings = [bearing.plane for bearing in machine.bearings.values()]
+        planes = [z for one in machine.links.values() for z in (one.plane, *one.planes.values())]
+        extents = (max(zs) - min(zs) for zs in (rows, bearings, planes) if zs)
+        return next((extent for extent in extents if extent > 0), self.span)
+
+    @cached_property
+    def throw(self) -> float:
+        """From the driven link's pin to its farthest point; half the largest body without one."""
+        points = self.machine.links[self.machine.drive.link].points
+        pivot = complex(*points[self.analysis.motion.linkage.pivot])
+        reach = max(abs(complex(*point) - pivot) for point in points.values())
+        return reach or float(size_of_bodies(self.machine)) / 2
+
+
+LINKS = to_say("the weight of the moving links")
+
+
+def _is_of(name: str, group: str, what: str) -> bool:
+    """Whether an output is that of a member of a group, such as ``springs.1.pull``."""
+    return name.startswith(f"{group}.") and name.endswith(f".{what}")
+
+
+def _peak(force: Any) -> float:
+    return float(np.max(np.abs(force)))
+
+
+def _largest(loads: Any) -> float:
+    return max((_peak(force) for _, _, force, _ in loads), default=0.0)
+
+
+def _extent(places: list[Any]) -> float:
+    """Largest distance of any two places."""
+    found = np.array([complex(*place) for place in places])
+    return float(np.max(np.abs(found[:, None] - found), initial=0.0))
+
+
+# -- figures of outputs ----------------------------------------------------------------------------
+
+
+def _entry(
+    output: Output, measure: str, yardstick: float, against: Note, ratio: float | None = None
+) -> FigureAssessment | None:
+    """A figure of the summary; None where there is no yardstick, or it is nothing beside that."""
+    figures = output.analysis.summary[output.name]
+    value = float(getattr(figures, measure))
+    assert output.dimension is not None
+    if ratio is None:
+        if not abs(value) > NOTHING * yardstick > 0:
+            return None
+        ratio = abs(value) / yardstick
+    places = {"peak": "peak_at", "max": "max_at", "min": "min_at"}
+    at = getattr(figures, places.get(measure, "peak_at"))
+    what = output.declared.note(output.item)
+    label = Note("{what}, {part}", what=what, part=Note(FIGURES[measure]))
+    return FigureAssessment(
+        f"{output.name}.{measure}", label, value, output.dimension, yardstick, against, ratio,
+        output.name, output.item, float(at),
+    )  # fmt: skip
+
+
+def _weight(scales: _Scales, output: Output) -> FigureAssessment | None:
+    return _entry(output, "peak", *scales.steadying)
+
+
+def _couple(scales: _Scales, output: Output, span: float) -> FigureAssessment | None:
+    force, what = scales.steadying
+    return _entry(output, "peak", force * span, Note("{force} at the span", force=what))
+
+
+def _effort(scales: _Scales, output: Output) -> FigureAssessment | None:
+    rows = 1 if output.declared.is_of_row else scales.rows
+    if output.dimension == "force":
+        force, what = scales.lifting
+        return _entry(output, "peak", rows * force, what)
+    mean = abs(output.analysis.summary[output.name].mean)
+    if mean >= rows * scales.links_weight * scales.throw:
+        return _entry(output, "peak_to_peak", mean, Note("its mean"))
+    force, what = scales.undriven
+    against = Note("{force} at the throw of the crank", force=what)
+    return _entry(output, "peak_to_peak", rows * force * scales.throw, against)
+
+
+def _acting(scales: _Scales, output: Output) -> FigureAssessment | None:
+    return _entry(output, "peak", *scales.acting)
+
+
+def _pressure(scales: _Scales, output: Output) -> FigureAssessment | None:
+    (cam,) = (one for one in scales.machine.cams if one.name == output.item)
+    most = PRESSURE if cam.swing is None else SWINGING_PRESSURE
+    return _entry(output, "peak", most, Note("the usual limit"))
+
+
+def _transmission(scales: _Scales, output: Output) -> FigureAssessment | None:
+    groups = scales.analysis.motion.linkage.groups
+    if output.item in {group.joint for group in groups if group.through}:
+        return None  # other joints carry it through its dead position
+    figures = output.analysis.summary[output.name]
+    is_stretched = figures.max - pi / 2 > pi / 2 - figures.min
+    measure = "max" if is_stretched else "min"
+    limit = pi - TRANSMISSION if is_stretched else TRANSMISSION
+    ratio = abs(getattr(figures, measure) - pi / 2) / (pi / 2 - TRANSMISSION)
+    return _entry(output, measure, limit, Note("the usual limit"), ratio)
+
+
+OF_OUTPUT: Mapping[str, Callable[[_Scales, Output], FigureAssessment | None]] = {
+    "weight": _weight,
+    "span": lambda scales, output: _couple(scales, output, scales.span),
+    "bearings": lambda scales, output: _couple(scales, output, scales.span_across),
+    "effort": _effort,
+    "acting": _acting,
+    "pressure": _pressure,
+    "transmission": _transmission,
+}
+"""How an output is assessed, by the yardstick that it is declared with."""
+
+
+# -- figures of cams and gauges --------------------------------------------------------------------
+
+
+def _of_cams(analysis: Analysis) -> Iterator[FigureAssessment]:
+    """Speeds at which followers lift off, against the speed at which the crank turns."""
+    speed = abs(analysis.motion.speed)
+    for name, cam in analysis.cams.items():
+        if cam.lift_off_speed is None or not analysis.machine.crank_turns:
+            continue
+        ratio = speed / cam.lift_off_speed if cam.lift_off_speed else float("inf")
+        yield FigureAssessment(
+            f"cams.{name}.lift_off_speed", Note("lift-off speed of the crank"),
+            cam.lift_off_speed, "angular speed", speed, Note("the speed of the crank"), ratio,
+            f"cams.{name}", name, cam.lift_off_at, is_limit=True, shown_unit="rpm",
+        )  # fmt: skip
+
+
+def _of_gauge(machine: Machine, name: str, reading: GaugeReading) -> Iterator[FigureAssessment]:
+    """What a gauge reads against the limits that the file gives, or its velocity where none is."""
+    output = f"gauges.{name}"
+    what = DECLARED["gauges.{}"].note(name)
+    dimension: Dimension = "angle" if reading.rotation else "length"
+    limits = machine.balance.limits if machine.balance else ()
+    read = {"peak_to_peak": "peak_to_peak", "ripple": "vibration_rms"}
+    known = [one for one in limits if one.objective.output == output and one.at_most is not None
+             and one.objective.measure in read and not one.objective.orders]  # fmt: skip
+    for limit in known:
+        measure, most = limit.objective.measure, limit.at_most or 0.0
+        value = float(getattr(reading.displacement, read[measure]))
+        path = "rms" if measure == "ripple" else measure
+        label = Note("{what}, {part}", what=what, part=Note(FIGURES[measure]))
+        ratio = value / most if most else float("inf")
+        yield FigureAssessment(
+            f"{output}.{path}", label, value, dimension, most, Note("its limit"), ratio,
+            output, name, is_limit=True,
+        )  # fmt: skip
+    if known:
+        return
+    rate: Dimension = "angular speed" if reading.rotation else "speed"
+    most = VIBRATION / (_reach_of_support(machine) if reading.rotation else 1.0)
+    value = float(reading.velocity.vibration_rms)
+    label = Note("velocity at {name}, RMS", name=name)
+    against = Note("the limit of ISO 20816-3 for lasting operation")
+    yield FigureAssessment(
+        f"{output}.velocity.rms", label, value, rate, most, against, value / most, output, name
+    )
+
+
+def _reach_of_support(machine: Machine) -> float:
+    """From the centre of mass of the support to the farthest point at which it is held, m."""
+    support = machine.support
+    assert support is not None
+    places = [mount.point for mount in support.mounts.values()]
+    places += [gauge.point for gauge in support.gauges.values()]
+    held = [place for place in places if place is not None]
+    center = np.array(support.center_of_mass)
+    reach = max((float(np.linalg.norm(np.array(point) - center)) for point in held), default=0.0)
+    return reach or float(size_of_bodies(machine))

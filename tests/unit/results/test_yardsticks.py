@@ -1,0 +1,172 @@
+"""What is large on a machine: figures against their yardsticks, and how these are declared."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import hypot, radians
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.mechanism.outputs.declared import DECLARED, declaring, output
+from equipoise.mechanism.parts.balance import Balance, Limit, Objective
+from equipoise.results.yardsticks import OF_OUTPUT, FigureAssessment, assess, sentence, verdict
+from equipoise.schema.files import json_text
+
+WITH_GAUGES = ("riding-transplanter", "sieve")
+
+
+def assessed(machine: eq.Machine) -> dict[str, FigureAssessment]:
+    readings = eq.respond(machine).gauges if machine.support is not None else None
+    return {one.figure: one for one in assess(eq.analyze(machine), readings)}
+
+
+def pump() -> eq.Machine:
+    """Without loads and support."""
+    return eq.load("scotch-yoke")
+
+
+@pytest.mark.parametrize(
+    ("name", "figure"),
+    [
+        ("hydraulic-loader", "drive_force.peak"),
+        ("twin-engine", "rocking_moment.peak"),
+        ("cam-pusher", "cams.crank to pusher.lift_off_speed"),
+        ("quick-return", "drive_torque.peak_to_peak"),
+        ("sieve", "gauges.stand_along.velocity.rms"),
+        ("scotch-yoke", "shaking_force.peak"),
+    ],
+)
+def test_each_machine_has_the_verdict_of_its_kind(name: str, figure: str) -> None:
+    """By what its outputs declare: nothing knows these machines."""
+    found = verdict(tuple(assessed(eq.load(name)).values()))
+    assert found is not None and found.figure == figure
+
+
+@pytest.mark.parametrize("name", sorted(eq.examples("linkage")))
+def test_figures_are_those_of_the_machine_readable_output(name: str) -> None:
+    machine = eq.load(name)
+    analysis = eq.analyze(machine)
+    values = analysis.to_dict()
+    readings = eq.respond(machine) if name in WITH_GAUGES else None
+    found = assess(analysis, readings and readings.gauges)
+    assert found and [one.ratio for one in found] == sorted((e.ratio for e in found), reverse=True)
+    for one in found:
+        name, _, measure = one.figure.rpartition(".")
+        if one.output.startswith("gauges."):
+            assert readings is not None
+            velocity = readings.to_dict()["gauges"][one.item]["velocity"]
+            assert one.value == pytest.approx(velocity["rms"])
+        elif one.is_limit:
+            assert one.value == values["cams"][one.item]["lift_off_speed"]
+        else:
+            figures = values["summary"][name]
+            assert one.value == figures[measure]
+            places = [figures[place] for place in ("peak_at", "max_at", "min_at")]
+            assert one.crank_angle in places
+    json_text([one.to_dict() for one in found])
+
+
+def test_a_force_that_shakes_is_measured_by_the_weight() -> None:
+    """Which is the acceleration of the common centre of mass over gravity."""
+    found = assessed(pump())["shaking_force.peak"]
+    acceleration = eq.analyze(pump()).outputs
+    ax, ay = (acceleration[f"mass_center.{axis}"].values for axis in ("ax", "ay"))
+    assert found.ratio == pytest.approx(np.max(np.hypot(ax, ay)) / 9.80665)
+    flat = assessed(replace(pump(), gravity=(0.0, 0.0)))["shaking_force.peak"]
+    assert flat.ratio == pytest.approx(found.ratio)
+    assert (found.unit, str(found.against)) == ("N", "the weight of the moving links")
+
+
+def test_a_load_that_is_larger_takes_the_place_of_the_weight() -> None:
+    """Not one that the frame bears: it does not shake the machine."""
+    machine = pump()
+    link = machine.sliders[0].link
+    point = next(iter(machine.links[link].points))
+    load = eq.Load(link, point, force=(3e4, 4e4))
+    loaded = assessed(replace(machine, loads=(load,)))["shaking_force.peak"]
+    inside = assessed(replace(machine, loads=(replace(load, reaction="frame"),)))
+    assert loaded.yardstick == pytest.approx(5e4) and str(loaded.against) == "the largest load"
+    assert inside["shaking_force.peak"].yardstick == pytest.approx(9.80665 * machine.mass)
+
+
+def test_a_couple_is_measured_over_the_span_of_the_bearings() -> None:
+    machine = eq.load("twin-engine")
+    found = assessed(machine)["rocking_moment.peak"]
+    planes = [bearing.plane for bearing in machine.bearings.values()]
+    span = max(planes) - min(planes)
+    rocking = eq.analyze(machine).forces.across.rocking_moment.value
+    pair = np.max(np.abs(rocking)) / span
+    assert found.ratio == pytest.approx(pair / (9.80665 * machine.mass))
+
+
+def test_a_torque_is_measured_by_its_mean_where_there_is_work_to_do() -> None:
+    analysis = eq.analyze(eq.load("quick-return"))
+    torque = analysis.forces.drive_torque
+    found = {one.figure: one for one in assess(analysis)}["drive_torque.peak_to_peak"]
+    assert found.ratio == pytest.approx(np.ptp(torque) / abs(np.mean(torque)))
+    idle = assessed(pump())["drive_torque.peak_to_peak"]
+    assert idle.yardstick > 0 and str(idle.against) != "its mean"
+
+
+def test_limits_of_gauges_are_their_yardsticks() -> None:
+    """Those that the file gives; the velocity without one."""
+    machine = eq.load("sieve")
+    gauge = eq.respond(machine).gauges["stand"].displacement
+    limit = Limit(Objective("gauges.stand", "ripple"), at_most=1e-4)
+    found = assessed(machine.with_balance(Balance(limits=(limit,))))
+    one = found["gauges.stand.rms"]
+    assert one.is_limit and one.ratio == pytest.approx(float(gauge.vibration_rms) / 1e-4)
+    assert "gauges.stand.velocity.rms" not in found
+    assert "gauges.stand_along.velocity.rms" in found
+    assert verdict(tuple(found.values())) is one
+
+
+def test_a_linkage_without_masses_has_its_angles() -> None:
+    machine = eq.load("yamashita-1")
+    links = {name: replace(link, mass=None, center_of_mass=None, inertia=None)
+             for name, link in machine.links.items()}  # fmt: skip
+    found = assessed(replace(machine, links=links))
+    assert [*found] == ["transmission.C.min"]
+    (one,) = found.values()
+    assert one.ratio == pytest.approx((radians(90) - one.value) / radians(50))
+
+
+def test_an_output_is_assessed_where_it_is_declared_to_be() -> None:
+    with declaring():
+        output("thrust", "force", "thrust", yardstick="weight")(
+            lambda found: found.forces.shaking_force.x
+        )
+        found = assessed(pump())
+    shaking = eq.analyze(pump()).forces.shaking_force.x
+    assert found["thrust.peak"].value == pytest.approx(np.max(np.abs(shaking)))
+    declared = {one.yardstick for one in DECLARED.values()} - {""}
+    assert declared == {*OF_OUTPUT, "vibration"}
+
+
+def test_of_rows_all_together_count() -> None:
+    """And the support is a part of what is shaken."""
+    machine = eq.load("riding-transplanter")
+    found = assessed(machine)
+    assert "shaking_force.peak" not in found and "drive_torque.peak_to_peak" not in found
+    support = machine.support
+    assert support is not None
+    weight = (4 * machine.mass + support.mass) * hypot(*machine.gravity)
+    assert found["rows.shaking_force.peak"].yardstick == pytest.approx(weight)
+
+
+def test_figures_beside_their_yardsticks_in_words() -> None:
+    said = {one.figure: sentence(one) for one in assessed(eq.load("twin-engine")).values()}
+    assert said["rocking_moment.peak"] == (
+        "Rocking moment, peak: 116 N m at crank angle 90°, 32 times the weight of the moving "
+        "links at the span"
+    )
+    share = "16 % of the weight of the moving links at the span"
+    assert said["shaking_moment.peak"].endswith(share)
+    angles = assessed(eq.load("cam-pusher"))
+    assert sentence(angles["transmission.C.min"]) == (
+        "Transmission angle at C, smallest: 29.7° at crank angle 270°; the usual limit: 40.0°"
+    )
+    lift_off = sentence(angles["cams.crank to pusher.lift_off_speed"])
+    assert lift_off.endswith("; the speed of the crank: 240 rpm")
