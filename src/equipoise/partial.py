@@ -19,6 +19,7 @@ from pathlib import Path
 
 from equipoise.errors import UsageError
 from equipoise.fence import check_written
+from equipoise.interrupts import check, held_back
 
 ENDING = ".tmp"
 
@@ -49,6 +50,7 @@ class _Together:
     then: list[Callable[[], None]] = field(default_factory=list)
 
     def done(self) -> None:
+        check()
         for begun, target in self.places.items():
             try:
                 os.replace(begun, target)
@@ -68,17 +70,21 @@ def together() -> Iterator[None]:
 
     A reader of the output who has seen enough does not keep files from being written.
     """
-    with ExitStack() as stack:
-        whole = _Together(stack)
-        token = _waiting.set(whole)
-        try:
-            yield
-        except BrokenPipeError:
+    stack = ExitStack()
+    whole = _Together(stack)
+    token = _waiting.set(whole)
+    try:
+        yield
+        with held_back():
             whole.done()
-            raise
-        finally:
+    except BrokenPipeError:
+        with held_back():
+            whole.done()
+        raise
+    finally:
+        with held_back():
             _waiting.reset(token)
-        whole.done()
+            stack.close()
 
 
 @contextmanager

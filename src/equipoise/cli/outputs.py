@@ -23,6 +23,7 @@ from equipoise.cli.options import (
 from equipoise.errors import UsageError
 from equipoise.fence import may_be_replaced
 from equipoise.i18n import Note, in_each, said, say
+from equipoise.interrupts import check
 from equipoise.partial import afterwards
 
 if TYPE_CHECKING:
@@ -78,6 +79,7 @@ class Printed(Shown):
         """
         from equipoise.schema.files import json_text
 
+        check()
         both = heard.get()
         if self.json:
             print(json_text(dict(values())))

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
+from equipoise.interrupts import check
 from equipoise.quantities.numbers import rate_told, time_told
 
 if TYPE_CHECKING:
@@ -51,29 +52,42 @@ class Step:
     more: Mapping[str, str] = field(default_factory=dict)
 
 
+Show = Callable[[Callable[[], Step], bool], None]
+
+
 @contextmanager
-def _shown(first: float = SECONDS) -> Iterator[Callable[[Callable[[], Step], bool], None]]:
+def _shown(first: float = SECONDS) -> Iterator[Show]:
     """Yield what shows a step; it is asked for when it is shown, and always where it is the last.
 
     first : time to the first line in a log, s.
+
+    An interrupt that a library has dropped ends the work here.
     """
     if sys.stderr is None or os.environ.get("EQUIPOISE_PROGRESS") == "off":
-        yield lambda step, last: None
+        yield lambda step, last: check()
         return
     global shown_now  # noqa: PLW0603 - there is one standard error
     shown_now = True
     try:
         if not sys.stderr.isatty():
-            yield _Log(first).add
+            yield _checking(_Log(first).add)
             return
         from rich.console import Console
         from rich.live import Live
 
         bar = _Bar()
         with Live(bar, console=Console(stderr=True), transient=True, refresh_per_second=4):
-            yield bar.add
+            yield _checking(bar.add)
     finally:
         shown_now = False
+
+
+def _checking(show: Show) -> Show:
+    def checked(step: Callable[[], Step], last: bool) -> None:
+        check()
+        show(step, last)
+
+    return checked
 
 
 class _Log:

@@ -25,6 +25,7 @@ from equipoise.handheld.studies import changed
 from equipoise.handheld.sweep import speeds_between
 from equipoise.i18n import Note, to_say
 from equipoise.results.result import Result
+from equipoise.sequences import sobol
 from equipoise.signals import Array
 
 Told = Callable[[int, int], None]
@@ -120,9 +121,7 @@ class Search:
 
     def _promising(self) -> Array:
         """The best of designs spread over the room; the tool's own is among them."""
-        from scipy.stats import qmc
-
-        spread = qmc.Sobol(len(self.wide), seed=1).random(TRIED)
+        spread = sobol(len(self.wide), 1).random(TRIED)
         own = np.clip((self.start - self.low) / self.wide, 0, 1)
         places = np.vstack([own, spread])
         worth = [self._worth(place) for place in places]

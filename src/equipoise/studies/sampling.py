@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.errors import UsageError
+from equipoise.sequences import sobol
 from equipoise.studies.design_space import LEAST, MOST
 from equipoise.studies.study import correlation_matrix
 
@@ -193,11 +194,9 @@ def _engine(key: tuple[int, int], start: int) -> Sobol:
 
     key : seed, and how many numbers a design has.
     """
-    from scipy.stats.qmc import Sobol
-
     if getattr(_ENGINES, "key", None) != key:
         seed, width = key
-        _ENGINES.engine = Sobol(width, bits=BITS, seed=random_numbers(seed, SEQUENCE))
+        _ENGINES.engine = sobol(width, random_numbers(seed, SEQUENCE), BITS)
     engine: Sobol = _ENGINES.engine
     if engine.num_generated > start:
         engine.reset()

@@ -17,6 +17,7 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
 from equipoise.errors import ModelError, UsageError, lacking
 from equipoise.results.result import Result
+from equipoise.sequences import sobol
 from equipoise.studies.design_space import Choices, Make, Range
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import (
@@ -257,10 +258,8 @@ def _only_new(seen: _Archive) -> Any:
 
 def _first(study: Study, population: int, seed: int) -> Array:
     """Places (P, d) of the first generation: evenly spread, with the model's own among them."""
-    from scipy.stats import qmc
-
     power = (population - 1).bit_length()  # SciPy warns of other numbers than powers of two
-    places = qmc.Sobol(len(study.vary), seed=seed).random_base2(power)[:population]
+    places = sobol(len(study.vary), seed).random_base2(power)[:population]
     spreads: list[Any] = [one.spread for one in study.vary]
     own = [spread.place(number) for spread, number in zip(spreads, study.own.tolist(), strict=True)]
     if all(place is not None for place in own):

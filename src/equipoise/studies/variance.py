@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.sequences import sobol
 from equipoise.studies.design_space import Normal, Uniform
 from equipoise.studies.outcomes import kept
 from equipoise.studies.sampling import BITS, random_numbers, values_at
@@ -75,11 +76,9 @@ def tables(study: Study, rows: int) -> Iterator[Array]:
 
     rows : a power of two.
     """
-    from scipy.stats import qmc
-
     width = len(study.vary)
     scrambling = random_numbers(study.sampling.seed, TWICE)
-    places = qmc.Sobol(2 * width, bits=BITS, seed=scrambling).random_base2(rows.bit_length() - 1)
+    places = sobol(2 * width, scrambling, BITS).random_base2(rows.bit_length() - 1)
     places += 0.5 / 2**BITS  # the middle of a cell: 0 is the end of a normal spread
     first, second = (values_at(study, half) for half in np.hsplit(places, 2))
     centre = np.array([centre_of(one.spread) for one in study.vary])

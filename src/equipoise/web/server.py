@@ -12,11 +12,12 @@ import os
 import socket
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from secrets import compare_digest, token_urlsafe
 from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
+from equipoise.interrupts import answered
 from equipoise.schema.files import reason
 from equipoise.web.assets import TYPES, assets
 from equipoise.web.desk import Desk
@@ -220,9 +221,12 @@ def serve(begin: Callable[[], Desk], port: int | None, tell: Callable[[str], Non
     tell : is given the address of the page, which is served from then on.
     """
     sys.setswitchinterval(SWITCH)
-    with served(begin, port) as (server, listener, address), suppress(KeyboardInterrupt):
-        tell(address)
-        server.run(sockets=[listener])
+    with served(begin, port) as (server, listener, address):
+        try:
+            tell(address)
+            server.run(sockets=[listener])
+        except KeyboardInterrupt:
+            answered()
 
 
 def _listening(port: int | None) -> socket.socket:
