@@ -164,6 +164,5 @@ def serve(
 
             webbrowser.open(address)
 
-    gc.enable()  # other commands end before garbage matters
     gc.freeze()
     server.serve(begin, port, tell)

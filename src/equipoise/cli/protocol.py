@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import os
 from base64 import b64encode
 from functools import partial
@@ -54,7 +53,6 @@ def mcp(*, folder: Annotated[str, wants("FOLDER")] = ".") -> None:
         raise UsageError(f"--folder: got {folder!r}; give a folder that is there")
     os.chdir(folder)
     os.environ["EQUIPOISE_PROGRESS"] = "off"
-    gc.enable()  # other commands end before garbage matters
     anyio.run(_serve, Path.cwd().resolve())
 
 
