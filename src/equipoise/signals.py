@@ -77,6 +77,12 @@ class Figures:
         """Largest minus smallest value."""
         return self.max - self.min
 
+    @property
+    def signed_peak(self) -> float:
+        """The value whose absolute value is the peak, with its sign."""
+        at_max = abs(self.peak_at - self.max_at) <= abs(self.peak_at - self.min_at)
+        return self.max if at_max else self.min
+
 
 def figures(crank_angle: Array, samples: Array) -> Figures:
     """Mean, RMS and extremes of samples (N,) taken at crank angles (N,), rad."""

@@ -65,7 +65,7 @@ def test_any_output_is_drawn_over_the_crank_angle(live: Live) -> None:
     search.fill("angle transm")  # words in any order
     search.press("Enter")
     chart = live.page.get_by_role("figure", name="Transmission angle at C")
-    angle = np.degrees(eq.analyze(eq.load("yamashita-1"), 720).motion.transmission["C"])
+    angle = np.degrees(eq.analyze(eq.load("yamashita-1")).motion.transmission["C"])
     told = f"from {np.min(angle):.3g} to {np.max(angle):.3g} °"
     expect(chart).to_have_attribute("aria-label", f"Transmission angle at C: {told}")
     search.fill("angle of crank")

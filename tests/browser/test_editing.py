@@ -206,7 +206,7 @@ def test_a_phase_of_a_row_changes_the_forces_of_all_rows(live: Live) -> None:
     live.type(live.page.get_by_role("textbox", name=re.compile("row 2.*phase")), "90 deg")
     expect(live.button("Undo")).to_be_enabled()
     machine = live.machine()
-    forces = eq.analyze(machine, 720).forces
+    forces = eq.analyze(machine).forces
     force, torque = forces.shaking_force, forces.drive_torque
     ahead = [round(np.degrees(row.phase) * 2) for row in machine.rows]  # samples
     every = sum(np.roll(force.x + 1j * force.y, -samples) for samples in ahead)

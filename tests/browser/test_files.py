@@ -67,7 +67,7 @@ def test_signals_and_report_are_given_as_files(live: Live) -> None:
     name, text = live.download("Download CSV")
     assert name.endswith(".csv")
     rows = list(csv.reader(io.StringIO(text)))
-    force = eq.analyze(eq.load("yamashita-1"), 720).forces.shaking_force
+    force = eq.analyze(eq.load("yamashita-1")).forces.shaking_force
     column = next(n for n, head in enumerate(rows[0]) if head.startswith("shaking_force.x"))
     read = np.array([float(row[column]) for row in rows[1:]])
     np.testing.assert_allclose(read, force.x, rtol=1e-9, atol=1e-9)

@@ -27,7 +27,7 @@ def test_the_page_is_small_and_moves_as_computed(
         arg=start[1] - 0.5,
     )
     live.button("Pause").click()
-    motion = eq.analyze(eq.load("yamashita-1"), 720).motion
+    motion = eq.analyze(eq.load("yamashita-1")).motion
     spots = {}
     for sample in (0, 200, 500):
         page.get_by_role("slider", name="Crank angle").fill(str(sample))

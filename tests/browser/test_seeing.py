@@ -40,7 +40,7 @@ def test_arrows_are_as_long_as_their_scale_tells(live: Live) -> None:
     page.get_by_role("slider", name="Crank angle").fill("200")
     expect(page.locator(".scales li")).to_have_count(3)
     page.wait_for_timeout(300)
-    whole = eq.analyze(eq.load("yamashita-1"), 720)
+    whole = eq.analyze(eq.load("yamashita-1"))
     point = whole.motion.points["C"]
     for kind, values in {
         "velocity": point.velocity,
@@ -118,7 +118,7 @@ def test_a_support_moves_at_work_and_in_its_modes(live: Live) -> None:
 
 def test_a_record_is_drawn_beside_the_model(live: Live) -> None:
     angle = np.arange(0.0, 360.0, 5.0)
-    whole = eq.analyze(eq.load("yamashita-1"), 720)
+    whole = eq.analyze(eq.load("yamashita-1"))
     torque = 1.2 * whole.forces.drive_torque[::10]
     rows = [f"{a},{t:.6f}" for a, t in zip(angle, torque, strict=True)]
     live.drop("run.csv", "\n".join(["crank_angle [deg],drive torque [N m]", *rows]))

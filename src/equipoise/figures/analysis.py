@@ -25,8 +25,10 @@ from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
 from equipoise.results.charts import DEGREES, Array, Axis, Chart, Curve, Mark, Panel, quantity
+from equipoise.results.joint_blocks import contact_named, display_of_joints
 
 if TYPE_CHECKING:
+    from equipoise.mechanism.dynamics.forces import Forces
     from equipoise.results.analysis import Analysis
 
 
@@ -163,7 +165,7 @@ def joints_of(analysis: Analysis) -> dict[str, Joint]:
     largest = max((float(np.max(joint.size)) for joint in every.values()), default=0.0)
     force, moment = LEAST_FORCE * largest, LEAST_FORCE * largest * size_of(analysis)
     for name, joint in every.items():
-        found[name] = Joint(named(name, joint), settled(joint.value, force))
+        found[name] = Joint(named(forces, name, joint), settled(joint.value, force))
         if isinstance(joint, SliderForce):
             told = say("{name}: couple on {on}", name=short(name), on=short(joint.on))
             found[f"{name}.moment"] = Joint(told, settled(joint.moment, moment))
@@ -173,11 +175,12 @@ def joints_of(analysis: Analysis) -> dict[str, Joint]:
     return found
 
 
-def named(name: str, joint: JointForce) -> str:
+def named(forces: Forces, name: str, joint: JointForce) -> str:
     """Name of a joint, and which body acts on which; names made of these are not said twice."""
     bodies = {"on": short(joint.on), "by": short(joint.by)}
-    if name == f"{joint.by} to {joint.on}":
-        return say("teeth: {by} on {on}", **bodies)
+    if name not in forces.joints:
+        what = contact_named(forces, name)
+        return say("{name}: {by} on {on}", name=what, **bodies)
     if name in (f"{joint.by} on {joint.on}", f"{joint.on} on {joint.by}"):
         return say("slider: {by} on {on}", **bodies)
     return say("{name}: {by} on {on}", name=short(name), **bodies)
@@ -201,7 +204,8 @@ def _over_angle(analysis: Analysis, joint: Joint, every: Iterable[Joint]) -> Pan
         y = Axis.of(say("couple"), "torque", beside, room=ROOM)
     else:
         values, most = np.abs(joint.values), 1
-        y = Axis.of(say("force"), "force", beside, low=0.0, room=ROOM)
+        unit = display_of_joints(analysis).unit
+        y = Axis.of(say("force"), "force", beside, unit, low=0.0, room=ROOM)
     places = sampled_extremes(analysis.crank_angle, values)[:most]
     return Panel(
         angle_axis(analysis),
@@ -217,9 +221,9 @@ def _over_angle(analysis: Analysis, joint: Joint, every: Iterable[Joint]) -> Pan
 def joint_polars(analysis: Analysis) -> Iterator[Chart]:
     """The end of the arrow of every joint force, in the frame's axes, nine in a picture."""
     found = {name: joint for name, joint in joints_of(analysis).items() if not joint.couple}
-    every = list(found)
+    every, unit = list(found), display_of_joints(analysis).unit
     for suffix, names in groups(every, MOST_SQUARES):
-        axis = Axis.of("", "force", np.concatenate([found[name].values for name in names]))
+        axis = Axis.of("", "force", np.concatenate([found[name].values for name in names]), unit)
         what = say("Force in each joint along x and y") + continued(names, every)
         remark = say("in {unit}; numbers: crank angle, deg", unit=axis.unit_name)
         told = title(analysis, what, remark, of_one=True)

@@ -31,6 +31,7 @@ from equipoise.figures.shared import (
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.quantities import Dimension
+from equipoise.results.analysis_blocks import display_of_totals
 from equipoise.results.charts import Array, Arrow, Axis, Bars, Chart, Curve, Line, Mark, Panel
 from equipoise.results.outputs import CAUSES, output_named
 from equipoise.signals import Periodic, highest_at
@@ -75,10 +76,18 @@ def over_crank(
             {role: over(analysis, values) for role, values in signals.items()},
             beside=np.concatenate([v for one, values in every if one == dimension for v in values]),
             low=0.0 if label == say("size") else None,
+            unit=_unit(analysis, dimension),
         )
         for label, dimension, signals in panels
     ]
     return Chart(name, analysis.machine.title, what, tuple(drawn), keys=row_keys(analysis))
+
+
+def _unit(analysis: Analysis, dimension: Dimension | None) -> str | None:
+    """The unit of forces and moments on frame and drive, as tables and sentences have it."""
+    if dimension not in ("force", "torque") or analysis.solved is None:
+        return None
+    return display_of_totals(analysis, dimension).unit
 
 
 def force(analysis: Analysis) -> Chart:
@@ -162,7 +171,8 @@ def _causes(analysis: Analysis, output: str, kind: Dimension) -> Panel:
     if not curves:
         curves = [Curve(*over(analysis, 0 * analysis.crank_angle))]
     every = np.concatenate([curve.y for curve in curves])
-    y = Axis.of(say("by cause"), kind, every, room=ROOM / 2)
+    unit = display_of_totals(analysis, kind).unit
+    y = Axis.of(say("by cause"), kind, every, unit, room=ROOM / 2)
     remark = say("of one row") if analysis.together else ""
     return Panel(angle_axis(analysis), y, tuple(curves), title=remark, keyed=True)
 
@@ -174,8 +184,10 @@ def polar(analysis: Analysis) -> Chart:
     """Shaking force as a polar diagram, with crank angles along it, its peak and mean size."""
     found = each(analysis, "shaking_force")
     every = np.concatenate([*found.values()])
+    unit = display_of_totals(analysis, "force").unit
     x, y = (
-        Axis.of(say("shaking force along {axis}", axis=axis), "force", every) for axis in ("x", "y")
+        Axis.of(say("shaking force along {axis}", axis=axis), "force", every, unit)
+        for axis in ("x", "y")
     )
     marks, curves, arrows, message = _told_sizes(analysis, found[ALL], x)
     if analysis.motion.whole_cycle:

@@ -218,7 +218,11 @@ def joints(figures: PlantingFigures) -> Chart:
     every = [[*pair.values()] for pair in pairs.values()]
     y = Axis.of(say("force"), "force", every, room=ROOM, low=0.0)
     for name, joint in soil.items():
-        panels.append(_air_and_soil(figures, y, pairs[name], title=named(name, joint), height=74.0))
+        panels.append(
+            _air_and_soil(
+                figures, y, pairs[name], title=named(found.in_soil, name, joint), height=74.0
+            )
+        )
     what = f"{say('Force in each joint')}; {say(SHADED)}"
     return Chart("joints", figures.machine.title, what, tuple(panels), columns=min(2, len(panels)))
 

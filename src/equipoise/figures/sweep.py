@@ -42,8 +42,6 @@ if TYPE_CHECKING:
     from equipoise.vibration.resonance import Resonance
     from equipoise.vibration.sweep import Sweep
 
-LOUD = 0.1
-"""Share from which a resonance is loud."""
 QUANTITIES = {
     "displacement": (
         to_say("Peak-to-peak displacement at the gauges against crank speed"),
@@ -91,7 +89,7 @@ def bands(sweep: Sweep) -> tuple[Band, ...]:
         spans = [
             (abs(r.avoid[0]), abs(r.avoid[1]))
             for r in sweep.resonances
-            if r.avoid is not None and (r.share >= LOUD) == loud
+            if r.avoid is not None and r.is_loud == loud
         ]
         found += [Band(low, high, role) for low, high in merged(spans)]
     return tuple(found)
@@ -202,7 +200,7 @@ def _panel(
     if quantity:
         usual = np.quantile(heard, MOST_SPEEDS) if heard.size else 0.0
         y = read_axis(label, quantity, rotation, usual)
-    lines = [Line(abs(r.speed), "loud" if r.share >= LOUD else "quiet") for r in sweep.resonances]
+    lines = [Line(abs(r.speed), "loud" if r.is_loud else "quiet") for r in sweep.resonances]
     parts: dict[str, Any] = {"bands": bands(sweep), "keyed": True}
     parts["lines"] = (*lines, *own_speed(sweep))
     if not np.any(heard > 0):

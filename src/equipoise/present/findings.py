@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from equipoise.errors import EquipoiseError, UsageError, at_place
 from equipoise.i18n import Note, to_say
+from equipoise.results.analysis import ANGLES
 
 if TYPE_CHECKING:
     import numpy as np
@@ -28,9 +29,6 @@ if TYPE_CHECKING:
     from equipoise.vibration.sweep import Sweep
 
 Part = TypeVar("Part")
-
-ANGLES = 720
-"""Crank angles in a turn."""
 
 
 @dataclass(frozen=True, eq=False)

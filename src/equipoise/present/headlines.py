@@ -16,8 +16,9 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs.spoken import joint_named, named
 from equipoise.present.shaking import NOTHING, Shaking, acting, largest_joint, largest_of
 from equipoise.present.support_headlines import first_gauge
-from equipoise.quantities import Dimension, angle, brief, change, percent, told
-from equipoise.results.analysis_blocks import shares
+from equipoise.quantities import Dimension, Display, angle, brief, change, display, percent, told
+from equipoise.results.analysis_blocks import display_of_totals, scale_of, shares
+from equipoise.results.joint_blocks import display_of_joints
 from equipoise.results.outputs import CAUSES, objective_named, output_named, shown_in
 from equipoise.signals import Figures
 
@@ -98,7 +99,8 @@ def kinematic(analysis: Analysis, name: str) -> str:
         return say("The transmission angle stays between {low} and {high}", low=low, high=high)
     for one in analysis.outputs:
         if one.dimension in ("speed", "angular speed") and name == kinematics_named(one.item):
-            return topped(one.label(), one.figures, one.dimension)
+            shown = display(one.dimension, [one.figures.peak])
+            return topped(one.label(), one.figures, shown)
     return ""
 
 
@@ -141,7 +143,9 @@ def shaken(found: Findings) -> str:
     size = Shaking.of(found).size
     if not size.peak:
         return say("No force shakes the frame")
-    return say("Up to {peak} shakes the frame", peak=told(size.peak, "force", digits=3))
+    unit = display_of_totals(found.analysis, "force")
+    peak = unit.with_unit(unit.text(size.peak, digits=3))
+    return say("Up to {peak} shakes the frame", peak=peak)
 
 
 def pushed(found: Findings) -> str:
@@ -151,22 +155,21 @@ def pushed(found: Findings) -> str:
 
 
 def peaked(analysis: Analysis, name: str, dimension: Dimension) -> str:
-    """The largest size of an output, and at which crank angle."""
-    one = analysis.summary[name]
-    scale = analysis.summary["frame_moment" if dimension == "torque" else "frame_force"].peak
-    what = output_named(name)
+    """The largest of an output of frame or drive, of all rows, and at which crank angle."""
+    name = analysis.whole(name)
+    one, scale, what = analysis.summary[name], scale_of(analysis, dimension), output_named(name)
     if one.peak <= NOTHING * scale:
         return say("{what}: none", what=capital(what))
-    return topped(what, one, dimension)
+    return topped(what, one, display_of_totals(analysis, dimension))
 
 
-def topped(what: str, found: Figures, dimension: Dimension) -> str:
-    """The largest size of something, and at which crank angle."""
+def topped(what: str, found: Figures, unit: Display) -> str:
+    """The value of something whose absolute value is largest, and at which crank angle."""
     return say(
         "{what}: up to {peak}, at crank angle {angle}",
         what=capital(what),
-        peak=told(found.peak, dimension, digits=3),
-        angle=angle(found.peak_at, 0),
+        peak=unit.with_unit(unit.text(found.signed_peak, digits=3)),
+        angle=angle(found.peak_at),
     )
 
 
@@ -176,13 +179,15 @@ def caused(analysis: Analysis, number: int = 1) -> str:
     output = machine.drive.effort if number == 1 else f"drives.{drive.link}.{drive.effort_in}"
     parts = analysis.forces.split.by_cause(output)
     name, share = next(iter(shares({k: part - np.mean(part) for k, part in parts.items()}).items()))
-    scale = analysis.summary["frame_force" if drive.pushes else "frame_moment"].peak
+    scale = scale_of(analysis, drive.effort_in)
     if analysis.summary[output].peak <= NOTHING * scale or not share:
         return ""
     values = {"share": percent(share), "cause": say(CAUSES[name])}
     of_force = to_say("{share} % of the swing of the drive force comes from: {cause}")
     of_torque = to_say("{share} % of the swing of the drive torque comes from: {cause}")
-    return say(of_force if drive.pushes else of_torque, **values)
+    of_row = to_say("{share} % of the swing of the drive torque of one row comes from: {cause}")
+    several = len(machine.rows) > 1
+    return say(of_force if drive.pushes else of_row if several else of_torque, **values)
 
 
 def ordered(found: Findings) -> str:
@@ -199,14 +204,15 @@ def carried(analysis: Analysis) -> str:
     if not analysis.forces.joints:
         return say("The forces in the joints grow without bound where links lie in line")
     name, found = largest_joint(analysis)
-    size = told(found.peak, "force", digits=3)
+    unit = display_of_joints(analysis)
+    size = unit.with_unit(unit.text(found.peak, digits=3))
     return say("Joint {name} carries most: up to {peak}", name=named(joint_named(name)), peak=size)
 
 
 def joint_peaked(analysis: Analysis) -> str:
     """At which crank angle that joint carries most."""
     name, found = largest_joint(analysis)
-    at = angle(found.peak_at, 0)
+    at = angle(found.peak_at)
     text = to_say("Joint {name} carries most at crank angle {angle}")
     return say(text, name=named(joint_named(name)), angle=at)
 

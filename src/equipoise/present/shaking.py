@@ -38,18 +38,15 @@ class Shaking:
 
     @classmethod
     def of(cls, found: Findings) -> Shaking:
-        """From the analysis; rows turn ahead by their phases, and what is rounding is 0."""
-        motion, force = found.analysis.motion, found.analysis.forces.shaking_force.value
-        if len(rows := found.machine.rows) > 1:
-            orders = np.fft.fftfreq(len(force), 1 / len(force)) / motion.turns
-            ahead = sum(np.exp(1j * orders * row.phase) for row in rows)
-            force = np.fft.ifft(np.fft.fft(force) * ahead)
-        parts = found.analysis.forces.split.by_link("shaking_force").values()
+        """From the analysis; what is rounding is 0."""
+        analysis, motion = found.analysis, found.analysis.motion
+        force = analysis.together.get("shaking_force", analysis.forces.shaking_force.value)
+        parts = analysis.forces.split.by_link("shaking_force").values()
         beside = max(float(np.max(np.abs(part))) for part in parts)
-        beside = max(beside, found.analysis.summary["frame_force"].peak)
+        beside = max(beside, analysis.summary["frame_force"].peak)
         if np.max(np.abs(force)) <= NOTHING * beside:
             force = np.zeros_like(force)
-        return cls(found.machine, found.analysis.crank_angle, force, motion.turns)
+        return cls(found.machine, analysis.crank_angle, force, motion.turns)
 
     @cached_property
     def size(self) -> Figures:
@@ -97,7 +94,7 @@ def acting(force: Array) -> str:
         return say("The force acts mostly up and down")
     if share >= STRETCHED and abs(cos(way)) > cos(pi / 6):
         return say("The force acts mostly to and fro")
-    return say("The force acts mostly along {angle} from the x axis", angle=angle(way, 0))
+    return say("The force acts mostly along {angle} from the x axis", angle=angle(way))
 
 
 def largest_joint(analysis: Analysis) -> tuple[str, Figures]:

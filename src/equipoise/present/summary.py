@@ -18,17 +18,18 @@ from equipoise.present.shaking import Shaking, acting, largest_joint
 from equipoise.quantities import (
     PER_RPM,
     Dimension,
+    Display,
     angle,
     brief,
     change,
-    display,
     percent,
     told,
 )
-from equipoise.results.analysis_blocks import shares
+from equipoise.results.analysis_blocks import display_of_totals, scale_of, shares
 from equipoise.results.drive_blocks import pushed_named
+from equipoise.results.joint_blocks import display_of_joints
 from equipoise.results.outputs import CAUSES, objective_named, shown_in
-from equipoise.vibration.resonance import nearest, within
+from equipoise.vibration.resonance import resonance_note, within
 
 SMALL = 0.005
 """Share of a link or cause below which it is not named."""
@@ -62,25 +63,29 @@ def tiles(found: Findings) -> Iterator[Tile]:
     size = Shaking.of(found).size
     after = None if later is None else Shaking.of(later).size.peak
     note = _at(size.peak_at) if size.peak else ""
-    yield _tile(say("shaking force, peak"), size.peak, "force", note, after=after)
-    template = to_say("one row: {what}") if len(found.machine.rows) > 1 else "{what}"
+    force = display_of_totals(analysis, "force")
+    template = to_say("all rows: {what}") if len(found.machine.rows) > 1 else "{what}"
+    label = say(template, what=say("shaking force, peak"))
+    yield _tile(label, size.peak, force, note, after=after)
     drive = found.machine.drive
     effort = say("drive force, peak") if drive.pushes else say("drive torque, peak")
     kinds: dict[str, tuple[str, Dimension]] = {
         "shaking_moment": (say("shaking moment, peak"), "torque"),
         drive.effort: (effort, drive.effort_in),
     }
-    for name, (label, kind) in kinds.items():
-        one = analysis.summary[name]
-        after = None if later is None else later.analysis.summary[name].peak
-        scale = analysis.summary["frame_moment" if kind == "torque" else "frame_force"].peak
+    for output, (label, kind) in kinds.items():
+        name = analysis.whole(output)
+        one, scale = analysis.summary[name], scale_of(analysis, kind)
+        after = None if later is None else later.analysis.summary[name].signed_peak
         note = _at(one.peak_at) if brief(one.peak, scale) != "0" else ""
-        yield _tile(say(template, what=label), one.peak, kind, note, scale, after)
+        unit = display_of_totals(analysis, kind)
+        yield _tile(say(template, what=label), one.signed_peak, unit, note, scale, after)
     if analysis.forces.joints:
         name, largest = largest_joint(analysis)
         after = None if later is None else largest_joint(later.analysis)[1].peak
         note = say("joint {name}", name=joint_named(name))
-        yield _tile(say("largest joint force"), largest.peak, "force", note, after=after)
+        unit = display_of_joints(analysis)
+        yield _tile(say("largest joint force"), largest.peak, unit, note, after=after)
     if found.balanced is not None:
         first, pair = next(iter(found.balanced.aims.items()))
         told = change(*pair).removesuffix(" %") if found.helped else ""
@@ -102,19 +107,18 @@ def _pace(found: Findings) -> Tile:
 def _tile(
     label: str,
     value: float,
-    dimension: Dimension,
+    unit: Display,
     note: str,
     scale: float = 0.0,
     after: float | None = None,
 ) -> Tile:
-    unit = display(dimension, [value if brief(value, scale) != "0" else 0.0])
     before = unit.text(value, scale, 3)
-    later = "" if after is None else unit.text(after, max(scale, value), 3)
+    later = "" if after is None else unit.text(after, max(scale, abs(value)), 3)
     return Tile(label, before, unit.name, note, later if later != before else "")
 
 
 def _at(crank_angle: float) -> str:
-    return say("at crank angle {angle}", angle=angle(crank_angle, 0))
+    return say("at crank angle {angle}", angle=angle(crank_angle))
 
 
 # -- what shakes, and why --------------------------------------------------------------------------
@@ -122,8 +126,8 @@ def _at(crank_angle: float) -> str:
 
 def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
     size, rows = shaking.size, len(found.machine.rows)
+    analysis, unit = found.analysis, display_of_totals(found.analysis, "force")
     speed = brief(abs(found.analysis.motion.speed) / PER_RPM)
-    summary = found.analysis.summary
     if not size.peak:
         yield say("At {speed} rpm the linkage does not shake its frame by any force.", speed=speed)
     else:
@@ -139,25 +143,25 @@ def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
             of_rows if rows > 1 else of_one,
             speed=speed,
             rows=rows,
-            peak=told(size.peak, "force", digits=3),
-            rms=told(size.rms, "force", digits=3),
-            angle=angle(size.peak_at, 0),
+            peak=unit.with_unit(unit.text(size.peak, digits=3)),
+            rms=unit.with_unit(unit.text(size.rms, digits=3)),
+            angle=angle(size.peak_at),
         )
         if shaking.over_weight:
             ratio = brief(shaking.over_weight)
             yield say("That is {ratio} times the weight of its links.", ratio=ratio)
         yield say("{sentence}.", sentence=acting(shaking.force))
         yield _ordered(found, shaking)
-    moment, scale = summary["shaking_moment"], summary["frame_moment"].peak
-    if brief(moment.peak, scale) == "0":
+    moment = analysis.summary[analysis.whole("shaking_moment")]
+    if brief(moment.peak, scale_of(analysis, "torque")) == "0":
         yield say("There is no shaking moment about the drive pivot.")
         return
-    of_rows = to_say(
-        "The shaking moment of one row about its drive pivot reaches {peak} ({rms} RMS)."
-    )
+    of_rows = to_say("The shaking moment of all rows together reaches {peak} ({rms} RMS).")
     of_one = to_say("The shaking moment about the drive pivot reaches {peak} ({rms} RMS).")
     template = of_rows if rows > 1 else of_one
-    peak, rms = (told(size, "torque", digits=3) for size in (moment.peak, moment.rms))
+    unit = display_of_totals(analysis, "torque")
+    sizes = (moment.signed_peak, moment.rms)
+    peak, rms = (unit.with_unit(unit.text(size, digits=3)) for size in sizes)
     yield say(template, peak=peak, rms=rms)
 
 
@@ -184,15 +188,15 @@ def _ordered(found: Findings, shaking: Shaking) -> str:
 
 
 def _why(found: Findings) -> Iterator[str]:
-    split, summary = found.analysis.forces.split, found.analysis.summary
+    analysis, split = found.analysis, found.analysis.forces.split
     by_link = shares(split.by_link("shaking_force"))
     if any(by_link.values()):
         yield say("The shaking force comes from: {parts}.", parts=_parts(by_link))
         if min(by_link.values()) <= -SMALL:
             yield say("A minus means that the link works against the others.")
     drive = found.machine.drive
-    effort = summary[drive.effort]
-    scale = summary["frame_force" if drive.pushes else "frame_moment"].peak
+    effort = analysis.summary[analysis.whole(drive.effort)]
+    scale = scale_of(analysis, drive.effort_in)
     by_cause = shares(
         {
             say(CAUSES[name]): part - np.mean(part)
@@ -201,7 +205,8 @@ def _why(found: Findings) -> Iterator[str]:
     )
     if brief(effort.peak, scale) != "0" and any(by_cause.values()):
         of_rows = to_say(
-            "The drive torque of one row swings between {low} and {high}; that comes from: {parts}."
+            "The drive torque of all rows swings between {low} and {high}; in one row it comes "
+            "from: {parts}."
         )
         of_one = to_say(
             "The drive torque swings between {low} and {high}; that comes from: {parts}."
@@ -209,7 +214,7 @@ def _why(found: Findings) -> Iterator[str]:
         of_force = to_say(
             "The drive force swings between {low} and {high}; that comes from: {parts}."
         )
-        unit = display(drive.effort_in, [effort.peak])
+        unit = display_of_totals(analysis, drive.effort_in)
         low, high = (unit.text(end, effort.peak, 3) for end in (effort.min, effort.max))
         yield say(
             of_force if drive.pushes else of_rows if len(found.machine.rows) > 1 else of_one,
@@ -235,7 +240,7 @@ def check_whole_cycle(found: Findings) -> None:
 
 
 def vibration_told(found: Findings) -> Iterator[str]:
-    """What the gauges read, and the nearest resonance."""
+    """What the gauges read, and the nearest loud resonance."""
     response = found.response
     if response is None:
         return
@@ -262,16 +267,8 @@ def vibration_told(found: Findings) -> Iterator[str]:
         yield say(template, **words)
     if found.sweep is None or not found.sweep.resonances:
         return
-    near = nearest(found.sweep.resonances, response.speed)
-    yield say(
-        "The nearest resonance is at {speed} rpm, where order {order} meets mode {mode} "
-        "({frequency} Hz).",
-        order=f"{near.order:.4g}",
-        mode=near.mode,
-        frequency=brief(near.frequency / (2 * pi)),
-        speed=brief(abs(near.speed) / PER_RPM),
-    )
-    for note in within(found.sweep.resonances, response.speed):
+    met = found.sweep.resonances
+    for note in (resonance_note(met, response.speed), *within(met, response.speed)):
         yield say("{sentence}.", sentence=capital(note.said()))
 
 
@@ -294,8 +291,8 @@ def planting_told(found: Findings) -> Iterator[str]:
             of_several if several else of_one,
             tip=arm.tip,
             depth=told(arm["soil.depth"], "length", digits=3),
-            entry=angle(arm["entry.crank_angle"], 0),
-            exit=angle(arm["exit.crank_angle"], 0),
+            entry=angle(arm["entry.crank_angle"]),
+            exit=angle(arm["exit.crank_angle"]),
         )
     if found.planting["hill_spacing"]:
         yield from _hills(found.planting)

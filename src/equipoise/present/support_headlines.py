@@ -12,7 +12,7 @@ from equipoise.mechanism.outputs.spoken import named
 from equipoise.present.shaking import largest_of
 from equipoise.quantities import PER_RPM, brief, percent, told
 from equipoise.results.outputs import shown_in
-from equipoise.vibration.resonance import nearest
+from equipoise.vibration.resonance import nearest_loud
 
 if TYPE_CHECKING:
     from equipoise.vibration.free import FreeVibration
@@ -80,12 +80,12 @@ def resonant(sweep: Sweep, quantity: str) -> str:
 
 
 def met(sweep: Sweep, speed: float) -> str:
-    """Which resonance is nearest to the speed of the machine."""
+    """Which loud resonance is nearest to the speed of the machine."""
     if not sweep.resonances:
         return say("No order meets a mode at these speeds")
-    near = nearest(sweep.resonances, speed)
+    near = nearest_loud(sweep.resonances, speed)
     return say(
-        "The nearest resonance is at {speed} rpm: order {order} meets mode {mode}",
+        "The nearest loud resonance is at {speed} rpm: order {order} meets mode {mode}",
         speed=brief(abs(near.speed) / PER_RPM),
         order=f"{near.order:.4g}",
         mode=near.mode,

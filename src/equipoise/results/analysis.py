@@ -38,6 +38,8 @@ Values = dict[str, Any]
 
 LATERAL = ("roll_moment", "yaw_moment")
 """Moments about x and y, from linkages side by side."""
+ANGLES = 360
+"""Crank angles in a turn where nobody asks for another number: every surface takes the same."""
 LEAST_ANGLES = 90
 """In a turn, from which harmonics are taken: those that matter end before half of it."""
 
@@ -147,6 +149,12 @@ class Analysis(Result):
             whole["yaw_moment"] += yaw + row.lateral * x
             whole[effort] += exerted
         return whole
+
+    def whole(self, name: str) -> str:
+        """The output that holds all rows together, such as ``rows.drive_torque``, where there are
+        several; else the output itself.
+        """
+        return f"rows.{name}" if f"rows.{name}" in self.outputs else name
 
     @property
     def has_orders(self) -> bool:
@@ -317,7 +325,7 @@ def _parts(values: Array) -> Any:
 
 def analyze(
     machine: Machine,
-    angles: int | Sequence[float] | np.ndarray[Any, Any] = 360,
+    angles: int | Sequence[float] | np.ndarray[Any, Any] = ANGLES,
     speed: float | None = None,
     acceleration: float | None = None,
     about: str | Vector | complex | None = None,

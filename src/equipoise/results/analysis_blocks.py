@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,7 @@ from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.kinematics.dwell import Dwell
 from equipoise.mechanism.kinematics.strokes import SHARE
 from equipoise.mechanism.outputs.spoken import joint_named
-from equipoise.quantities import Dimension, angle, percent
+from equipoise.quantities import Dimension, Display, angle, display, percent
 from equipoise.quantities.numbers import ROUNDING
 from equipoise.results.belt_blocks import belt_blocks
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
@@ -144,27 +145,43 @@ def advantages_table(analysis: Analysis) -> Table:
 # -- forces ----------------------------------------------------------------------------------------
 
 
+TOTALS = ("forces", "drives", "rows")
+"""Groups of outputs of frame and drive: of one row, of further drives, and of all rows."""
+
+
 def _beside(analysis: Analysis, kind: Dimension | None) -> float:
     """The largest of all forces, moments or torques on frame and drive."""
-    ones = (one for one in analysis.outputs.summed if one.group in ("forces", "drives"))
+    ones = (one for one in analysis.outputs.summed if one.group in TOTALS[:2])
     return max((one.figures.peak for one in ones if one.dimension == kind), default=0.0)
+
+
+def scale_of(analysis: Analysis, kind: Dimension) -> float:
+    """The largest force or moment on the frame, beside which forces, or torques, are rounding."""
+    return analysis.summary["frame_moment" if kind == "torque" else "frame_force"].peak
+
+
+def display_of_totals(analysis: Analysis, kind: Dimension | None) -> Display:
+    """The unit in which forces, or moments and torques, on frame and drive are shown everywhere."""
+    ones = (one.figures for one in analysis.outputs.summed
+            if one.group in TOTALS and one.dimension == kind)  # fmt: skip
+    return display(kind, [0.0, *(max(one.peak, one.peak_to_peak) for one in ones)])
 
 
 def force_blocks(analysis: Analysis) -> Iterator[Block]:
     """Forces on frame and drive; what they come from; their orders."""
     named = [f"drives.{analysis.machine.drive.link}.{analysis.machine.drive.effort_in}"]
-    ones = [one for one in analysis.outputs.summed if one.group in ("forces", "drives")]
+    ones = [one for one in analysis.outputs.summed if one.group in TOTALS]
     if not analysis.machine.drives:
         ones = [one for one in ones if one.name not in named]  # which is the drive torque
     rows: list[tuple[Cell, ...]] = []
     for one in ones:
         found, kind = one.figures, one.dimension
-        scale = _beside(analysis, kind)
+        scale, unit = _beside(analysis, kind), display_of_totals(analysis, kind).unit
         mean, rms, swing = (
-            Value(value, scale, dimension=kind)
+            Value(value, scale, dimension=kind, unit=unit)
             for value in (found.mean, found.rms, found.peak_to_peak)
         )
-        ends = (end(found, scale, kind) for end in (largest, smallest))
+        ends = (replace(end(found, scale, kind), unit=unit) for end in (largest, smallest))
         rows.append((one.label(), mean, rms, *ends, swing))
     about = analysis.forces.about
     title = say(

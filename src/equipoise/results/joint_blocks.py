@@ -11,11 +11,13 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
 from equipoise.mechanism.dynamics.undecided import idle_told, undecided
 from equipoise.mechanism.outputs.spoken import body_named, joint_named
+from equipoise.quantities import Display, display
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest
 from equipoise.signals import figures
 
 if TYPE_CHECKING:
+    from equipoise.mechanism.dynamics.forces import Forces
     from equipoise.results.analysis import Analysis
 
 
@@ -46,6 +48,22 @@ def springs_table(analysis: Analysis) -> Table:
     return Table.of(title, columns, rows)
 
 
+def contact_named(forces: Forces, name: str) -> str:
+    """A joint, a cam, a mesh of teeth or a belt, by the kind of its contact."""
+    if name in forces.joints:
+        return joint_named(name)
+    return say("cam") if name in forces.cams else say("teeth")
+
+
+def display_of_joints(analysis: Analysis) -> Display:
+    """The unit in which forces in joints, between teeth and of bearings are shown everywhere."""
+    forces = analysis.forces
+    ones = [*forces.solved.contacts.values()]
+    if analysis.machine.has_planes:
+        ones += forces.across.bearings.values()
+    return display("force", [0.0, *(float(np.max(one.size, initial=0.0)) for one in ones)])
+
+
 def joint_table(analysis: Analysis) -> Table:
     """The force in every joint, mesh and bearing."""
     forces = analysis.forces
@@ -58,13 +76,14 @@ def joint_table(analysis: Analysis) -> Table:
         couple = None
         if isinstance(joint, SliderForce):
             couple = Value(float(np.max(np.abs(joint.moment))), scale)
-        named = joint_named(name) if name in forces.joints else say("teeth")
-        named = say("cam") if name in forces.cams else named
-        rows.append((named, *_told(analysis, joint), couple, _peak(tilting.get(name))))
+        rows.append(
+            (contact_named(forces, name), *_told(analysis, joint), couple, _peak(tilting.get(name)))
+        )
     for name, joint in across.bearings.items() if across is not None else ():
         rows.append((say("bearing {name}", name=name), *_told(analysis, joint), None, None))
     labels = (say("mean"), say("RMS"), say("largest"))
-    columns = ["", say("by → on"), *(Column(label, "force") for label in labels)]
+    unit = display_of_joints(analysis).unit
+    columns = ["", say("by → on"), *(Column(label, "force", unit) for label in labels)]
     columns += [Column(say(one), "torque") for one in (MOMENT, TILTING)]
     shown = [k for k in range(len(columns)) if any(row[k] is not None for row in rows)]
     title = say("Force in each joint; largest with its crank angle")

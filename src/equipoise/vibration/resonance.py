@@ -11,12 +11,14 @@ import numpy as np
 
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.machine import Drive
-from equipoise.quantities import PER_RPM, brief
+from equipoise.quantities import PER_RPM, brief, number
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.response import Mode
 
 QUIET = 1e-3
 """Share of the loudest resonance at every gauge below which one is not told."""
+LOUD = 0.1
+"""Share of the loudest resonance from which one matters to whoever chooses a speed."""
 LEAST_DAMPING = 1e-4
 """Damping ratio below which modes are compared as if they had it."""
 AMPLIFIED = 3.0
@@ -41,6 +43,11 @@ class Resonance:
     share: float
     avoid: tuple[float, float] | None
 
+    @property
+    def is_loud(self) -> bool:
+        """Whether it matters to whoever chooses a speed."""
+        return self.share >= LOUD
+
     def to_dict(self) -> dict[str, Any]:
         """In SI units."""
         return {**vars(self), "avoid": None if self.avoid is None else list(self.avoid)}
@@ -61,9 +68,38 @@ def around(drive: Drive, speed: float) -> tuple[float, float]:
     return slow, fast
 
 
-def nearest(found: Iterable[Resonance], speed: float) -> Resonance:
-    """Of some resonances the one whose speed is nearest to a speed, rad/s."""
-    return min(found, key=lambda one: abs(abs(one.speed / speed) - 1))
+def nearest_loud(found: Iterable[Resonance], speed: float) -> Resonance:
+    """Of the loud ones of some resonances the one whose speed is nearest to a speed, rad/s.
+
+    One that shakes a few per cent of what the loudest does is no reason to change a speed, however
+    near it is.
+    """
+    every = tuple(found)
+    loud = [one for one in every if one.is_loud] or every
+    return min(loud, key=lambda one: abs(abs(one.speed / speed) - 1))
+
+
+def resonance_note(found: Iterable[Resonance], speed: float) -> Note:
+    """The nearest loud resonance (speed in rad/s), and between which speeds it is to be avoided."""
+    one = nearest_loud(found, speed)
+    of_one = to_say(
+        "the nearest loud resonance is at {speed} rpm, where order {order} meets mode {mode} "
+        "({frequency} Hz); no speed about it has to be avoided"
+    )
+    avoided = to_say(
+        "the nearest loud resonance is at {speed} rpm, where order {order} meets mode {mode} "
+        "({frequency} Hz); keep away from {low} to {high} rpm"
+    )
+    low, high = sorted(map(abs, one.avoid or (0.0, 0.0)))
+    return Note(
+        of_one if one.avoid is None else avoided,
+        speed=brief(abs(one.speed) / PER_RPM),
+        order=f"{one.order:.4g}",
+        mode=one.mode,
+        frequency=brief(one.frequency / (2 * pi)),
+        low=number(low / PER_RPM),
+        high=number(high / PER_RPM),
+    )
 
 
 def within(found: Iterable[Resonance], speed: float) -> Iterator[Note]:
@@ -108,19 +144,19 @@ def resonances(linear: Linear, slowest: float, fastest: float) -> list[Resonance
     found: list[tuple[float, float, int, Mode]] = []
     low, high = sorted((abs(slowest), abs(fastest)))
     orders = linear.wrench(high).orders[1:]
-    for number, mode in enumerate(linear.modes, 1):
+    for place, mode in enumerate(linear.modes, 1):
         rate = mode.natural_frequency
         # The ends belong to the range, whatever rounding says.
         inside = (rate >= orders * low * (1 - 1e-12)) & (rate <= orders * high * (1 + 1e-12))
         found += [
-            (copysign(rate / order, fastest), order, number, mode)
+            (copysign(rate / order, fastest), order, place, mode)
             for order in map(float, orders[inside & mode.swings])
         ]
     loud = _loudness(linear, found)
     return sorted(
         (
-            Resonance(speed, order, number, mode.natural_frequency, share, _avoid(speed, mode))
-            for (speed, order, number, mode), share in zip(found, loud, strict=True)
+            Resonance(speed, order, place, mode.natural_frequency, share, _avoid(speed, mode))
+            for (speed, order, place, mode), share in zip(found, loud, strict=True)
             if share >= QUIET
         ),
         key=lambda resonance: -abs(resonance.speed),

@@ -22,7 +22,7 @@ from equipoise.mechanism.kinematics.swings import SWUNG, swing
 from equipoise.mechanism.parts.drives import Pushing
 from equipoise.mechanism.parts.machine import Machine, Position, Vector
 from equipoise.quantities import clean, clean_place
-from equipoise.results.analysis import LEAST_ANGLES, Analysis, analyze
+from equipoise.results.analysis import ANGLES, LEAST_ANGLES, Analysis, analyze
 from equipoise.symbols.scene import Scene
 from equipoise.web.design import DRAGGED, Design
 from equipoise.web.fields import fields_of
@@ -30,8 +30,8 @@ from equipoise.web.following import Goals, extent_of, following
 from equipoise.web.measures import held
 from equipoise.web.messages import Change, Drag, Setting
 
-ANGLES, MOST_SAMPLES = 720, 2880
-"""Crank angles in a turn, and in a cycle of several turns, which has fewer in each."""
+MOST_SAMPLES = 2880
+"""Crank angles in a cycle of many turns, which has fewer in each."""
 OTHER_SIDE = {one: other for pair in ALTERNATIVES for one, other in (pair, pair[::-1])}
 HELD = to_say(
     "the stroke of the drive sets where {name} is at this crank angle, and it comes as near as it "

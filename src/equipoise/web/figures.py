@@ -57,6 +57,15 @@ def _peak(values: Array) -> float:
     return float(np.max(np.abs(values)))
 
 
+def _signed(measure: str, values: Array, size: float) -> float:
+    """A figure as it is printed: a peak of what has a sign with that, as curves and cards have it.
+
+    size : its absolute value.
+    """
+    negative = np.isrealobj(values) and -float(np.min(values)) > float(np.max(values))
+    return -size if measure == "peak" and negative else size
+
+
 MEASURES = {"rms": (to_say("RMS"), _rms), "peak": (to_say("peak"), _peak)}
 
 
@@ -99,7 +108,7 @@ def _figures(signals: Signals, old: Signals | None, size: float) -> Iterator[Val
                 "label": f"{label}, {say(shown)}",
                 "unit": unit.name,
                 "value": value,
-                "text": text_of(_in(unit, value)),
+                "text": text_of(_in(unit, value and _signed(measure, values, value))),
             }
             if was is not None:
                 before = _plain(of(was), least)

@@ -35,7 +35,7 @@ def test_findings_are_those_of_the_functions() -> None:
     found = of("yamashita-rig", speed=15.0)
     assert found.machine.drive.speed == 15.0
     assert found.file == "yamashita-rig" and "schema = 1" in found.text
-    force = eq.analyze(found.machine, 720).forces.shaking_force
+    force = eq.analyze(found.machine).forces.shaking_force
     np.testing.assert_array_equal(found.analysis.forces.shaking_force.value, force.value)
     response, sweep = found.response, found.sweep
     assert response is not None and sweep is not None and found.modes is not None

@@ -54,7 +54,7 @@ def test_a_page_is_served_within_its_own_process(line: Line) -> None:
     change = {"set": "links.crank.mass", "text": "300 g"}
     changed, *more = line.ask("edit", label="mass", edits=[change])
     machine = eq.load("yamashita-1").with_link("crank", mass=0.3)
-    forces = eq.analyze(machine, 720).forces
+    forces = eq.analyze(machine).forces
     np.testing.assert_allclose(
         changed.vector("shaking_force"), forces.shaking_force.value, rtol=1e-5
     )

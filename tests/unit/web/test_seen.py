@@ -18,7 +18,7 @@ def told(replies, kind):
 def test_arrows_are_the_vectors_at_a_point() -> None:
     session, _ = opened("yamashita-1")
     shown = state(ask(session, "arrows", point="C")[0])
-    whole = eq.analyze(eq.load("yamashita-1"), 720)
+    whole = eq.analyze(eq.load("yamashita-1"))
     wanted = {
         "velocity": (whole.motion.points["C"].velocity, "m/s"),
         "acceleration": (whole.motion.points["C"].acceleration_vector, "m/s²"),

@@ -80,7 +80,7 @@ def test_a_store_is_told_design_by_design(path) -> None:
     assert 0 < content["kept"] == np.sum(inside) < content["computed"] < content["size"] == 64
     assert sum(one["count"] for one in content["refused"]) == 64 - content["computed"]
     assert content["best"] == best(open_store(path), 50).designs.tolist()
-    force = eq.analyze(eq.load("yamashita-1"), 720).forces.shaking_force.value
+    force = eq.analyze(eq.load("yamashita-1")).forces.shaking_force.value
     rms = np.sqrt(np.mean(np.abs(force) ** 2))
     assert content["own"][2] == pytest.approx(rms, rel=1e-6)
 

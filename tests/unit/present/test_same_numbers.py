@@ -1,0 +1,251 @@
+"""One figure is one number, wherever it is shown: cards, titles and tables against the JSON."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from inspect import signature
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.cli.linkage import analyze as command
+from equipoise.figures import analysis as charts
+from equipoise.figures import forces as forces_charts
+from equipoise.present.cells import grid
+from equipoise.present.composition import build
+from equipoise.present.findings import Findings, find
+from equipoise.present.summary import answers
+from equipoise.quantities.numbers import in_unit
+from equipoise.quantities.units import FACTORS
+from equipoise.results.analysis import ANGLES, order_values
+from equipoise.results.analysis_blocks import display_of_totals
+from equipoise.results.blocks import Block, Drawn, Many, Section, Table, Value
+from equipoise.signals import highest_at
+from equipoise.vibration.resonance import nearest_loud
+from equipoise.web.edits import solved
+from equipoise.web.figures import figures_of, signals_of
+from equipoise.web.openings import opened_example
+from support.found import found as found_of
+
+MACHINES = (
+    *("cam-pusher", "four-stroke-engine", "hydraulic-loader", "riding-transplanter"),
+    *("sieve", "twin-engine", "yamashita-rig"),
+)
+
+
+def leaves(values: Any) -> Iterator[Any]:
+    if isinstance(values, Mapping):
+        for value in values.values():
+            yield from leaves(value)
+    elif isinstance(values, list | tuple):
+        for value in values:
+            yield from leaves(value)
+    elif values is not None:
+        yield values
+
+
+def sizes_of(found: Mapping[str, Any]) -> Iterator[np.ndarray]:
+    """Signals, and the sizes of those that have two components."""
+    for name, value in found.items():
+        if isinstance(value, Mapping):
+            yield from sizes_of(value)
+            pairs = (("x", "y"), ("force_x", "force_y"), ("vx", "vy"), ("ax", "ay"))
+            for pair in pairs:
+                if all(isinstance(value.get(one), np.ndarray) for one in pair):
+                    yield np.hypot(*(value[one] for one in pair))
+                elif all(isinstance(found.get(f"{name}_{one}"), np.ndarray) for one in pair):
+                    yield np.hypot(*(found[f"{name}_{one}"] for one in pair))
+        elif isinstance(value, np.ndarray) and value.dtype.kind == "f":
+            yield value
+
+
+@cache
+def told(name: str) -> np.ndarray:
+    """Every number of what the commands print as JSON, sorted; of signals their figures."""
+    found = found_of(name)
+    assert isinstance(found, Findings)
+    given = [
+        one.to_dict()
+        for one in (found.response, found.sweep, found.modes, found.balanced, found.planting)
+        if one is not None
+    ]
+    for one in (found, found.after):
+        if one is not None:
+            given += [one.analysis.to_dict(split=True), order_values(one.analysis, 20, 0.0)]
+            given += [one.response.to_dict()] if one.response is not None else []
+    numbers: list[float] = []
+    theta = found.analysis.crank_angle
+    for signal in (one for values in given for one in sizes_of(values) if one.size):
+        numbers += [np.min(signal), np.max(signal), np.mean(signal), np.sqrt(np.mean(signal**2))]
+        numbers += [np.ptp(signal), np.max(np.abs(signal))]
+        if signal.shape == theta.shape:
+            numbers += [theta[highest_at(np.abs(signal))]]
+        numbers += signal.ravel().tolist() if len(signal) < ANGLES else []
+    numbers += [one for one in leaves(given) if isinstance(one, int | float)]
+    machine = found.machine
+    per_order = abs(machine.drive.speed) / (2 * np.pi * found.analysis.motion.turns)
+    numbers += [*(per_order * np.arange(100)), machine.mass, machine.drive.speed, 0.0]
+    if found.balanced is not None:  # speeds for which the plan asks
+        numbers += [speed for one in found.balanced.plan.objectives for speed in one.speeds]
+    return np.unique(np.array(numbers))
+
+
+def is_told(name: str, value: float, tolerance: float) -> bool:
+    everything = told(name)
+    k = np.searchsorted(everything, value)
+    near = everything[max(k - 1, 0) : k + 1]
+    return bool(np.any(np.abs(near - value) <= tolerance))
+
+
+UNITS = sorted([*FACTORS, "kN m", "mN m", "mrad", "°", "µm", "m/s²", "rad/s²"], key=len)
+NUMBER = re.compile(
+    r"([−-]?[0-9]+(?:\.[0-9]+)?)(?: |\N{NO-BREAK SPACE})?("
+    + "|".join(map(re.escape, reversed(UNITS)))
+    + r")(?![\w/])"
+)
+SIGNS = {"°": "deg", "µm": "um", "m/s²": "m/s^2", "rad/s²": "rad/s^2"}
+
+
+def quantities(text: str) -> Iterator[tuple[float, float]]:
+    """Numbers with units in a text, and half of the last digit, in SI units."""
+    for digits, unit in NUMBER.findall(text):
+        factor = in_unit(SIGNS.get(unit, unit)).factor
+        after = len(digits.partition(".")[2])
+        yield float(digits.replace("−", "-")) / factor, 0.501 * 10**-after / factor
+
+
+def shown_blocks(blocks: Iterable[Block | Section]) -> Iterator[Block | Section]:
+    for block in blocks:
+        yield block
+        if isinstance(block, Section):
+            yield from shown_blocks(block.blocks)
+
+
+DERIVED = (" goes farthest: ", " from the x axis")
+"""In titles that say what follows from the signals of the JSON by more than a figure of one."""
+
+
+@cache
+def document(name: str) -> Any:
+    return build(found_of(name))
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_every_number_of_cards_and_titles_is_in_the_json(name: str) -> None:
+    made = document(name)
+    texts = [f"{one.value} {one.unit}, {one.note}" for one in made.tiles]
+    texts += [f"{one.after} {one.unit}" for one in made.tiles if one.after]
+    blocks = [*shown_blocks(made.sections)]
+    texts += [one.seen for one in blocks if isinstance(one, Section | Drawn)]
+    missing = {
+        text
+        for text in texts
+        for value, half in quantities(text)
+        if not is_told(name, value, half) and not any(part in text for part in DERIVED)
+    }
+    assert not missing
+    assert sum(len([*quantities(text)]) for text in texts) > 8
+
+
+def cells_of(table: Table) -> Iterator[tuple[str, Value]]:
+    """Numbers of a table that have a dimension or a unit, with the words of their rows."""
+    for row in table.rows:
+        for column, cell in zip(table.columns, row, strict=True):
+            values = cell.values if isinstance(cell, Many) else (cell,)
+            for value in values:
+                if isinstance(value, Value) and (value.dimension or column.dimension):
+                    yield str(row[0]), value
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_every_number_of_tables_is_in_the_json(name: str) -> None:
+    found = found_of(name)
+    assert isinstance(found, Findings)
+    count = 0
+    for table in found.analysis.blocks():
+        for row, value in cells_of(table) if isinstance(table, Table) else ():
+            near = 1e-9 * max(abs(value.value), value.scale) + 1e-12
+            assert is_told(name, value.value, near), (table.title, row, value)
+            assert value.at is None or is_told(name, value.at, 1e-6), (table.title, row, value)
+            count += 1
+    assert count > 30
+
+
+# -- one sampling, one sign, one unit, all rows ---------------------------------------------------
+
+
+def test_every_surface_takes_the_same_crank_angles() -> None:
+    assert Findings.__dataclass_fields__["angles"].default == ANGLES
+    assert signature(command).parameters["angles"].default == ANGLES
+    design = opened_example("cam-pusher")
+    assert len(solved(design).analysis.crank_angle) == ANGLES
+
+
+def test_the_crank_angle_of_a_peak_is_one() -> None:
+    found, made = found_of("cam-pusher"), document("cam-pusher")
+    at = eq.analyze(found.machine).summary["drive_torque"].peak_at
+    (note,) = (one.note for one in made.tiles if one.label == "drive torque, peak")
+    assert note == f"at crank angle {np.degrees(at):.1f}\N{DEGREE SIGN}"
+    chart = forces_charts.torque(found.analysis)
+    assert note.split()[-1] in " ".join(mark.text for mark in chart.panels[0].marks)
+
+
+def test_a_peak_has_its_sign() -> None:
+    (tile,) = (one for one in document("four-stroke-engine").tiles if "torque" in one.label)
+    assert tile.value == "-153"
+    page = eq.load("four-stroke-engine")
+    analysis = eq.analyze(page)
+    entries = figures_of(signals_of(analysis), None, page)
+    (text,) = (one["text"] for one in entries if one["name"] == "drive_torque.peak")
+    assert text == "\N{MINUS SIGN}153.2"
+
+
+def test_cards_and_titles_speak_of_all_rows() -> None:
+    found, made = found_of("riding-transplanter"), document("riding-transplanter")
+    summary = found.analysis.summary
+    values = {one.label: float(one.value) for one in made.tiles if one.unit in ("N", "N m")}
+    for what in ("shaking_force", "shaking_moment", "drive_torque"):
+        figure = summary[f"rows.{what}"].signed_peak
+        label = f"all rows: {what.replace('_', ' ')}, peak"
+        assert values[label] == pytest.approx(figure, rel=5e-3)
+        assert abs(figure) > 1.1 * summary[what].peak
+    seen = {one.name: one.seen for one in shown_blocks(made.sections) if isinstance(one, Drawn)}
+    assert f"{summary['rows.shaking_force'].peak:.1f} N" in seen["force"]
+    assert f"{summary['rows.shaking_moment'].peak:.2f} N m" in seen["moment"]
+
+
+def test_a_cam_is_called_a_cam() -> None:
+    chart = next(iter(charts.joints(found_of("cam-pusher").analysis)))
+    titles = [panel.title for panel in chart.panels]
+    assert any(title.startswith("cam: ") for title in titles)
+    assert not any("teeth" in title for title in titles)
+
+
+def test_of_resonances_the_loud_one_is_told() -> None:
+    """At 320 rpm a mode is met at 328 that adds 4 % of what the one at 255 does."""
+    found = find("sieve", speed=320 * np.pi / 30)
+    assert isinstance(found, Findings) and found.sweep is not None
+    near = nearest_loud(found.sweep.resonances, found.machine.drive.speed)
+    assert near.share == 1.0
+    sentences = " ".join(s for one in answers(found) for s in one.sentences)
+    assert "loud resonance is at 255 rpm" in sentences
+    assert "keep away from 221.1 to 277.5 rpm" in sentences
+
+
+@pytest.mark.parametrize("name", ["four-stroke-engine", "hydraulic-loader"])
+def test_a_figure_has_one_unit_everywhere(name: str) -> None:
+    """Large forces of joints and drives stand beside small ones of the frame."""
+    found, made = found_of(name), document(name)
+    analysis = found.analysis
+    units = {"force": display_of_totals(analysis, "force").name}
+    (frame,) = (t for t in analysis.blocks() if isinstance(t, Table) and "frame" in t.title)
+    rows = [cell.text for cell in (row[0] for row in grid(frame).rows)]
+    assert any(one.endswith(units["force"]) for one in rows)
+    card = next(one for one in made.tiles if "shaking force" in one.label)
+    assert card.unit == units["force"]
+    panels = (*forces_charts.force(analysis).panels, *forces_charts.polar(analysis).panels)
+    assert {panel.y.unit.name for panel in panels} == {units["force"]}
