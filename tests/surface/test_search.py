@@ -193,3 +193,16 @@ def test_nothing_is_said_of_what_nothing_is_known_of() -> None:
 )
 def test_times(seconds: float, said: str) -> None:
     assert time_told(seconds) == said
+
+
+def test_check_tells_what_a_search_computes_at_most() -> None:
+    """The estimate and the bound are those of the search itself."""
+    study = written(FRONT, ("designs = 200", "designs = 90"))
+    told = succeeded(equipoise("check", study))
+    assert "time for a search of at most 90 designs, 10 generations of 9: " in told
+    found = equipoise("search", study, "--json")
+    assert 8 < json.loads(succeeded(found))["computed"] <= 90
+    told = succeeded(equipoise("check", "study-of-tolerances"))
+    machines = re.search(r"time for equipoise tolerance, of (\d+) machines: ", told)
+    found = equipoise("tolerance", "study-of-tolerances", "--json")
+    assert machines and json.loads(succeeded(found))["computed"] == int(machines[1])

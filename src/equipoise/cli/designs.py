@@ -96,23 +96,24 @@ def search(
     Parameters
     ----------
     population
-        Designs in a generation, 100 if not given.
+        Designs in a generation; if not given 100, or a tenth of the designs of the study.
     generations
-        Most generations, 200 if not given; the search ends where nothing gets better any more.
+        Most generations; if not given as many as the designs of the study make, at most 200.  The
+        search ends where nothing gets better any more.
     seed
         Of the random numbers, that of the study if not given; the same gives the same designs.
     """
     from equipoise.figures.designs import searched_charts
     from equipoise.schema.study_units import units_of
     from equipoise.studies.blocks import columns_of
-    from equipoise.studies.search import GENERATIONS, POPULATION, search_designs
+    from equipoise.studies.search import search_designs, search_size
 
     asked = study_named(study)
     outputs.check([study], [chosen.out])
     if chosen.out is not None:
         check_new(asked.model.base(), chosen.out)
-    size, turns = population or POPULATION, generations or GENERATIONS
     with naming(study), outputs.showing(asked):
+        size, turns = search_size(asked, population, generations)
         units = units_of(asked)
         with swept(units) as told:
             watched = Watched(asked, told)

@@ -14,8 +14,12 @@ from equipoise.results.blocks import Block, Cell, Listing, Notes, Table, Text
 from equipoise.signals import Array
 from equipoise.studies.blocks import Units, in_unit, labelled, spread_told, unit_in
 from equipoise.studies.evaluate import evaluator
-from equipoise.studies.outcomes import Outcome, estimated
+from equipoise.studies.outcomes import Evaluator, Outcome, estimated
 from equipoise.studies.run import Route
+from equipoise.studies.sampling import samples
+from equipoise.studies.search import LEAST_POPULATION, breeding_time, search_size
+from equipoise.studies.study import SLOW_CHUNK
+from equipoise.studies.tolerances import machines_of
 
 if TYPE_CHECKING:
     from equipoise.studies.study import Study
@@ -42,23 +46,52 @@ def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
     yield Table.of("What is computed", heads, _computed(study, units, outcome))
     compiled = getattr(compute, "compiled", False)
     yield Text(f"computed {HOW[engine()] if compiled else SLOW}")
-    yield Text(_time(study))
+    yield from map(Text, _times(study, compute))
     if outcome.reason[0] != COMPUTED:
         reason = REASONS[int(outcome.reason[0])]
         yield Notes((f"the model itself has no figures ({reason})",))
     yield Listing("", "\n".join(_ready(study, file)))
 
 
-def _time(study: Study) -> str:
-    """How long all designs take, and what that was taken from."""
+def _times(study: Study, compute: Evaluator) -> Iterator[str]:
+    """How long each command that takes the study needs at most, and what that was taken from."""
     route = Route.of(study)
-    compute = partial(route.task.function, route.task.study)
-    found = estimated(compute, study.size, route.chunk, processors())
-    total = f"about {time_told(found.seconds)}" if found.seconds >= 1 else "less than 1 s"
+    chunk = partial(route.task.function, route.task.study)
+    found = estimated(chunk, study.size, route.chunk, processors())
     here = "one processor" if found.workers == 1 else f"{found.workers} processors"
     one = "1 design" if found.designs == 1 else f"{found.designs} designs"
     rate = rate_told(found.rate)
-    return f"time for all: {total} on {here}; {one} of a chunk went at {rate} on one"
+    total = _about(found.seconds)
+    yield f"time for all: {total} on {here}; {one} of a chunk went at {rate} on one"
+
+    def drawn(designs: range) -> Outcome:
+        return compute(samples(study, designs.start, len(designs)))
+
+    if _is_searched(study) and study.size >= LEAST_POPULATION:
+        population, generations = search_size(study)
+        most = population * generations
+        seconds = estimated(drawn, most, population, 1).seconds
+        seconds += generations * breeding_time(study, population)
+        parts = f"{generations} generations of {population}"
+        yield f"time for a search of at most {most} designs, {parts}: {_about(seconds)}"
+    if _is_tolerance(study):
+        most = machines_of(study)
+        found = estimated(drawn, study.size, min(study.chunk, SLOW_CHUNK), 1)
+        seconds = found.seconds * most / study.size
+        yield f"time for equipoise tolerance, of {most} machines: {_about(seconds)}"
+
+
+def _about(seconds: float) -> str:
+    return f"about {time_told(seconds)}" if seconds >= 1 else "less than 1 s"
+
+
+def _is_searched(study: Study) -> bool:
+    aimed = bool(study.objectives) and not any(one.spread.tolerance for one in study.vary)
+    return aimed and not lacking("a search")
+
+
+def _is_tolerance(study: Study) -> bool:
+    return all(one.spread.tolerance for one in study.vary)
 
 
 def _varied(study: Study, units: Units, own: Array) -> Iterator[tuple[Cell, ...]]:
@@ -79,8 +112,7 @@ def _computed(study: Study, units: Units, outcome: Outcome) -> Iterator[tuple[Ce
 def _ready(study: Study, file: str) -> Iterator[str]:
     """Commands that take it, and what those lack that might."""
     yield lacking("a sweep") or f"ready for: equipoise sweep {file} -o designs.zarr"
-    tolerances = [one.spread.tolerance for one in study.vary]
-    if all(tolerances):
+    if _is_tolerance(study):
         yield f"ready for: equipoise tolerance {file}"
-    if not any(tolerances) and study.objectives:
+    if study.objectives and not any(one.spread.tolerance for one in study.vary):
         yield lacking("a search") or f"ready for: equipoise search {file}"

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import comb, isnan
+from math import comb, inf, isnan
+from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -43,6 +44,10 @@ if TYPE_CHECKING:
 Array = np.ndarray[Any, Any]
 
 POPULATION, GENERATIONS = 100, 200
+FEWEST_GENERATIONS = 10
+"""Into which a search of few designs is parted: in fewer, little is bred."""
+TIMED = 4
+"""Generations from which the time to breed one is taken."""
 LEAST_POPULATION, MOST_POPULATION, MOST_GENERATIONS = 8, 100_000, 100_000
 
 OnGeneration = Callable[[int, int, int, int], None]
@@ -111,8 +116,8 @@ class Searched(Result):
 def search_designs(
     study: Study,
     *,
-    population: int = POPULATION,
-    generations: int = GENERATIONS,
+    population: int | None = None,
+    generations: int | None = None,
     seed: int | None = None,
     progress: OnGeneration | None = None,
     compute: Evaluator | None = None,
@@ -125,8 +130,8 @@ def search_designs(
     Parameters
     ----------
     study : varies by ranges and lists, and makes at least one output small or large.
-    population, generations : designs in a generation, and the most generations; the search ends
-        before where the front stands still.
+    population, generations : designs in a generation, and the most generations; see `search_size`
+        where one is None.  The search ends before where the front stands still.
     seed : of the random numbers, that of the study where None; the same gives the same result.
     progress : see `OnGeneration`.
     compute : computes designs instead of the study's own evaluator.
@@ -137,6 +142,7 @@ def search_designs(
     UsageError : population or generations cannot be used, or no design keeps the limits.
     """
     _check(study)
+    population, generations = search_size(study, population, generations)
     if not LEAST_POPULATION <= population <= MOST_POPULATION:
         most = f"{LEAST_POPULATION} to {MOST_POPULATION}"
         raise UsageError(f"got a population of {population}; give {most}")
@@ -161,6 +167,47 @@ def search_designs(
             break
     told = seen.some_of_front(seen.rows(values_at(study, breeding.pop.get("X"))), population)
     return _result(study, seen, volumes, told, bred is None or volumes.still, seed)
+
+
+def search_size(
+    study: Study, population: int | None = None, generations: int | None = None
+) -> tuple[int, int]:
+    """Designs in a generation, and the most generations, of which either may be given.
+
+    What is not given follows from the study's number of designs, which bounds the search: 100
+    designs in a generation, or a tenth of all where that is less, and at most 200 generations.
+
+    Raises
+    ------
+    ModelError : the study has too few designs for a generation.
+    """
+    if population is None and generations is None and study.size < LEAST_POPULATION:
+        where = "vary" if study.sampling.method == "grid" else "sampling.designs"
+        told = f"got {study.size} designs; give {LEAST_POPULATION} or more for a search"
+        raise ModelError(where, told)
+    if population is None:
+        few = study.size // FEWEST_GENERATIONS if generations is None else POPULATION
+        population = max(LEAST_POPULATION, min(POPULATION, few))
+    if generations is None:
+        generations = max(1, min(GENERATIONS, study.size // max(population, 1)))
+    return population, generations
+
+
+def breeding_time(study: Study, population: int) -> float:
+    """Time to breed a generation, s, without computing it: from a search of random figures."""
+    random, moments = np.random.default_rng(0), list[float]()
+    low = [-inf if one.at_least is None else one.at_least for one in study.outputs]
+    high = [inf if one.at_most is None else one.at_most for one in study.outputs]
+
+    def drawn(values: Array) -> Outcome:
+        figures = random.random((len(values), len(low))).clip(low, high)
+        return Outcome(figures, np.zeros(len(values), np.uint8))
+
+    def note(*_: int) -> None:
+        moments.append(perf_counter())
+
+    search_designs(study, population=population, generations=TIMED, progress=note, compute=drawn)
+    return (moments[-1] - moments[0]) / max(len(moments) - 1, 1)
 
 
 def _check(study: Study) -> None:

@@ -136,8 +136,7 @@ def tolerance(
     """
     _check(study)
     causes = causes_of(study)
-    rows = rows_of(study.size, len(causes))
-    total = study.size + rows * (2 + 3 * len(causes))
+    rows, total = rows_of(study.size, len(causes)), machines_of(study)
     step = min(study.chunk, SLOW_CHUNK)
     run = _Run(compute or evaluator(study), step, study.chunk, progress, total)
     starts = range(0, study.size, study.chunk)
@@ -169,6 +168,12 @@ def tolerance(
 def rows_of(designs: int, causes: int) -> int:
     """Rows of the tables that tell causes apart, with about as many machines as the scatter has."""
     return int(2 ** ((designs // (2 + 3 * causes)).bit_length() - 1)) if designs else 0
+
+
+def machines_of(study: Study) -> int:
+    """Machines that are computed in all: those of the scatter and those of the tables."""
+    causes = len(causes_of(study))
+    return study.size + rows_of(study.size, causes) * (2 + 3 * causes)
 
 
 def _check(study: Study) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from typing import Any
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -12,10 +13,11 @@ import pytest
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_MACHINE
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.studies import search
 from equipoise.studies.design_space import Choices, Correlation, Make, Normal, Output, Range, Vary
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Evaluator, Outcome, kept, non_dominated
-from equipoise.studies.search import search_designs
+from equipoise.studies.search import search_designs, search_size
 from equipoise.studies.study import Study
 from unit.studies.samples import LENGTH, MASS, PATHS, study
 
@@ -27,7 +29,9 @@ UNIT = (Range(0.0, 1.0),) * 3
 
 def of(*outputs: Output, spreads: tuple[Any, ...] = UNIT, **changes: Any) -> Study:
     vary = tuple(Vary(path, spread) for path, spread in zip(PATHS, spreads, strict=False))
-    return replace(study(), vary=vary, outputs=outputs, **changes)
+    some = study()
+    sampling = replace(some.sampling, designs=20_000)
+    return replace(some, **{"vary": vary, "outputs": outputs, "sampling": sampling, **changes})
 
 
 def made(*names: str, make: Make = "smallest") -> tuple[Output, ...]:
@@ -236,7 +240,7 @@ def test_a_four_bar_against_every_design() -> None:
         Output("four_bar.transmission_min", at_least=0.6),
     )
     vary = (Vary(LENGTH, Choices(lengths)), Vary(rocker, Choices(lengths)))
-    some = replace(study(), vary=vary, outputs=outputs, angles=90)
+    some = replace(of(*outputs), vary=vary, angles=90)
     compute = evaluator(some)
     every = np.stack(np.meshgrid(lengths, lengths, indexing="ij"), axis=-1).reshape(-1, 2)
     outcome = compute(every)
@@ -260,3 +264,54 @@ def test_a_four_bar_against_every_design() -> None:
     for number in (0, len(between.values) - 1):
         own = np.array([between.values[number]])
         assert np.array_equal(compute(own).figures[0], between.figures[number])
+
+
+# -- how many designs ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("designs", "given", "size"),
+    [
+        (16384, {}, (100, 163)),
+        (10**6, {}, (100, 200)),
+        (200, {}, (20, 10)),
+        (20, {}, (8, 2)),
+        (2000, {"population": 40}, (40, 50)),
+        (30, {"population": 40}, (40, 1)),
+        (30, {"generations": 5}, (100, 5)),
+        (5, {"population": 8, "generations": 3}, (8, 3)),
+    ],
+)
+def test_the_number_of_designs_bounds_a_search(
+    designs: int, given: dict[str, int], size: tuple[int, int]
+) -> None:
+    some = of(*made("f"), sampling=replace(study().sampling, designs=designs))
+    assert search_size(some, **given) == size
+
+
+def test_no_more_designs_are_computed_than_the_study_has() -> None:
+    computed = 0
+
+    def counting(values: Array) -> Outcome:
+        nonlocal computed
+        computed += len(values)
+        return formula(two_bowls)(values)
+
+    some = of(*made("f", "g"), sampling=replace(study().sampling, designs=150))
+    assert search_designs(some, compute=counting).computed == computed <= 150
+
+
+def test_too_few_designs_for_a_search() -> None:
+    some = of(*made("f"), sampling=replace(study().sampling, designs=5))
+    with pytest.raises(ModelError, match=r"^sampling.designs: got 5 designs; give 8 or more"):
+        search_designs(some, compute=formula(bowl))
+
+
+def test_the_time_to_breed_is_measured_without_computing() -> None:
+    def failing(*_: Any) -> Any:
+        raise AssertionError
+
+    outputs = (*made("f", "g"), Output("x", value="a.c", at_least=2.0, at_most=3.0))
+    some = of(*outputs)
+    with mock.patch.object(search, "evaluator", failing):
+        assert search.breeding_time(some, 10) > 0
