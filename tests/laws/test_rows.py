@@ -16,7 +16,7 @@ from equipoise.balancing.phase_polish import Tops, square_with_slopes
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import choose_phases
 from equipoise.mechanism.parts.balance import MEASURES, Objective, Phases
-from equipoise.vibration.forced import respond, usual_step
+from equipoise.vibration.forced import respond
 from support.machines import make
 from support.rows_in_time import anyhow, in_time, measured, side_by_side, value_of
 from unit.vibration.build import cart, rig
@@ -93,7 +93,7 @@ def test_gauges_as_respond_has_them(machine: eq.Machine, gauge: str) -> None:
     """Impedances do not depend on phases, so that each row's share only turns with its phase."""
     machine = anyhow(machine, 1, 4)
     for speed in (None, 17.0):
-        response = respond(machine, speed, usual_step(machine))
+        response = respond(machine, speed)
         expected = float(response.gauges[gauge].displacement.vibration_rms)
         speeds = () if speed is None else (speed,)
         found = value_of(machine, Objective(f"gauges.{gauge}", speeds=speeds))

@@ -221,7 +221,7 @@ def test_example_is_the_rig() -> None:
 )
 def test_natural_frequency() -> float:
     """Theirs comes from the decay; this one from K, I and L_E."""
-    (mode,) = eq.modes(RIG).modes
+    (mode,) = eq.modes(RIG, "linear").modes
     assert mode.natural_frequency == pytest.approx(sqrt(STIFFNESS * SPRING_ARM**2 / INERTIA))
     assert mode.damping_ratio == pytest.approx(DAMPING / 2 / INERTIA / mode.natural_frequency)
     return mode.natural_frequency

@@ -112,9 +112,21 @@ def test_json_has_the_documented_shape(name: str, model: str) -> None:
     assert ("energy" in content) == (model == "exact")
 
 
-def test_the_usual_model_fits_the_support() -> None:
-    assert answer()["model"] == "linear"
-    assert read("respond", "riding-transplanter")["model"] == "moment"
+@pytest.mark.parametrize("name", GAUGES)
+def test_the_default_model_is_force_and_moment(name: str) -> None:
+    """However the support is held; in each command that has one."""
+    speeds = "--speed", "100:120 rpm", "--speeds", "2"
+    for words in (("respond", name), ("respond", name, *speeds), ("modes", name)):
+        assert read(*words) == read(*words, "--model", "moment")
+
+
+def test_models_that_differ_say_so() -> None:
+    """(59) is 5.2 % above the exact equations on the paper's rig, whose arm is long."""
+    text = " ".join(succeeded(equipoise("respond", RIG)).split())
+    assert (
+        "the models differ: at gauge, linear gives 12.62 mm and exact, which leaves out least, "
+        "12.00 mm; where they do not agree, use exact" in text
+    )
 
 
 # -- speeds ----------------------------------------------------------------------------------------
@@ -126,14 +138,14 @@ EQUAL_SPEEDS = ("193 rpm", " 193  rpm", "20.210912738 rad/s", "3.21666666667 tur
 def test_one_speed_in_any_unit(speed: str) -> None:
     content = answer("--speed", speed)
     assert content["speed"] == pytest.approx(193 * RPM, rel=1e-9)
-    assert peak(content) == pytest.approx(12.62, abs=0.005)
+    assert peak(content) == pytest.approx(12.00, abs=0.005)
 
 
 def test_a_crank_that_turns_the_other_way() -> None:
     """The shaking force of a constant speed does not know the sense; the response nearly."""
     content = answer("--speed", "-193 rpm")
     assert content["speed"] == pytest.approx(-193 * RPM)
-    assert peak(content) == pytest.approx(12.62, abs=0.02)
+    assert peak(content) == pytest.approx(12.00, abs=0.02)
     assert "crank driven at -193.0 rpm (-20.21 rad/s)" in succeeded(
         equipoise("respond", RIG, "--speed", "-193 rpm")
     )
@@ -150,7 +162,7 @@ def test_a_range(speeds: str) -> None:
     assert speed[0] == pytest.approx(20 * RPM) and speed[-1] == pytest.approx(300 * RPM)
     assert speed == sorted(speed)
     found = content["resonances"]
-    np.testing.assert_allclose(found, [12.42, 6.21, 4.14, 3.10, 2.48], atol=0.006)
+    np.testing.assert_allclose(found, [12.43, 6.22, 4.14, 3.11, 2.49], atol=0.006)
     assert set(np.searchsorted(speed, found)) <= set(range(1, len(speed)))
 
 
@@ -176,12 +188,13 @@ def test_json_of_a_range(model: str) -> None:
 
 
 def test_resonances_of_a_range() -> None:
-    content = answer("--speed", "20:300 rpm", "--speeds", "2")
+    words = "--speed", "20:300 rpm", "--speeds", "2", "--model", "linear"
+    content = answer(*words)
     (first, *_) = content["resonance_map"]
     assert first["speed"] == content["resonances"][0] == pytest.approx(12.415, abs=5e-4)
     assert (first["order"], first["mode"], first["share"]) == (1, 1, 1)
     assert first["avoid"][0] < first["speed"] < first["avoid"][1]
-    text = succeeded(equipoise("respond", RIG, "--speed", "20:300 rpm", "--speeds", "2"))
+    text = succeeded(equipoise("respond", RIG, *words))
     assert "crank driven at 20.00 to 300.0 rpm" in text
     assert "96.81 to 136.9" in text
     assert "no resonance in this range" in succeeded(
@@ -382,12 +395,12 @@ def test_modes(name: str) -> None:
 
 
 def test_modes_of_the_rig() -> None:
-    (mode,) = read("modes", RIG)["modes"]
+    (mode,) = read("modes", RIG, "--model", "linear")["modes"]
     assert mode["natural_frequency"] == pytest.approx(12.415, abs=5e-4)
     assert mode["gauges"]["gauge"] == pytest.approx([1.5, 0])  # m in a rad: 1.5 m from the pivot
-    assert cells(succeeded(equipoise("modes", RIG)), "1")[:4] == ["12.42", "1.976", "118.6",
-                                                                  "0.006232"]  # fmt: skip
-    (spread,) = read("modes", RIG, "--model", "moment")["modes"]
+    text = succeeded(equipoise("modes", RIG, "--model", "linear"))
+    assert cells(text, "1")[:4] == ["12.42", "1.976", "118.6", "0.006232"]
+    (spread,) = read("modes", RIG)["modes"]
     assert 1e-3 < abs(spread["natural_frequency"] / mode["natural_frequency"] - 1) < 0.01
 
 

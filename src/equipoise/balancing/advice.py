@@ -32,7 +32,6 @@ from equipoise.mechanism.parts.balance import (
 )
 from equipoise.mechanism.parts.body_checks import outlines
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.vibration.forced import usual_step
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.resonance import resonances
 
@@ -228,7 +227,7 @@ def aims_of(machine: Machine, plan: Balance) -> tuple[Objective, ...]:
     if machine.support is None:
         return force
     try:
-        linear = Linear.of(machine, usual_step(machine))
+        linear = Linear.of(machine)
         speeds = running_speeds(machine, linear)
         each = [(speed,) for speed in speeds] if len(speeds) > 1 else [()]
         names = gauges_of(linear.body)

@@ -19,7 +19,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.summary import plant
 from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import Outputs, unit_of_measure
-from equipoise.vibration.forced import respond, usual_step
+from equipoise.vibration.forced import respond
 
 WORSE = 0.01
 """Share by which a figure has to grow to be told as worse."""
@@ -178,7 +178,7 @@ def _of_support(machine: Machine) -> dict[str, float]:
     if machine.support is None:
         return figures
     try:
-        gauges = respond(machine, model=usual_step(machine)).gauges
+        gauges = respond(machine).gauges
     except (ModelError, ResponseError):  # without a steady state gauges have no figures
         return figures
     for name, gauge in gauges.items():

@@ -28,7 +28,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, output_of, wrong_objective
 from equipoise.results.analysis import Analysis
 from equipoise.signals import Array, Periodic
-from equipoise.vibration.forced import chosen_model, steady_speed, usual_step
+from equipoise.vibration.forced import chosen_model, steady_speed
 from equipoise.vibration.linear import ANGLES, Linear, gauges_of
 from equipoise.vibration.linkages import rows_of
 
@@ -147,7 +147,7 @@ class Rows:
 
     def _gauge(self, name: str, speeds: Sequence[float]) -> RowSignals:
         chosen_model(self.machine, None, False)  # refuses a machine without a support
-        linear = Linear.of(self.machine, usual_step(self.machine))
+        linear = Linear.of(self.machine)
         reading = linear.body.row(gauges_of(linear.body)[name])[linear.body.free]
         steady = [steady_speed(self.machine, speed, False) for speed in (speeds or (None,))]
         each = [read_rows(linear, reading, speed)[:, None] for speed in steady]

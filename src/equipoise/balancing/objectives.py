@@ -27,7 +27,6 @@ from equipoise.mechanism.parts.objectives import GAUGES, OF_ROWS, WITHIN, output
 from equipoise.mechanism.parts.support import Row
 from equipoise.quantities import SI
 from equipoise.signals import Array, Periodic
-from equipoise.vibration.forced import usual_step
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import rows_of
 
@@ -47,8 +46,8 @@ class Near:
 
     @cached_property
     def linear(self) -> Linear:
-        """Its support."""
-        return Linear.of(self.machine, usual_step(self.machine))
+        """Its support, on which linkages act with their whole force and moment."""
+        return Linear.of(self.machine)
 
 
 def signals_of(effects: Effects, objective: Objective, near: Near) -> list[Signal]:
@@ -159,7 +158,7 @@ def _by_numbers(effects: Effects, linear: Linear) -> tuple[Array, Array]:
     By differences.  Links are padded with inertia, in which both are linear, so that all of them
     are bodies that there can be; and with mass where they have none.
     """
-    step, machine = linear.excitation.step, linear.body.machine
+    machine = linear.body.machine
     padded, order = machine, list(machine.links)
     values = parameter_values(machine).reshape(-1, 4).copy()
     whole = np.sum(values, axis=0)
@@ -167,14 +166,14 @@ def _by_numbers(effects: Effects, linear: Linear) -> tuple[Array, Array]:
         own = values[order.index(link)]
         own += [whole[0] if own[0] < LIGHT * whole[0] else 0.0, 0.0, 0.0, PADDING * whole[3]]
         padded = with_parameters(padded, link, own)
-    start = Linear.of(padded, step)
+    start = Linear.of(padded)
     mass, stiffness = [], []
     for part in effects.parts:
         own = values[order.index(part.link)]
         for row in part.effect:
             share = STEP * own[0] / max(whole[0], float(np.max(np.abs(row[:3]), initial=0.0)))
             ends = (own + share * row, own - share * row)
-            one, other = (Linear.of(with_parameters(padded, part.link, e), step) for e in ends)
+            one, other = (Linear.of(with_parameters(padded, part.link, e)) for e in ends)
             mass.append((one.mass - other.mass) / (2 * share))
             stiffness.append((one.stiffness - other.stiffness) / (2 * share))
     found = np.array(mass), np.array(stiffness)
@@ -185,13 +184,13 @@ def _by_numbers(effects: Effects, linear: Linear) -> tuple[Array, Array]:
 
 def _wrench(effects: Effects, linear: Linear, rows: Sequence[Row]) -> Periodic:
     """Wrench (6, 1 + K, orders) of rows on the support, without their weight: as they are, and of a
-    unit of each number; the moment is as the step has it, about the drive's pivot.
+    unit of each number; the moment is about the drive's pivot.
     """
     excitation, machine = linear.excitation, effects.machine
     force = effects.signal("frame_force").start - machine.mass * complex(*machine.gravity)
     forces = np.vstack([force, effects.signal("shaking_force").columns])
     rocking = np.zeros(forces.shape, complex)
-    if excitation.step == "moment" and machine.has_planes:
+    if machine.has_planes:
         weight = 1j * excitation.across * complex(*machine.gravity)
         still = effects.signal("frame_rocking_moment").start - weight
         rocking = np.vstack([still, effects.signal("rocking_moment").columns])
@@ -206,13 +205,8 @@ def _wrench(effects: Effects, linear: Linear, rows: Sequence[Row]) -> Periodic:
 
 
 def _moments(effects: Effects, linear: Linear) -> Array:
-    """Moment (1 + K, N) about the drive's pivot, as the step has it."""
-    step = linear.excitation.step
-    if step == "linear":
-        return np.zeros((1 + effects.count, len(effects.motion.crank_angle)))
-    signal = effects.signal("drive_torque" if step == "torque" else "frame_moment")
-    if step == "torque":
-        return -np.vstack([effects.start.outer.drive_torque, signal.columns])
+    """Moment on the frame (1 + K, N) about the drive's pivot, less the mean of the weight's."""
+    signal = effects.signal("frame_moment")
     both = np.vstack([signal.start, signal.columns])
     weight = effects.weight_moment(linear.excitation.pivot)
     means = np.mean(np.vstack([weight.start, weight.columns]), axis=1, keepdims=True)

@@ -134,7 +134,8 @@ def modes(file: SupportFile, /, *, model: Model | None = None, outputs: Drawn = 
     Parameters
     ----------
     model
-        linear or torque: the linkages' mass at the drive's pivot; moment: spread as in the mean.
+        moment, the default: the linkages' mass spread as in the mean of a turn; linear or torque:
+        at the drive's pivot.
     """
     from equipoise.vibration import free
 
@@ -175,8 +176,9 @@ def respond(
     Parameters
     ----------
     model
-        linear (shaking force at the drive's pivot), torque (with the drive torque), moment (whole
-        force and moment), coupled (with the torque that the motion takes), exact (all bodies).
+        moment, the default (whole force and moment on the frame), exact (all bodies, large motion);
+        simplified: linear (shaking force at the drive's pivot), torque (with the drive torque),
+        coupled (with the torque that the motion takes).
     speed
         Speed of the crank instead of the file's, or a range: "20 rpm : 400 rpm".
     speeds

@@ -34,7 +34,7 @@ from equipoise.results.charts import (
     Panel,
     shown,
 )
-from equipoise.vibration.forced import usual_step
+from equipoise.vibration.forced import excitation_model_of
 from equipoise.vibration.linear import Linear
 
 if TYPE_CHECKING:
@@ -216,7 +216,7 @@ def mounts(response: Response) -> Iterator[Chart]:
 def _at_rest(response: Response) -> dict[str, float]:
     """What each mount carries at rest, N or N m; 0 where it does not touch."""
     machine = response.machine
-    rest = Linear.of(machine, usual_step(machine, response.model)).rest
+    rest = Linear.of(machine, excitation_model_of(response.model)).rest
     assert machine.support is not None
     return {
         name: rest.preload[name] if rest.carries(name, mount) else 0.0

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.i18n import say
-from equipoise.quantities import PER_RPM, Dimension, number
+from equipoise.i18n import Note, say, to_say
+from equipoise.quantities import PER_RPM, Dimension, number, told
 from equipoise.results.analysis_blocks import loud
 from equipoise.results.blocks import Block, Cell, Column, Facts, Notes, Table, Text, Value
 from equipoise.results.drive_blocks import driven
@@ -26,6 +26,10 @@ Kind = tuple[Dimension, str | None]
 
 NOTHING = 1e-2
 """m, rad and their rates: scale beside which what is smaller than atoms is rounding."""
+MOST_COMPLETE: tuple[Model, ...] = ("exact", "moment")
+"""Models with which others are compared, the one that leaves out least first."""
+AGREEING, ROUNDING = 0.05, 1e-9
+"""Share by which readings of models may differ without a note; and what of them is rounding."""
 PARTS = 5
 """Equal stretches of a time, of which the first and the last show whether it has settled."""
 MOVED: tuple[Kind, ...] = (("length", "mm"), ("speed", "mm/s"), ("acceleration", "m/s^2"))
@@ -80,8 +84,8 @@ def response_blocks(
         yield _joints(response)
     if lines := tuple(_solution(response)):
         yield Facts(say("Periodic solution"), lines)
-    if response.notes:
-        yield Notes(response.notes)
+    if notes := (*response.notes, *disagreement(others or {})):
+        yield Notes(notes)
 
 
 def _driven(response: Response) -> str:
@@ -167,6 +171,39 @@ def _by_model(response: Response, others: Mapping[str, Response | None]) -> Tabl
         )
         rows.append((name, *cells))
     return Table.of(say("Gauges by each model; peak to peak"), ("", *others), rows)
+
+
+def disagreement(others: Mapping[str, Response | None]) -> Iterator[Note]:
+    """That models differ: the worst reading beside that of the model that leaves out least."""
+    known = {name: other for name, other in others.items() if other is not None}
+    reference = next((name for name in MOST_COMPLETE if name in known), None)
+    if reference is None:
+        return
+    readings = {
+        (name, gauge): float(signals.displacement.peak_to_peak)
+        for name, other in known.items()
+        for gauge, signals in other.gauges.items()
+    }
+
+    def error(key: tuple[str, str]) -> float:
+        right = readings[reference, key[1]]
+        return abs(readings[key] - right) / max(right, ROUNDING * NOTHING)
+
+    worst = max(readings, key=error, default=None)
+    if worst is None or error(worst) <= AGREEING:
+        return
+    (model, gauge), (dimension, unit) = worst, MOVED[0]
+    if known[reference].gauges[gauge].rotation:
+        dimension, unit = TURNED[0]
+    template = to_say(
+        "the models differ: at {gauge}, {model} gives {reading} and {reference}, which leaves out "
+        "least, {right}; where they do not agree, use {reference}"
+    )
+    values = (told(readings[key], dimension, unit) for key in (worst, (reference, gauge)))
+    reading, right = values
+    yield Note(
+        template, gauge=gauge, model=model, reading=reading, reference=reference, right=right
+    )
 
 
 def _mounts(response: Response) -> Table:

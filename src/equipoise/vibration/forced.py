@@ -20,7 +20,7 @@ from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities.units import HUGE
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.exact import solve_exact
-from equipoise.vibration.linear import Linear, Step
+from equipoise.vibration.linear import DEFAULT_EXCITATION_MODEL, ExcitationModel, Linear
 from equipoise.vibration.resonance import warned
 from equipoise.vibration.response import MODELS, Model, Response, range_shown
 from equipoise.vibration.small_motion import respond_coupled, respond_linear
@@ -32,17 +32,18 @@ FREE = Note(
 )
 WITH_CRANK = {"torque", "coupled", "exact"}
 """Models in which the crank's torque acts on the support, or the support on the crank."""
-STEP_OF: dict[str, Step] = {
+EXCITATION_OF: dict[str, ExcitationModel] = {
     "linear": "linear",
     "torque": "torque",
     "moment": "moment",
     "coupled": "torque",
     "exact": "moment",
 }
+"""The linear system that each model stands on or is compared with: modes, rest, resonances."""
 
 
 def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
-    """The model asked for, or the usual one; refused where the machine has no part for it."""
+    """The model asked for, or the default one; refused where the machine has no part for it."""
     if model is not None and model not in MODELS:
         raise UsageError(
             Note(
@@ -81,7 +82,7 @@ def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
         )
     if model is not None:
         return model
-    return "exact" if drive else usual_step(machine)
+    return "exact" if drive else DEFAULT_EXCITATION_MODEL
 
 
 def check_moving(machine: Machine) -> None:
@@ -123,18 +124,22 @@ def left_out(machine: Machine) -> list[Note | str]:
     return found
 
 
-def usual_step(machine: Machine, model: str | None = None) -> Step:
-    """The linear step that fits the support, or that goes with a model."""
-    if model is not None and model not in MODELS:
+def excitation_model_of(model: str | None) -> ExcitationModel:
+    """The linear system that belongs to a model; the default one where no model is given.
+
+    Raises
+    ------
+    UsageError : there is no such model.
+    """
+    if model is None:
+        return DEFAULT_EXCITATION_MODEL
+    if model not in MODELS:
         raise UsageError(
             Note(
                 "got the model {model!r}; give one of {names}", model=model, names=", ".join(MODELS)
             )
         )
-    if model is not None:
-        return STEP_OF[model]
-    assert machine.support is not None
-    return "linear" if machine.support.coordinates == ("pitch",) else "moment"
+    return EXCITATION_OF[model]
 
 
 def models_of(machine: Machine) -> tuple[Model, ...]:
@@ -268,8 +273,7 @@ def respond(
     Parameters
     ----------
     speed : of the crank, rad/s; that of the machine where not given.
-    model : one of `MODELS`; where not given, ``linear`` for a support on a pivot, ``moment`` for
-        any other, ``exact`` with `drive`.
+    model : one of `MODELS`; where not given, ``moment``, or ``exact`` with `drive`.
     drive : whether the crank's speed follows from the motor instead of being constant.
 
     Raises
@@ -281,8 +285,8 @@ def respond(
     if missing := massless(machine):
         raise MassError(missing)
     speed, linear = steady_speed(machine, speed, drive), None
-    if model in get_args(Step):
-        linear = Linear.of(machine, cast(Step, model))
+    if model in get_args(ExcitationModel):
+        linear = Linear.of(machine, cast(ExcitationModel, model))
         found = respond_linear(linear, speed)
     elif model == "coupled":
         found = respond_coupled(Linear.of(machine, "torque"), speed)
@@ -290,5 +294,5 @@ def respond(
         found = respond_exact(machine, speed, drive)
     if machine.support is None:
         return replace(found, notes=(*left_out(machine), *found.notes))
-    near = warned(linear or Linear.of(machine, usual_step(machine, model)), found.speed)
+    near = warned(linear or Linear.of(machine, excitation_model_of(model)), found.speed)
     return replace(found, notes=(*left_out(machine), *near, *found.notes))

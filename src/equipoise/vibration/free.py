@@ -15,7 +15,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.result import Result
 from equipoise.signals import Array
 from equipoise.vibration.body import MISSING
-from equipoise.vibration.forced import usual_step
+from equipoise.vibration.forced import excitation_model_of
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.response import Mode, Values
 
@@ -59,7 +59,7 @@ class FreeVibration(Result):
             modes.append({**mode.to_dict(), "gauges": read})
         return {
             "title": self.machine.title,
-            "model": self.linear.excitation.step,
+            "model": self.linear.excitation.model,
             "coordinates": list(self.coordinates),
             "modes": modes,
             "mass": self.linear.mass,
@@ -74,8 +74,8 @@ def modes(machine: Machine, model: str | None = None) -> FreeVibration:
 
     Parameters
     ----------
-    model : ``linear`` or ``torque``, for the linkages' mass at the drive's pivot, or ``moment``,
-        for it spread as in the mean of a turn; what `respond` takes where not given.
+    model : ``moment``, the default, for the linkages' mass spread as in the mean of a turn;
+        ``linear`` or ``torque``, for it at the drive's pivot.
 
     Raises
     ------
@@ -86,5 +86,5 @@ def modes(machine: Machine, model: str | None = None) -> FreeVibration:
         raise ModelError("support", MISSING)
     if missing := massless(machine):
         raise MassError(missing)
-    linear = Linear.of(machine, usual_step(machine, model))
+    linear = Linear.of(machine, excitation_model_of(model))
     return FreeVibration(linear, linear.modes, linear.rest.preload)

@@ -1,9 +1,9 @@
 """Linear response: what linkages do to the support, and its small motion under it, by orders.
 
-Steps of Yamashita, Ichikawa and Mori, from the plainest: (59) ``linear``, the shaking force at the
-drive's pivot alone; (57) ``torque``, with the torque that the drive takes from the support;
-``moment``, the whole force and moment of all joints on the frame.  In the first two the linkage's
-mass rides at the drive's pivot, in the third it is spread as it is in the mean over a turn.
+``moment``, the default: the whole force and moment of all joints on the frame.  By name, the
+simplifications of Yamashita, Ichikawa and Mori: (59) ``linear``, the shaking force at the drive's
+pivot alone; (57) ``torque``, with the torque that the drive takes from the support.  In these two
+the linkage's mass rides at the drive's pivot, in the first it is spread as in the mean over a turn.
 
 (K - (n w)^2 M + i n w C) q_n = W_n for every order n at the crank's speed w.
 """
@@ -38,8 +38,11 @@ from equipoise.vibration.eigen import find_modes
 from equipoise.vibration.linkages import rows_of, spread
 from equipoise.vibration.response import Mode
 
-Step = Literal["linear", "torque", "moment"]
-STEPS: tuple[Step, ...] = ("linear", "torque", "moment")
+ExcitationModel = Literal["linear", "torque", "moment"]
+EXCITATION_MODELS: tuple[ExcitationModel, ...] = ("linear", "torque", "moment")
+DEFAULT_EXCITATION_MODEL: ExcitationModel = "moment"
+"""The one that leaves out nothing of what linkages exert on a support that hardly moves.  (59)
+gives 0 for a support that pitches about the crank's axis, however hard it is shaken."""
 
 ANGLES = 720
 """Crank angles in a turn from which orders are taken; more where loads may set in at once."""
@@ -54,11 +57,11 @@ SINGULAR = 1e10
 class Excitation:
     """Wrench of all linkages on the support, and where their mass and weight are.
 
-    body : the support.  step : which of the simplifications.
+    body : the support.  model : what of it is taken into account.
     """
 
     body: Body
-    step: Step
+    model: ExcitationModel
 
     @property
     def machine(self) -> Machine:
@@ -89,7 +92,7 @@ class Excitation:
         """Mass matrix (6, 6) of the linkages."""
         total = np.zeros((6, 6))
         for row in rows_of(self.machine):
-            if self.step == "moment":
+            if self.model == "moment":
                 origin = np.array([*row.offset, row.lateral])
                 total += moved(self._spread, origin - self.body.reference)
             else:
@@ -109,7 +112,7 @@ class Excitation:
         found = [(support.mass * gravity, np.array(support.center_of_mass))]
         for row in rows_of(self.machine):
             place = self.pivot_of(row)
-            if self.step == "moment":
+            if self.model == "moment":
                 center = self._mean_center + complex(*row.offset)
                 z = row.lateral + (self.across / self.machine.mass if self.machine.mass else 0.0)
                 place = np.array([center.real, center.imag, z])
@@ -185,16 +188,16 @@ class Excitation:
         found = forces(motion, self.pivot).outer
         force = found.frame_force.value - found.weight.value
         rocking = np.zeros(len(force), complex)
-        if self.step == "moment" and self.machine.has_planes:
+        if self.model == "moment" and self.machine.has_planes:
             gravity = complex(*self.machine.gravity)
             rocking = found.across.frame_rocking_moment.value - 1j * self.across * gravity
         moment = self._moment(found)
         return np.stack([force.real, force.imag, moment, rocking.real, rocking.imag])
 
     def _moment(self, found: Forces) -> Array:
-        if self.step == "linear":
+        if self.model == "linear":
             return np.zeros(len(found.motion.crank_angle))
-        if self.step == "torque":
+        if self.model == "torque":
             return -found.drive_torque
         gravity = complex(*self.machine.gravity)
         # what the mounts carry at rest
@@ -212,8 +215,8 @@ class Linear:
     excitation: Excitation
 
     @classmethod
-    def of(cls, machine: Machine, step: Step) -> Linear:
-        return cls(Excitation(Body(machine), step))
+    def of(cls, machine: Machine, model: ExcitationModel = DEFAULT_EXCITATION_MODEL) -> Linear:
+        return cls(Excitation(Body(machine), model))
 
     @property
     def body(self) -> Body:

@@ -43,7 +43,7 @@ def respond_linear(linear: Linear, speed: float) -> Response:
         notes.append(Note(said))
     return Response(
         body.machine,
-        linear.excitation.step,
+        linear.excitation.model,
         speed,
         moved.turns,
         _gauges(linear, moved, moving, moving.derivative() * speed),

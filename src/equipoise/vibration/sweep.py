@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Any, cast, get_args
+from typing import Any
 
 import numpy as np
 
@@ -20,12 +20,12 @@ from equipoise.vibration.body import MISSING
 from equipoise.vibration.forced import (
     Progress,
     chosen_model,
+    excitation_model_of,
     follow_speeds,
     left_out,
     steady_speed,
-    usual_step,
 )
-from equipoise.vibration.linear import Linear, Step
+from equipoise.vibration.linear import Linear
 from equipoise.vibration.resonance import Resonance, resonances
 from equipoise.vibration.response import Mode, Model, Response, Values, range_shown
 from equipoise.vibration.sampling import about, answered
@@ -200,8 +200,7 @@ def sweep_speed(
                 most_speeds=MOST_SPEEDS,
             )
         )
-    step = cast(Step, model) if model in get_args(Step) else usual_step(machine, model)
-    linear = Linear.of(machine, step)
+    linear = Linear.of(machine, excitation_model_of(model))
     met = resonances(linear, slowest, fastest)[:MOST_RESONANCES]
     told = progress or _silent
     respond = respond_coupled if model == "coupled" else respond_linear

@@ -100,12 +100,12 @@ def _peaks(sweep: Sweep) -> Table:
 
 def free_blocks(free: FreeVibration) -> Iterator[Block]:
     """Natural frequencies, damping, shapes, and the crank speeds that meet them."""
-    step = free.linear.excitation.step
-    if step == "moment":
+    model = free.linear.excitation.model
+    if model == "moment":
         yield Text(say("Mass of the linkages spread as in the mean of a turn."))
     else:
         yield Text(say("Mass of the linkages at the drive's pivot."))
-    yield Text(model_told(step))
+    yield Text(model_told(model))
     yield modes_table(free.modes)
     yield _met(free)
     title = say("Shapes; displacements in m beside rotations in rad, amplitude and phase")

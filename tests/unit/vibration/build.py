@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi
 from typing import Any
 
 import numpy as np
 
 import equipoise as eq
-from equipoise.mechanism.parts.support import Gauge, Mount
+from equipoise.mechanism.parts.support import Gauge, Mount, Support
 from equipoise.vibration.body import Body
 
 Array = np.ndarray[Any, Any]
@@ -50,6 +51,32 @@ def springs(name: str = "yamashita-1", **changes: Any) -> eq.Machine:
         "gauges": {"seat": Gauge((0.2, 0.5, 0.0)), "tilt": Gauge(axis="pitch")},
     }
     return eq.load(name).with_support(**{**values, **changes})
+
+
+def short_rig() -> eq.Machine:
+    """Put a machine on a rig whose pivot is 0.15 m behind the crank's, instead of 1.34 m."""
+    return rig(
+        pivot=(-0.15, 0.0),
+        center_of_mass=(-0.06, 0.0, 0.0),
+        inertia=(0.3,),
+        mounts={"spring": Mount((0.05, 0.0, 0.0), stiffness=8e3, damping=80.0)},
+    )
+
+
+def rocking() -> eq.Machine:
+    """Make an engine whose block can do nothing but turn about the crank's axis."""
+    return replace(
+        eq.load("exudyn-slider-crank"),
+        balance=None,
+        support=Support(
+            mass=20.0,
+            center_of_mass=(0.0, -0.05, 0.0),
+            inertia=(0.6,),
+            pivot=(0.0, 0.0),
+            mounts={"shaft": Mount(axis="pitch", torsional_stiffness=4e3, torsional_damping=5.0)},
+            gauges={"edge": Gauge((0.2, 0.0, 0.0))},
+        ),
+    )
 
 
 def cart(**changes: Any) -> eq.Machine:

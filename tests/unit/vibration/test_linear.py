@@ -12,7 +12,7 @@ import equipoise as eq
 from equipoise.errors import ModelError, ResponseError
 from equipoise.vibration.body import Body
 from equipoise.vibration.forced import respond
-from equipoise.vibration.linear import STEPS, Excitation, Linear, Step
+from equipoise.vibration.linear import EXCITATION_MODELS, Excitation, ExcitationModel, Linear
 from unit.vibration.build import SPEED, Gauge, Mount, block, cart, close, rig, springs
 
 MASS, ECCENTRIC, RADIUS = 10.0, 0.2, 0.03
@@ -31,7 +31,7 @@ def unbalance(**changes: object) -> eq.Machine:
 
 
 @pytest.mark.parametrize("speed", [3.0, 13.0, 14.2, 40.0, -20.0])
-@pytest.mark.parametrize("model", STEPS)
+@pytest.mark.parametrize("model", EXCITATION_MODELS)
 def test_rotating_unbalance(speed: float, model: str) -> None:
     """Y = m e w^2 / (k - M w^2 + i c w), of order 1 alone, in every step.
 
@@ -85,7 +85,7 @@ def test_without_damping_at_resonance_there_is_no_answer() -> None:
     )
 
 
-@pytest.mark.parametrize("model", STEPS)
+@pytest.mark.parametrize("model", EXCITATION_MODELS)
 def test_response_meets_its_equation(model: str) -> None:
     """M q.. + C q. + K q = W at every angle, of the planar and of the spatial support."""
     for machine in (springs(), cart()):
@@ -121,8 +121,8 @@ def test_steps_hand_over_force_torque_and_moment() -> None:
         close(wrench[:2], [varying.real, varying.imag], 1e-12)
 
 
-@pytest.mark.parametrize("step", STEPS)
-def test_springs_to_the_support_do_not_shake_it(step: Step) -> None:
+@pytest.mark.parametrize("step", EXCITATION_MODELS)
+def test_springs_to_the_support_do_not_shake_it(step: ExcitationModel) -> None:
     """What they do to it directly and through joints and drive cancels."""
     machine = eq.load("spring-balanced-crank").with_support(
         mass=20.0, center_of_mass=(0.0, -0.1, 0.0), inertia=(0.5,)

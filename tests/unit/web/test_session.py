@@ -222,7 +222,7 @@ def test_a_speed_within_a_resonance_is_told_with_the_response() -> None:
     session, _ = opened("yamashita-rig")
     shown = ask(session, "edit", seq=1, edits=[{"set": "drive.speed", "text": "118 rpm"}])
     notes = next(one.content["notes"] for one in shown if one.content["type"] == "response")
-    assert any("is to be avoided: between 96.8 and 137 rpm order 1" in note for note in notes)
+    assert any("is to be avoided: between 97.0 and 137 rpm order 1" in note for note in notes)
 
 
 def test_downloads() -> None:
