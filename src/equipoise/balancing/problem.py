@@ -87,9 +87,7 @@ class Problem:
         """Whether forces count in which it matters on which flank gears are in contact, or which
         strand of a chain pulls.
         """
-        chains = any(belt.tension is None for belt in self.start.belts)
-        may = bool(self.start.gears or self.start.racks or chains)
-        return may and any(one.output.startswith(WITHIN) for one in self.asked)
+        return self.start.switches and any(one.output.startswith(WITHIN) for one in self.asked)
 
     @cached_property
     def supports_more(self) -> bool:

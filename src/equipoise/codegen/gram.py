@@ -52,14 +52,13 @@ def can_use(machine: Machine, paths: Sequence[str], wanted: Sequence[Figure]) ->
 
 
 def _can_have(machine: Machine, figure: Figure) -> bool:
-    """Lengths have no linear mean; with gears, masses decide which flank of the teeth pushes."""
+    """Lengths have no linear mean; where a contact changes sides, it is masses that decide it."""
     one, _ = declared(figure.signal) or (None, "")
-    if one is None or one.needs != "masses" or not one.loop or one.group == "gears":
+    if one is None or one.needs != "masses" or not one.loop:
         return False
-    if one.group == "joints" and machine.couplings:
-        return False
-    linear = not one.reason or one.group == "joints"
-    return linear and (figure.name == "rms" or (figure.name == "mean" and not one.is_vector))
+    return one.linear_in(machine) and (
+        figure.name == "rms" or (figure.name == "mean" and not one.is_vector)
+    )
 
 
 class MassBatch:

@@ -29,6 +29,7 @@ from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.parameters import parameter_values
 from equipoise.mechanism.parts.balance import Balance, Objective
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import GAUGES, output_of
 from equipoise.results.result import Result
 from equipoise.signals import highest_at
 from equipoise.studies.design_space import Model
@@ -157,9 +158,9 @@ def linear_value(
 def _differ_in_masses(base: Machine, others: Sequence[Machine], of: Objective) -> bool:
     """Whether machines differ in masses alone, and an output is linear in them.
 
-    A support swings otherwise with them, and gears change their flanks.
+    A support swings otherwise with them, and contacts change sides.
     """
-    if of.output.startswith("gauges.") or (base.couplings and of.output.startswith("joints.")):
+    if of.output.startswith(GAUGES) or not output_of(of.output, base).linear_in(base):
         return False
     places = {name: link.points for name, link in base.links.items()}
     return all(

@@ -7,14 +7,18 @@ from dataclasses import replace
 from typing import Any, Literal
 
 from equipoise.keys import Frozen, Kind, Point, Text, innermost, keys_of
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.couplings import Turning, name_of
+from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.machine import FRAME
-from equipoise.mechanism.parts.objectives import JOINTS, WITHIN
+from equipoise.mechanism.parts.objectives import JOINTS
+from equipoise.mechanism.parts.racks import Rack
 
 What = Literal["point", "link"]
 NAMING = {"point": {"point"}, "link": {"link", "body"}}
 """What a text has to be the name of, as its key declares it."""
-COUPLED = tuple(table for table in WITHIN if table != JOINTS)
+COUPLED = tuple(f"{kind.table}." for kind in (Gear, Belt, Rack, Cam))
 """How outputs of couplings begin, which are called after both their links."""
 SLIDING = " on "
 """In the name of a sliding joint."""

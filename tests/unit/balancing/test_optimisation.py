@@ -25,6 +25,7 @@ from equipoise.mechanism.parts.balance import (
     SpringChoice,
     Weight,
 )
+from equipoise.mechanism.parts.planes import Bearing
 
 MACHINE = eq.load("yamashita-1")
 PLATE = {"thickness": 0.02, "density": 7850.0}
@@ -201,6 +202,20 @@ def test_flanks_of_gears_are_those_of_the_result() -> None:
     after = found.objectives[bearing.name][1]
     assert after == pytest.approx(np.sqrt(np.mean(force**2)))
     assert after < 8.44135
+    assert found.gap < 1e-8
+    assert [*map(str, found.scope)] == [
+        "for the flanks of teeth and strands of chains that bear here"
+    ]
+
+
+def test_flanks_of_gears_count_in_bearings_too() -> None:
+    """What a bearing bears changes with the flank as the force in its joint does."""
+    machine = eq.load("geared-counterweight").with_link("counterweight", plane=0.02)
+    bearings = {"left": Bearing("counterweight", -0.05), "right": Bearing("counterweight", 0.08)}
+    weight = Weight("any", 0.08, at_most=0.5)
+    masses = (AddedMass("counterweight", "E", weight), AddedMass("rocker", "O4", weight))
+    plan = Balance(masses=masses, objectives=(Objective("bearings.left"),))
+    found = eq.balance(replace(machine, bearings=bearings), plan)
     assert found.gap < 1e-8
     assert [*map(str, found.scope)] == [
         "for the flanks of teeth and strands of chains that bear here"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import degrees, pi
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import EquipoiseError
 from equipoise.studies.objective_map import Landscape, landscape
+from surface.running import example_text
 
 RIPPLE = eq.balancing.Objective("shaking_force.y", "ripple")
 """U of Yamashita, Ichikawa and Mori (63), times the mass."""
@@ -105,6 +107,26 @@ def test_quick_and_slow_way_agree(name: str, objective: eq.balancing.Objective) 
 
     model = TEMPLATE(name)
     over = {"links.coupler.mass": [0.3, 0.5, 0.9], "links.rocker.inertia": [1e-5, 4e-4]}
+    found = landscape(model, over, objective)
+    for row, inertia in enumerate(found.y):
+        for column, mass in enumerate(found.x):
+            machine: Any = model.machine(dict(zip(found.paths, (mass, inertia), strict=True)))
+            value = Problem.value_of(machine, objective)
+            assert found.values[row, column] == pytest.approx(value, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "output", ["belts.shaft to crank.right", "racks.sector to knife", "joints.D", "drive_torque"]
+)
+def test_contacts_that_change_sides_are_those_of_each_machine(output: str, tmp_path: Path) -> None:
+    """The knife's mass against the load on its rack decides which strand and which flank bears."""
+    from equipoise.balancing.problem import Problem
+
+    path = tmp_path / "chain.toml"
+    text = example_text("knife-drive").replace('tension = "180 N"\n', "")
+    path.write_text(text, encoding="utf-8")
+    model, objective = TEMPLATE(str(path)), eq.balancing.Objective(output)
+    over = {"links.knife.mass": [1.0, 8.0, 20.0], "links.knife.inertia": [1.0, 3.0]}
     found = landscape(model, over, objective)
     for row, inertia in enumerate(found.y):
         for column, mass in enumerate(found.x):

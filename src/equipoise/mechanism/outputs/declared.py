@@ -165,7 +165,8 @@ of_space(
 of_weight = alike(
     "",
     _force,
-    linear="{what} shakes nothing; take the force or moment on the frame instead",
+    linear=True,
+    reason="{what} shakes nothing; take the force or moment on the frame instead",
     summed=False,
 )
 of_weight("weight", "force", to_say("weight"), XY, sized=False)
@@ -173,7 +174,7 @@ of_weight("weight_moment", "torque", to_say("moment of the weight"), about=True)
 of_center = alike(
     "mass_center.",
     lambda _, found: -found.forces.shaking_force.value / found.machine.mass,
-    linear="{what} is the shaking force over the mass; take the shaking force instead",
+    reason="{what} is the shaking force over the mass; take the shaking force instead",
     items=lambda found: ("",) if found.machine.mass else (),
     ordered=True,
     summed=False,
@@ -236,6 +237,8 @@ of_joint = alike(
     "joints.{}",
     _of_joint,
     spoken=joint_named,
+    linear=True,
+    internal=True,
 )
 of_joint(
     "",
@@ -244,7 +247,6 @@ of_joint(
     FORCES,
     members=joint_names,
     items=lambda found: found.forces.joints,
-    linear=True,
     loop="{joint force:name}",
     summed=(True, False),
     compared=FORCE,
@@ -253,7 +255,7 @@ of_joint(
 RAILS: dict[str, Any] = {
     "members": slider_names,
     "items": lambda found: [n for n, one in found.forces.joints.items() if hasattr(one, "moment")],
-    "linear": "{what} is only read; take the whole force in the joint instead",
+    "reason": "{what} is only read; take the whole force in the joint instead",
 }
 of_joint(".normal", "force", to_say("normal force in joint {name}"), summed=False, **RAILS)
 of_joint(".moment", "torque", to_say("moment in joint {name}"), loop="{joint moment:name}", **RAILS)
@@ -267,7 +269,6 @@ of_joint(
     items=lambda found: found.forces.across.tilting_moments if found.machine.has_planes else (),
     had="tilting_moments",
     needs="planes",
-    linear=True,
     summed=(True, False),
 )
 of_bearing = alike(
@@ -276,13 +277,14 @@ of_bearing = alike(
     needs="planes",
     members=lambda machine: machine.bearings,
     items=lambda found: found.forces.across.bearings if found.machine.bearings else (),
+    linear=True,
+    internal=True,
 )
 of_bearing(
     "",
     "force",
     to_say("force of bearing {name}"),
     FORCES,
-    linear=True,
     loop="{bearing force:name}",
     summed=(True, False),
     compared=FORCE,
@@ -292,7 +294,8 @@ of_bearing(
 
 def _coupled(table: str) -> Callable[..., None]:
     """Outputs of couplings; linear for the flanks in contact and the strands that pull."""
-    shared: dict[str, Any] = {"spoken": lambda name: name.replace(" to ", " → "), "linear": True}
+    shared: dict[str, Any] = {"spoken": lambda name: name.replace(" to ", " → ")}
+    shared |= {"linear": True, "internal": True}
     shared["members"] = lambda machine: [one.name for one in getattr(machine, table)]
     read = lambda name, found, item: _members(getattr(found.forces, table), name, item)  # noqa: E731
     return alike(table + ".{}", read, **shared)
@@ -300,7 +303,7 @@ def _coupled(table: str) -> Callable[..., None]:
 
 TOOTH: dict[str, Any] = {"loop": "{joint force:name}", "summed": (True, False), "compared": FORCE,
                          "yardstick": "acting"}  # fmt: skip
-PART_OF_TOOTH = {"summed": False, "linear": "{what} is only read; take the whole force instead"}
+PART_OF_TOOTH = {"summed": False, "reason": "{what} is only read; take the whole force instead"}
 for of_teeth in (_coupled("gears"), _coupled("racks")):
     of_teeth("", "force", to_say("tooth force {name}"), FORCES, **TOOTH)
     of_teeth(".tangential", "force", to_say("tangential tooth force {name}"), **PART_OF_TOOTH)
@@ -317,12 +320,13 @@ CAMMED: dict[str, Any] = {
     "members": lambda machine: [cam.name for cam in machine.cams],
     "spoken": lambda name: name.replace(" to ", " → "),
 }
-of_cam = alike("cams.{}", lambda name, found, cam: _members(found.forces.cams, name, cam), **CAMMED)
-of_cam("", "force", to_say("contact force {name}"), FORCES, linear=True,
+of_cam = alike("cams.{}", lambda name, found, cam: _members(found.forces.cams, name, cam),
+               linear=True, internal=True, **CAMMED)  # fmt: skip
+of_cam("", "force", to_say("contact force {name}"), FORCES,
        loop="{joint force:name}", summed=(True, False), compared=FORCE,
        yardstick="acting")  # fmt: skip
 READ = "{what} is only read; take the whole contact force instead"
-of_cam(".normal", "force", to_say("contact force along the normal {name}"), linear=READ,
+of_cam(".normal", "force", to_say("contact force along the normal {name}"), reason=READ,
        loop="{cam push:name}")  # fmt: skip
 of_shape = alike("cams.{}.", lambda name, found, cam: getattr(found.motion, name + "s")[cam],
                  needs="motion", **CAMMED)  # fmt: skip

@@ -85,7 +85,10 @@ class Declared:
     members : from a machine to the members that it may have; ``""`` where it is no family.
     items : from an analysis to those that it has, where the machine alone does not tell.
     spoken : a member in words.
-    reason : why balancing cannot take it; empty where it is linear in the masses.
+    linear : whether it is linear in the masses, as long as the same flanks and strands bear.
+    reason : why balancing cannot take it; empty where it can.
+    internal : whether it is a force between bodies of one linkage, in which it counts which flank
+        of teeth or strand of a chain bears.
     loop : expression by which a compiled loop has it; ``{joint force:name}`` is looked up there.
     about : whether it depends on the point about which moments are taken.
     array : whether it stands among the arrays.  summed : whether it stands in the summary.
@@ -105,7 +108,9 @@ class Declared:
     members: Callable[[Any], Iterable[str]] = _only_one
     items: Callable[[Any], Iterable[str]] | None = None
     spoken: Callable[[str], str] = str
+    linear: bool = False
     reason: str = ""
+    internal: bool = False
     loop: str | None = None
     about: bool = False
     array: bool = True
@@ -140,6 +145,10 @@ class Declared:
     def is_split(self) -> bool:
         """Whether it can be told by cause and by link: it is linear, and a force of one row."""
         return self.is_of_row and not self.reason
+
+    def linear_in(self, machine: Any) -> bool:
+        """Whether it is linear in the masses of a machine: no contact in it changes sides."""
+        return self.linear and not (self.internal and machine.switches)
 
     @property
     def is_of_row(self) -> bool:
@@ -234,7 +243,8 @@ def output(
     label: str,
     *,
     parts: tuple[str, str] | None = None,
-    linear: bool | str = False,
+    linear: bool = False,
+    reason: str = "",
     needs: Needs = "masses",
     summed: tuple[bool, bool] | bool = True,
     sized: bool = True,
@@ -246,15 +256,19 @@ def output(
     ----------
     name, dimension, label, needs : as in `Declared`, as are all others.
     parts : names of the components along x and y of what is a vector; `name` is then its size.
-    linear : whether it is linear in the masses of the links; or the sentence why not.
+    linear : whether it is linear in the masses of the links.
+    reason : why balancing cannot take it; where it is not linear, that it is not, if not given.
     summed : whether it stands in the summary; of a vector, its size and its components.
     sized : whether the size of a vector is told.
     """
-    reason = "" if linear is True else linear or (KINEMATIC if needs == "motion" else ONLY_READ)
+    if not (linear or reason):
+        reason = KINEMATIC if needs == "motion" else ONLY_READ
     of_size, of_parts = summed if isinstance(summed, tuple) else (summed, summed)
 
     def declare(read: Read) -> Read:
-        one = Declared(name, dimension, label, read, needs=needs, reason=reason, **more)
+        one = Declared(
+            name, dimension, label, read, needs=needs, linear=linear, reason=reason, **more
+        )
         if parts is None:
             DECLARED[name] = replace(one, summed=of_size)
             return read

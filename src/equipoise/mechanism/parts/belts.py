@@ -81,6 +81,11 @@ class Belt(Turning):
         return first, second
 
     @property
+    def switches(self) -> bool:
+        """Without tension one strand pulls, which follows from the sense of the torque."""
+        return self.tension is None
+
+    @property
     def speed_ratio(self) -> float:
         """Speed of driven over driver relative to the carrier."""
         first, second = self.pitch_radii if self.teeth is None else self.teeth

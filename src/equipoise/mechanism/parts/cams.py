@@ -33,6 +33,7 @@ class Cam(Frozen):
     table: ClassVar[str] = "cams"
     kind: ClassVar[str] = "cam"
     start: ClassVar[float] = 0.0
+    switches: ClassVar[bool] = False
     speed_ratio: ClassVar[float] = 0.0
     exact_ratio: ClassVar[Fraction] = Fraction(0)
     file_order = ("cam", "follower", "carrier", "rides", "point", "roller_radius", "base_radius")

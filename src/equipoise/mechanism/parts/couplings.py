@@ -32,11 +32,15 @@ class Coupling(Protocol):
 
     table : key of the list in the model file.  kind : that of its `Reaction`.
     start : angle of the driven body in the frame at crank angle 0, rad.
+    switches : whether another flank, or another strand, bears where the force changes its sense, so
+        that forces inside the linkage are not linear in the masses.
     """
 
     table: ClassVar[str]
     kind: ClassVar[str]
 
+    @property
+    def switches(self) -> bool: ...
     @property
     def name(self) -> str: ...
     @property
@@ -106,6 +110,11 @@ class Turning(Frozen):
     @property
     def name(self) -> str:
         return name_of(self.driver, self.driven)
+
+    @property
+    @abstractmethod
+    def switches(self) -> bool:
+        """Whether another flank, or another strand, bears where the force changes its sense."""
 
     @property
     @abstractmethod

@@ -97,6 +97,11 @@ class Gear(Turning):
         return {**super().to_table(value), **mesh}
 
     @property
+    def switches(self) -> bool:
+        """The flank in contact follows from the sense of the torque."""
+        return True
+
+    @property
     def speed_ratio(self) -> float:
         """Speed of driven over driver relative to the carrier."""
         if self.teeth is None:

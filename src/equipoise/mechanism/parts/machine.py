@@ -193,6 +193,13 @@ class Machine(Driven, Frozen):
         return (*self.gears, *self.belts, *self.racks, *self.cams)
 
     @property
+    def switches(self) -> bool:
+        """Whether flanks or strands bear by the sense of the force, so that forces inside the
+        linkage are not linear in the masses.
+        """
+        return any(one.switches for one in self.couplings)
+
+    @property
     def has_planes(self) -> bool:
         """Whether it tells where its parts lie across the plane of its motion."""
         return bool(self.bearings) or any(

@@ -41,7 +41,7 @@ OF_ROWS = tuple(
 )
 """About x and y, from linkages side by side."""
 JOINTS, GAUGES = "joints.", "gauges."
-WITHIN = (JOINTS, "gears.", "racks.", "belts.", "cams.")
+WITHIN = tuple(dict.fromkeys(f"{one.group}." for one in DECLARED.values() if one.internal))
 """How forces begin that act inside of one linkage, whichever row it is."""
 OF_NUMBERS = ("ripple", "peak_to_peak", "area")
 """Measures of outputs that are one number at each crank angle."""

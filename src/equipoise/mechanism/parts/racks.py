@@ -74,6 +74,11 @@ class Rack(Frozen):
         return name_of(self.driver, self.driven)
 
     @property
+    def switches(self) -> bool:
+        """The flank in contact follows from the sense of the force."""
+        return True
+
+    @property
     def start(self) -> float:
         """Angle (rad) of a driven pinion, or travel (m) of a driven rack, at crank angle 0."""
         return self.travel if self.drives == "pinion" else self.angle
