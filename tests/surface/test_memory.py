@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from surface.running import Result, command
+from surface.running import Result, command, example_text
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 
@@ -29,10 +29,14 @@ main()
 """
 
 
-def peak_of(*arguments: str | Path) -> tuple[Result, int]:
-    """What a command left behind, and the memory that its process held at most, MB."""
+def peak_of(*arguments: str | Path, **variables: str) -> tuple[Result, int]:
+    """What a command left behind, and the memory that its process held at most, MB.
+
+    variables : of its environment.
+    """
     words = [sys.executable, "-c", PEAK, *command(*arguments)[3:]]
-    done = subprocess.run(words, capture_output=True, text=True, check=False, env={**os.environ})
+    environment = {**os.environ, **variables}
+    done = subprocess.run(words, capture_output=True, text=True, check=False, env=environment)
     found = re.search(r"peak (\d+) MB\n$", done.stderr)
     assert found, done.stderr
     return Result(done.returncode, done.stdout, done.stderr), int(found[1])
@@ -68,3 +72,49 @@ def test_a_search_gives_back_the_memory_of_its_designs() -> None:
     assert result.status == 0, result.err
     assert json.loads(result.out)["computed"] > 1900
     assert peak < 600
+
+
+LONG = """
+[links.wheel]
+points.E = ["0 mm", "0 mm"]
+mass = "416 g"
+center_of_mass = ["25 mm", "0 mm"]
+inertia = "305 kg mm^2"
+
+[[gears]]
+between = ["crank", "wheel"]
+teeth = [{}, {}]
+"""
+"""A wheel whose teeth make the cycle as many turns long as it has."""
+
+
+def turning(example: str, turns: int) -> str:
+    """Name of a bundled model with a wheel by which its cycle takes so many turns."""
+    point = 'points.A = ["0 mm", "0 mm"]\n'
+    added = (point, f'{point}points.E = ["-70 mm", "10 mm"]\n')
+    text = example_text(example).replace(*added, 1) + LONG.format(turns - 1, turns)
+    Path("long.toml").write_text(text, encoding="utf-8")
+    return "long.toml"
+
+
+def test_what_needs_more_than_the_limit_is_refused_in_a_sentence() -> None:
+    long = turning("yamashita-1", 997)
+    result, peak = peak_of("analyze", long, "--json", EQUIPOISE_MEMORY="400 MB")
+    assert (result.status, result.out) == (2, "")
+    assert "equipoise: not enough memory: needs " in result.err
+    assert "and 381 MiB may be used" in result.err and 'EQUIPOISE_MEMORY="1 GB"' in result.err
+    assert peak < 450
+
+
+def test_a_limit_that_is_none() -> None:
+    result, _ = peak_of("analyze", "yamashita-1", EQUIPOISE_MEMORY="much")
+    assert result.status == 2
+    assert "EQUIPOISE_MEMORY: got 'much'; give the memory that may be used, such as" in result.err
+
+
+@pytest.mark.parametrize("command_line", ["analyze yamashita-1", "--help", "analyze --help"])
+def test_a_terminal_of_a_thousand_million_columns(command_line: str) -> None:
+    result, peak = peak_of(*command_line.split(), COLUMNS="1000000000")
+    assert result.status == 0, result.err
+    assert peak < 300
+    assert max(map(len, result.out.splitlines())) <= 1000

@@ -61,15 +61,19 @@ for _name in sorted(COMMANDS):  # each is imported when it is run
     app.command(f"equipoise.cli.{_module}:{_what or _name}", name=_name)
 
 
-LEAST = 40
-"""Signs in a line below which no help is laid out: in one or two it would never end."""
+LEAST, MOST = 40, 1000
+"""Signs in a line below which no help is laid out, since in one or two it would never end; and
+beyond which nobody has a terminal, while each line may be filled up.
+"""
 
 
 def run(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns the exit status."""
     given = sys.argv[1:] if arguments is None else arguments
-    narrow = shutil.get_terminal_size().columns < LEAST
-    app.console = _console(LEAST) if narrow else None
+    columns = shutil.get_terminal_size().columns
+    if columns > MOST:  # for every library that asks
+        os.environ["COLUMNS"] = str(MOST)
+    app.console = _console(LEAST) if columns < LEAST else None
     if not given or given[0].startswith("-"):  # the help has a line of each command
         for name in COMMANDS:
             _ = app[name]
@@ -85,11 +89,11 @@ def run(arguments: Sequence[str] | None = None) -> int:
                 sys.stdout.flush()
             check()
     except (EquipoiseError, CycloptsError) as error:
-        sentence, *lines = to_paste(str(error))
-        print(
-            f"equipoise: {_one_line(sentence)}", *map(_one_line, lines), sep="\n", file=sys.stderr
-        )
-        return 2
+        return _refuse(error)
+    except MemoryError as error:
+        from equipoise.limits import out_of_memory
+
+        return _refuse(out_of_memory(error))
     except KeyboardInterrupt as interrupt:  # whoever has more to say raises it again with words
         words = _one_line("; ".join(["interrupted", *map(str, interrupt.args)]))
         print(f"equipoise: {words}", file=sys.stderr)
@@ -101,6 +105,13 @@ def run(arguments: Sequence[str] | None = None) -> int:
         print(f"equipoise: the output cannot be written ({error.strerror})", file=sys.stderr)
         return 2
     return 0
+
+
+def _refuse(error: Exception) -> int:
+    """Say what the user can mend; returns the exit status."""
+    sentence, *lines = map(_one_line, to_paste(str(error)))
+    print(f"equipoise: {sentence}", *lines, sep="\n", file=sys.stderr)
+    return 2
 
 
 SIGN = 5.0
@@ -164,9 +175,20 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a title may have letters the terminal lacks
             stream.reconfigure(errors="backslashreplace")
+    if sys.argv[1:2] != ["serve"]:  # which starts browsers, and computes little at a time
+        _limit_memory()
     status = run()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # everything is done, and only Python has to end
     sys.exit(status)
+
+
+def _limit_memory() -> None:
+    from equipoise.limits import limit_process
+
+    try:
+        limit_process()
+    except EquipoiseError as error:
+        sys.exit(_refuse(error))
 
 
 IMPORTS = 0.5
