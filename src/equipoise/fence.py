@@ -1,4 +1,8 @@
-"""A folder outside of which no file is read or written, for who lets others name the files."""
+"""A folder outside of which no file is read or written, for who lets others name the files.
+
+Whatever is opened by a name that somebody gave is opened here, so that the fence is asked, and so
+that no link leads where nobody meant.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +16,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from equipoise.errors import UsageError
+from equipoise.folders import Folder, LinkError
+
+OUTSIDE = "lies outside of the folder that is served; name another"
+OUT = "which leads out of its folder"
 
 
 @dataclass(frozen=True)
@@ -41,16 +49,27 @@ class Fence:
                 f"{shown}; name files from the folder that is served, without .. and not from the "
                 "root"
             )
-        if not _lies_in(self.folder / name, (self.folder,)):
+        if _real(self.folder / name, (self.folder,)) is None:
             raise UsageError(f"{shown}, which leads out of the folder that is served; name another")
 
 
-def _lies_in(path: str | os.PathLike[str], folders: Sequence[Path]) -> bool:
+class OutsideError(Exception):
+    """A file beyond the fence; `str(problem)` says so."""
+
+    def __init__(self) -> None:
+        super().__init__(OUTSIDE)
+
+
+def _real(path: str | os.PathLike[str], folders: Sequence[Path]) -> tuple[Path, str] | None:
+    """The folder of some in which a path ends, and its name from there; None if in none."""
     try:
         real = Path(os.path.realpath(path))
     except (OSError, ValueError):  # a null character
-        return False
-    return any(real.is_relative_to(folder) for folder in folders)
+        return None
+    for folder in folders:
+        if real.is_relative_to(folder):
+            return folder, real.relative_to(folder).as_posix()
+    return None
 
 
 _fence: ContextVar[Fence | None] = ContextVar("_fence", default=None)
@@ -66,33 +85,120 @@ def fenced(fence: Fence) -> Iterator[None]:
         _fence.reset(token)
 
 
-def may_be_read(path: str | os.PathLike[str]) -> bool:
-    """Whether a file lies on this side of the fence, if there is one."""
-    fence = _fence.get()
-    return fence is None or _lies_in(path, (fence.folder, *fence.read_too))
-
-
 def may_be_replaced() -> bool:
     """Whether who named the files asked for those to be written anew that are there already."""
     fence = _fence.get()
     return fence is not None and fence.replaces
 
 
-def check_written(path: Path) -> None:
-    """Note that a file or a folder is written, where it may be.
+# -- opening what is read --------------------------------------------------------------------------
+
+
+def open_file(path: str | os.PathLike[str], within: str | os.PathLike[str] | None = None) -> int:
+    """Open a file to be read; returns its descriptor.  A pipe that nobody writes to does not wait.
+
+    Parameters
+    ----------
+    within : folder of which no link may lead out, for a name that stands in a file there.
+
+    Raises
+    ------
+    OutsideError : it lies beyond the fence.
+    LinkError : a link leads out of `within`.
+    OSError, ValueError : it cannot be opened.
+    """
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    roots = _readable_roots()
+    if within is not None:
+        base = _base(Path(path), Path(within))
+        if (inside := _real(path, (base,))) is None:
+            raise LinkError(os.path.basename(path), OUT)
+        if roots is None:
+            return _opened_in(inside, flags)
+    if roots is None:
+        return os.open(path, flags)
+    found = _real(path, roots)
+    if found is None:
+        raise OutsideError
+    return _opened_in(found, flags)
+
+
+def _opened_in(place: tuple[Path, str], flags: int) -> int:
+    folder, name = place
+    return os.open(folder, flags) if name == "." else Folder.at(folder).open(name, flags)
+
+
+def _base(path: Path, folder: Path) -> Path:
+    """The folder that a named file must not leave: its own where the name itself leads up."""
+    below = path.is_relative_to(folder) and ".." not in path.relative_to(folder).parts
+    return Path(os.path.realpath(folder if below else path.parent))
+
+
+def open_folder(path: str | os.PathLike[str]) -> Folder:
+    """Open a folder to be read; errors as `open_file`."""
+    roots = _readable_roots()
+    if roots is None:
+        return Folder.at(path)
+    found = _real(path, roots)
+    if found is None:
+        raise OutsideError
+    folder, name = found
+    return Folder.at(folder).folder(name)
+
+
+def _readable_roots() -> tuple[Path, ...] | None:
+    fence = _fence.get()
+    return None if fence is None else (fence.folder, *fence.read_too)
+
+
+# -- opening where something is written ------------------------------------------------------------
+
+
+def place_of(path: str | os.PathLike[str], *, links: bool = True) -> tuple[Folder, str]:
+    """The folder in which a file or a folder is to be written, held open, and the name there.
+
+    Parameters
+    ----------
+    links : whether the path may have links, the last one only within its folder; else it is
+        absolute and has none.
 
     Raises
     ------
     UsageError : it lies beyond the fence, or is there already and is not to be replaced.
+    LinkError : it is a link that leads out of its folder.
+    OSError, ValueError : the folder cannot be opened.
     """
+    given = Path(path)
+    if not links:
+        _note_written(given)
+        return Folder.without_links(given.parent), given.name
+    above = Path(os.path.realpath(given.parent))
+    target = Path(os.path.realpath(above / given.name))
+    check_written(target)
+    if not target.is_relative_to(above):
+        raise LinkError(given.name, OUT)
+    way = target.relative_to(above).parent.as_posix()
     fence = _fence.get()
     if fence is None:
+        return Folder.at(above).folder(way), target.name
+    _note_written(target)
+    way = target.parent.relative_to(fence.folder).as_posix()
+    return Folder.at(fence.folder).folder(way), target.name
+
+
+def check_written(path: Path) -> None:
+    """Refuse a file or a folder that lies beyond the fence."""
+    fence = _fence.get()
+    if fence is not None and _real(path, (fence.folder,)) is None:
+        raise UsageError(f"{path.name}: {OUTSIDE}")
+
+
+def _note_written(path: Path) -> None:
+    """Note that a file or a folder is written, where it may be; errors as of `place_of`."""
+    check_written(path)
+    fence = _fence.get()
+    if fence is None or path.is_dir():
         return
-    if not _lies_in(path, (fence.folder,)):
-        raise UsageError(f"{path.name}: lies outside of the folder that is served; name another")
-    if not path.is_dir():
-        if path.exists() and not fence.replaces:
-            raise UsageError(
-                f"{path.name}: is there already; choose another name, or give overwrite"
-            )
-        fence.written.append(path)
+    if path.exists() and not fence.replaces:
+        raise UsageError(f"{path.name}: is there already; choose another name, or give overwrite")
+    fence.written.append(path)

@@ -2,61 +2,62 @@
 
 What a process that was killed has left beside a place goes when the next one writes there.  Of what
 is written `together`, all takes its place in the end, or nothing where something goes wrong.  Into
-a folder that is `locked` no other process writes.
+a folder that is `locked` no other process writes.  The folder of a place is held open meanwhile.
 """
 
 from __future__ import annotations
 
 import os
-import shutil
+import re
 import socket
+import stat
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import BinaryIO
 
 from equipoise.errors import UsageError
-from equipoise.fence import check_written
+from equipoise.fence import check_written, place_of
+from equipoise.folders import Folder
 from equipoise.interrupts import check, held_back
 
 ENDING = ".tmp"
 
 
 @contextmanager
-def beside(target: Path) -> Iterator[Path]:
-    """A free path beside a target, for what takes the target's place; gone in the end, if there.
-
-    target : no symbolic link.
-    """
-    clear_left_over(target.parent)
-    begun = target.with_name(f".{target.name[:100]}.{_here()}-{os.getpid()}{ENDING}")
+def beside(folder: Folder, name: str) -> Iterator[str]:
+    """A free name in a folder, for what takes the place of another there; gone in the end."""
+    clear_left_over(folder)
+    begun = f".{name[:100]}.{_here()}-{os.getpid()}{ENDING}"
+    folder.remove(begun)  # of a process that had this number, or planted there
     try:
         yield begun
     finally:
-        _remove(begun)
+        folder.remove(begun)
 
 
 @dataclass
 class _Together:
     """What waits until all of it can be done.
 
-    places : what is to take whose place.  stack : of what goes in the end.
+    places : what is to take whose place, by folder and name.  stack : of what goes in the end.
     """
 
     stack: ExitStack
-    places: dict[Path, Path] = field(default_factory=dict)
+    places: dict[tuple[Path, str], tuple[Folder, str]] = field(default_factory=dict)
     then: list[Callable[[], None]] = field(default_factory=list)
 
     def done(self) -> None:
         check()
-        for begun, target in self.places.items():
+        for (path, name), (folder, begun) in self.places.items():
             try:
-                os.replace(begun, target)
+                folder.rename(begun, name)
             except OSError as error:
                 what = f"the file cannot be written ({(error.strerror or '').lower()})"
-                raise UsageError(f"{target}: {what}; choose another place or name") from error
+                raise UsageError(f"{path / name}: {what}; choose another place or name") from error
         for act in self.then:
             act()
 
@@ -88,18 +89,42 @@ def together() -> Iterator[None]:
 
 
 @contextmanager
-def replaced(target: Path) -> Iterator[Path]:
-    """A free path beside a target, for a file that takes its place once it is whole."""
-    check_written(target)
+def replaced(path: str | os.PathLike[str], *, links: bool = True) -> Iterator[BinaryIO]:
+    """A file that takes the place of the one at a path once it is whole, with its permissions.
+
+    links : whether the path may have links, the last one only within its folder.
+
+    Raises
+    ------
+    UsageError, OSError, ValueError : as of `fence.place_of`, or it cannot be written.
+    """
+    folder, name = place_of(path, links=links)
     whole = _waiting.get()
     if whole is None:
-        with beside(target) as begun:
-            yield begun
-            os.replace(begun, target)
+        with beside(folder, name) as begun:
+            with _synced(folder, begun, like=name) as file:
+                yield file
+            folder.rename(begun, name)
         return
-    begun = whole.stack.enter_context(beside(target))
-    yield begun
-    whole.places[begun] = target
+    key = folder.path, name
+    folder = whole.places[key][0] if key in whole.places else folder
+    begun = whole.stack.enter_context(beside(folder, name))
+    with _synced(folder, begun, like=name) as file:
+        yield file
+    whole.places[key] = folder, begun
+
+
+@contextmanager
+def _synced(folder: Folder, name: str, like: str) -> Iterator[BinaryIO]:
+    """A new file that is on the disk in the end; permissions are those of another, if there."""
+    descriptor = folder.open(name, os.O_WRONLY | os.O_CREAT | os.O_EXCL)
+    with open(descriptor, "wb") as file:
+        before = folder.status(like)
+        if before is not None and stat.S_ISREG(before.st_mode) and hasattr(os, "fchmod"):
+            os.fchmod(descriptor, stat.S_IMODE(before.st_mode))
+        yield file
+        file.flush()
+        os.fsync(file.fileno())
 
 
 def made(folder: str | os.PathLike[str]) -> None:
@@ -107,9 +132,11 @@ def made(folder: str | os.PathLike[str]) -> None:
 
     Raises
     ------
+    UsageError : it lies beyond the fence.
     OSError : it cannot be made.
     """
     path, whole = Path(folder).absolute(), _waiting.get()
+    check_written(path)
     missing = [one for one in (path, *path.parents) if not one.exists()]
     os.makedirs(folder, exist_ok=True)
     if whole is not None:
@@ -131,13 +158,14 @@ def _remove_empty(folder: Path) -> None:
         folder.rmdir()
 
 
-def clear_left_over(folder: Path) -> None:
+def clear_left_over(folder: Folder) -> None:
     """Remove what processes of this machine that live no more have begun in a folder."""
+    begun = re.compile(rf"\..*\.{_here()}-([0-9]+){re.escape(ENDING)}", re.DOTALL)
     with suppress(OSError):
-        for path in folder.glob(f".*.{_here()}-*{ENDING}"):
-            owner = path.name.removesuffix(ENDING).rpartition("-")[2]
-            if owner.isdecimal() and not _lives(int(owner)):
-                _remove(path)
+        for name, _ in list(folder.entries()):
+            owner = begun.fullmatch(name)
+            if owner and not _lives(int(owner[1])):
+                folder.remove(name)
 
 
 def _here() -> str:
@@ -156,13 +184,6 @@ def _lives(process: int) -> bool:
     except OSError:
         return True
     return True
-
-
-def _remove(path: Path) -> None:
-    if path.is_dir() and not path.is_symlink():
-        shutil.rmtree(path, ignore_errors=True)
-    else:
-        path.unlink(missing_ok=True)
 
 
 # -- one writer at a time --------------------------------------------------------------------------
@@ -187,39 +208,45 @@ else:
 
 
 @contextmanager
-def locked(folder: Path) -> Iterator[None]:
+def locked(folder: Folder) -> Iterator[None]:
     """Hold the lock of a store.
 
     Raises
     ------
     UsageError : another process has it; the sentence names it.
-    OSError : the folder cannot be written into, or its disk knows no locks.
+    OSError : the folder cannot be written into, or its disk knows no locks, or the lock is a link.
     """
     # Files opened by Python are not handed down to processes that are started meanwhile.
-    descriptor = os.open(folder / LOCK_FILE, os.O_RDWR | os.O_CREAT, 0o666)
+    descriptor = folder.open(LOCK_FILE, os.O_RDWR | os.O_CREAT)
     try:
         try:
             _take(descriptor)
         except (BlockingIOError, PermissionError) as error:
             raise UsageError(
-                f"{folder}: {_holder(folder)} is writing into this store; wait until it is done, "
-                "or stop it"
+                f"{folder.path}: {_holder(folder)} is writing into this store; wait until it is "
+                "done, or stop it"
             ) from error
-        with suppress(OSError):  # of a full disk, which will be told of where it matters
-            os.ftruncate(descriptor, 0)
-            os.lseek(descriptor, 0, os.SEEK_SET)
-            os.write(descriptor, f"process {os.getpid()} on {socket.gethostname()}".encode())
+        _note(descriptor, f"process {os.getpid()} on {socket.gethostname()}")
         try:
             yield
         finally:
-            with suppress(OSError):
-                os.ftruncate(descriptor, 0)
+            _note(descriptor, "")
     finally:
         os.close(descriptor)
 
 
-def _holder(folder: Path) -> str:
+def _note(descriptor: int, text: str) -> None:
+    """Write who holds a lock; not into a file that has other names too, where it is no lock."""
+    if os.fstat(descriptor).st_nlink != 1:
+        return
+    with suppress(OSError):  # of a full disk, which will be told of where it matters
+        os.ftruncate(descriptor, 0)
+        os.lseek(descriptor, 0, os.SEEK_SET)
+        os.write(descriptor, text.encode())
+
+
+def _holder(folder: Folder) -> str:
     try:
-        return (folder / LOCK_FILE).read_text("utf-8") or "another process"
+        return folder.read(LOCK_FILE).decode() or "another process"
     except (OSError, ValueError):
         return "another process"

@@ -10,12 +10,15 @@ import shutil
 from collections.abc import Callable
 from copy import deepcopy
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
+import zarr
 from hypothesis import given
 from hypothesis import strategies as st
 
+from support.studies import contents
 from surface.running import Result, equipoise, refused, succeeded
 from surface.studies import LENGTHS
 from surface.test_fuzz import fuzz, mutate
@@ -126,3 +129,57 @@ def test_damage_at_random(made: Path, data: Any, words: tuple[str, ...]) -> None
         cut = data.draw(st.integers(0, len(kept)))
         file.write_bytes(kept[:cut] + data.draw(st.binary(max_size=4)))
     told(run(words))
+
+
+# -- checksums -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_bit_that_flips_changes_no_figure(made: Path, seed: int) -> None:
+    """Each file in turn: what is read is refused, or what was written; computing again mends it."""
+    random = Random(seed)
+    expected, whole = run(("best", "--json")).out, contents(STORE)
+    chunks = [one for one in sorted(STORE.rglob("*")) if one.is_file() and one.name != ".lock"]
+    for file in chunks:
+        kept = bytearray(file.read_bytes())
+        kept[random.randrange(len(kept))] ^= 1 << random.randrange(8)
+        file.write_bytes(kept)
+        for words in COMMANDS[:3]:
+            result = run(words)
+            if file.name == "zarr.json" and file.parent != STORE:  # as in that of the store
+                succeeded(result)
+            elif file.name == "zarr.json":
+                assert "is no store of Equipoise, or one that was damaged" in refused(result)
+            else:
+                said = refused(result)
+                assert "was damaged; compute again what was by: equipoise resume" in said
+        if file.name.isdecimal():
+            succeeded(run(("resume",)))
+            assert contents(STORE) == {**whole, ".lock": b""}
+        else:
+            file.write_bytes(whole[str(file.relative_to(STORE))])
+        assert run(("best", "--json")).out == expected
+
+
+def test_a_store_without_checksums_is_read_and_gone_on_with_as_it_was(made: Path) -> None:
+    """As versions before made them."""
+    old = Path("old.zarr")
+    content = json.loads((STORE / ABOUT).read_text())
+    about = {**content["attributes"], "equipoise_store": 1}
+    group = zarr.create_group(old, zarr_format=3, attributes=about)
+    for name, array in zarr.open_group(STORE, mode="r").arrays():
+        group.create_array(
+            name,
+            data=array[:],
+            chunks=array.chunks,
+            compressors=array.compressors[:-1] or None,
+            fill_value=array.fill_value,
+            attributes=dict(array.attrs),
+        )
+    del group.attrs["checksum"]
+    before = contents(old)
+    assert equipoise("best", old, "--json").out == run(("best", "--json")).out
+    chunk = old / "torque/c/0"
+    chunk.unlink()
+    succeeded(equipoise("resume", old))
+    assert contents(old) == {**before, ".lock": b""}

@@ -13,6 +13,7 @@ from cyclopts import CycloptsError
 from equipoise import __version__
 from equipoise.cli.options import wants
 from equipoise.errors import EquipoiseError, UsageError, needed, unknown
+from equipoise.folders import Folder
 
 if TYPE_CHECKING:
     from mcp.server.lowlevel import Server
@@ -132,7 +133,8 @@ def _pictures(written: tuple[Path, ...]) -> list[ImageContent]:
     drawn = [path for path in written if path.suffix.lower() in PICTURES][:MOST_PICTURES]
     return [
         types.ImageContent(
-            data=b64encode(path.read_bytes()).decode(), mime_type=PICTURES[path.suffix.lower()]
+            data=b64encode(Folder.without_links(path.parent).read(path.name)).decode(),
+            mime_type=PICTURES[path.suffix.lower()],
         )
         for path in drawn
     ]

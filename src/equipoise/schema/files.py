@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import UsageError
-from equipoise.fence import may_be_read, may_be_replaced
+from equipoise.fence import OutsideError, may_be_replaced, open_file
 from equipoise.partial import made, replaced
 
 if TYPE_CHECKING:
@@ -29,17 +29,21 @@ class FileError(Exception):
     """A file cannot be read or written; `str(problem)` says why and what would be right."""
 
 
-def read_text(path: str | os.PathLike[str], largest: int = LARGEST) -> str:
+Name = str | os.PathLike[str]
+
+
+def read_text(path: Name, largest: int = LARGEST, *, within: Name | None = None) -> str:
     """Read a regular file of UTF-8 text, with or without a byte order mark.
 
     largest : bytes that are read at most.
+    within : folder out of which no link may lead, where a file in it has named this one.
 
     Raises
     ------
     FileError
         Missing, no regular file (a pipe would wait for ever), too large, not UTF-8.
     """
-    data = read_bytes(path, largest)
+    data = read_bytes(path, largest, within=within)
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -49,10 +53,12 @@ def read_text(path: str | os.PathLike[str], largest: int = LARGEST) -> str:
         ) from error
 
 
-def read_bytes(path: str | os.PathLike[str], largest: int = LARGEST) -> bytes:
-    """Read a regular file as it is; `largest` and errors as of `read_text`."""
+def read_bytes(path: Name, largest: int = LARGEST, *, within: Name | None = None) -> bytes:
+    """Read a regular file as it is; arguments and errors as of `read_text`."""
     try:
-        return _bytes(path, largest)
+        return _bytes(open_file(path, within), largest)
+    except OutsideError as error:
+        raise FileError(str(error)) from error
     except FileNotFoundError as error:
         raise FileError("there is no such file") from error
     except PermissionError as error:
@@ -61,12 +67,7 @@ def read_bytes(path: str | os.PathLike[str], largest: int = LARGEST) -> bytes:
         raise FileError(f"the file cannot be read ({reason(error)})") from error
 
 
-def _bytes(path: str | os.PathLike[str], largest: int) -> bytes:
-    if not may_be_read(path):
-        raise FileError("lies outside of the folder that is served; name another")
-    # O_NONBLOCK: opening a pipe that nobody writes to would otherwise wait.
-    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-    descriptor = os.open(path, flags)
+def _bytes(descriptor: int, largest: int) -> bytes:
     if stat.S_ISDIR(os.fstat(descriptor).st_mode):  # Python would refuse it, and leave it open
         os.close(descriptor)
         raise FileError("this is a directory; give a file")
@@ -81,8 +82,10 @@ def _bytes(path: str | os.PathLike[str], largest: int) -> bytes:
     return data
 
 
-def write(path: str | os.PathLike[str], text: str | bytes, *, replace: bool = True) -> None:
+def write(path: Name, text: str | bytes, *, replace: bool = True, links: bool = True) -> None:
     """Write a file, text as UTF-8; it is afterwards the old or the new one, never half of it.
+
+    links : whether links are followed, a last one within its folder; else the path is absolute.
 
     Raises
     ------
@@ -93,27 +96,18 @@ def write(path: str | os.PathLike[str], text: str | bytes, *, replace: bool = Tr
         raise UsageError(f"{shown}: is there already; choose another name")
     data = text if isinstance(text, bytes) else text.encode("utf-8")
     try:
-        target = Path(os.path.realpath(path))  # through a symbolic link, which is to stay one
+        target = Path(path)
         if target.exists() and not target.is_file():  # the file would take the place of a device
             kind = "a directory" if target.is_dir() else "no regular file"
             raise UsageError(f"{shown}: this is {kind}; give the name of a file")
-        with replaced(target) as begun:
-            _write_synced(begun, data, like=target)
+        with replaced(path, links=links) as file:
+            file.write(data)
     except (OSError, ValueError) as error:
         what = f"the file cannot be written ({reason(error)})"
         raise UsageError(f"{shown}: {what}; choose another place or name") from error
 
 
-def _write_synced(path: Path, data: bytes, like: Path) -> None:
-    with open(path, "wb") as file:
-        if like.is_file():
-            os.chmod(path, stat.S_IMODE(like.stat().st_mode))
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
-
-
-def write_all(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> None:
+def write_all(folder: Name, files: Mapping[str, bytes]) -> None:
     """Write files into a folder, which is made where it is not there; each whole or not at all.
 
     Raises
@@ -143,7 +137,7 @@ def written_key(name: str) -> str:
     return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else quoted(name)
 
 
-def printable(path: str | os.PathLike[str]) -> str:
+def printable(path: Name) -> str:
     """Return a path as text that any terminal can print."""
     text = os.fspath(path).encode("utf-8", "backslashreplace").decode("utf-8")
     text = text if len(text) <= 300 else f"{text[:147]}...{text[-150:]}"

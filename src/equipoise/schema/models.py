@@ -155,7 +155,7 @@ class Beside:
                 "an example",
             )
         try:
-            return opened(self.folder / file)
+            return opened(self.folder / file, within=self.folder)
         except ModelError as error:
             raise ModelError("", f"{printable(file)}: {error.what}") from error
 

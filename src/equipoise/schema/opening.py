@@ -64,8 +64,10 @@ def in_file(source: str) -> Iterator[None]:
         raise ModelError(printable(error.where), error.what, source) from error
 
 
-def opened(path_or_name: str | os.PathLike[str]) -> Opened:
+def opened(path_or_name: str | os.PathLike[str], *, within: Folder = None) -> Opened:
     """Open a file, or a bundled example by its name.
+
+    within : folder out of which no link may lead, where a file in it has named this one.
 
     Raises
     ------
@@ -79,7 +81,7 @@ def opened(path_or_name: str | os.PathLike[str]) -> Opened:
         return opened_example(name)
     source = printable(name) or "''"
     try:
-        text = read_text(name)
+        text = read_text(name, within=within)
     except FileError as problem:
         what = str(problem)
         if not os.path.lexists(name) and isinstance(problem.__cause__, FileNotFoundError):

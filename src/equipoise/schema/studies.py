@@ -137,7 +137,7 @@ def _template(name: str, folder: Path) -> Template:
     beside = os.path.isfile(folder / name)
     try:
         is_example = not beside and name in bundled()
-        file = opened_example(name) if is_example else opened(folder / name)
+        file = opened_example(name) if is_example else opened(folder / name, within=folder)
         return Template.of_opened(file).swinging()
     except ModelError as error:
         raise ModelError("model", str(error)) from error

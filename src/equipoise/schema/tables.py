@@ -254,7 +254,7 @@ def read_beside(sort: str, file: str, folder: Path) -> Table:
         Names the table's file, line and column; `where` is empty.
     """
     with in_table(file):
-        return parse_table(sort, read_text(folder / file), file)
+        return parse_table(sort, read_text(folder / file, within=folder), file)
 
 
 def parse_table(sort: str, text: str, file: str = "") -> Table:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from contextlib import closing, suppress
 from dataclasses import dataclass
 from functools import lru_cache
-from json import dumps
+from json import dumps, loads
 from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -17,7 +17,9 @@ from typing import TYPE_CHECKING, Any, cast
 from equipoise.codegen.backends import processors
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError, needed
-from equipoise.partial import beside
+from equipoise.fence import place_of
+from equipoise.folders import Folder
+from equipoise.partial import beside, made
 from equipoise.quantities import SI
 from equipoise.studies.design_space import Choices
 from equipoise.studies.evaluate import evaluator
@@ -33,15 +35,19 @@ from equipoise.studies.executors import (
 from equipoise.studies.outcomes import Block, Evaluator, Progress, Tally
 from equipoise.studies.sampling import samples
 from equipoise.studies.store import (
+    ABOUT,
+    CHECKSUM,
     LAYOUT,
     MARK,
     NUMBERS,
     REASON,
     UNKNOWN,
     ZSTD,
+    DamagedError,
     Store,
     as_usage_error,
     brief,
+    checksum_of,
     open_store,
     versions,
 )
@@ -111,18 +117,19 @@ def resume(
     ------
     UsageError : there is no store, or other versions made it; or as in `run_study`.
     """
-    store = open_store(path, write=True)
+    store = open_store(path)
     study = restore(store.texts)
     if study.size != store.size:  # of a grid, which only the study itself can count
         raise UsageError(
             f"{store.path}: has places for {store.size} designs, and its study has {study.size}; "
             "it was changed, sweep anew"
         )
-    if not store.missing():
+    tally, missing = _counted(store, study)
+    if not missing:
         with suppress(UsageError), store.writing():  # clears what a killed process left
             pass
         if progress is not None:
-            progress(_counted(store, study).progress())
+            progress(tally.progress())
         return store
     route = Route.of(study)
     _check_same(store, route.engine)
@@ -132,9 +139,9 @@ def resume(
 
 
 def _fill(store: Store, study: Study, pool: Pool, progress: OnProgress | None) -> None:
-    """Compute and store what is missing."""
+    """Compute and store what is missing or damaged."""
     with store.writing():
-        tally, missing = _counted(store, study), store.missing()
+        tally, missing = _counted(store, study)
         tell = progress or (lambda _: None)
         tell(tally.progress())
         try:
@@ -162,14 +169,16 @@ def _store(store: Store, designs: range, block: Block) -> None:
         ) from error
 
 
-def _counted(store: Store, study: Study) -> Tally:
-    """The sums over what is stored already."""
+def _counted(store: Store, study: Study) -> tuple[Tally, list[int]]:
+    """The sums over what is stored already, and the chunks that are not, or are damaged."""
     tally = Tally(study.outputs, store.size)
-    missing = set(store.missing())
-    for chunk in range(store.chunks):
-        if chunk not in missing:
+    missing = store.missing()
+    for chunk in sorted({*range(store.chunks)}.difference(missing)):
+        try:
             tally.add(store.read(store.designs(chunk)), computed=False)
-    return tally
+        except DamagedError:
+            missing.append(chunk)
+    return tally, sorted(missing)
 
 
 def _check_same(store: Store, engine: str) -> None:
@@ -261,16 +270,37 @@ def create_store(path: str | os.PathLike[str], study: Study, chunk: int, engine:
         )
     # Made beside its place, so that a store is a whole one from the moment it is there.
     with as_usage_error(target, "the store cannot be made", "choose another place or name"):
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with beside(target) as begun:
-            _make_arrays(begun, study, chunk, engine)
-            os.rename(begun, target)
-    return open_store(target, write=True)
+        made(target.parent)
+        above, name = place_of(target)
+        with beside(above, name) as begun:
+            _write_empty(above.make(begun), study, chunk, engine)
+            above.rename(begun, name)
+    return open_store(target)
 
 
-def _make_arrays(folder: Path, study: Study, chunk: int, engine: str) -> None:
+def _write_empty(folder: Folder, study: Study, chunk: int, engine: str) -> None:
+    """Write what a store says of itself, and folders for its chunks."""
+    files = _described(study, chunk, engine)
+    content = loads(files[ABOUT])
+    content["attributes"][CHECKSUM] = checksum_of(content)
+    files[ABOUT] = dumps(content, ensure_ascii=False, indent=2).encode()
+    for name, data in files.items():
+        *array, file = name.split("/")
+        below = folder
+        for part in array:
+            below = below.made(part)
+        below.put(file, data)
+        if array:
+            below.made("c")
+
+
+def _described(study: Study, chunk: int, engine: str) -> dict[str, bytes]:
+    """The files of a store without chunks, by name, as Zarr writes them, which it does nowhere."""
     zarr = needed("zarr", "a store")
-    group = zarr.create_group(folder, zarr_format=3, attributes=_about(study, chunk, engine))
+    packing, checksum = [zarr.codecs.ZstdCodec(level=ZSTD)], zarr.codecs.Crc32cCodec()
+    files: dict[str, Any] = {}
+    memory = zarr.storage.MemoryStore(files)
+    group = zarr.create_group(memory, zarr_format=3, attributes=_about(study, chunk, engine))
 
     def add(name: str, kind: str, none: float, compressed: bool, attributes: Any) -> None:
         group.create_array(
@@ -279,11 +309,10 @@ def _make_arrays(folder: Path, study: Study, chunk: int, engine: str) -> None:
             chunks=(chunk,),
             dtype=kind,
             fill_value=none,
-            compressors=zarr.codecs.ZstdCodec(level=ZSTD) if compressed else None,
+            compressors=[*packing, checksum] if compressed else [checksum],
             dimension_names=("design",),
             attributes=attributes,
         )
-        (folder / name / "c").mkdir()
 
     for one in study.vary:
         # All but those that repeat are random in most of their digits: compressing them by a
@@ -300,7 +329,8 @@ def _make_arrays(folder: Path, study: Study, chunk: int, engine: str) -> None:
     add(REASON, "uint8", UNKNOWN, True, flags)
     with warnings.catch_warnings():  # that not every reader knows of a list of all arrays
         warnings.simplefilter("ignore")
-        zarr.consolidate_metadata(folder)
+        zarr.consolidate_metadata(memory)
+    return {name: data.to_bytes() for name, data in files.items()}
 
 
 def _unit(dimension: str | None) -> dict[str, str]:

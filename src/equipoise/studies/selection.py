@@ -257,7 +257,7 @@ def write_designs(store: Store, path: str | os.PathLike[str], *, kept: bool = Fa
     rows = 0
     with (
         as_usage_error(target, "the file cannot be written", "choose another place or name"),
-        _replaced(target) as file,
+        replaced(target) as file,
         writers[target.suffix.lower()](file, schema, store) as write,
     ):
         for start, block in store.in_blocks():
@@ -316,13 +316,3 @@ def _csv(file: BinaryIO, schema: Any, store: Store) -> Iterator[Write]:
     options = arrow_csv.WriteOptions(include_header=False, quoting_style="none")
     with arrow_csv.CSVWriter(file, schema, write_options=options) as writer:
         yield writer.write_table
-
-
-@contextmanager
-def _replaced(path: Path) -> Iterator[BinaryIO]:
-    """A file that takes its place once it is whole."""
-    target = Path(os.path.realpath(path))  # through a symbolic link, which is to stay one
-    with replaced(target) as begun, open(begun, "wb") as file:
-        yield file
-        file.flush()
-        os.fsync(file.fileno())

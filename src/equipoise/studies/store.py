@@ -5,19 +5,23 @@ One array for each varied number and for each output (float64, NaN where there i
 chunk of an array is a file, which is written beside its place and put there whole, so that it is
 there or not, at whatever moment the process ends.  A chunk of designs is done when the files of all
 arrays are there.  Nothing in the folder depends on time, or on the order in which chunks come.
+
+Each chunk ends in its checksum, by Zarr's codec crc32c, and `zarr.json` has one of what the store
+says of itself.  No link in the folder is followed.
 """
 
 from __future__ import annotations
 
 import os
 import platform
+import stat
 import sys
-from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager, suppress
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
-from json import loads
+from json import dumps, loads
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
@@ -26,8 +30,10 @@ import numpy as np
 
 import equipoise
 from equipoise.errors import UsageError, needed
+from equipoise.fence import OutsideError, open_folder
+from equipoise.folders import Folder, LinkError
 from equipoise.i18n import worded
-from equipoise.partial import clear_left_over, locked
+from equipoise.partial import locked
 from equipoise.results.result import Result
 from equipoise.studies.design_space import Make, Output
 from equipoise.studies.outcomes import Block, Outcome
@@ -37,9 +43,16 @@ if TYPE_CHECKING:
 
 Array = np.ndarray[Any, Any]
 
-MARK, LAYOUT = "equipoise_store", 1
+MARK, LAYOUT = "equipoise_store", 2
 """What a folder says of itself, and how it is laid out; another number is another meaning of it."""
+WITHOUT_CHECKSUMS = 1
+"""The layout before, which is the same without checksums."""
+ABOUT, CHECKSUM = "zarr.json", "checksum"
+"""What the store says of itself, and the attribute of its checksum."""
+CODEC = "crc32c"
+"""Zarr's name of what puts a checksum behind each chunk, and looks at it when that is read."""
 REASON, UNKNOWN = "reason", 255
+NO_LINKS = "which no store has"
 DAMAGED = "see whether the disk is there, or sweep anew"
 BLOCK, NUMBERS = 65_536, 2**22
 """Designs that are read at once, or fewer where each has many numbers."""
@@ -58,6 +71,7 @@ class Store(Result):
     texts : of the study, from which `equipoise.schema.studies.restore` makes it again.
     engine : what computes the designs.  versions : that it was computed with, by name.
     arrays : of numbers, of outputs, and of reasons, in this order, by name.
+    folder : held open.
     """
 
     path: Path
@@ -71,6 +85,7 @@ class Store(Result):
     engine: str
     versions: Mapping[str, str]
     arrays: Mapping[str, zarr.Array[Any]]
+    folder: Folder
 
     @property
     def title(self) -> str:
@@ -89,25 +104,38 @@ class Store(Result):
     def missing(self) -> list[int]:
         """Chunks that are not stored, in order."""
         with as_usage_error(self.path, "cannot be read", DAMAGED):
-            done = set.intersection(*(_files(self._folder(name)) for name in self.arrays))
+            done = set.intersection(*(_files(self.folder, name) for name in self.arrays))
         return [chunk for chunk in range(self.chunks) if chunk not in done]
-
-    def _folder(self, name: str) -> Path:
-        return self.path / name / "c"
 
     # -- reading -----------------------------------------------------------------------------------
 
     def read(self, designs: range) -> Block:
-        """Designs that follow each other; those not stored have NaN and the reason `UNKNOWN`."""
+        """Designs that follow each other; those not stored have NaN and the reason `UNKNOWN`.
+
+        Raises
+        ------
+        DamagedError : a chunk is not what was stored.
+        UsageError : they cannot be read.
+        """
         values = np.empty((len(designs), len(self.numbers)))
         figures = np.empty((len(designs), len(self.outputs)))
-        part = slice(designs.start, designs.stop)
-        with as_usage_error(self.path, "cannot be read", DAMAGED, (Exception,)):  # of any codec
-            for table, names in ((values, self.numbers), (figures, self.outputs)):
-                for column, name in enumerate(names):
-                    table[:, column] = self.arrays[name][part]
-            reason = np.asarray(self.arrays[REASON][part])
-        return Block(values, Outcome(figures, reason))
+        for table, names in ((values, self.numbers), (figures, self.outputs)):
+            for column, name in enumerate(names):
+                table[:, column] = self._column(name, designs)
+        return Block(values, Outcome(figures, self._column(REASON, designs)))
+
+    def _column(self, name: str, designs: range) -> Array:
+        with as_usage_error(self.path, "cannot be read", DAMAGED):
+            try:
+                return np.asarray(self.arrays[name][designs.start : designs.stop])
+            except (OSError, MemoryError):
+                raise
+            except Exception as error:  # of any codec
+                for chunk in range(designs.start // self.chunk, self.chunks):
+                    part = self.designs(chunk)
+                    if part != designs and part.start < designs.stop:
+                        self._column(name, part)  # which of several it is
+                raise DamagedError(self, name, designs) from error
 
     def in_blocks(self) -> Iterator[tuple[int, Block]]:
         """All designs, some ten thousand at a time, each time with the number of the first."""
@@ -128,10 +156,12 @@ class Store(Result):
         """
         with ExitStack() as held:
             with as_usage_error(self.path, "cannot be written", "make it writable"):
-                held.enter_context(locked(self.path))
+                held.enter_context(locked(self.folder))
                 for name in self.arrays:
-                    for left_over in self._folder(name).glob("*.partial"):
-                        left_over.unlink()
+                    chunks = _chunks_of(self.folder, name)
+                    for left_over, _ in list(chunks.entries()):
+                        if left_over.endswith(PARTIAL):
+                            chunks.remove(left_over)
             yield
 
     def write(self, designs: range, block: Block) -> None:
@@ -144,10 +174,28 @@ class Store(Result):
         columns = [*block.values.T, *block.outcome.figures.T, block.outcome.reason]
         chunk = designs.start // self.chunk
         for (name, array), column in zip(self.arrays.items(), columns, strict=True):
-            _put(self._folder(name) / str(chunk), _encoded(array, column))
+            _put(_chunks_of(self.folder, name), str(chunk), _encoded(array, column))
 
 
-def _encoded(array: zarr.Array[Any], column: Array) -> bytes | memoryview:
+class DamagedError(UsageError):
+    """Designs of a store are not what was stored: a disk that fails, or somebody changed them."""
+
+    def __init__(self, store: Store, name: str, designs: range) -> None:
+        super().__init__(
+            f"{store.path}: {name} of designs {designs.start} to {designs.stop - 1} was damaged; "
+            f"compute again what was by: equipoise resume {store.path}"
+        )
+
+
+PARTIAL = ".partial"
+
+
+def _chunks_of(folder: Folder, name: str) -> Folder:
+    """Where the chunks of an array are."""
+    return folder.folder(f"{name}/c")
+
+
+def _encoded(array: zarr.Array[Any], column: Array) -> bytes:
     """A chunk of an array as the bytes of its file; the last one is filled up.
 
     Zarr's own way to there goes through an event loop in another thread, and takes four times as
@@ -156,31 +204,38 @@ def _encoded(array: zarr.Array[Any], column: Array) -> bytes | memoryview:
     whole = np.ascontiguousarray(column, array.dtype.newbyteorder("<"))
     if len(whole) < array.chunks[0]:
         whole = np.pad(whole, (0, array.chunks[0] - len(whole)), constant_values=array.fill_value)
-    if not array.compressors:
-        return whole.data
-    packed: bytes = needed("numcodecs", "a store").Zstd(level=ZSTD).encode(whole)
-    return packed
+    data = whole.tobytes()
+    for codec in _codecs(array):
+        if codec == CODEC:
+            data += _crc32c(data).to_bytes(4, "little")
+        else:
+            data = needed("numcodecs", "a store").Zstd(level=ZSTD).encode(data)
+    return data
 
 
-def _put(path: Path, data: bytes | memoryview) -> None:
+def _put(folder: Folder, name: str, data: bytes) -> None:
     """Write a file beside its place, and put it there once it is whole."""
-    partial = path.with_name(f"{path.name}.partial")
+    partial = f"{name}{PARTIAL}"
+    folder.put(partial, data)
     try:
-        partial.write_bytes(data)
-        os.replace(partial, path)
+        folder.rename(partial, name)
     except OSError:
-        with suppress(OSError):
-            partial.unlink()
+        folder.remove(partial)
         raise
 
 
-def _files(folder: Path) -> set[int]:
+def _files(folder: Folder, name: str) -> set[int]:
     """Chunks of an array that have a file; an empty one was cut off by a failure of the power."""
+    found = set()
     try:
-        with os.scandir(folder) as entries:
-            return {int(e.name) for e in entries if e.name.isdecimal() and e.stat().st_size}
+        for chunk, status in _chunks_of(folder, name).entries():
+            if chunk.isdecimal() and stat.S_ISLNK(status.st_mode):
+                raise LinkError(f"{name}/c/{chunk}", NO_LINKS)
+            if chunk.isdecimal() and status.st_size:
+                found.add(int(chunk))
     except FileNotFoundError:
         return set()
+    return found
 
 
 @cache
@@ -196,41 +251,41 @@ def versions() -> dict[str, str]:
     return {**found, "python": python, "processor": platform.machine()}
 
 
-def open_store(path: str | os.PathLike[str], *, write: bool = False) -> Store:
+def open_store(path: str | os.PathLike[str]) -> Store:
     """Open a store; nothing but names and sizes is read.
-
-    write : whether chunks are going to be written.
 
     Raises
     ------
     UsageError : there is none at `path`, or it is none that this version can read.
     """
     zarr = needed("zarr", "a store")
-    folder = Path(path)
-    clear_left_over(folder.parent)
-    if not os.path.lexists(folder):
-        raise UsageError(f"{folder}: there is no such store; make it by: equipoise sweep")
-    if folder.is_file():
+    path = Path(path)
+    if not os.path.lexists(path):
+        raise UsageError(f"{path}: there is no such store; make it by: equipoise sweep")
+    if path.is_file():
         raise UsageError(
-            f"{folder}: a store is a folder; of a study file it is made by: equipoise sweep"
+            f"{path}: a store is a folder; of a study file it is made by: equipoise sweep"
         )
     try:
-        group = zarr.open_group(folder, mode="r+" if write else "r", zarr_format=3)
+        folder = open_folder(path)
+        group = zarr.open_group(_files_of(folder), mode="r", zarr_format=3)
         layout = group.attrs[MARK]
-        if layout == LAYOUT:
-            return _opened(folder, group)
+        if layout in (WITHOUT_CHECKSUMS, LAYOUT):
+            return _opened(path, folder, group)
+    except OutsideError as error:
+        raise UsageError(f"{path}: {error}") from error
     except Exception as error:  # Zarr and its codecs raise anything where a file is damaged
         raise UsageError(
-            f"{folder}: is no store of Equipoise, or one that was damaged ({brief(error)}); give "
+            f"{path}: is no store of Equipoise, or one that was damaged ({brief(error)}); give "
             "the folder that equipoise sweep has made, or sweep anew"
         ) from error
     raise UsageError(
-        f"{folder}: was made by another version of Equipoise, with layout {layout!r:.40}, and "
+        f"{path}: was made by another version of Equipoise, with layout {layout!r:.40}, and "
         f"this one reads layout {LAYOUT}; install the version that made it, or sweep anew"
     )
 
 
-def _opened(folder: Path, group: Any) -> Store:
+def _opened(path: Path, folder: Folder, group: Any) -> Store:
     """The store of a group whose parts agree; `ValueError` and the like where they do not."""
     about: Mapping[str, Any] = group.attrs
     texts, made_with = _texts(about["study"]), _texts(about["versions"])
@@ -253,8 +308,14 @@ def _opened(folder: Path, group: Any) -> Store:
         limits = [one for one in (wish.at_least, wish.at_most) if one is not None]
         if wish.make not in (None, *get_args(Make)) or not all(map(isfinite, limits)):
             raise ValueError(f"output {wish.name} has no limits or aims that can be read")
+    content = loads(folder.read(ABOUT))
+    if about[MARK] == LAYOUT or CHECKSUM in about:
+        if about[CHECKSUM] != checksum_of(content):
+            raise ValueError(f"{ABOUT} is not as it was written")
+        if not all(CODEC in _codecs(array) for array in arrays.values()):
+            raise ValueError("its chunks have no checksums")
     return Store(
-        path=folder,
+        path=path,
         size=size,
         chunk=chunk,
         numbers=numbers,
@@ -265,7 +326,30 @@ def _opened(folder: Path, group: Any) -> Store:
         engine=str(about["engine"]),
         versions=made_with,
         arrays=arrays,
+        folder=folder,
     )
+
+
+def _files_of(folder: Folder) -> Any:
+    from equipoise.studies.zarr_files import FolderFiles
+
+    return FolderFiles(folder)
+
+
+def _codecs(array: zarr.Array[Any]) -> list[str]:
+    """Names of what makes the bytes of a file of those of a chunk, in this order."""
+    codecs: Sequence[Any] = array.compressors
+    return [str(one.to_dict()["name"]) for one in codecs]
+
+
+def checksum_of(content: Mapping[str, Any]) -> int:
+    """The checksum of what a store says of itself, as in `zarr.json`, but for this number."""
+    about = {key: value for key, value in content["attributes"].items() if key != CHECKSUM}
+    return _crc32c(dumps({**content, "attributes": about}, sort_keys=True).encode())
+
+
+def _crc32c(data: bytes) -> int:
+    return int(needed("google_crc32c", "a store").value(data))
 
 
 def _texts(packed: str) -> dict[str, str]:
@@ -283,6 +367,10 @@ def as_usage_error(
     """Make one sentence of what the system says."""
     try:
         yield
+    except LinkError as error:
+        raise UsageError(
+            f"{path}: {what} ({brief(error)}); put what it leads to in its place, if you trust it"
+        ) from error
     except caught as error:
         raise UsageError(f"{path}: {what} ({brief(error)}); {advice}") from error
 

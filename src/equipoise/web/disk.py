@@ -31,11 +31,13 @@ class Disk:
 
     Each page has one of its own, so that none writes over what another one has saved.
 
-    path : of the file.  text : what it holds.  model : that is in it.
+    path : of the file.  place : where that was when it was opened, without links.
+    text : what it holds.  model : that is in it.
     lock : held while it is written, since pages share the file.
     """
 
     path: str
+    place: str
     text: str
     model: Machine | Tool
     lock: Lock = field(default_factory=Lock)
@@ -104,7 +106,7 @@ class Disk:
                     )
                 )
             self._check_tables(model)
-            write(self.path, text)
+            write(self.place, text, links=False)
             self.text, self.model = text, model
 
     def _check_tables(self, model: Machine | Tool) -> None:
@@ -127,7 +129,7 @@ class Disk:
     def _on_disk(self) -> str | None:
         """What the file holds now; None where it cannot be read."""
         try:
-            return read_text(self.path)
+            return read_text(self.place, within=os.path.dirname(self.place))
         except FileError:
             return None
 
@@ -136,4 +138,5 @@ def on_disk(path_or_name: str, model: Machine | Tool) -> Disk | None:
     """The file that a model was read from; None of a bundled example."""
     if not os.path.isfile(path_or_name):
         return None
-    return Disk(os.path.abspath(path_or_name), read_text(path_or_name), model)
+    path, place = os.path.abspath(path_or_name), os.path.realpath(path_or_name)
+    return Disk(path, place, read_text(place), model)

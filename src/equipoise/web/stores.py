@@ -14,6 +14,7 @@ import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import EquipoiseError, UsageError
+from equipoise.folders import Folder
 from equipoise.handheld.model import Tool
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.machine import Machine
@@ -22,7 +23,7 @@ from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import kept
 from equipoise.studies.sampling import random_numbers
 from equipoise.studies.selection import best
-from equipoise.studies.store import MARK, UNKNOWN, Store, open_store
+from equipoise.studies.store import ABOUT, MARK, UNKNOWN, Store, open_store
 from equipoise.web.block import Array, Block, Values
 from equipoise.web.replies import Reply
 
@@ -62,9 +63,7 @@ def _looks_so(one: os.DirEntry[str]) -> bool:
     try:
         if one.name.startswith(".") or not one.is_dir(follow_symlinks=False):
             return False
-        with open(Path(one) / "zarr.json", encoding="utf-8") as file:
-            told = json.load(file)
-        return MARK in told["attributes"]
+        return MARK in json.loads(Folder.at(one).read(ABOUT))["attributes"]
     except (OSError, ValueError, LookupError, TypeError):
         return False
 

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from equipoise.errors import UsageError
+from equipoise.folders import Folder
 from equipoise.studies import run
 from equipoise.studies import store as storing
 from equipoise.studies.design_space import Output
@@ -145,11 +146,12 @@ def test_the_end_may_come_at_any_file_of_a_chunk(
 ) -> None:
     put, written = storing._put, []
 
-    def put_or_end(path: Path, data: bytes) -> None:
+    def put_or_end(folder: Folder, name: str, data: bytes) -> None:
+        path = folder.path / name
         written.append(path)
         if len(written) == 1 + 2 * 7 + file:
-            end(path.with_name(f"{path.name}.partial") if "while" in end.__name__ else path, data)
-        put(path, data)
+            end(path.with_name(f"{name}.partial") if "while" in end.__name__ else path, data)
+        put(folder, name, data)
 
     with monkeypatch.context() as patch:
         patch.setattr(storing, "_put", put_or_end)

@@ -1,0 +1,313 @@
+"""Links that a stranger has planted: nothing outside is changed or read, whatever is run."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pytest
+
+from equipoise.cli.tools import tools
+from equipoise.errors import EquipoiseError, UsageError
+from equipoise.schema.documents import load
+from equipoise.web.disk import on_disk
+from equipoise.web.stores import StoreDesk, stores_in
+from surface.running import equipoise, example_text, refused, succeeded
+from surface.studies import LENGTHS
+
+MODEL = example_text("yamashita-1")
+STORE, LOCK = Path("lengths.zarr"), ".lock"
+SECRET = "what nobody else may see or change"
+READING = (("best",), ("best", "--json"), ("export", "-o", "all.csv"))
+
+
+@dataclass(frozen=True)
+class Outside:
+    """Files elsewhere, and what they were."""
+
+    folder: Path
+    before: dict[str, tuple[bytes, int]]
+
+    def unchanged(self) -> None:
+        assert everything(self.folder) == self.before
+
+
+def everything(folder: Path) -> dict[str, tuple[bytes, int]]:
+    """Content and time of change of every file below a folder; of a folder nothing but its name."""
+    return {
+        str(path.relative_to(folder)): (path.read_bytes(), path.stat().st_mtime_ns)
+        if path.is_file()
+        else (b"", 0)
+        for path in sorted(folder.rglob("*"))
+    }
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A store of two chunks, the second of which is missing."""
+    folder = tmp_path_factory.mktemp("made")
+    study = folder / "study.toml"
+    study.write_text(LENGTHS.replace("designs = 200", "designs = 10000"), encoding="utf-8")
+    succeeded(equipoise("sweep", study, "-o", folder / STORE))
+    for chunk in (folder / STORE).glob("*/c/1"):
+        chunk.unlink()
+    return folder / STORE
+
+
+@pytest.fixture
+def store(folder: Path, made: Path) -> None:
+    """A copy of it for each test."""
+    shutil.copytree(made, STORE)
+
+
+@pytest.fixture
+def outside(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Outside]:
+    """A folder elsewhere, with files of every kind; unchanged in the end."""
+    there = tmp_path_factory.mktemp("outside")
+    (there / "secret.txt").write_text(SECRET, encoding="utf-8")
+    (there / "victim.partial").write_text(SECRET, encoding="utf-8")
+    (there / "model.toml").write_text(MODEL, encoding="utf-8")
+    (there / "load.csv").write_text("crank_angle [deg],torque [N m]\n0,1\n180,2\n")
+    (there / "folder").mkdir()
+    found = Outside(there, everything(there))
+    yield found
+    found.unchanged()
+
+
+def in_agents_server(name: str, **given: object) -> str:
+    """What a tool of `equipoise mcp` answers in this folder."""
+    try:
+        return tools()[name].answer(given, Path.cwd().resolve()).text
+    except EquipoiseError as error:
+        return str(error)
+
+
+PLACES = (
+    *("zarr.json", LOCK, "torque", "reason/c", "reason/c/0", "torque/c/0", "vertical"),
+    *("torque/c", "links.coupler.points.C.x/c/0", "links.crank.mass"),
+)
+
+
+def planted(place: Path, target: Path) -> None:
+    """A link in the place of what was there, to a copy of it elsewhere."""
+    if place.is_dir():
+        shutil.rmtree(place)
+    else:
+        place.unlink(missing_ok=True)
+    place.symlink_to(target)
+
+
+# -- a store ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("place", [*PLACES, "torque/c/1", "torque/c/1.partial"])
+@pytest.mark.usefixtures("store")
+def test_links_in_a_store_are_not_followed(
+    place: str, outside: Outside, made: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """Each leads to what would be right in its place, so that only the link can be refused."""
+    elsewhere = tmp_path_factory.mktemp("elsewhere")
+    if (made / place).is_dir():
+        shutil.copytree(made / place, elsewhere / "copy")
+        (elsewhere / "copy" / "left.partial").write_text(SECRET)
+    elif (made / place).is_file() and (made / place).stat().st_size:
+        shutil.copy(made / place, elsewhere / "copy")
+    else:
+        (elsewhere / "copy").write_text(SECRET)
+    before = everything(elsewhere)
+    planted(STORE / place, elsewhere / "copy")
+    for words in READING:
+        result = equipoise(words[0], STORE, *words[1:])
+        if place in {LOCK, "torque/c/1.partial"}:  # which nobody reads
+            succeeded(result)
+        else:
+            assert "is a link" in refused(result)
+            assert SECRET not in result.err
+    assert SECRET not in in_agents_server("best", store=str(STORE))
+    in_agents_server("resume", store=str(STORE))
+    resumed = equipoise("resume", STORE)
+    if place == "torque/c/1.partial":  # of a process that was killed: the link itself goes
+        succeeded(resumed)
+    else:
+        assert "is a link" in refused(resumed)
+    assert everything(elsewhere) == before
+
+
+@pytest.mark.usefixtures("store")
+def test_a_number_that_leads_out_of_the_store_names_no_file(outside: Outside) -> None:
+    text = (STORE / "zarr.json").read_text()
+    up = f"../../{outside.folder.name}/folder"
+    for name in ("torque", "vertical"):
+        (STORE / "zarr.json").write_text(text.replace(name, up))
+        for words in (*READING, ("resume",)):
+            refused(equipoise(words[0], STORE, *words[1:]))
+
+
+@pytest.mark.usefixtures("store")
+def test_pages_list_and_open_no_store_through_a_link(outside: Outside, made: Path) -> None:
+    planted(STORE / "zarr.json", made / "zarr.json")
+    assert stores_in(Path()) == []
+    with pytest.raises(UsageError, match="is a link"):
+        StoreDesk.load(str(STORE))
+
+
+def test_the_fence_is_asked_for_a_store(outside: Outside, made: Path) -> None:
+    Path("way.zarr").symlink_to(made)
+    Path("way").symlink_to(made.parent)
+    for store in ("way.zarr", f"way/{STORE}"):
+        for name in ("best", "resume", "export"):
+            more = {"out": "all.csv"} if name == "export" else {}
+            key = "file" if name == "export" else "store"
+            assert "leads out of the folder" in in_agents_server(name, **{key: store}, **more)
+    assert not Path("all.csv").exists()
+    assert not (made / LOCK).exists() or not (made / LOCK).read_bytes()
+
+
+# -- a model ---------------------------------------------------------------------------------------
+
+LOADS = '\n[[loads]]\nlink = "crank"\ntable = "{}"\noutside = "hold"\n'
+COMMANDS = ("check", "analyze", "report", "export", "balance", "plot", "animate")
+
+
+@pytest.mark.parametrize("name", ["load.csv", "sub/load.csv", "way/load.csv"])
+def test_a_model_reads_no_table_through_a_link_that_leads_out(name: str, outside: Outside) -> None:
+    Path("sub").mkdir()
+    Path("way").symlink_to(outside.folder)
+    for place in ("load.csv", "sub/load.csv"):
+        Path(place).symlink_to(outside.folder / "load.csv")
+    Path("model.toml").write_text(MODEL + LOADS.format(name))
+    for command in COMMANDS:
+        more = ("-o", "out.xml") if command == "export" else ()
+        assert "leads out of its folder" in refused(equipoise(command, "model.toml", *more))
+
+
+def test_a_link_within_the_folder_of_a_model_is_followed(outside: Outside) -> None:
+    Path("real.csv").write_text((outside.folder / "load.csv").read_text())
+    Path("load.csv").symlink_to("real.csv")
+    Path("model.toml").write_text(MODEL + LOADS.format("load.csv"))
+    succeeded(equipoise("analyze", "model.toml"))
+    Path("below").mkdir()
+    Path("below/model.toml").write_text(MODEL + LOADS.format("../real.csv"))
+    succeeded(equipoise("analyze", "below/model.toml"))
+
+
+def test_a_study_reads_no_model_through_a_link_that_leads_out(outside: Outside) -> None:
+    Path("model.toml").symlink_to(outside.folder / "model.toml")
+    Path("study.toml").write_text(LENGTHS.replace('"yamashita-1"', '"model.toml"'))
+    for words in (("check",), ("sweep", "-o", STORE), ("tolerance",), ("search",)):
+        said = refused(equipoise(words[0], "study.toml", *words[1:]))
+        assert "leads out of its folder" in said
+    assert not STORE.exists()
+
+
+# -- what is written -------------------------------------------------------------------------------
+
+WRITING = {
+    "analyze --csv": ("analyze", "mine.toml", "--csv", "{}"),
+    "report": ("report", "mine.toml", "-o", "{}.html"),
+    "export": ("export", "mine.toml", "-o", "{}.xml"),
+    "animate": ("animate", "mine.toml", "-o", "{}.svg"),
+    "balance": ("balance", "balance-crank", "--out", "{}.toml"),
+    "new": ("new", "{}.toml"),
+    "import": ("import", "mine.mjcf.xml", "--out", "{}.toml"),
+    "export of a store": ("export", str(STORE), "-o", "{}.csv"),
+    "best": ("best", str(STORE), "--out", "{}.toml"),
+    "sweep": ("sweep", "study.toml", "-o", "{}.zarr"),
+}
+
+
+@pytest.mark.parametrize("target", ["secret.txt", "nowhere", "folder"])
+@pytest.mark.parametrize("words", WRITING.values(), ids=WRITING)
+@pytest.mark.usefixtures("store")
+def test_what_is_written_goes_through_no_link_that_leads_out(
+    words: tuple[str, ...], target: str, outside: Outside
+) -> None:
+    Path("mine.toml").write_text(MODEL)
+    Path("study.toml").write_text(LENGTHS)
+    succeeded(equipoise("export", "mine.toml", "-o", "mine.mjcf.xml"))
+    name = next(one for one in words if "{}" in one).format("out")
+    Path(name).symlink_to(outside.folder / target)
+    refused(equipoise(*(one.format("out") for one in words)))
+    assert Path(name).is_symlink()
+
+
+@pytest.mark.parametrize("kind", ["svg", "png"])
+def test_pictures_go_through_no_link_in_their_folder(kind: str, outside: Outside) -> None:
+    Path("mine.toml").write_text(MODEL)
+    succeeded(equipoise("plot", "mine.toml", "-o", "pictures", "--format", kind))
+    for picture in sorted(Path("pictures").iterdir())[::5]:
+        planted(picture, outside.folder / "secret.txt")
+        said = refused(equipoise("plot", "mine.toml", "-o", "pictures", "--format", kind))
+        assert "leads out of its folder" in said
+        picture.unlink()
+
+
+def test_what_is_begun_beside_a_place_goes_through_no_link(
+    outside: Outside, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whoever guesses the name that a file has until it is whole plants a link there."""
+    from equipoise import partial
+
+    monkeypatch.setattr("equipoise.partial.os.getpid", lambda: 4242)
+    for name in ("out.csv", "out.zarr"):
+        begun = f".{name}.{partial._here()}-4242.tmp"
+        Path(begun).symlink_to(outside.folder / ("folder" if "zarr" in name else "secret.txt"))
+    Path("mine.toml").write_text(MODEL)
+    Path("study.toml").write_text(LENGTHS)
+    succeeded(equipoise("analyze", "mine.toml", "--csv", "out.csv"))
+    succeeded(equipoise("sweep", "study.toml", "-o", "out.zarr"))
+    assert not Path("out.csv").is_symlink() and not Path("out.zarr").is_symlink()
+
+
+def test_a_link_within_the_folder_stays_one() -> None:
+    Path("mine.toml").write_text(MODEL)
+    Path("out.csv").symlink_to("real.csv")
+    succeeded(equipoise("analyze", "mine.toml", "--csv", "out.csv"))
+    assert Path("out.csv").is_symlink() and Path("real.csv").is_file()
+
+
+def test_agents_write_through_no_link(outside: Outside) -> None:
+    Path("mine.toml").write_text(MODEL)
+    Path("way").symlink_to(outside.folder)
+    Path("pictures").mkdir()
+    Path("pictures/linkage.png").symlink_to(outside.folder / "secret.txt")
+    Path("mine-plots").symlink_to(outside.folder / "folder")
+    for out in ("way", "way/new", "pictures", "mine-plots"):
+        in_agents_server("plot", file="mine.toml", out=out, overwrite=True)
+        in_agents_server("sweep", file="study.toml", out=f"{out}/new.zarr")
+    in_agents_server("plot", file="mine.toml", overwrite=True)
+
+
+# -- saving in place -------------------------------------------------------------------------------
+
+
+def test_saving_in_place_follows_no_link_that_was_put_there(outside: Outside) -> None:
+    model = outside.folder / "model.toml"
+    Path("sub").mkdir()
+    Path("sub/mine.toml").write_text(MODEL)
+    disk = on_disk("sub/mine.toml", load("sub/mine.toml"))
+    assert disk is not None
+    planted(Path("sub/mine.toml"), model)  # with the same content
+    with pytest.raises(UsageError, match="was changed"):
+        disk.save(replace(disk.model, title="another"))
+    Path("sub/mine.toml").unlink()
+    Path("sub").rename("old")
+    Path("twin").mkdir()
+    Path("twin/mine.toml").write_text(MODEL)
+    Path("sub").symlink_to(Path("twin").resolve())
+    with pytest.raises(UsageError, match="is a link"):
+        disk.save(disk.model)
+    assert Path("twin/mine.toml").read_text() == MODEL
+
+
+def test_a_file_that_was_opened_through_a_link_is_saved_where_it_is(folder: Path) -> None:
+    Path("real").mkdir()
+    Path("real/mine.toml").write_text(MODEL)
+    Path("mine.toml").symlink_to("real/mine.toml")
+    disk = on_disk("mine.toml", load("mine.toml"))
+    assert disk is not None
+    disk.save(disk.model)
+    assert Path("mine.toml").is_symlink()
+    assert load("real/mine.toml") == disk.model
