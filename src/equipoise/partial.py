@@ -43,11 +43,13 @@ def beside(folder: Folder, name: str) -> Iterator[str]:
 class _Together:
     """What waits until all of it can be done.
 
-    places : what is to take whose place, by folder and name.  stack : of what goes in the end.
+    places : what is to take whose place, by folder and name.  folders : of these, by path.
+    stack : of what goes in the end.
     """
 
     stack: ExitStack
     places: dict[tuple[Path, str], tuple[Folder, str]] = field(default_factory=dict)
+    folders: dict[Path, Folder] = field(default_factory=dict)
     then: list[Callable[[], None]] = field(default_factory=list)
 
     def done(self) -> None:
@@ -106,12 +108,11 @@ def replaced(path: str | os.PathLike[str], *, links: bool = True) -> Iterator[Bi
                 yield file
             folder.rename(begun, name)
         return
-    key = folder.path, name
-    folder = whole.places[key][0] if key in whole.places else folder
+    folder = whole.folders.setdefault(folder.path, folder)  # few are open, of however many files
     begun = whole.stack.enter_context(beside(folder, name))
     with _synced(folder, begun, like=name) as file:
         yield file
-    whole.places[key] = folder, begun
+    whole.places[folder.path, name] = folder, begun
 
 
 @contextmanager
