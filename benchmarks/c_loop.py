@@ -74,6 +74,7 @@ def in_c(source: Source) -> str:
     """The loop as a C program."""
     assert not source.running, "angles that are counted on need more than arithmetic"
     lines, results = _state(source)
+    columns = len(source.gathered.columns)
     signals = dict(zip(source.gathered.signals, results, strict=True))
     starts, gathered = [], []
     for k, (signal, kind) in enumerate(source.gathered.columns):
@@ -92,10 +93,7 @@ def in_c(source: Source) -> str:
             *lines,
             *gathered,
             "}",
-            *(
-                f"out[i * {source.width} + {k}] = g{k};"
-                for k in range(len(source.gathered.columns))
-            ),
+            *(f"out[i * {columns} + {k}] = g{k};" for k in range(columns)),
             "}",
             "}",
             "",

@@ -11,8 +11,8 @@ from equipoise.i18n import LANGUAGES
 if TYPE_CHECKING:
     import typst
 
-LATIN = ("Noto Sans", "Liberation Sans", "Arial", "Helvetica Neue", "DejaVu Sans")
-"""Fonts of Western letters, the first that is there; the last comes with Matplotlib."""
+LATIN = "DejaVu Sans"
+"""The font of Western letters, which comes with Matplotlib: pages end alike on every computer."""
 EASTERN = {
     "ja": ("Noto Sans CJK JP", "Noto Sans JP", "Hiragino Sans", "Yu Gothic", "Source Han Sans"),
     "ko": ("Noto Sans CJK KR", "Noto Sans KR", "Apple SD Gothic Neo", "Malgun Gothic"),
@@ -55,8 +55,7 @@ def families(language: str) -> list[str]:
             "the report as .html"
         )
     order = sorted(eastern, key=lambda code: code != language)
-    latin = next(name for name in LATIN if name in there)
-    return [latin, *(name for code in order for name in eastern[code]), "DejaVu Sans"]
+    return [LATIN, *(name for code in order for name in eastern[code])]
 
 
 def boxes(text: str) -> str:

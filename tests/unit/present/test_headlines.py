@@ -9,9 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import typst
 
 import equipoise as eq
+from equipoise.errors import UsageError
+from equipoise.figures.paint import font_folder
 from equipoise.i18n import LANGUAGES
+from equipoise.present import fonts
+from equipoise.present import pages as composed
 from equipoise.present.checks import machine_blocks
 from equipoise.present.composition import SHORT, build
 from equipoise.present.findings import Findings, find
@@ -132,8 +137,34 @@ def test_what_helps_is_told_before_and_after_at_once() -> None:
 
 @pytest.mark.parametrize(("name", "most"), [("yamashita-1", 7), ("yamashita-rig", 10)])
 def test_the_pdf_is_short(name: str, most: int) -> None:
-    data = pdf(document(name))
-    assert len(re.findall(rb"/Type ?/Page\b", data)) in range(2, most + 1)
+    assert pages(pdf(document(name))) in range(2, most + 1)
+
+
+def pages(data: bytes) -> int:
+    return len(re.findall(rb"/Type ?/Page\b", data))
+
+
+@pytest.mark.parametrize("name", ["yamashita-1", "yamashita-rig", "brush-cutter"])
+def test_pages_end_alike_whatever_fonts_a_computer_has(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As without fonts of its own, above all without Japanese and Korean ones."""
+    whole = pdf(document(name))
+    alone = typst.Fonts(include_system_fonts=False, font_paths=[font_folder()])
+    for module in (fonts, composed):
+        monkeypatch.setattr(module, "installed", lambda: alone)
+    assert pages(pdf(document(name))) == pages(whole)
+    assert fonts.families("en") == ["DejaVu Sans"]
+
+
+@pytest.mark.parametrize("language", fonts.EASTERN)
+def test_eastern_letters_are_of_a_font_that_has_them(language: str) -> None:
+    try:
+        wanted = fonts.families(language)[1]
+    except UsageError:
+        pytest.skip("this computer has none")
+    names = re.findall(rb"/FontName ?/[A-Z]+\+([\w-]+)", pdf(document("yamashita-1", language)))
+    assert any(wanted.replace(" ", "").lower() in name.decode().lower() for name in names)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
