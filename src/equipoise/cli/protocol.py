@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+import json
 import os
+import signal
+import subprocess
+import sys
 from base64 import b64encode
-from functools import partial
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from cyclopts import CycloptsError
-
 from equipoise import __version__
 from equipoise.cli.options import wants
-from equipoise.errors import EquipoiseError, UsageError, needed, unknown
+from equipoise.cli.worker import Call, Reply
+from equipoise.errors import UsageError, needed
 from equipoise.folders import Folder
 
 if TYPE_CHECKING:
+    from anyio import CapacityLimiter
+    from anyio.abc import Process
     from mcp.server.lowlevel import Server
     from mcp.types import CallToolResult, ImageContent, ListToolsResult
-
-    from equipoise.cli.tools import Tool
 
 PICTURES = {".png": "image/png", ".svg": "image/svg+xml", ".gif": "image/gif"}
 MOST_PICTURES = 8
@@ -58,22 +63,33 @@ def mcp(*, folder: Annotated[str, wants("FOLDER")] = ".") -> None:
 
 
 async def _serve(folder: Path) -> None:
+    """Answer until the input ends, and then leave nothing that computes."""
+    import anyio
     from mcp.server.stdio import stdio_server
 
-    server = server_of(folder)
-    async with stdio_server() as (read, write):
-        await server.run(read, write, server.create_initialization_options())
+    async with workers_in(folder) as workers, stdio_server() as (read, write):
+        server = server_of(workers)
+        async with anyio.create_task_group() as tasks:
+            heard, passed = anyio.create_memory_object_stream[Any](0)
+
+            async def pass_on() -> None:
+                async with heard, read:
+                    async for message in read:
+                        await heard.send(message)
+                tasks.cancel_scope.cancel()  # calls under way too: nobody waits for them
+
+            tasks.start_soon(pass_on)
+            await server.run(passed, write, server.create_initialization_options())
 
 
-def server_of(folder: Path) -> Server[Any]:
-    """What answers a program: each tool is a command, run one after the other in a folder."""
-    import anyio.to_thread
+def server_of(workers: Workers) -> Server[Any]:
+    """What answers a program: each tool is a command, run in a process of its own."""
     from mcp import types
     from mcp.server.lowlevel import Server
 
     from equipoise.cli.tools import tools
 
-    known, one_by_one = tools(), anyio.Lock()
+    known = tools()
 
     async def listed(*_: Any) -> ListToolsResult:
         return types.ListToolsResult(
@@ -89,9 +105,9 @@ def server_of(folder: Path) -> Server[Any]:
         )
 
     async def called(_: Any, call: types.CallToolRequestParams) -> CallToolResult:
-        async with one_by_one:
-            ask = partial(answered, known, call.name, call.arguments or {}, folder)
-            return await anyio.to_thread.run_sync(ask)
+        long = call.name in known and known[call.name].long
+        reply = await workers.answer(call.name, call.arguments or {}, long)
+        return result_of(reply, workers.folder)
 
     return Server(
         "equipoise",
@@ -102,29 +118,123 @@ def server_of(folder: Path) -> Server[Any]:
     )
 
 
-def answered(
-    known: dict[str, Tool], name: str, given: dict[str, Any], folder: Path
-) -> CallToolResult:
-    """What a tool tells, with its pictures; what is wrong is told in the product's sentence."""
+def result_of(reply: Reply, folder: Path) -> CallToolResult:
+    """A reply as the protocol wants it, with its pictures."""
     from mcp import types
 
     from equipoise.cli.tools import shown, units_of
 
-    try:
-        if name not in known:
-            raise UsageError(unknown(name, known, "command"))
-        answer = known[name].answer(given, folder)
-    except (EquipoiseError, CycloptsError) as error:
-        return types.CallToolResult(content=[types.TextContent(text=str(error))], is_error=True)
-    names = [shown(path, folder) for path in answer.written]
+    if reply.wrong:
+        return types.CallToolResult(content=[types.TextContent(text=reply.text)], is_error=True)
+    written = tuple(map(Path, reply.files))
     return types.CallToolResult(
-        content=[types.TextContent(text=answer.text), *_pictures(answer.written)],
+        content=[types.TextContent(text=reply.text), *_pictures(written)],
         structured_content={
-            "values": answer.values,
-            "units": units_of(answer.values),
-            "files": names,
+            "values": reply.values,
+            "units": units_of(reply.values),
+            "files": [shown(path, folder) for path in written],
         },
     )
+
+
+# -- processes that compute ------------------------------------------------------------------------
+
+LONG_CALLS, SHORT_CALLS = 2, 4
+"""Calls that are computed at a time, of commands that may take minutes and of the others."""
+GRACE = 0.5
+"""s in which a call that is cancelled may put its files in order, before it is killed."""
+
+
+@asynccontextmanager
+async def workers_in(folder: Path) -> AsyncIterator[Workers]:
+    """Processes that answer calls in a folder; all of them end in the end."""
+    import anyio
+
+    workers = Workers(folder, anyio.CapacityLimiter(LONG_CALLS), anyio.CapacityLimiter(SHORT_CALLS))
+    try:
+        yield workers
+    finally:
+        with anyio.CancelScope(shield=True):
+            for process in workers.waiting:
+                process.kill()
+                await process.aclose()
+
+
+@dataclass(frozen=True)
+class Workers:
+    """Runs each call in a process; one that took long takes its memory with it when it ends.
+
+    waiting : processes that have imported the commands already.
+    """
+
+    folder: Path
+    long: CapacityLimiter
+    short: CapacityLimiter
+    waiting: list[Process] = field(default_factory=list)
+
+    async def answer(self, name: str, given: dict[str, Any], long: bool) -> Reply:
+        """What a tool answers; where this is cancelled, the work ends.
+
+        long : whether it may take minutes; such calls wait for each other, and others do not.
+        """
+        import anyio
+
+        async with self.long if long else self.short:
+            process, told = self.waiting.pop() if self.waiting else await self._start(), b""
+            try:
+                if not self.waiting:  # so that the next call need not wait for imports
+                    self.waiting.append(await self._start())
+                told = await _asked(process, Call(name, given, str(self.folder)))
+            finally:
+                if told and not long and len(self.waiting) < SHORT_CALLS:
+                    self.waiting.append(process)
+                else:
+                    with anyio.CancelScope(shield=True):
+                        await _end(process)
+        if not told:
+            return Reply(DIED.format(status=process.returncode), {}, (), wrong=True)
+        return Reply(**json.loads(told))
+
+    async def _start(self) -> Process:
+        import anyio
+
+        words = [sys.executable, "-m", "equipoise.cli.worker"]
+        return await anyio.open_process(words, stderr=subprocess.DEVNULL, cwd=self.folder)
+
+
+async def _asked(process: Process, call: Call) -> bytes:
+    """The line that a process answers; empty where it has died."""
+    import anyio
+
+    assert process.stdin is not None and process.stdout is not None
+    parts = list[bytes]()
+    with suppress(anyio.BrokenResourceError, anyio.EndOfStream):
+        await process.stdin.send(f"{json.dumps(asdict(call))}\n".encode())
+        while not (parts and parts[-1].endswith(b"\n")):
+            parts.append(await process.stdout.receive())
+        return b"".join(parts)
+    return b""
+
+
+DIED = (
+    "the command ended without an answer (status {status}), perhaps for want of memory; ask for "
+    "less at once"
+)
+
+
+async def _end(process: Process) -> None:
+    """End a process: interrupted first, so that its files are in order, and killed then."""
+    import anyio
+
+    if process.returncode is None and os.name == "posix":
+        with suppress(ProcessLookupError):
+            process.send_signal(signal.SIGINT)
+        with anyio.move_on_after(GRACE):
+            await process.wait()
+    if process.returncode is None:
+        with suppress(ProcessLookupError):
+            process.kill()
+    await process.aclose()
 
 
 def _pictures(written: tuple[Path, ...]) -> list[ImageContent]:

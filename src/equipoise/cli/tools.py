@@ -32,6 +32,11 @@ if TYPE_CHECKING:
 
 LEFT_OUT = {"completion", "mcp", "serve"}
 """Commands for a person at a terminal."""
+LONG = {
+    *("animate", "balance", "plant fit", "report", "respond", "resume", "search", "simulate"),
+    *("sweep", "tolerance", "tool design"),
+}
+"""Commands that may take minutes, with all below them."""
 HIDDEN = {"--cluster", "--workers"}
 """Options that reach beyond the folder, or are of the computer."""
 WRITTEN = {"FILE", "FOLDER", "PATH"}
@@ -72,6 +77,11 @@ class Tool:
     def name(self) -> str:
         """By which programs call it."""
         return "_".join(self.words).replace("-", "_")
+
+    @property
+    def long(self) -> bool:
+        """Whether it may take minutes."""
+        return any(" ".join(self.words[: k + 1]) in LONG for k in range(len(self.words)))
 
     @cached_property
     def arguments(self) -> dict[str, Argument]:

@@ -1,0 +1,148 @@
+"""The server of programs can be stopped: a call that is cancelled, and the server itself."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from surface.running import command, example_text
+from surface.studies import LENGTHS
+
+pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+
+SLOW = LENGTHS.replace("designs = 200", "designs = 1000000").replace(
+    'value = "shaking_force.y.rms"', 'value = "by_order.shaking_force.y.harmonics[1]"'
+)
+"""A study whose designs are computed one by one, for hours."""
+NOTHING: dict[str, Any] = {}
+
+
+class Session:
+    """A server, and messages to it as they go over the wire."""
+
+    def __init__(self, folder: Path) -> None:
+        words = command("mcp", "--folder", folder)
+        pipe = subprocess.PIPE
+        self.process = subprocess.Popen(words, stdin=pipe, stdout=pipe, text=True)
+        self.answers: dict[int, dict[str, Any]] = {}
+        about = {"name": "test", "version": "1"}
+        version = {"protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": about}
+        self.send("initialize", version, 0)
+        self.wait(0)
+        self.send("notifications/initialized", {})
+
+    def send(self, method: str, params: dict[str, Any], number: int | None = None) -> None:
+        """A request, or without a number a notification."""
+        message = {"jsonrpc": "2.0", "method": method, "params": params}
+        message |= {} if number is None else {"id": number}
+        assert self.process.stdin is not None
+        self.process.stdin.write(json.dumps(message) + "\n")
+        self.process.stdin.flush()
+
+    def call(self, number: int, name: str, **given: Any) -> None:
+        self.send("tools/call", {"name": name, "arguments": given}, number)
+
+    def wait(self, number: int) -> dict[str, Any]:
+        """The answer to a request."""
+        assert self.process.stdout is not None
+        while number not in self.answers:
+            answer = json.loads(self.process.stdout.readline())
+            self.answers[answer.get("id")] = answer
+        return self.answers[number]
+
+    def computing(self) -> list[int]:
+        """Processes below the server that use the processor."""
+        ticks = {pid: _ticks(pid) for pid in _below(self.process.pid)}
+        time.sleep(0.5)
+        return [pid for pid, before in ticks.items() if _ticks(pid) > before + 10]
+
+
+def _below(pid: int) -> list[int]:
+    """Processes that a process has started, and those that these have."""
+    parents = {}
+    for status in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            parents[int(status.parent.name)] = int(status.read_text().rpartition(")")[2].split()[1])
+        except (OSError, IndexError):
+            continue
+    found, new = list[int](), [pid]
+    while new:
+        new = [one for one, parent in parents.items() if parent in new]
+        found += new
+    return found
+
+
+def _ticks(pid: int) -> int:
+    """Hundredths of a second of the processor that a process has used."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0
+    return int(fields[11]) + int(fields[12])
+
+
+def until(done: Any, seconds: float) -> float:
+    """Wait until something is so; returns after how many s it was."""
+    begun = time.monotonic()
+    while not done():
+        assert time.monotonic() - begun < seconds, f"not within {seconds} s"
+        time.sleep(0.05)
+    return time.monotonic() - begun
+
+
+@pytest.fixture
+def session(folder: Path) -> Iterator[Session]:
+    (folder / "slow.toml").write_text(SLOW)
+    (folder / "machine.toml").write_text(example_text("yamashita-1"))
+    found = Session(folder)
+    with found.process:
+        yield found
+        found.process.kill()
+
+
+def test_a_call_that_is_cancelled_ends_and_others_do_not_wait(
+    session: Session, folder: Path
+) -> None:
+    for number in (1, 2, 3):  # more than are computed at a time
+        session.call(number, "sweep", study="slow.toml", out=f"{number}.zarr")
+    stored = folder / "1.zarr"
+    until(lambda: stored.exists() and (folder / "2.zarr").exists(), 60)
+    assert not (folder / "3.zarr").exists()
+    session.call(4, "check", file="machine.toml")
+    assert "ready to be analysed" in session.wait(4)["result"]["content"][0]["text"]
+    for number in (1, 2, 3):
+        session.send("notifications/cancelled", {"requestId": number, "reason": "enough"})
+    until(lambda: session.computing() == [], 20)
+    chunks = sum(1 for _ in folder.rglob("c/*"))
+    session.call(5, "check", file="machine.toml")
+    assert "result" in session.wait(5)
+    assert sum(1 for _ in folder.rglob("c/*")) == chunks
+    assert not (folder / "3.zarr").exists()
+
+
+def test_the_end_of_the_input_ends_everything(session: Session, folder: Path) -> None:
+    session.call(1, "sweep", study="slow.toml", out="1.zarr")
+    until((folder / "1.zarr").exists, 60)
+    started = _below(session.process.pid)
+    assert started
+    assert session.process.stdin is not None
+    session.process.stdin.close()
+    until(lambda: session.process.poll() is not None, 10)  # 1 s where nothing else computes
+    until(lambda: not any(Path(f"/proc/{pid}").exists() for pid in started), 2)
+
+
+def test_a_worker_that_dies_is_told(session: Session, folder: Path) -> None:
+    session.call(1, "sweep", study="slow.toml", out="1.zarr")
+    until((folder / "1.zarr").exists, 60)
+    for pid in session.computing() or _below(session.process.pid):
+        subprocess.run(["kill", "-9", str(pid)], check=False)
+    answer = session.wait(1)["result"]
+    assert answer["isError"]
+    assert "the command ended without an answer" in answer["content"][0]["text"]
