@@ -137,23 +137,47 @@ class MobilityError(EquipoiseError):
 
 
 class MotionError(EquipoiseError):
-    """The linkage cannot be closed, or not at the crank angles asked for."""
+    """The linkage cannot be closed, or not at the crank angles asked for.
+
+    reason : the sentence without what could be done about it.
+    """
+
+    def __init__(self, message: Note | str, *, reason: Note | str = "") -> None:
+        super().__init__(message)
+        self.reason = reason or message
 
 
 class RangeError(MotionError):
     """The crank cannot turn fully; `ranges` holds the intervals (rad) in which it can."""
 
-    def __init__(self, message: Note | str, ranges: tuple[tuple[float, float], ...] = ()) -> None:
-        super().__init__(message)
+    def __init__(
+        self,
+        message: Note | str,
+        ranges: tuple[tuple[float, float], ...] = (),
+        *,
+        reason: Note | str = "",
+    ) -> None:
+        super().__init__(message, reason=reason)
         self.ranges = ranges
 
 
 class ChangePointError(MotionError):
-    """The linkage passes a change point at `crank_angle` (rad)."""
+    """The linkage passes a change point, which is a bifurcation, at `crank_angle` (rad).
 
-    def __init__(self, message: Note | str, crank_angle: float = float("nan")) -> None:
-        super().__init__(message)
+    joint : inner joint of a dyad that closes a four-bar of equal opposite sides there, else "".
+    """
+
+    def __init__(
+        self,
+        message: Note | str,
+        crank_angle: float = float("nan"),
+        joint: str = "",
+        *,
+        reason: Note | str = "",
+    ) -> None:
+        super().__init__(message, reason=reason)
         self.crank_angle = crank_angle
+        self.joint = joint
 
 
 class MassError(EquipoiseError):

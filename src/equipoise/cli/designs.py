@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
-from equipoise.cli.models import study_named
 from equipoise.cli.options import Names, StorePath, StudyFile, count, naming
 from equipoise.cli.outputs import (
     Chosen,
@@ -104,11 +103,12 @@ def search(
         Of the random numbers, that of the study if not given; the same gives the same designs.
     """
     from equipoise.figures.designs import searched_charts
+    from equipoise.schema.studies import load_study
     from equipoise.schema.study_units import units_of
     from equipoise.studies.blocks import columns_of
     from equipoise.studies.search import search_designs, search_size
 
-    asked = study_named(study)
+    asked = load_study(study)
     outputs.check([study], [chosen.out])
     if chosen.out is not None:
         check_new(asked.model.base(), chosen.out)

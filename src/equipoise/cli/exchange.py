@@ -64,7 +64,7 @@ def export(
     _check("it goes with a store", kept=kept)
     if not one.posed:
         _check(f"a file of {one.title} is the same at every crank angle", at=at)
-    machine = linkage_of(file, swings=not one.posed)
+    machine = linkage_of(file)
     check_result_file("--out", out, sources_of(machine, file))
     with naming(file):
         what = _balanced(machine) if balanced else machine

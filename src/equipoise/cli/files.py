@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from equipoise.cli.models import swinging, tell_swing
 from equipoise.cli.options import count, file_named, naming
 from equipoise.cli.outputs import Shown, wrote
 from equipoise.errors import UsageError
@@ -51,12 +50,11 @@ def check(
         if isinstance(found, Tool):
             blocks = checks.tool_blocks(found, printable(file))
         elif isinstance(found, Machine):
-            blocks = checks.machine_blocks(swinging(found, file))
+            blocks = checks.machine_blocks(found)
         else:
             from equipoise.present.check_study import study_blocks
             from equipoise.schema.study_units import units_of
 
-            tell_swing(getattr(found.model, "swings", None))
             blocks = study_blocks(found, units_of(found), file)
         show_blocks(found.title, [*blocks])  # what is wrong is told before the title
 

@@ -102,7 +102,7 @@ def analyze(
 
     check_belonging("--json", outputs.json, split=split or None)
     check_belonging("--orders", orders is not None, crank_zero=crank_zero)
-    machine = linkage_of(file, swings=isinstance(angles, int))
+    machine = linkage_of(file)
     zero = crank_zero or 0.0
     if csv is not None:
         check_result_file("--csv", csv, sources_of(machine, file))
@@ -282,7 +282,7 @@ def plant(
     from equipoise.planting.summary import table
 
     check_belonging("--csv", outputs.csv is not None, angles=angles)
-    machine = linkage_of(file, speed, swings=False)
+    machine = linkage_of(file, speed)
     outputs.check(sources_of(machine, file))
     with naming(file):
         figures = read_off(machine)
@@ -321,7 +321,7 @@ def fit(
 
     if seed is not None and seed < 0:
         raise UsageError(f"--seed: got {seed}; give 0 or more")
-    machine = linkage_of(file, speed, swings=False)
+    machine = linkage_of(file, speed)
     new = out if out is not None else f"{Path(file).stem}-fit.toml"
     check_new(machine, new)
     outputs.check(sources_of(machine, file), [targets, new])

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import App, Parameter
 
-from equipoise.cli.models import tell_swing, template_of
 from equipoise.cli.options import (
     AnySpeed,
     File,
@@ -85,7 +84,7 @@ def plot(
     from equipoise.schema.files import write_all
 
     folder, kind = pictures.of(file), pictures.format
-    found = find(file, speed=speed)
+    found = find(file, speed=speed, swings=True)
     if at is not None and isinstance(found, ToolFindings):
         raise UsageError("--at: a tool has no crank angles; leave it out")
     with naming(file), pictures.showing(found.owner):
@@ -94,7 +93,8 @@ def plot(
             name = f"{picture.name}.{kind}"
             write_all(folder, {name: render(picture.draw(), kind)})
             tell(f"{os.path.join(folder, name)}  {picture.caption}")
-    tell_swing(getattr(found, "swings", None))
+    if (swings := getattr(found, "swings", None)) is not None:
+        tell(f"note: {swings}", sys.stderr)
     for part, why in found.failed.items():
         tell(f"{part}: left out, {why}", sys.stderr)
     tell_pictures(len(chosen), folder)
@@ -160,11 +160,12 @@ def landscape(
     """
     from equipoise.figures.studies import landscape as drawn_map
     from equipoise.figures.studies import told_best
+    from equipoise.schema.template import Template
     from equipoise.studies import objective_map as studies
 
     folder = pictures.of(file)
     objective = read_objective("OUTPUT", output)
-    model = template_of(file)
+    model = Template.load(file)
     if model.kind == "tool":
         raise UsageError("a map is of a linkage; use `equipoise tool vary` for a tool")
     both = [_range(model, *pair, points) for pair in (("FIRST", first), ("SECOND", second))]

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from equipoise.cli.designs import own_of
-from equipoise.cli.models import study_named
 from equipoise.cli.options import (
     Out,
     StorePath,
@@ -73,10 +72,11 @@ def sweep(
     out
         The store, a new folder.
     """
+    from equipoise.schema.studies import load_study
     from equipoise.schema.study_units import units_of
     from equipoise.studies.run import run_study
 
-    asked = study_named(study)
+    asked = load_study(study)
     if not out:
         raise UsageError("--out: missing; say where the store is to be, such as -o designs.zarr")
     with naming(study), outputs.showing(asked):
@@ -205,10 +205,11 @@ def tolerance(
         Machines that are drawn, instead of as many as the study has.
     """
     from equipoise.figures.studies import tolerance_charts
+    from equipoise.schema.studies import load_study
     from equipoise.schema.study_units import units_of
     from equipoise.studies.tolerances import tolerance as of_study
 
-    asked = study_named(study)
+    asked = load_study(study)
     given: dict[tuple[str, ...], str] = {("sampling", "designs"): "--designs"}
     with naming(study), outputs.showing(asked):
         if designs is not None:

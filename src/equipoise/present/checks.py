@@ -14,6 +14,7 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.loads import work_in_cycle
+from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import PER_RPM, SI, Dimension, angle, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
 def machine_blocks(machine: Machine) -> Iterator[Block]:
     """How the linkage is built up, and what to look at again."""
     linkage = assemble(machine)
-    cycle, drive = linkage.cycle, machine.drive
+    cycle, drive = move(machine).linkage.cycle, machine.drive  # at the angles of an analysis
     told = f"{drive.link} at {number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
     if not machine.has_crank:
         told = driven(machine, drive.speed)

@@ -9,7 +9,7 @@ from functools import cached_property, wraps
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from equipoise.errors import EquipoiseError, UsageError, at_place
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note, in_each, say, to_say
 from equipoise.results.analysis import ANGLES
 
 if TYPE_CHECKING:
@@ -215,13 +215,21 @@ class ToolFindings(_Found):
         return None if self.tool.design is None else design_tool(self.tool)
 
 
+SHOWN_SWINGING = to_say(", swinging as its crank cannot turn fully")
+
+
 def find(
-    path_or_name: str | os.PathLike[str], *, angles: int = ANGLES, speed: float | None = None
+    path_or_name: str | os.PathLike[str],
+    *,
+    angles: int = ANGLES,
+    speed: float | None = None,
+    swings: bool = False,
 ) -> Findings | ToolFindings:
     """Everything that can be told of a model file, or of a bundled example by its name.
 
     angles : crank angles in a turn.
     speed : of the crank, or of the tool's engine, rad/s; the file's where not given.
+    swings : whether a crank that cannot turn is shown swinging, which the title then says.
 
     Raises
     ------
@@ -240,10 +248,11 @@ def find(
     machine = loads_linkage(file.text, file.source, file.folder)
     if speed is not None:
         machine = machine.with_drive(speed=speed)
-    found = swing(machine)
+    found = swing(machine) if swings else None
     if found is None:
         return Findings(machine, file.text, name, angles)
-    return Findings(found.machine, file.text, name, angles, found.note)
+    title = in_each(machine.title, lambda own: f"{own}{say(SHOWN_SWINGING)}")
+    return Findings(replace(found.machine, title=title), file.text, name, angles, found.note)
 
 
 def _at_speed(tool: Tool, speed: float | None) -> Tool:

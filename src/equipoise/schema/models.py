@@ -9,7 +9,7 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.errors import EquipoiseError, ModelError, UsageError, to_paste
 from equipoise.i18n import Note
 from equipoise.keys import Frozen
 from equipoise.mechanism.parts.machine import Machine
@@ -138,6 +138,7 @@ class Beside:
         except EquipoiseError as error:
             where = f"{error.where}: " if isinstance(error, ModelError) and error.where else ""
             what = error.what if isinstance(error, ModelError) else str(error)
+            what, *_ = to_paste(str(what))  # lines for a file would be those of the other one
             raise ModelError("", f"{printable(file)}: {where}{what}") from error
         if lacking := massless(machine):
             raise ModelError("", f"{printable(file)}: {lacking}")

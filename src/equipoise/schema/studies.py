@@ -138,7 +138,7 @@ def _template(name: str, folder: Path) -> Template:
     try:
         is_example = not beside and name in bundled()
         file = opened_example(name) if is_example else opened(folder / name, within=folder)
-        return Template.of_opened(file).swinging()
+        return Template.of_opened(file)
     except ModelError as error:
         raise ModelError("model", str(error)) from error
 

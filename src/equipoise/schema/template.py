@@ -10,25 +10,22 @@ import json
 import os
 from collections import defaultdict
 from collections.abc import Collection, Mapping
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from equipoise.errors import MobilityError, ModelError, MotionError
+from equipoise.errors import ModelError
 from equipoise.handheld.model import Tool
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.kinematics.swings import SWUNG, swing
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.finding import Found, all_numbers, find, replaced, unit_in, with_changes
-from equipoise.schema.models import Beside, Held, machine_of, parts_of, plain_of, text_of, tool_of
+from equipoise.schema.models import Beside, Held, machine_of, parts_of, text_of, tool_of
 from equipoise.schema.numbers import Number
 from equipoise.schema.opening import Kind, Opened, in_file, kind_of, model_content, opened
 from equipoise.schema.places import Place, written_place
 from equipoise.schema.tables import TABLES
 from equipoise.schema.words import words_of
-from equipoise.schema.writing import toml_text
 
 Known = dict[tuple[str, str], Any]
 """What lies beside a model file, by sort and name: tables, and linkages as templates."""
@@ -53,9 +50,6 @@ class Template:
     ModelError : the model file is wrong, as `equipoise.load` and `equipoise.load_tool` tell it.
     """
 
-    swings: Note | None = None
-    """That its crank cannot turn, and how far it is let swing."""
-
     def __init__(
         self,
         text: str,
@@ -70,27 +64,6 @@ class Template:
         with in_file(source):
             self._content = model_content(text)
             self._base = self._read(self._content, _Carried(folder, self._known, texts))
-
-    def swinging(self) -> Template:
-        """The same, with a crank that swings where it cannot turn; `swings` tells that then.
-
-        A model with a table [planting], which needs a crank that turns, stays as it is.
-        """
-        found = None
-        if self.kind == "linkage" and "planting" not in self._content:
-            assert isinstance(self._base, Machine)
-            with suppress(MobilityError, MotionError):  # which tell more where it is computed
-                found = swing(self._base)
-        if found is None:
-            return self
-        plain = plain_of(found.machine, named_parts(found.machine)[0])
-        new = {name: plain[name] for name in SWUNG if name in plain}
-        own = self._content["drive"]
-        new["drive"] = {name: own.get(name, value) for name, value in plain["drive"].items()}
-        text = toml_text(Machine, {**self._content, **new})
-        swinging = Template(text, self.source, known=self._known)
-        swinging.swings = found.note
-        return swinging
 
     @classmethod
     def load(cls, path_or_name: str | os.PathLike[str]) -> Template:

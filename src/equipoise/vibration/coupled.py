@@ -32,6 +32,11 @@ from equipoise.vibration.body import IN_PLANE, PITCH, Body, Contact, Rest, conta
 from equipoise.vibration.collocation import Rates
 from equipoise.vibration.linkages import Sums, sums
 
+
+class StallError(ResponseError):
+    """A motor is too weak to turn the crank on."""
+
+
 Torque = Callable[[Array, Array], Array]
 """Torque on the crank, N m, at its speed, rad/s, and a shift of the motor's speed, rad/s."""
 
@@ -141,6 +146,13 @@ class Coupled:
             needed = needed + matrix[3, number] * found[k]
         return needed
 
+    def needed_torque(self, table: Sums, states: Array) -> Array:
+        """Torque (...) that weight, loads and motion ask of the drive, N m, at states (n, ...) of a
+        crank that neither speeds up nor slows down.
+        """
+        _, right = self._equations(table, states)
+        return np.asarray(self.drive_torque(table, states) - right[3])
+
     def _equations(self, table: Sums, states: Array) -> tuple[Array, Array]:
         """Matrix (4, 4, ...) and right-hand side (4, ...) for surge, heave, pitch and crank."""
         place, rate = self.place_and_rate(states)
@@ -192,6 +204,8 @@ MOST_EVALUATIONS, TO_SETTLE = 600_000, 60_000
 RELATIVE, ABSOLUTE = 1e-9, 1e-12
 """Tolerances over the states, and over the size of the machine."""
 SETTLING_TURNS = 40
+STANDSTILL = 1e-6
+"""Speed backwards, over that of the file, at which a motor counts as stalled: above rounding."""
 
 
 class Table:
@@ -230,12 +244,26 @@ def follow(
     shift: float = 0.0,
     evaluations: int = MOST_EVALUATIONS,
 ) -> Array:
-    """States (D + D + 2, M) at times (M,): displacements, velocities, crank's speed and angle."""
+    """States (D + D + 2, M) at times (M,): displacements, velocities, crank's speed and angle.
+
+    Raises
+    ------
+    ResponseError : the motor stalls, the motion grows away, or following it takes too long.
+    """
     from scipy.integrate import solve_ivp
 
     table = Table(system)
     d = len(system.free)
     left = evaluations
+
+    def states(y: Array) -> Array:
+        driven = [] if system.torque is None else [y[2 * d], 0.0, shift]
+        return np.array([*y[: 2 * d], *driven])
+
+    def goes_on(_: float, y: Array) -> float:
+        return float(system.sense * y[2 * d] + STANDSTILL * abs(system.speed))
+
+    goes_on.terminal, goes_on.direction = True, -1.0  # type: ignore[attr-defined]
 
     def rates(_: float, y: Array) -> Array:
         nonlocal left
@@ -249,21 +277,38 @@ def follow(
                     evaluations=evaluations,
                 )
             )
-        driven = [] if system.torque is None else [y[2 * d], 0.0, shift]
-        states = np.array([*y[: 2 * d], *driven])
-        found = system.accelerations(table.at(y[2 * d + 1]), states)
+        found = system.accelerations(table.at(y[2 * d + 1]), states(y))
         spin_up = 0.0 if system.torque is None else found[d]
         return np.array([*y[d : 2 * d], *found[:d], spin_up, y[2 * d]])
 
     span = float(time[0]), float(time[-1])
     least = ABSOLUTE * float(size_of_bodies(system.machine))
     limits = {"rtol": RELATIVE, "atol": least, "max_step": 2 * pi / abs(system.speed) / 24}
-    done = solve_ivp(rates, span, begin, "DOP853", t_eval=time, **limits)
+    events = None if system.torque is None else goes_on
+    done = solve_ivp(rates, span, begin, "DOP853", t_eval=time, events=events, **limits)
+    if done.status == 1:
+        last = done.y_events[0][0]
+        raise StallError(_stalled(system, table.at(last[2 * d + 1]), states(last), last[-1]))
     if not done.success or not np.all(np.isfinite(done.y)):
         raise ResponseError(
             Note("the motion cannot be followed beyond {t:g} s: it grows away", t=done.t[-1])
         )
     return np.asarray(done.y)
+
+
+def _stalled(system: Coupled, table: Sums, states: Array, angle: float) -> Note:
+    """Say where a motor stalls, and by how much it is too weak there."""
+    needed, given = (
+        float(system.sense * torque)
+        for torque in (system.needed_torque(table, states), system.drive_torque(table, states))
+    )
+    return Note(
+        "the motor stalls at crank angle {angle:.1f} deg: the crank needs {needed:.4g} N m to go "
+        "on, and has {given:.4g} N m; give a stronger motor, a higher ratio or a larger flywheel",
+        angle=float(np.degrees(angle) % 360),
+        needed=needed,
+        given=given,
+    )
 
 
 def settled(system: Coupled, s: Array) -> Array:

@@ -22,7 +22,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import FREEDOMS
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import IN_PLANE, PITCH, Body, Reading
-from equipoise.vibration.coupled import Coupled, settled
+from equipoise.vibration.coupled import TO_SETTLE, Coupled, StallError, follow, settled
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import BaseMotion, Sums, joint_forces, rows_of
 from equipoise.vibration.response import (
@@ -52,6 +52,8 @@ from equipoise.vibration.steady import (
     with_motor,
 )
 
+STALLING_TURNS = 10
+"""Cycles in which a motor has to stall, from the speed of its mean torque, if it does at all."""
 LEANING = 10.0
 """deg, from which on it is told how far from the drawn position the support has come to rest."""
 
@@ -82,11 +84,36 @@ def solve_exact(
     elif patient and linear is not None and setting is not None:
         guesses.append(partial(_at_constant_speed, machine, setting))
     swings = 0.0 if linear is None else swings_in_a_turn(linear.modes, speed)
-    found = steady(system, guesses, turns_of(machine), conditions_of(system), swings)
+    try:
+        found = steady(system, guesses, turns_of(machine), conditions_of(system), swings)
+    except ResponseError as error:
+        if setting is not None and patient:
+            check_stall(system, setting, error)
+        raise
     solution = ExactSolution(system, linear, found)
     if solution.toppled:
         raise ResponseError(NO_STEADY_STATE)
     return solution
+
+
+def check_stall(system: Coupled, setting: tuple[float, float], error: ResponseError) -> None:
+    """Follow a machine with a motor some turns from the speed that it would have in the mean.
+
+    Raises
+    ------
+    ResponseError : the motor stalls.
+    """
+    speed, shift = setting
+    begin = np.zeros(2 * len(system.free) + 2)
+    begin[-2] = speed
+    period = 2 * pi * turns_of(system.machine)
+    time = np.linspace(0.0, STALLING_TURNS * period / abs(speed), 2)
+    try:
+        follow(system, time, begin, shift, TO_SETTLE)
+    except StallError as found:
+        raise found from error
+    except ResponseError:  # too long to follow, which says nothing of the motor
+        return
 
 
 def _at_constant_speed(machine: Machine, setting: tuple[float, float], s: Array) -> Array:

@@ -40,6 +40,10 @@ NEUTRAL = 1 + 1e-6
 """Multiplier up to which nothing grows, whatever rounding says."""
 PROGRESS, PATIENCE = 0.7, 3
 """Share of the residual above which a finer mesh has brought nothing, and how often in a row."""
+FAR_BEYOND = 100
+"""Times the fastest speed of a motor, above which a solution is none: its curve is not known there,
+and beside such speeds the rest is rounding.
+"""
 LOOSE = 1e-6
 """Change of the solution above which Newton's method has not found one."""
 
@@ -134,7 +138,20 @@ def _tried(system: System, points: Array, guess: Guess, conditions: Conditions) 
             orbit = solve(system, points, guess, conditions)
         except (np.linalg.LinAlgError, ResponseError):  # the second by a guess that takes too long
             return None
-    return orbit if orbit.change < LOOSE else None
+        return orbit if orbit.change < LOOSE and _goes_on(system, orbit) else None
+
+
+def _goes_on(system: System, orbit: Orbit) -> bool:
+    """Whether the crank turns on all the time, as it has to where its angle stands for the time,
+    and at a speed that its motor knows of.
+    """
+    if not isinstance(system, Coupled) or system.torque is None:
+        return True
+    motor = system.machine.drive.motor
+    assert motor is not None
+    ways = [system.sense * system.crank_speed(of) for of in (orbit.starts, orbit.states)]
+    most = FAR_BEYOND * (fastest(motor) / motor.ratio + abs(system.speed))
+    return all(bool(np.all((way > 0) & (way < most))) for way in ways)
 
 
 def _dies_out(orbit: Orbit) -> bool:

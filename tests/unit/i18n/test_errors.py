@@ -92,7 +92,7 @@ def test_a_typed_number_stands_in_every_language():
 def test_a_range_keeps_its_crank_angles_beside_its_sentence():
     error = error_of(FOUR_BAR.replace('["33.5 mm", "0 mm"]', '["133.5 mm", "0 mm"]', 1))
     assert isinstance(error, RangeError) and error.ranges
-    assert str(error).startswith("the crank cannot turn fully: 'coupler' and 'rocker' reach ")
+    assert str(error).startswith("the crank cannot turn fully: it stops at -166.61 deg and")
     assert "'coupler' と 'rocker'" in error.told("ja")
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from math import pi
+import re
+from dataclasses import replace
+from functools import partial
+from math import pi, radians
 
 import numpy as np
 import pytest
@@ -12,8 +15,10 @@ import equipoise as eq
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.support import Row
+from equipoise.vibration.coupled import StallError
 from equipoise.vibration.forced import respond
 from equipoise.vibration.transient import Transient
+from unit.mechanism.build import slider_crank
 from unit.vibration.build import DAMPING, PIVOT, SPEED, STIFFNESS, Mount, block, cart, rig
 
 DAMPED = {"s": Mount(axis="pitch", torsional_stiffness=STIFFNESS, torsional_damping=100 * DAMPING)}
@@ -159,3 +164,52 @@ def test_refusals() -> None:
 def test_too_few_samples(samples: int) -> None:
     with pytest.raises(UsageError, match=f"got {samples} for samples; give 2"):
         eq.simulate(rig(), 0.5, samples=samples)
+
+
+# -- a motor that is too weak ----------------------------------------------------------------------
+
+
+def press(force: float, mean_speed: str, way: int = 1) -> eq.Machine:
+    """A slider-crank that pushes against a force over the last part of its stroke."""
+    motor = Motor(157.0, 4.0, ratio=22.0, inertia=4e-5, mean_speed=mean_speed)  # type: ignore[arg-type]
+    given = slider_crank(
+        drive=eq.Drive("crank", way * 6.0, motor=motor, flywheel=0.5), gravity=(0.0, 0.0)
+    )
+    ends = (radians(300), 0.0) if way > 0 else (0.0, radians(60))
+    load = eq.mechanism.Load("piston", "C", (-force, 0.0), start=ends[0], stop=ends[1])
+    return replace(given, loads=(load,))
+
+
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize("mean_speed", ["held", "free"])
+@pytest.mark.parametrize("of", ["respond", "simulate"])
+def test_a_motor_that_stalls(of: str, mean_speed: str, way: int) -> None:
+    """The torque that is needed is that of the force, by virtual work."""
+    machine, force = press(8000.0, mean_speed, way), 8000.0
+    follow = partial(eq.simulate, duration=3.0) if of == "simulate" else respond
+    with pytest.raises(StallError) as caught:
+        follow(machine, drive=True)
+    told = re.match(
+        r"the motor stalls at crank angle (.*) deg: the crank needs (.*) N m to go on, and has "
+        r"(.*) N m; give a stronger motor",
+        str(caught.value),
+    )
+    assert told is not None
+    at, needed, given = map(float, told.groups())
+    motion = eq.move(machine, [radians(at)])
+    lever = abs(motion.points["C"].place_1[0].real)
+    assert needed == pytest.approx(force * lever, rel=2e-2)
+    assert 0 < given < needed
+    if mean_speed == "free":
+        assert given == pytest.approx(4.0 * 22.0, rel=1e-3)  # its torque at standstill
+
+
+def test_a_motor_that_does_not_stall() -> None:
+    """A weaker press is not refused, and its solution is what it settles into from rest."""
+    machine = press(100.0, "free")
+    found = respond(machine, drive=True)
+    followed = eq.simulate(machine, 8.0, drive=True)
+    late = followed.crank_speed[followed.time > 6.0]
+    assert found.drive.speed is not None
+    for sense, end in ((1, np.max(late)), (-1, np.min(late))):
+        assert end == pytest.approx(float(found.drive.speed.extreme(sense)[0]), rel=1e-3)

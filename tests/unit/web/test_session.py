@@ -245,7 +245,7 @@ def test_downloads() -> None:
 def test_a_crank_that_cannot_turn_swings_and_can_be_dragged() -> None:
     session = Session()
     first = state(ask(session, "open", seq=1, name="s.toml", text=STUCK)[0]).content
-    assert "the crank swings between" in first["notes"][0]
+    assert "which is not what the file says: motion = { between =" in first["notes"][0]
     assert "crank from" in first["status"]["text"]
     moved = [{"move": "C", "to": [0.1, 0.1], "at": 3}]
     found = state(ask(session, "edit", seq=2, edits=moved, label="move C")[0]).content

@@ -44,6 +44,7 @@ class Group:
     point : of an inner joint that slides, the point that stands for it where no other dyad has
         that.  dead : says what the links do where the margin is zero.
     through : whether they go on through change points, where the margin is zero.
+    equal : whether they close a four-bar of equal opposite sides, so that they could.
     """
 
     kind: Literal["dyad", "coupled", "loops", "pointed", "hung"]
@@ -56,6 +57,7 @@ class Group:
     point: str = ""
     dead: Note | str = ""
     through: bool = False
+    equal: bool = False
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import MotionError
-from equipoise.i18n import Note
+from equipoise.errors import ChangePointError, MotionError
+from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.builder import Group
-from equipoise.mechanism.assembly.full_turn import FullTurn
+from equipoise.mechanism.assembly.full_turn import WITHOUT_CURE, FullTurn, bifurcation
 from equipoise.mechanism.assembly.steps import Array, State, initial_state, run, running_angle
 from equipoise.mechanism.parts.machine import FRAME, Machine
 
@@ -182,6 +182,10 @@ class _Grid:
     def record_loops(self, group: Group) -> None:
         """Newton's method follows a branch, which may come back only after further turns."""
         solved: Any = next(step for step in group.motion if hasattr(step, "turning"))
+        if (at := solved.singular(self.state)) is not None:
+            names = all_of([repr(link) for link in group.links])
+            reason = bifurcation(at, Note("{links} can go on in two ways", links=names))
+            raise ChangePointError(Note(WITHOUT_CURE, reason=reason), at, reason=reason)
         q = self.tables[solved.reference] = self.state[solved.reference]
         rise = q[:, -1] - q[:, 0]
         rise[solved.turning] -= 2 * pi * np.round(rise[solved.turning] / (2 * pi))

@@ -18,6 +18,7 @@ from equipoise.signals import EQUAL, highest_at
 
 MOST_DIPS = 6
 """Lowest dips of a dyad's margin that are looked at between the points of the grid."""
+WITHOUT_CURE = Note("{reason}; change a length or direction")
 CHANGE_POINT = 1e-10
 """Squared sine of a transmission angle below which a dyad counts as stretched out or folded."""
 
@@ -53,15 +54,10 @@ class FullTurn:
         if smallest < -CHANGE_POINT:
             raise self.range_error(group, margin, at, names)
         if smallest < CHANGE_POINT and not group.through:
-            raise ChangePointError(
-                Note(
-                    "change point at crank angle {angle}: {dead} there, and nothing "
-                    "decides how they go on; change a length or direction so that they do not",
-                    angle=_in_degrees(at),
-                    dead=group.dead,
-                ),
-                at,
-            )
+            reason = bifurcation(at, group.dead)
+            message = Note(WITHOUT_CURE, reason=reason)
+            joint = group.joint if group.equal else ""
+            raise ChangePointError(message, at, joint, reason=reason)
         return smallest, at
 
     def smallest(self, group: Group, margin: Array) -> tuple[float, float]:
@@ -132,8 +128,7 @@ class FullTurn:
         )
         return RangeError(
             Note(
-                "the crank cannot turn fully: {names} reach each other only {told} of crank angle; "
-                "let it swing there by a motion in [drive]",
+                "the crank cannot turn fully: {names} reach each other only {told} of crank angle",
                 names=names,
                 told=told,
             ),
@@ -163,6 +158,16 @@ class FullTurn:
                 break
             low, high = float(near[k - 1]), float(near[k])
         return 0.5 * (low + high)
+
+
+def bifurcation(angle: float, dead: Note | str) -> Note:
+    """Say at which crank angle, rad, a linkage can go on in two ways, and what it does there."""
+    return Note(
+        "change point at crank angle {angle}, a bifurcation: {dead} there, and the assembly mode "
+        "after it is undetermined",
+        angle=_in_degrees(angle),
+        dead=dead,
+    )
 
 
 def _in_degrees(angle: float) -> str:

@@ -100,7 +100,8 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
     side = builder.side(pin, ("left", "right"), meaning)
     arms = (builder.arm(link, first.point, pin), builder.arm(other, second.point, pin))
     places = (f"p({first.point})", f"p({second.point})", f"p({pin})")
-    return _dyad(
+    closed = parallels.closed_by(builder, first, second, pin)
+    group = _dyad(
         builder,
         (first, second),
         (first.reaction(), second.reaction(), pin_reaction(pin, other, link)),
@@ -109,6 +110,7 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         at=pin,
         dead=Note("{link!r} and {other!r} lie in line", link=link, other=other),
     )
+    return replace(group, equal=closed is not None and closed.equal)
 
 
 def _through(

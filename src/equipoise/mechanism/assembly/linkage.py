@@ -15,13 +15,15 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import ModelError
+from equipoise.errors import ChangePointError, ModelError, RangeError
 from equipoise.i18n import Note
 from equipoise.keys.kinds import choice
+from equipoise.mechanism.assembly import sides
 from equipoise.mechanism.assembly.builder import Builder, Group
 from equipoise.mechanism.assembly.cycle import Cycle, close
 from equipoise.mechanism.assembly.groups import hung
 from equipoise.mechanism.assembly.joints import Structure, drive_pivot, name_in_outputs, structure
+from equipoise.mechanism.assembly.newton import BranchError
 from equipoise.mechanism.assembly.ordering import held, next_group
 from equipoise.mechanism.assembly.parallels import surplus_cranks
 from equipoise.mechanism.assembly.shared import Shared, shared
@@ -34,6 +36,7 @@ from equipoise.mechanism.assembly.steps import (
     pin_reaction,
     run,
 )
+from equipoise.mechanism.assembly.stuck import with_cures
 from equipoise.mechanism.checks import MODE, MODES, meant
 from equipoise.mechanism.parts.machine import FRAME, Machine
 
@@ -106,7 +109,20 @@ class Linkage:
 
     @cached_property
     def cycle(self) -> Cycle:
-        """The closed motion; raises a `MotionError` where the crank cannot turn fully."""
+        """The closed motion.
+
+        Raises
+        ------
+        RangeError, ChangePointError, MotionError : the crank cannot turn fully, or the motion does
+            not repeat; of a crank, the sentence says where it stops and what could be done.
+        """
+        try:
+            return self.close()
+        except (RangeError, ChangePointError, BranchError) as error:
+            raise with_cures(self, error) from None
+
+    def close(self) -> Cycle:
+        """The closed motion; its errors say only where the turn ends."""
         check = None if self.shared is None else self.shared.check
         return close(self.machine, self.groups, self.near, check)
 
@@ -181,8 +197,6 @@ def _linked(machine: Machine, joints: Structure, grouping: Grouping) -> Linkage:
 
 def _check_sides(machine: Machine, joints: Structure, grouping: Grouping) -> None:
     """Raise a `ModelError` for sides that the file leaves out, and for entries of no dyad."""
-    from equipoise.mechanism.assembly import sides
-
     builder, groups, choices = grouping.builder, grouping.groups, grouping.choices
     held_kinds = ("pointed", "loops") if joints.surplus else ("pointed",)
     held_at = {point for group in groups if group.kind in held_kinds
@@ -192,7 +206,7 @@ def _check_sides(machine: Machine, joints: Structure, grouping: Grouping) -> Non
     if choices:
 
         def turns_fully(tried: Mapping[str, str]) -> None:
-            _ = _linked(machine, joints, _grouped(machine, joints, tried=tried)).cycle
+            _linked(machine, joints, _grouped(machine, joints, tried=tried)).close()
 
         if decided := sides.decided(choices, turns_fully):
             choices = _grouped(machine, joints, assumed=decided).choices
@@ -275,8 +289,6 @@ def _grouped(
     assumed : of joints, which of two sides to take where the file leaves it out, and why.
     tried : of joints, the side to take, whatever the file has.
     """
-    from equipoise.mechanism.assembly import sides
-
     mode = machine.assembly.get(MODE)
     named = {*joints.pins, *(name for one in machine.sliders for name in (one.name, one.point))}
     if mode not in (None, *MODES) and MODE not in named:  # else it is the side of that joint

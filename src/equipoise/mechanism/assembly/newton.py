@@ -47,6 +47,11 @@ QUINTIC = np.array([
 ])  # fmt: skip
 """Between 0 and 1, by powers: what value, slope and curvature at 0, then at 1, contribute."""
 
+
+class BranchError(MotionError):
+    """Newton's method finds no solution near the one before."""
+
+
 Levels = tuple[Array, Array, Array]  # the unknowns, and their two derivatives
 
 
@@ -161,10 +166,25 @@ class LoopGroup:
         sizes = np.linalg.svd(matrix / np.linalg.norm(matrix, axis=0), compute_uv=False)
         return bool(sizes[-1] > LOOSE)
 
+    def singular(self, state: State) -> float | None:
+        """The first crank angle, rad, that a branch passes and at which it meets another: there
+        the determinant of the equations changes its sign.  None where it passes none.
+        """
+        known = poses_in(state, self.known)
+        _, matrix = self.slopes(known, state[self.reference])
+        if matrix.shape[-2] > matrix.shape[-1]:  # more equations than unknowns hold it fast
+            return None
+        sizes = np.linalg.det(matrix / np.max(np.abs(matrix), axis=-1, keepdims=True))
+        changes = np.flatnonzero(np.diff(np.sign(sizes)))
+        if not len(changes):
+            return None
+        k, theta = int(changes[0]), np.atleast_1d(state["theta"])
+        return float(np.interp(0.0, *_rising(sizes[k : k + 2], theta[k : k + 2])))
+
     def check(self, good: Any, theta: Any) -> None:
         """Raise an error that names the first crank angle at which something failed."""
         if not np.all(good):
-            raise MotionError(self.failure(np.ravel(theta)[int(np.argmin(good))]))
+            raise BranchError(self.failure(np.ravel(theta)[int(np.argmin(good))]))
 
     def sizes(self, steps: Array) -> Array:
         """Steps of the unknowns (n, ...) without dimension."""
@@ -263,6 +283,11 @@ def poses_in(state: State, bodies: Iterable[tuple[str, str]]) -> Poses:
         x, x1, x2, t, t1, t2, angle = full
         poses[body] = Pose((x, x1, x2), (t, t1, t2), angle)
     return poses
+
+
+def _rising(values: Array, places: Array) -> tuple[Array, Array]:
+    order = np.argsort(values)
+    return values[order], places[order]
 
 
 def divide(matrix: Array, right: Array) -> Array:

@@ -48,6 +48,11 @@ class Closed:
         pairs = zip(lengths[::2], lengths[1::2], strict=True)
         return np.maximum(*(abs(a - b) / np.maximum(a, b) for a, b in pairs))
 
+    @property
+    def equal(self) -> bool:
+        """Whether opposite sides have the same length."""
+        return bool(np.all(self.apart() <= SAME_LENGTH))
+
     def misfit(self) -> Note:
         """Say which opposite sides differ, and by how much."""
         pairs = zip(self.sides[::2], self.sides[1::2], strict=True)
@@ -91,10 +96,9 @@ def parallel_by(builder: Builder, first: Outer, second: Outer, pin: str) -> Clos
     closed = closed_by(builder, first, second, pin) if wanted or given is None else None
     if closed is None:
         return None
-    apart = closed.apart()
-    if np.all(apart <= SAME_LENGTH):
+    if closed.equal:
         return closed
-    if wanted and (given in MODES or np.all(apart <= NEARLY)):
+    if wanted and (given in MODES or np.all(closed.apart() <= NEARLY)):
         where = pin if given in MODES else MODE
         raise ModelError(f"assembly.{where}", closed.misfit())
     return None

@@ -85,10 +85,11 @@ class Choice:
 
     def entry(self, k: int) -> str:
         """In the table of sides, with one of the words."""
-        return f'{_key(self.joint)} = "{self.words[k]}"'
+        return f'{key_text(self.joint)} = "{self.words[k]}"'
 
 
-def _key(name: str) -> str:
+def key_text(name: str) -> str:
+    """A name as a key of a file."""
     return name if BARE.fullmatch(name) else json.dumps(name, ensure_ascii=False)
 
 

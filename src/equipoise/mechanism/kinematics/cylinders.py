@@ -19,11 +19,11 @@ import numpy as np
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.reach import reach
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.kinematics.followed import Followed
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.pushing import ends_of
-from equipoise.mechanism.kinematics.reach import reach
 from equipoise.mechanism.parts.drives import Drive
 from equipoise.mechanism.parts.laws import LengthLaw
 from equipoise.mechanism.parts.machine import Machine

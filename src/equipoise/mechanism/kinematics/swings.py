@@ -3,24 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import degrees
-
-import numpy as np
 
 from equipoise.i18n import Note
-from equipoise.mechanism.assembly.linkage import Linkage, assemble
-from equipoise.mechanism.kinematics.followed import Followed
-from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.kinematics.reach import Reach, reach
-from equipoise.mechanism.parts.laws import AngleLaw
-from equipoise.mechanism.parts.machine import Machine, Position
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.reach import Reach, reach
+from equipoise.mechanism.assembly.stuck import motion_line, swing_law
+from equipoise.mechanism.parts.machine import Machine
 
-SHORT = 0.02
-"""Of the range, that a crank stays away from both ends, where forces grow without bound."""
-SWUNG = ("drive", "gears", "position", "planting")
+SWUNG = ("drive", "planting")
 """What of a machine is another where its crank swings."""
-STEP = 0.02
-"""rad: between crank angles at which the linkage is followed."""
 
 
 @dataclass(frozen=True)
@@ -37,14 +28,12 @@ class Swing:
     def note(self) -> Note:
         """What is shown, and the keys that have it in the file."""
         motion = self.machine.drive.motion
-        assert motion is not None and motion.between is not None
-        low, high = (f'"{degrees(end):.4g} deg"' for end in motion.between)
+        assert motion is not None
         return Note(
-            "{range}; without a motion in [drive] it swings a little short of that by a sine: "
-            "motion = {{ between = [{low}, {high}] }}",
-            range=self.reach.note,
-            low=low,
-            high=high,
+            "{reason}; it is shown swinging a little short of that by a sine, which is not what "
+            "the file says: {motion}",
+            reason=self.reach.note,
+            motion=motion_line(motion),
         )
 
 
@@ -61,29 +50,8 @@ def swing(machine: Machine) -> Swing | None:
     found = reach(linkage)
     if found is None:
         return None
-    short = SHORT * (found.high - found.low)
-    low, high = found.low + short, found.high - short
-    drive = replace(machine.drive, motion=AngleLaw(between=(low, high)), motor=None, flywheel=0.0)
-    changes: dict[str, object] = {"drive": drive, "planting": None}
-    if machine.couplings or machine.position is not None:
-        changes |= _begun(machine, linkage, low, high)
-    return Swing(replace(machine, **changes), found)  # type: ignore[arg-type]
-
-
-def _begun(machine: Machine, linkage: Linkage, low: float, high: float) -> dict[str, object]:
-    """Start angles of gears and rough places as they are at one end of the swing."""
-    theta = np.array([low])
-    followed = Followed.over(linkage, min(low, 0.0), max(high, 0.0), STEP)
-    motion = Motion(linkage, theta, 1.0, 0.0, False, followed.solve(theta))
-    state, found = motion.state, dict[str, object]()
-    if machine.gears:
-        starts = (float(np.ravel(state[f"phi({gear.driven})"])[0]) for gear in machine.gears)
-        pairs = zip(machine.gears, starts, strict=True)
-        found["gears"] = tuple(replace(gear, start=start) for gear, start in pairs)
-    if machine.position is not None:
-        places = {name: complex(point.place[0]) for name, point in motion.points.items()}
-        moving = {name: (z.real, z.imag) for name, z in places.items() if name not in machine.frame}
-        turns = {link: np.angle(np.ravel(state[f"u({link})"])[0]) for link in machine.links}
-        angles = {link: float(turn) for link, turn in turns.items()}
-        found["position"] = Position(0.0, moving, angles)
-    return found
+    if found.is_point:
+        _ = linkage.cycle  # which says so
+    motion = swing_law(machine, found)
+    drive = replace(machine.drive, motion=motion, motor=None, flywheel=0.0)
+    return Swing(replace(machine, drive=drive, planting=None), found)

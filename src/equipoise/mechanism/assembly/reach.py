@@ -6,8 +6,10 @@ dyad is stretched out or folded, or the loop equations of a group have no soluti
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import degrees, pi
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -15,13 +17,32 @@ from equipoise.errors import ChangePointError, MotionError, RangeError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.builder import Group
 from equipoise.mechanism.assembly.full_turn import CHANGE_POINT
-from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import Array, run
+from equipoise.mechanism.assembly.newton import BranchError
+from equipoise.mechanism.assembly.steps import Array, State, Step, run
+from equipoise.mechanism.parts.machine import Machine
 
 POINTS = 360
 """Crank angles in a turn at which the linkage is looked at."""
+LEAST = 1e-4
+"""rad: range below which ends of a swing are hardly told apart in a file."""
 FINER, ROUNDS = 16, 6
 """Into how many parts the step is parted in which an end lies, and how often."""
+
+
+class Assembled(Protocol):
+    """A machine in the order in which it is computed, as far as it is asked here."""
+
+    @property
+    def machine(self) -> Machine: ...
+    @property
+    def groups(self) -> Sequence[Group]: ...
+    @property
+    def motion(self) -> Sequence[Step]: ...
+    @property
+    def needed_references(self) -> list[str]: ...
+    @property
+    def cycle(self) -> Any: ...
+    def start(self, theta: Array) -> State: ...
 
 
 @dataclass(frozen=True)
@@ -39,18 +60,33 @@ class Reach:
     others: int = 0
 
     @property
+    def is_point(self) -> bool:
+        """Whether it is too small for a motion."""
+        return self.high - self.low < LEAST
+
+    @property
     def note(self) -> Note:
         """The range and what ends it."""
-        return Note(
-            "the crank swings between {low} ({first}) and {high} ({second})",
-            low=_told(self.low),
-            high=_told(self.high),
-            first=self.stops[0],
-            second=self.stops[1],
-        )
+        low, high, (first, second) = _told(self.low), _told(self.high), self.stops
+        if str(first) == str(second):
+            told = Note(
+                "the crank cannot turn fully: it stops at {low} and at {high}, where {first}",
+                low=low,
+                high=high,
+                first=first,
+            )
+        else:
+            told = Note(
+                "the crank cannot turn fully: it stops at {low} ({first}) and at {high} ({second})",
+                low=low,
+                high=high,
+                first=first,
+                second=second,
+            )
+        return Note("{reason}; there are other such ranges", reason=told) if self.others else told
 
 
-def reach(linkage: Linkage) -> Reach | None:
+def reach(linkage: Assembled) -> Reach | None:
     """The range of a crank that cannot turn fully; None where it can.
 
     It is that in which crank angle 0 lies, or else the nearest to that.
@@ -61,28 +97,31 @@ def reach(linkage: Linkage) -> Reach | None:
         crank angle 0, where these start.
     MotionError : its motion does not repeat.
     """
-    stuck: MotionError | None = None
     try:
         _ = linkage.cycle
-    except (RangeError, ChangePointError) as error:
-        stuck = error
-    except MotionError as error:
-        if not _has_loops(linkage):
-            raise
-        stuck = error
-    if stuck is None:
-        return None
+    except (RangeError, ChangePointError, BranchError) as error:
+        return range_of(linkage, error)
+    return None
+
+
+def range_of(linkage: Assembled, stuck: MotionError) -> Reach:
+    """The range of a crank whose turn ends with an error.
+
+    Raises
+    ------
+    MotionError : `stuck`, where there is no such range.
+    """
     start, others = _start(linkage, stuck)
     low, first = _end(linkage, start, -1)
     high, second = _end(linkage, start, 1)
     return Reach(low, high, (first, second), others)
 
 
-def _has_loops(linkage: Linkage) -> bool:
+def _has_loops(linkage: Assembled) -> bool:
     return any(group.kind == "loops" for group in linkage.groups)
 
 
-def _start(linkage: Linkage, stuck: MotionError) -> tuple[float, int]:
+def _start(linkage: Assembled, stuck: MotionError) -> tuple[float, int]:
     """A crank angle of the range, and how many other ranges there are."""
     if _has_loops(linkage):
         return 0.0, 0
@@ -98,7 +137,7 @@ def _start(linkage: Linkage, stuck: MotionError) -> tuple[float, int]:
     return (nearest if nearest <= pi else nearest - 2 * pi), begins - 1
 
 
-def _closed(linkage: Linkage, theta: Array) -> Array:
+def _closed(linkage: Assembled, theta: Array) -> Array:
     """At which crank angles (N,) all dyads can be closed."""
     with np.errstate(all="ignore"):
         state = run(linkage.motion, linkage.start(theta))
@@ -107,7 +146,7 @@ def _closed(linkage: Linkage, theta: Array) -> Array:
     return np.all(good, axis=0) if good else np.ones(theta.shape, bool)
 
 
-def _end(linkage: Linkage, start: float, side: int) -> tuple[float, Note | str]:
+def _end(linkage: Assembled, start: float, side: int) -> tuple[float, Note | str]:
     """The crank angle up to which the linkage follows from a start, and what it does there."""
     way = start + side * np.linspace(0.0, 2 * pi, POINTS + 1)
     good = _followed(linkage, way)
@@ -118,14 +157,14 @@ def _end(linkage: Linkage, start: float, side: int) -> tuple[float, Note | str]:
     return float(way[good - 1]), _stop(linkage, way[: good + 1])
 
 
-def _followed(linkage: Linkage, way: Array) -> int:
+def _followed(linkage: Assembled, way: Array) -> int:
     """How many of the crank angles (N,) can be reached, one after the other."""
     count = _solvable(linkage, way) if _has_loops(linkage) else len(way)
     bad = np.flatnonzero(~_closed(linkage, way[:count]))
     return max(int(bad[0]), 1) if len(bad) else count
 
 
-def _solvable(linkage: Linkage, way: Array) -> int:
+def _solvable(linkage: Assembled, way: Array) -> int:
     """The same, as far as groups of loops are concerned."""
     low, high = 1, len(way)
     while low < high:
@@ -138,7 +177,7 @@ def _solvable(linkage: Linkage, way: Array) -> int:
     return low
 
 
-def _stop(linkage: Linkage, way: Array) -> Note | str:
+def _stop(linkage: Assembled, way: Array) -> Note | str:
     """What keeps the crank from the last of some crank angles (N,)."""
     group = _stopping(linkage, way)
     if group.margin is not None:
@@ -147,7 +186,7 @@ def _stop(linkage: Linkage, way: Array) -> Note | str:
     return Note("{links} can be moved no further", links=all_of(links))
 
 
-def _stopping(linkage: Linkage, way: Array) -> Group:
+def _stopping(linkage: Assembled, way: Array) -> Group:
     """The first group that cannot be had there; the last where rounding lets all be."""
     state = linkage.start(way)
     for group in linkage.groups:
