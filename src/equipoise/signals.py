@@ -7,6 +7,7 @@ b_n = -Im Y_n multiplies sin n theta; Y_0 is the mean.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import pi, sqrt
 from typing import Any
 
@@ -22,6 +23,15 @@ LEAST_SAMPLES, SAMPLES_PER_ORDER, NEWTON_ROUNDS = 720, 8, 4
 """Samples in a turn among which the highest is looked for; steps from there to the top."""
 EQUAL, ROUNDING = 1e-9, 1e-12
 """Share of a signal's range within which tops are equal, and of its size that is rounding."""
+GAUSS_POINTS, LONGEST_PANEL = 16, pi / 4
+"""Of a panel between jumps, which is as many steps of the grid long at most: so the sampling has
+about twice as many crank angles as the grid, and polynomials of degree 31 are integrated exactly.
+rad: longer ones miss a quick return's work by 1e-6 of it where the grid is coarse."""
+BESIDE = 2e-8
+"""rad in a cycle of one turn: how far before and behind a jump its sides are taken.  Loads and
+motion laws count up to 1e-9 of a cycle before a jump as behind it."""
+MOST_ORDERS, ORDERS_AT_ONCE = 5000, 64
+"""Of a signal that jumps; each takes a product with all samples."""
 
 
 def highest_at(values: Array, smooth: bool = True) -> Array:
@@ -89,15 +99,99 @@ def figures(crank_angle: Array, samples: Array) -> Figures:
     return figures_of_each(crank_angle, samples[None])[0]
 
 
-def figures_of_each(crank_angle: Array, samples: Array) -> list[Figures]:
-    """The same of several signals (M, N) at once, which takes little longer than of one."""
+def mean(samples: Array, shares: Array | None = None) -> Array:
+    """Mean (...) of samples (..., N) by their shares (N,); equal ones if None."""
+    return np.asarray(np.mean(samples, axis=-1) if shares is None else samples @ shares)
+
+
+def figures_of_each(
+    crank_angle: Array,
+    samples: Array,
+    shares: Array | None = None,
+    shown: Array | slice = slice(None),
+) -> list[Figures]:
+    """Figures of several signals (M, N) at once, which takes little longer than of one.
+
+    shares : (N,) of each sample in a mean, with sum 1; equal ones if None.
+    shown : places of the samples that extremes are taken from; all of them if not given.
+    """
+    average, rms = mean(samples, shares), np.sqrt(mean(np.square(samples), shares))
+    samples = samples[:, shown]
     sizes = np.abs(samples)
     whole = np.stack([sizes, samples, -samples])
     peak, high, low = np.max(whole, axis=2)
-    peak_at, high_at, low_at = crank_angle[highest_at(whole)]
-    mean, rms = np.mean(samples, axis=1), np.sqrt(np.mean(np.square(samples), axis=1))
-    rows = (mean, rms, peak, peak_at, high, high_at, -low, low_at)
+    peak_at, high_at, low_at = crank_angle[shown][highest_at(whole)]
+    rows = (average, rms, peak, peak_at, high, high_at, -low, low_at)
     return [Figures(*one) for one in np.array(rows).T.tolist()]
+
+
+@dataclass(frozen=True, eq=False)
+class JumpSampling:
+    """Crank angles at which signals are taken that jump at known ones, over a whole cycle.
+
+    A grid, both sides of every jump, and Gauss points between jumps, all rising.  Means are taken
+    over the Gauss points, so that each piece is integrated by itself; extremes over the others.
+
+    crank_angle : (N,) rad, at which values are taken.
+    shares : (N,) of each value in a mean, with sum 1.
+    at : (N,) rad, where values are said to be: both sides of a jump at the jump.
+    turns : of the crank in the cycle.
+    orders : amplitudes that are taken, beside the mean: as many as the grid tells apart.
+    """
+
+    crank_angle: Array
+    shares: Array
+    at: Array
+    turns: int
+    orders: int
+
+    @classmethod
+    def of(cls, grid: Array, turns: int, jumps: Array) -> JumpSampling:
+        """For a grid (N,) of equally spaced crank angles from 0 over a cycle, and jumps (J,) in it,
+        rad.
+        """
+        period, beside = 2 * pi * turns, BESIDE * turns
+        ends = np.unique(np.concatenate([[0.0], within_period(jumps, period), [period]]))
+        ends = np.delete(ends, 1 + np.flatnonzero(np.diff(ends[:-1]) < 4 * beside))
+        longest = min(GAUSS_POINTS * period / len(grid), LONGEST_PANEL)
+        counts = np.ceil(np.diff(ends) / longest * (1 - ROUNDING))
+        panels = [
+            np.linspace(begin, end, max(int(count), 1) + 1)
+            for begin, end, count in zip(ends[:-1], ends[1:], counts, strict=True)
+        ]
+        begins = np.concatenate([panel[:-1] for panel in panels])
+        widths = np.concatenate([np.diff(panel) for panel in panels])
+        nodes, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
+        inside = (begins[:, None] + widths[:, None] * (1 + nodes) / 2).ravel()
+        shares = (widths[:, None] * weights / (2 * period)).ravel()
+        sudden = ends[:-1] if np.any(within_period(jumps, period) < beside) else ends[1:-1]
+        before = sudden - beside + period * (sudden < beside)
+        theta = np.concatenate([grid, before, sudden + beside, inside])
+        at = np.concatenate([grid, sudden, sudden, inside])
+        whole = np.concatenate([np.zeros(len(theta) - len(inside)), shares])
+        order = np.argsort(theta, kind="stable")
+        orders = min((len(grid) - 1) // 2, MOST_ORDERS)
+        return cls(theta[order], whole[order], at[order], turns, orders)
+
+    @cached_property
+    def shown(self) -> Array:
+        """Places (M,) of the grid and of both sides of jumps: what is drawn, and has extremes."""
+        return np.flatnonzero(self.shares == 0.0)
+
+    def figures_of_each(self, samples: Array) -> list[Figures]:
+        """Mean, RMS and extremes of each of several signals (M, N)."""
+        return figures_of_each(self.at, samples, self.shares, self.shown)
+
+    def periodic(self, samples: Array) -> Periodic:
+        """Samples (..., N) by order."""
+        weighted = samples * self.shares
+        found = np.empty((*samples.shape[:-1], self.orders + 1), complex)
+        for begin in range(0, self.orders + 1, ORDERS_AT_ONCE):
+            some = np.arange(begin, min(begin + ORDERS_AT_ONCE, self.orders + 1))
+            waves = np.exp(np.outer(self.crank_angle, -1j / self.turns * some))
+            found[..., some] = weighted @ waves
+        found[..., 1:] *= 2
+        return Periodic(found, self.turns)
 
 
 def harmonics(samples: Array, orders: int | None = None) -> Array:

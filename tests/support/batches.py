@@ -10,6 +10,7 @@ from math import pi
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import equipoise as eq
@@ -20,7 +21,7 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.newton import LoopGroup
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.machine import Gear, Machine, Slider
-from equipoise.signals import Figures, figures
+from equipoise.signals import Figures
 from support.designs import Array, size_of
 from support.machines import KINDS, make
 from unit.mechanism.build import heavy, machine
@@ -57,9 +58,12 @@ def wanted_of(signals: Sequence[str], *names: str) -> list[Figure]:
 
 @dataclass(frozen=True)
 class Known:
-    """A signal of one design: samples (N,), their figures, and the size such a signal has."""
+    """A signal of one design: samples (N,) and where they are, rad, of jumps both sides; their
+    figures, and the size such a signal has.
+    """
 
     samples: Array
+    at: Array
     figures: Figures
     size: float
 
@@ -87,14 +91,13 @@ def signals_of(design: Machine) -> list[str]:
 def known_of(design: Machine, angles: int, signals: Sequence[str]) -> Mapping[str, Known]:
     """Signals of a machine at so many crank angles in a turn."""
     analysis = eq.analyze(design, angles)
-    arrays = {one.name: one.values for one in analysis.outputs}
-    summary = analysis.summary
-    sizes = _sizes(design, analysis)
+    sizes, sampling = _sizes(design, analysis), analysis.resolved.motion.sampling
+    shown = slice(None) if sampling is None else sampling.shown
+    at = (analysis.crank_angle if sampling is None else sampling.at)[shown]
     found = {}
     for name in signals:
-        samples = arrays[name]
-        told = summary[name] if name in summary else figures(analysis.crank_angle, samples)
-        found[name] = Known(samples, told, sizes(name))
+        one = analysis.outputs[name]
+        found[name] = Known(one.resolved[shown], at, one.figures, sizes(name))
     return found
 
 
@@ -123,8 +126,9 @@ def same_figures(
         signal, name = known[figure.signal], PLACES.get(figure.name, figure.name)
         told, found = getattr(signal.figures, name), value
         if figure.name in PLACES:
-            sample = signal.samples[round(value / (2 * pi / angles))]
-            found = abs(sample) if name == "peak" else sample
+            here = signal.samples[np.abs(signal.at - value) < 1e-9]
+            sizes = np.abs(here) if name == "peak" else here
+            found = np.min(sizes) if name == "min" else np.max(sizes)
         apart = abs(found - told) / signal.scale
         assert apart <= tolerance, f"{figure} is {found:.9g}, {apart:.2g} off {told:.9g}"
 

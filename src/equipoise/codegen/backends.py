@@ -291,7 +291,9 @@ def run_numpy(
         with np.errstate(all="ignore"):
             march_numpy(out, source, state, table, grid)
         return
-    step = max(1, AT_A_TIME // grid.shape[1])
+    step, shares = max(1, AT_A_TIME // grid.shape[1]), None
+    if source.has_shares:
+        grid, shares = grid[:-1], grid[-1]
     with np.errstate(all="ignore"):
         for begin in range(0, len(table), step):
             some = slice(begin, begin + step)
@@ -303,7 +305,8 @@ def run_numpy(
             values = dict(zip(source.gathered.signals, state(*grid, *own), strict=True))
             shape = (parts.shape[1], grid.shape[1])
             for k, (signal, kind) in enumerate(source.gathered.columns):
-                out[some, k] = KINDS[kind].of(np.broadcast_to(values[signal], shape))
+                x = np.broadcast_to(values[signal], shape)
+                out[some, k] = KINDS[kind].gathered(x, shares)
 
 
 def march_numpy(
@@ -319,14 +322,22 @@ def march_numpy(
     last = {one.next for one in source.carried}
     signals = [one for one in source.gathered.signals if one not in last]
     found: dict[int, list[Array]] = {}
+    shares: dict[int, float] = {}
+    if source.has_shares:
+        shares = dict(zip(grid[0].astype(int).tolist(), grid[-1].tolist(), strict=True))
+        grid = grid[:-1]
     for place, *rows in grid.T:
         values = state(*rows, *own, *carried)
         carried = values[len(signals) :]
         if place >= 0:
             found[int(place)] = [np.broadcast_to(v, len(table)) for v in values[: len(signals)]]
     in_order = [found[k] for k in sorted(found)]
+    share = np.array([shares[k] for k in sorted(found)]) if shares else None
     stacks = [np.stack(values, axis=1) for values in zip(*in_order, strict=True)]
     values = dict(zip(signals, stacks, strict=True))
     ends = {one.next: value for one, value in zip(source.carried, carried, strict=True)}
     for k, (signal, kind) in enumerate(source.gathered.columns):
-        out[:, k] = KINDS[kind].of(values[signal]) if signal in values else ends[signal]
+        if signal in values:
+            out[:, k] = KINDS[kind].gathered(values[signal], share)
+        else:
+            out[:, k] = ends[signal]

@@ -5,7 +5,7 @@ Designs are a table, one row a design, that a loop runs over at crank angles of 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import pairwise
@@ -15,10 +15,12 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.backends import processors, run_loop
+from equipoise.codegen.coupled import told_by_crank
 from equipoise.codegen.emit import emit, moves_shared
 from equipoise.codegen.figures import (
     CHANGE_POINT,
     COMPUTED,
+    KINDS,
     MOST_ANGLES,
     NO_ASSEMBLY,
     NO_FULL_TURN,
@@ -31,14 +33,24 @@ from equipoise.codegen.figures import (
 )
 from equipoise.codegen.loops import STEPS, March
 from equipoise.codegen.source import Source
+from equipoise.codegen.writer import Writer
 from equipoise.errors import UsageError
 from equipoise.mechanism.assembly import cycle, full_turn
 from equipoise.mechanism.assembly.family import linkage_of, with_columns
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
+from equipoise.mechanism.assembly.newton import LoopGroup
 from equipoise.mechanism.assembly.refusing import wrong
 from equipoise.mechanism.assembly.steps import size_of_bodies
+from equipoise.mechanism.kinematics.jumps import (
+    ACCELERATION,
+    declared_jumps,
+    jumps_of_rows,
+    may_jump,
+    of_rows,
+)
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.signals import JumpSampling
 
 Array = np.ndarray[Any, Any]
 
@@ -59,8 +71,8 @@ SMOOTH = ("mean", "rms")
 """Figures that stand still for good once they do.  Extremes have to do so twice: crank angles may
 by chance come as close to the top as before."""
 STEP = 4
-"""Crank angles, over the tolerance, that loads take which begin or end at once, and laws of cams
-whose acceleration jumps: means over them come closer as 1 / N, and may by chance stand still
+"""Crank angles, over the tolerance, that laws of cams take whose acceleration jumps at each
+design's own crank angles: means over them come closer as 1 / N, and may by chance stand still
 before."""
 FAR = -0.5
 """Cosine of the angle between a link and the base's, beyond which it may go the other way round."""
@@ -73,9 +85,28 @@ def all_angles(count: int, turns: int) -> Array:
     return np.arange(count * turns) * (2 * pi / count)
 
 
-def grid_of(source: Source, theta: Array) -> Array:
-    """Rows (G, N) of what the source wants to know of crank angles (N,), rad."""
-    return np.ascontiguousarray([row.values(theta) for row in source.rows], dtype=float)
+def jumps_alike(linkage: Linkage, paths: Collection[str]) -> bool:
+    """Whether forces of all designs in which these numbers vary jump at the same crank angles."""
+    writer = Writer(linkage, paths)
+    told = told_by_crank(writer).keys() - writer.shifted
+    cams = (cam for cam in linkage.machine.cams if len(cam.law.jumps(ACCELERATION)))
+    return all({cam.driver, cam.carrier} <= told for cam in cams)
+
+
+def _grid(theta: Array, turns: int) -> JumpSampling:
+    """Crank angles (N,), each with the same share in sums."""
+    return JumpSampling(theta, np.zeros(len(theta)), theta, turns, 0)
+
+
+def grid_of(source: Source, theta: Array, shares: Array | None = None) -> Array:
+    """Rows (G, N) of what the source wants to know of crank angles (N,), rad.
+
+    shares : (N,) of each in a mean, where the source asks for them; none if None.
+    """
+    rows = [row.values(theta) for row in source.rows]
+    if source.has_shares:
+        rows.append(np.zeros(len(theta)) if shares is None else shares)
+    return np.ascontiguousarray(rows, dtype=float)
 
 
 def sizes_of(machine: Machine, signals: Iterable[str]) -> dict[str, Any]:
@@ -170,15 +201,13 @@ class Batch:
         self.angles, self.tolerance = angles, tolerance
         self.threads = threads or processors()
         self.needed = 2 if any(figure.name not in SMOOTH for figure in self.wanted) else 1
-        has_steps = any(load.jumps for load in machine.loads)
-        laws = [*machine.laws.values(), *(cam.law for cam in machine.cams)]
-        has_steps |= any(len(law.jumps(2)) for law in laws)
-        self.least = STEP / tolerance if has_steps else FIRST
-        self.source = emit(self.base, Gathered.of(self.wanted), self.paths)
+        rounds = machine.couplings or any(isinstance(s, LoopGroup) for s in self.base.motion)
+        self.turns = self.base.cycle.turns if rounds else cycle.turns_given(machine)
+        self.jumps, self.least = self._known_jumps()
+        resolves = len(self.jumps) > 0
+        self.source = emit(self.base, Gathered.of(self.wanted), self.paths, resolves)
         self.gathered = self.source.gathered
         self.march = March.of(self.source, self.base)
-        rounds = machine.couplings or self.march
-        self.turns = self.base.cycle.turns if rounds else cycle.turns_given(machine)
         windings = self.base.cycle.windings if rounds else {}
         fastest = max((abs(turns) for turns in windings.values()), default=1) / self.turns
         fastest *= prod(max(map(abs, g.ratios)) / abs(g.speed_ratio) for g in machine.gears)
@@ -195,12 +224,32 @@ class Batch:
         figures[reason != COMPUTED] = np.nan
         return figures, reason
 
+    def _known_jumps(self) -> tuple[Array, float]:
+        """Crank angles (J,), rad, at which forces of all designs jump, and how many crank angles
+        in a turn are the fewest; many where each design has jumps of its own.
+
+        Raises
+        ------
+        UsageError : designs have jumps of their own, and the number of crank angles is given.
+        """
+        if not may_jump(self.base.machine):
+            return np.empty(0), FIRST
+        if not jumps_alike(self.base, self.paths):
+            if self.angles is not None:
+                raise UsageError("got cams whose laws jump at each design's own crank angles")
+            return np.empty(0), STEP / self.tolerance
+        machine = self.base.machine
+        if machine.cams:
+            return jumps_of_rows(self.base), FIRST
+        every = np.concatenate([np.empty(0), *declared_jumps(machine, self.turns)])
+        return of_rows(machine, every, self.turns), FIRST
+
     # -- crank angles ------------------------------------------------------------------------------
 
     def _settled(self, designs: Designs) -> tuple[Array, Array]:
         """Figures and reasons, with as many crank angles as it takes."""
         count = self.angles or FIRST
-        found = self._at(designs.table, all_angles(count, self.turns))
+        found = self._at(designs.table, self._sampling(count))
         figures = self._figures(found, count)
         reason = self._reasons(designs.table, found, count)
         if self.angles is not None:
@@ -209,8 +258,11 @@ class Batch:
         left = np.flatnonzero(reason == COMPUTED)
         found, calm = found[left], np.zeros(left.size, dtype=int)
         while left.size and 2 * count <= MOST_ANGLES:
-            between = all_angles(count, self.turns) + pi / count
-            found = self.gathered.joined(found, self._at(designs.table[left], between))
+            if self.source.has_shares:
+                found = self._at(designs.table[left], self._sampling(2 * count))
+            else:
+                between = _grid(all_angles(count, self.turns) + pi / count, self.turns)
+                found = self.gathered.joined(found, self._at(designs.table[left], between))
             count *= 2
             now = self._figures(found, count)
             still = self._still(now, figures[left], found, count, designs.sizes(signals, left))
@@ -223,21 +275,51 @@ class Batch:
         reason[left] = NOT_STILL
         return figures, reason
 
-    def _at(self, table: Array, theta: Array) -> Array:
-        """What is gathered (P, R) at crank angles (N,); places are angles, not numbers."""
-        found = self._run(table, self._grid(theta))
+    def _sampling(self, count: int) -> JumpSampling:
+        """So many crank angles in a turn, and those that resolve jumps."""
+        theta = all_angles(count, self.turns)
+        if self.source.has_shares:
+            return JumpSampling.of(theta, self.turns, self.jumps)
+        return _grid(theta, self.turns)
+
+    def _at(self, table: Array, sampling: JumpSampling) -> Array:
+        """What is gathered (P, R) at crank angles; places are angles, not numbers.
+
+        Extremes are those of the grid and of both sides of jumps: what is gathered at the other
+        crank angles are means.
+        """
+        found = self._gathered(table, sampling, sampling.shown)
+        if self.source.has_shares:
+            inside = np.flatnonzero(sampling.shares)
+            means = self._gathered(table, sampling, inside)
+            for k, (_, kind) in enumerate(self.gathered.columns):
+                if KINDS[kind].shared:
+                    found[:, k] = means[:, k]
+        return found
+
+    def _gathered(self, table: Array, sampling: JumpSampling, some: Array) -> Array:
+        """What is gathered (P, R) at some of the crank angles of a sampling."""
+        theta, shares = sampling.crank_angle[some], sampling.shares[some]
+        found = self._run(table, self._grid(theta, shares))
         if self.march:
             for step in STEPS[1:]:
                 loose = self.march.unsettled(found)
                 if loose.size:
-                    found[loose] = self._run(table[loose], self.march.grid(theta, step))
+                    grid = self.march.grid(theta, step, shares)
+                    found[loose] = self._run(table[loose], grid)
         for k, (_, kind) in enumerate(self.gathered.columns):
             if kind.endswith("_at"):
-                found[:, k] = theta[found[:, k].astype(int)]
+                found[:, k] = sampling.at[some][found[:, k].astype(int)]
         return found
 
-    def _grid(self, theta: Array) -> Array:
-        return self.march.grid(theta) if self.march else grid_of(self.source, theta)
+    def _grid(self, theta: Array, shares: Array | None = None) -> Array:
+        if self.march:
+            return self.march.grid(theta, shares=shares)
+        return grid_of(self.source, theta, shares)
+
+    def _total(self, count: int) -> int:
+        """What sums are divided by for means: shares add up to 1."""
+        return 1 if self.source.has_shares else count * self.turns
 
     def _run(self, table: Array, grid: Array) -> Array:
         """Run the loop, on several threads where that is worth it; it lets them run beside."""
@@ -251,7 +333,7 @@ class Batch:
         return np.concatenate(list(done))
 
     def _figures(self, found: Array, count: int) -> Array:
-        columns = [self.gathered.figure(found, f, count * self.turns) for f in self.wanted]
+        columns = [self.gathered.figure(found, f, self._total(count)) for f in self.wanted]
         return np.column_stack(columns) if columns else np.empty((len(found), 0))
 
     def _still(
@@ -265,7 +347,7 @@ class Batch:
                 period = 2 * pi * self.turns
                 still &= np.minimum(step, period - step) <= self.tolerance * 2 * pi
             else:
-                rms = self.gathered.rms(found, figure.signal, count * self.turns)
+                rms = self.gathered.rms(found, figure.signal, self._total(count))
                 share = self.tolerance if figure.name in SMOOTH else self.tolerance / 2
                 still &= step <= share * rms + ROUNDING * sizes[figure.signal]
         return still

@@ -180,10 +180,16 @@ def can_emit(linkage: Linkage) -> bool:
     return all(map(can_write, loops)) and not (loops and machine.couplings)
 
 
-def emit(linkage: Linkage, gathered: Gathered, paths: Collection[str] | None = None) -> Source:
+def emit(
+    linkage: Linkage,
+    gathered: Gathered,
+    paths: Collection[str] | None = None,
+    has_shares: bool = False,
+) -> Source:
     """Write out the steps of a linkage, with the signals that are gathered.
 
     paths : of the numbers in which designs differ; None of one design.
+    has_shares : whether crank angles have shares of their own in means.
 
     Raises
     ------
@@ -196,6 +202,7 @@ def emit(linkage: Linkage, gathered: Gathered, paths: Collection[str] | None = N
             "cannot be computed in a loop"
         )
     writer = Writer(linkage, paths)
+    writer.sheet.has_shares = has_shares
     write_motion(writer)
     wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]
     if any(one.is_of_row for one in wanted):

@@ -57,17 +57,32 @@ class Kind:
     add : line that takes in another value {x} of the signal; for places see `codegen.source`.
     of : the same of values (P, N) by NumPy, (P,).
     joined : of two sets of crank angles, from that of each; None of places.
+    shared : line that takes in a value by its share in a mean, where crank angles have shares.
     """
 
     start: str
     add: str
     of: Callable[[Array], Array]
     joined: Callable[[Array, Array], Array] | None = None
+    shared: str = ""
+
+    def gathered(self, x: Array, shares: Array | None) -> Array:
+        """What is gathered (P,) of values (P, N), by NumPy; shares : (N,) where there are any."""
+        if shares is None or not self.shared:
+            return self.of(x)
+        return np.asarray((x if self.add == SUM else x * x) @ shares)
 
 
+SUM = "{g} += {x}"
 KINDS = {
-    "sum": Kind("0.0", "{g} += {x}", lambda x: x.sum(axis=1), np.add),
-    "squares": Kind("0.0", "{g} += {x} * {x}", lambda x: np.einsum("ij,ij->i", x, x), np.add),
+    "sum": Kind("0.0", SUM, lambda x: x.sum(axis=1), np.add, "{g} += share * {x}"),
+    "squares": Kind(
+        "0.0",
+        "{g} += {x} * {x}",
+        lambda x: np.einsum("ij,ij->i", x, x),
+        np.add,
+        "{g} += share * {x} * {x}",
+    ),
     "highest": Kind("-1e300", "{g} = greatest({g}, {x})", lambda x: x.max(axis=1), np.maximum),
     "highest_at": Kind("0.0", "", _first_highest),
     "lowest": Kind("1e300", "{g} = smallest({g}, {x})", lambda x: x.min(axis=1), np.minimum),
@@ -141,7 +156,9 @@ class Gathered:
         return result
 
     def figure(self, found: Array, figure: Figure, count: int) -> Array:
-        """A figure (P,) from what was gathered (P, R) at `count` crank angles."""
+        """A figure (P,) from what was gathered (P, R) at `count` crank angles; 1 where these have
+        shares.
+        """
 
         def column(kind: str) -> Array:
             return self.column(found, figure.signal, kind)

@@ -26,6 +26,7 @@ from equipoise.mechanism.dynamics.parameters import (
     parameters_of,
     regressor,
 )
+from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import Declared, Found, declared
 from equipoise.mechanism.parts.machine import Machine, size_of
@@ -149,25 +150,32 @@ class MassBatch:
     def _samples(self, count: int) -> list[Array]:
         """For each figure the samples (N', V + 1) of a unit of each parameter, and of the rest.
 
-        Those of two components stand one below the other.
+        Those of two components stand one below the other.  Where forces jump, samples come times
+        `roots`, so that the mean of their squares is that over time.
         """
         machine = self.base.machine
-        motion = move(machine, count)
+        motion = resolved(move(machine, count))
         unit, whole = Found(motion, regressor(motion)), Found(motion, forces(motion))
         varied = [k for k, (link, _) in enumerate(parameter_names(machine)) if link in self.links]
         own = parameter_values(machine)[varied]
         found = []
+        self.roots: Array | float = 1.0
+        if motion.shares is not None:
+            self.roots = np.sqrt(motion.shares * len(motion.shares))
         for output in self.outputs:
             rows = _components(*output, unit)[:, varied]
             rest = _components(*output, whole) - np.tensordot(rows, own, (1, 0))
             columns = [*np.moveaxis(rows, 1, 0), rest]
+            if motion.shares is not None:
+                columns = [column * self.roots for column in columns]
             found.append(np.column_stack([column.ravel() for column in columns]))
         return found
 
     def _factor(self, samples: Array, figure: Figure, output: tuple[Declared, str]) -> Array:
         """Rows (R, V + 1) whose products with parameters and 1 are a mean, or have its squares."""
         if figure.name == "mean":
-            mean: Array = np.mean(samples, axis=0, keepdims=True)
+            roots = np.reshape(self.roots, (-1, 1))
+            mean: Array = np.mean(samples * roots, axis=0, keepdims=True)
             return mean
         count = len(samples) // (2 if output[0].is_vector else 1)
         _, singular, rows = np.linalg.svd(samples * self.scale, full_matrices=False)

@@ -294,10 +294,11 @@ class March:
         period = 2 * pi * base.cycle.turns
         return cls(source, position.crank_angle % period, period)
 
-    def grid(self, theta: Array, step: float = STEPS[0]) -> Array:
+    def grid(self, theta: Array, step: float = STEPS[0], shares: Array | None = None) -> Array:
         """Rows (G, M) for the loop, to gather at crank angles (N,) and to go no farther at once.
 
-        The first row is the number of the crank angle, -1 where nothing is gathered.
+        The first row is the number of the crank angle, -1 where nothing is gathered; the last one
+        its share in a mean, where the source asks for shares.
         """
         asked = np.mod(theta - self.begin, self.period)
         order = np.argsort(asked, kind="stable")
@@ -316,6 +317,10 @@ class March:
         place = np.arange(len(ways))
         rows = [number, np.diff(ways, prepend=0.0), place == ARRIVALS - 1, place >= ARRIVALS - 1]
         rows += [row.values(angles) for row in self.source.rows]
+        if self.source.has_shares:
+            share = np.zeros(len(ways))
+            share[number >= 0] = 0.0 if shares is None else shares[order]
+            rows.append(share)
         return np.ascontiguousarray(rows, dtype=float)
 
     def unsettled(self, found: Array) -> Array:

@@ -54,7 +54,7 @@ file tells the pose, else 0; 1 from there on, 0 before."""
 WATCHED = ("loose", "astray", "open")
 """Values that are carried on, whose last tells of a design whether Newton's method left its branch;
 did not arrive from the base, or too far from where the file tells; came back elsewhere."""
-RESERVED |= {*MARCH, "work", "lane", "begin", "place", "empty", "min"}
+RESERVED |= {*MARCH, "share", "work", "lane", "begin", "place", "empty", "min"}
 
 
 @dataclass(frozen=True)
@@ -109,6 +109,7 @@ class Source:
     nearest : columns of how near the running links stay to the base's: smallest cosine between.
     carried : from crank angle to crank angle; none where each stands alone.
     ends : for each of `WATCHED` the columns of its last values.
+    has_shares : whether the last row of its grid has the share of each crank angle in a mean.
     """
 
     text: str
@@ -123,6 +124,7 @@ class Source:
     nearest: slice
     carried: tuple[Carried, ...]
     ends: Mapping[str, list[int]]
+    has_shares: bool = False
 
 
 class Sheet:
@@ -136,6 +138,7 @@ class Sheet:
         self.running: dict[str, str] = {}
         self.carried: dict[str, float | complex] = {}
         self.constants: dict[str, list[float]] = {}
+        self.has_shares = False
         self._names: dict[str, str] = {}
 
     def name(self, value: str) -> str:
@@ -246,6 +249,7 @@ def source_of(
             key: [gathered.columns.index((sheet.name(f"next {v}"), "highest")) for v in values]
             for key, values in last.items()
         },
+        sheet.has_shares,
     )
 
 
@@ -258,11 +262,16 @@ def _loop(sheet: Sheet, gathered: Gathered, arguments: str) -> list[str]:
         *(f"        {slot.name} = {_read(slot)}" for slot in sheet.slots.values()),
         *(f"        {name} = {KINDS[kind].start}" for (_, kind), name in columns.items()),
         "        for k in range(grid.shape[1]):",
-        *(f"            {name} = grid[{k}, k]" for k, name in enumerate(sheet.rows)),
+        *(f"            {name} = grid[{k}, k]" for k, name in enumerate(_rows(sheet))),
         f"            {', '.join(signals.values())}, = state({arguments})",
-        *(f"            {line}" for line in _gathering(columns, signals)),
+        *(f"            {line}" for line in _gathering(columns, signals, sheet)),
         *(f"        out[i, {k}] = {name}" for k, name in enumerate(columns.values())),
     ]
+
+
+def _rows(sheet: Sheet, first: Iterable[str] = ()) -> list[str]:
+    """Identifiers of the rows of the grid that tell of the crank angle, after the first ones."""
+    return [*first, *sheet.rows, *(["share"] if sheet.has_shares else [])]
 
 
 def _read(slot: Slot) -> str:
@@ -319,7 +328,7 @@ def _march(
         *(f"            {line}" for line in starts),
         "        for k in range(grid.shape[1]):",
         "            place = grid[0, k]",
-        *(f"            {name} = grid[{r}, k]" for r, name in enumerate([*MARCH, *sheet.rows], 1)),
+        *(f"            {name} = grid[{r}, k]" for r, name in enumerate(_rows(sheet, MARCH), 1)),
         f"            for lane in range({LANES}):",
         *(f"                {get(name)}" for name in taken),
         f"                {', '.join(found)}, = state({arguments})",
@@ -327,7 +336,7 @@ def _march(
         "            if place >= 0.0:",
         f"                for lane in range({LANES}):",
         *(f"                    {get(name)}" for name in [*signals.values(), *columns.values()]),
-        *(f"                    {line}" for line in _gathering(columns, signals, "place")),
+        *(f"                    {line}" for line in _gathering(columns, signals, sheet, "place")),
         *(f"                    {at[name]} = {name}" for name in columns.values()),
         f"        for lane in range(min({LANES}, table.shape[0] - begin)):",
         *(f"            out[begin + lane, {k}] = {at[name]}" for k, name in enumerate(results)),
@@ -335,7 +344,10 @@ def _march(
 
 
 def _gathering(
-    columns: Mapping[tuple[str, str], str], signals: Mapping[str, str], number: str = "k"
+    columns: Mapping[tuple[str, str], str],
+    signals: Mapping[str, str],
+    sheet: Sheet,
+    number: str = "k",
 ) -> Iterator[str]:
     """Lines that take in the signals' values at the crank angle of this number."""
     for (signal, kind), name in columns.items():
@@ -344,5 +356,5 @@ def _gathering(
         if place is not None:
             yield f"if {PLACE[kind].format(g=name, x=x)} {ROUNDING!r} * abs({x}):"
             yield f"    {place} = {number}"
-        if line := KINDS[kind].add:
+        if line := (sheet.has_shares and KINDS[kind].shared) or KINDS[kind].add:
             yield line.format(g=name, x=x)

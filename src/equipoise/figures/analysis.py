@@ -64,10 +64,15 @@ def about(analysis: Analysis) -> str:
 
 
 def over(analysis: Analysis, values: Array) -> tuple[Array, Array]:
-    """Crank angles (rad) and values (N,), of a whole cycle with the first of them again."""
-    if not analysis.motion.whole_cycle:
-        return analysis.crank_angle, values
-    return closed(analysis.crank_angle, values, 2 * np.pi * analysis.motion.turns)
+    """Crank angles (rad) and values (N,), of a whole cycle with the first of them again.
+
+    Where signals jump, both sides of each jump stand one above the other.
+    """
+    motion = analysis.motion
+    theta, values = motion.shown(values)
+    if not motion.whole_cycle:
+        return theta, values
+    return closed(theta, values, 2 * np.pi * motion.turns)
 
 
 def angle_axis(analysis: Analysis) -> Axis:
@@ -188,6 +193,7 @@ def named(forces: Forces, name: str, joint: JointForce) -> str:
 
 def joints(analysis: Analysis) -> Iterator[Chart]:
     """Size of the force in every joint over crank angle, ten in a picture."""
+    analysis = analysis.resolved
     found = joints_of(analysis)
     every = list(found)
     for suffix, names in groups(every):
@@ -206,7 +212,7 @@ def _over_angle(analysis: Analysis, joint: Joint, every: Iterable[Joint]) -> Pan
         values, most = np.abs(joint.values), 1
         unit = display_of_joints(analysis).unit
         y = Axis.of(say("force"), "force", beside, unit, low=0.0, room=ROOM)
-    places = sampled_extremes(analysis.crank_angle, values)[:most]
+    places = sampled_extremes(*over(analysis, values))[:most]
     return Panel(
         angle_axis(analysis),
         y,

@@ -34,9 +34,10 @@ from equipoise.quantities import Dimension
 from equipoise.results.analysis_blocks import display_of_totals
 from equipoise.results.charts import Array, Arrow, Axis, Bars, Chart, Curve, Line, Mark, Panel
 from equipoise.results.outputs import CAUSES, output_named
-from equipoise.signals import Periodic, highest_at
+from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
+    from equipoise.mechanism.kinematics.motion import Motion
     from equipoise.results.analysis import Analysis
 
 
@@ -92,6 +93,7 @@ def _unit(analysis: Analysis, dimension: Dimension | None) -> str | None:
 
 def force(analysis: Analysis) -> Chart:
     """Both components of the shaking force and its size over crank angle."""
+    analysis = analysis.resolved
     found = each(analysis, "shaking_force")
     parts: dict[str, Callable[[Array], Array]] = {
         say("along {axis}", axis="x"): np.real,
@@ -107,6 +109,7 @@ def force(analysis: Analysis) -> Chart:
 
 def moment(analysis: Analysis) -> Chart:
     """Shaking moment over crank angle, and of links beside each other rocking moments."""
+    analysis = analysis.resolved
     what = title(analysis, say("Shaking moment about {point}", point=about(analysis)))
     signals = each(analysis, "shaking_moment")
     panels: list[Signals] = [(say("shaking moment"), "torque", signals)]
@@ -129,6 +132,7 @@ def torques(analysis: Analysis) -> Iterator[Chart]:
 
 def torque(analysis: Analysis, number: int = 1) -> Chart:
     """What a drive exerts over crank angle, a torque or a force, and below it what makes it."""
+    analysis = analysis.resolved
     machine, drive = analysis.machine, analysis.machine.driven[number - 1]
     if number == 1:
         output, signals = machine.drive.effort, each(analysis, machine.drive.effort)
@@ -143,17 +147,17 @@ def torque(analysis: Analysis, number: int = 1) -> Chart:
     chart = over_crank(analysis, name, what, [(output_named(output), drive.effort_in, signals)])
     (whole,) = chart.panels
     if analysis.motion.whole_cycle:
-        whole = with_mean(whole, signals[ALL])
+        whole = with_mean(whole, signals[ALL], analysis.motion)
     causes = _causes(analysis, output, drive.effort_in)
     return Chart(name, chart.title, what, (whole, causes), keys=chart.keys)
 
 
-def with_mean(panel: Panel, values: Array) -> Panel:
-    """A panel with a dashed line at the mean of a signal (N,), and its value above."""
-    mean = float(np.mean(values))
+def with_mean(panel: Panel, values: Array, motion: Motion) -> Panel:
+    """A panel with a dashed line at the mean of a signal (N,) of a motion, and its value above."""
+    mean = float(motion.mean(values))
     if abs(mean) <= RESIDUE * float(np.max(np.abs(values))):
         mean = 0.0
-    rms = float(np.sqrt(np.mean(np.square(values))))
+    rms = float(np.sqrt(motion.mean(np.square(values))))
     told = {"mean": panel.y.quantity(mean), "rms": panel.y.quantity(rms)}
     remark = say("dashed: mean {mean}; RMS {rms}", **told)
     return replace(panel, lines=(Line(mean, "mean", axis="y"),), remark=remark)
@@ -183,18 +187,20 @@ def _causes(analysis: Analysis, output: str, kind: Dimension) -> Panel:
 def polar(analysis: Analysis) -> Chart:
     """Shaking force as a polar diagram, with crank angles along it, its peak and mean size."""
     found = each(analysis, "shaking_force")
+    resolved = analysis.resolved
     every = np.concatenate([*found.values()])
     unit = display_of_totals(analysis, "force").unit
     x, y = (
         Axis.of(say("shaking force along {axis}", axis=axis), "force", every, unit)
         for axis in ("x", "y")
     )
-    marks, curves, arrows, message = _told_sizes(analysis, found[ALL], x)
+    whole = each(resolved, "shaking_force")
+    marks, curves, arrows, message = _told_sizes(resolved, whole[ALL], x)
     if analysis.motion.whole_cycle:
         told = told_angles(analysis.crank_angle)
         for role, values in reversed([*found.items()]):
             marks += numbers(told, values, role, extent(every, np.zeros(1)))
-    lines = [Curve.of(over(analysis, values)[1], "", role) for role, values in found.items()]
+    lines = [Curve.of(over(resolved, values)[1], "", role) for role, values in whole.items()]
     panel = Panel(
         x,
         y,
@@ -213,11 +219,13 @@ def _told_sizes(
     analysis: Analysis, values: Array, axis: Axis
 ) -> tuple[list[Mark], list[Curve], tuple[Arrow, ...], str]:
     """An arrow to the peak and a circle of the mean size, with their values, or why not."""
+    mean = float(analysis.motion.mean(np.abs(values)))
+    theta, values = over(analysis, values)
     sizes = np.abs(values)
     k = int(highest_at(sizes))
     if not sizes[k]:
         return [], [], (), say("zero at every crank angle")
-    mean, peak = float(np.mean(sizes)), complex(values[k])
+    peak = complex(values[k])
     circle = mean * np.exp(1j * np.radians(np.arange(0, 361, 2)))
     marks: list[Mark] = []
     arrows: tuple[Arrow, ...] = ()
@@ -227,7 +235,7 @@ def _told_sizes(
 
     if np.ptp(sizes) > ALIKE * sizes[k]:
         arrows = (Arrow(0j, peak, "stress"),)
-        at = degrees_told(float(analysis.crank_angle[k]))
+        at = degrees_told(float(theta[k]))
         text = say("peak {value} at {angle}", value=axis.quantity(abs(peak)), angle=at)
         tell(peak, text, "stress")
     away = mean * complex(np.exp(1j * (np.angle(peak) + 2.4)))
@@ -246,6 +254,7 @@ def spectrum(analysis: Analysis) -> Chart:
     UsageError : the crank angles are too few, or not equally spaced over the whole cycle.
     """
     _ = analysis.by_order  # raises where there are none
+    analysis = analysis.resolved
     vector = each(analysis, "shaking_force")
     signals: list[Signals] = [
         (
@@ -259,9 +268,8 @@ def spectrum(analysis: Analysis) -> Chart:
     signals.append((about_point, "torque", each(analysis, "shaking_moment")))
     drive = analysis.machine.drive
     signals.append((output_named(drive.effort), drive.effort_in, each(analysis, drive.effort)))
-    turns = analysis.motion.turns
     read = [
-        {BAR_ROLES[role]: orders_of(values, turns) for role, values in by.items()}
+        {BAR_ROLES[role]: orders_of(values, analysis.motion) for role, values in by.items()}
         for _, _, by in signals
     ]
     last = max(FEWEST, *(last_order(bars) for bars in read))
@@ -284,9 +292,9 @@ LEAST, MOST, MOST_TOLD = 4, 12, 8
 """Orders that are drawn at least and at most; places on the axis up to which bars have numbers."""
 
 
-def orders_of(values: Array, turns: int) -> tuple[Array, Array]:
-    """Orders of a signal (N,) over so many turns, and their sizes."""
-    signal = Periodic.of(values, turns)
+def orders_of(values: Array, motion: Motion) -> tuple[Array, Array]:
+    """Orders of a signal (N,) of a motion, and their sizes."""
+    signal = motion.periodic(values)
     return signal.orders, signal.sizes
 
 

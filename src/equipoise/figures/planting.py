@@ -232,17 +232,18 @@ def _air_and_soil(
 ) -> Panel:
     """Signals (N,) in the air and in the soil; of both all extremes, or of the soil the largest."""
     assert figures.forces is not None
-    angles = figures.forces.motion.crank_angle
+    motion = figures.forces.motion
     names = {"air": say("in the air"), "soil signal": say("in the soil")}
     marks: list[Mark] = []
     for role, values in reversed([*pair.items()]):
-        places = sampled_extremes(angles, values)
+        places = sampled_extremes(*motion.shown(values))
         if both:
             marks += extremes(y, values, places, role)
         elif role == "soil signal":
             marks += extremes(y, values, places[:1], role)
     period = figures.curve.period
     curves = [
-        Curve(*closed(angles, values, period), names[role], role) for role, values in pair.items()
+        Curve(*closed(*motion.shown(values), period), names[role], role)
+        for role, values in pair.items()
     ]
     return stay_panel(figures, y, curves, marks, figures.arms, **rest)

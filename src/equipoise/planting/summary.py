@@ -14,6 +14,7 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
+from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import MOST_ANGLES, Motion, move
 from equipoise.mechanism.kinematics.rates import PointMotion
 from equipoise.mechanism.kinematics.tip import TipCurve
@@ -26,7 +27,7 @@ from equipoise.planting.shaking import shaking
 from equipoise.planting.stroke import Visit, finger_base, tray_crossings, visits, wrapped
 from equipoise.planting.twins import nearly_alike
 from equipoise.results.result import Result
-from equipoise.signals import Array, Figures, figures
+from equipoise.signals import Array, Figures
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,9 +44,9 @@ class SoilForces:
     def compared(self) -> dict[str, tuple[Figures, Figures]]:
         """Figures in the air and in the soil of the drive torque and of every joint's force."""
         air, soil = (
-            {"drive_torque": figures(self.motion.crank_angle, found.drive_torque)}
+            {"drive_torque": self.motion.figures(found.drive_torque)}
             | {
-                f"joints.{name}": figures(self.motion.crank_angle, joint.size)
+                f"joints.{name}": self.motion.figures(joint.size)
                 for name, joint in found.joints.items()
             }
             for found in (self.in_air, self.in_soil)
@@ -58,7 +59,7 @@ def soil_forces(machine: Machine, angles: int = 720) -> SoilForces | None:
     planting = machine.planting
     if planting is None or planting.soil is None or massless(machine):
         return None
-    motion = move(machine, angles)
+    motion = resolved(move(machine, angles))
     dry = replace(motion, linkage=motion.linkage.of(machine.with_planting(soil=None)))
     return SoilForces(motion, forces(motion), forces(dry))
 

@@ -177,8 +177,10 @@ def caused(analysis: Analysis, number: int = 1) -> str:
     """What most of the swing of a drive's torque or force comes from."""
     machine, drive = analysis.machine, analysis.machine.driven[number - 1]
     output = machine.drive.effort if number == 1 else f"drives.{drive.link}.{drive.effort_in}"
-    parts = analysis.forces.split.by_cause(output)
-    name, share = next(iter(shares({k: part - np.mean(part) for k, part in parts.items()}).items()))
+    motion = analysis.resolved.motion
+    parts = analysis.resolved.forces.split.by_cause(output)
+    swings = {name: part - motion.mean(part) for name, part in parts.items()}
+    name, share = next(iter(shares(swings, motion).items()))
     scale = scale_of(analysis, drive.effort_in)
     if analysis.summary[output].peak <= NOTHING * scale or not share:
         return ""

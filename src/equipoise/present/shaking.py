@@ -12,9 +12,10 @@ import numpy as np
 
 from equipoise.i18n import say
 from equipoise.quantities import angle
-from equipoise.signals import Array, Figures, figures, harmonics
+from equipoise.signals import Array, Figures, harmonics
 
 if TYPE_CHECKING:
+    from equipoise.mechanism.kinematics.motion import Motion
     from equipoise.mechanism.parts.machine import Machine
     from equipoise.present.findings import Findings
     from equipoise.results.analysis import Analysis
@@ -28,30 +29,29 @@ NOTHING = 1e-9
 class Shaking:
     """The shaking force of all rows together.
 
-    force : complex (N,), N, of equally spaced crank angles of a whole cycle of `turns`.
+    force : complex (N,), N, at the crank angles of a motion over a whole cycle.
     """
 
     machine: Machine
-    crank_angle: Array
+    motion: Motion
     force: Array
-    turns: int
 
     @classmethod
     def of(cls, found: Findings) -> Shaking:
         """From the analysis; what is rounding is 0."""
-        analysis, motion = found.analysis, found.analysis.motion
+        analysis = found.analysis.resolved
         force = analysis.together.get("shaking_force", analysis.forces.shaking_force.value)
         parts = analysis.forces.split.by_link("shaking_force").values()
         beside = max(float(np.max(np.abs(part))) for part in parts)
         beside = max(beside, analysis.summary["frame_force"].peak)
         if np.max(np.abs(force)) <= NOTHING * beside:
             force = np.zeros_like(force)
-        return cls(found.machine, analysis.crank_angle, force, motion.turns)
+        return cls(found.machine, analysis.motion, force)
 
     @cached_property
     def size(self) -> Figures:
         """Figures of its size."""
-        return figures(self.crank_angle, np.abs(self.force))
+        return self.motion.figures(np.abs(self.force))
 
     @property
     def over_weight(self) -> float:
@@ -63,10 +63,14 @@ class Shaking:
     def loudest(self) -> tuple[float, float]:
         """Order with the largest share of the mean square, the mean left out, and that share."""
         parts = (self.force.real, self.force.imag)
-        squares = np.sum([np.abs(harmonics(part)) ** 2 for part in parts], axis=0)
+        if self.motion.sampling is None:
+            orders = [harmonics(part) for part in parts]
+        else:
+            orders = [self.motion.periodic(part).amplitudes for part in parts]
+        squares = np.sum(np.abs(orders) ** 2, axis=0)
         squares[0] = 0.0
         top = int(np.argmax(squares))
-        return top / self.turns, float(squares[top] / (np.sum(squares) or 1.0))
+        return top / self.motion.turns, float(squares[top] / (np.sum(squares) or 1.0))
 
 
 def direction(force: Array) -> tuple[float, float]:

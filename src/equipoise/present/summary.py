@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import pi
 
-import numpy as np
-
 from equipoise.balancing.told import capital, good_already, helps_told
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
@@ -188,8 +186,9 @@ def _ordered(found: Findings, shaking: Shaking) -> str:
 
 
 def _why(found: Findings) -> Iterator[str]:
-    analysis, split = found.analysis, found.analysis.forces.split
-    by_link = shares(split.by_link("shaking_force"))
+    analysis, motion = found.analysis, found.analysis.resolved.motion
+    split = analysis.resolved.forces.split
+    by_link = shares(split.by_link("shaking_force"), motion)
     if any(by_link.values()):
         yield say("The shaking force comes from: {parts}.", parts=_parts(by_link))
         if min(by_link.values()) <= -SMALL:
@@ -199,9 +198,10 @@ def _why(found: Findings) -> Iterator[str]:
     scale = scale_of(analysis, drive.effort_in)
     by_cause = shares(
         {
-            say(CAUSES[name]): part - np.mean(part)
+            say(CAUSES[name]): part - motion.mean(part)
             for name, part in split.by_cause(drive.effort).items()
-        }
+        },
+        motion,
     )
     if brief(effort.peak, scale) != "0" and any(by_cause.values()):
         of_rows = to_say(

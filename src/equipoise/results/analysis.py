@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -19,6 +19,7 @@ from equipoise.mechanism.dynamics.shares import CAUSES
 from equipoise.mechanism.dynamics.undecided import undecided
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.dwell import Dwell
+from equipoise.mechanism.kinematics.jumps import jumps_of, resolved
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.kinematics.stroke_figures import Stroke
 from equipoise.mechanism.kinematics.strokes import dwell, strokes
@@ -28,7 +29,7 @@ from equipoise.mechanism.parts.places import in_frame
 from equipoise.quantities import Dimension
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
-from equipoise.signals import Array, Figures, Periodic, figures_of_each
+from equipoise.signals import Array, Figures, Periodic
 
 if TYPE_CHECKING:
     import pandas
@@ -107,6 +108,16 @@ class Analysis(Result):
         return {name: self.dwell(name, tolerance) for name in names}
 
     @cached_property
+    def resolved(self) -> Analysis:
+        """The machine at crank angles that resolve where forces jump, from which all figures are
+        taken; this analysis itself where nothing jumps, or the crank angles are no whole cycle.
+        """
+        motion = resolved(self.motion)
+        if motion is self.motion:
+            return self
+        return Analysis(motion, None if self.solved is None else forces(motion, self.solved.about))
+
+    @cached_property
     def outputs(self) -> Outputs:
         """Every output of motion and forces, by name."""
         return Outputs(self)
@@ -117,7 +128,7 @@ class Analysis(Result):
         ones = self.outputs.summed
         if not ones:
             return Named("output", ())
-        found = figures_of_each(self.crank_angle, np.array([one.values for one in ones]))
+        found = self.resolved.motion.figures_of_each(np.array([one.resolved for one in ones]))
         return Named("output", zip((one.name for one in ones), found, strict=True))
 
     @cached_property
@@ -131,18 +142,11 @@ class Analysis(Result):
         rows = self.machine.rows
         if len(rows) < 2 or not self.motion.whole_cycle or self.solved is None:
             return {}
-        found, count = self.solved, len(self.crank_angle)
-        force = found.shaking_force
-        effort = self.machine.drive.effort
-        exerted = getattr(found, effort)
-        signals = np.array([force.x, force.y, found.shaking_moment, exerted])
-        rocking = found.across.rocking_moment.value if self.machine.has_planes else np.zeros(count)
-        signals = np.vstack([signals, np.real(rocking), np.imag(rocking)])
-        one = Periodic.of(signals, self.motion.turns)
+        count, effort = len(self.crank_angle), self.machine.drive.effort
         whole = {"shaking_force": np.zeros(count, complex)}
         whole |= {name: np.zeros(count) for name in ("shaking_moment", *LATERAL, effort)}
-        for row in rows:
-            x, y, moment, exerted, roll, yaw = one.shifted(row.phase).samples(count)
+        for row, signals in zip(rows, self._of_each_row(self.solved), strict=True):
+            x, y, moment, exerted, roll, yaw = signals
             whole["shaking_force"] += x + 1j * y
             whole["shaking_moment"] += moment + kernels.cross(complex(*row.offset), x + 1j * y)
             whole["roll_moment"] += roll - row.lateral * y
@@ -155,6 +159,21 @@ class Analysis(Result):
         several; else the output itself.
         """
         return f"rows.{name}" if f"rows.{name}" in self.outputs else name
+
+    def _of_each_row(self, found: Forces) -> Iterator[Array]:
+        """Shaking force x and y, shaking moment, what drives, roll and yaw moment (6, N) of each
+        row, at its own crank angles; without jumps orders are shifted, which is as exact.
+        """
+        motion, rows = self.motion, self.machine.rows
+        if len(jumps_of(motion.linkage)):
+            for row in rows:
+                theta = self.crank_angle + row.phase
+                turned = move(self.machine, theta, motion.speed, motion.acceleration)
+                yield _of_one_row(forces(turned, found.about))
+            return
+        one = Periodic.of(_of_one_row(found), motion.turns)
+        for row in rows:
+            yield one.shifted(row.phase).samples(len(self.crank_angle))
 
     @property
     def has_orders(self) -> bool:
@@ -211,7 +230,8 @@ class Analysis(Result):
             result.update(_undecided(self.motion.linkage))
             result["about"] = {"x": found.about.real, "y": found.about.imag}
             if not self.machine.has_crank and self.motion.whole_cycle:
-                result["drives"] = {link: {"work": work} for link, work in found.work.items()}
+                works = self.resolved.forces.work
+                result["drives"] = {link: {"work": work} for link, work in works.items()}
         for one in self.outputs.arrays:
             *keys, last = one.path
             values = result
@@ -258,6 +278,17 @@ class Analysis(Result):
 
         index = pandas.Index(self.crank_angle, name="crank_angle")
         return pandas.DataFrame({one.name: one.values for one in self.outputs.arrays}, index=index)
+
+
+def _of_one_row(found: Forces) -> Array:
+    """Shaking force x and y, shaking moment, what drives, roll and yaw moment, (6, N)."""
+    machine, force = found.motion.machine, found.shaking_force
+    exerted = getattr(found, machine.drive.effort)
+    rocking = np.zeros(len(exerted))
+    if machine.has_planes:
+        rocking = found.across.rocking_moment.value
+    rocked = np.real(rocking), np.imag(rocking)
+    return np.array([force.x, force.y, found.shaking_moment, exerted, *rocked])
 
 
 def order_values(analysis: Analysis, orders: int, zero: float) -> Values:

@@ -31,9 +31,10 @@ from equipoise.results.machine_blocks import (
     span,
 )
 from equipoise.results.outputs import CAUSES, tops_of
-from equipoise.signals import EQUAL, Array, Periodic, figures
+from equipoise.signals import EQUAL, Array, Periodic
 
 if TYPE_CHECKING:
+    from equipoise.mechanism.kinematics.motion import Motion
     from equipoise.results.analysis import Analysis
 
 MOST_ORDERS = 8
@@ -58,7 +59,7 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
     yield from force_blocks(analysis)
     yield from joint_blocks(analysis)
     if machine.belts:
-        yield from belt_blocks(analysis.forces)
+        yield from belt_blocks(analysis.resolved.forces)
 
 
 # -- motion ----------------------------------------------------------------------------------------
@@ -198,44 +199,46 @@ def force_blocks(analysis: Analysis) -> Iterator[Block]:
 
 
 def _by_link(analysis: Analysis) -> Table:
+    analysis = analysis.resolved
     parts = analysis.forces.split.by_link("shaking_force")
     rows = (
         (
             name,
-            Value(figures(analysis.crank_angle, np.abs(parts[name])).peak),
+            Value(analysis.motion.figures(np.abs(parts[name])).peak),
             Value(100 * share, after=0),
         )
-        for name, share in shares(parts).items()
+        for name, share in shares(parts, analysis.motion).items()
     )
     peak, share = Column(say("peak"), "force"), Column(say("share of the mean square"), unit="%")
     return Table.of(say("Shaking force by link"), (say("link"), peak, share), rows)
 
 
-def shares(parts: Mapping[str, Array]) -> dict[str, float]:
+def shares(parts: Mapping[str, Array], motion: Motion) -> dict[str, float]:
     """Share of each part in the mean square of their sum, the largest first.
 
     One below 0 works against the others, and all are 0 where they cancel but for rounding.
-    parts : signals (N,), real or complex.
+    parts : signals (N,) at the crank angles of a motion, real or complex.
     """
     signals = np.array(list(parts.values()))
     whole, beside = np.sum(signals, axis=0), np.max(np.abs(signals), initial=0.0)
     if np.max(np.abs(whole)) <= ROUNDING * beside:
         return dict.fromkeys(parts, 0.0)
-    square = float(np.mean(np.abs(whole) ** 2))
+    square = float(motion.mean(np.abs(whole) ** 2))
     found = {
-        name: float(np.mean((part * np.conj(whole)).real)) / square for name, part in parts.items()
+        name: float(motion.mean((part * np.conj(whole)).real)) / square
+        for name, part in parts.items()
     }
     return dict(sorted(found.items(), key=lambda item: -item[1]))
 
 
 def _causes(analysis: Analysis) -> Table:
-    drive, forces = analysis.machine.drive, analysis.forces
+    drive, forces = analysis.machine.drive, analysis.resolved.forces
     scale = analysis.summary[drive.effort].peak
     given = {"load": forces.loads, "spring": analysis.machine.springs}
     rows: list[tuple[Cell, ...]] = []
     for cause, values in forces.split.by_cause(drive.effort).items():
         if given.get(cause, True):
-            found = figures(analysis.crank_angle, values)
+            found = forces.motion.figures(values)
             told = (found.mean, found.rms, found.max, found.min)
             rows.append((say(CAUSES[cause]), *(Value(value, scale) for value in told)))
     labels = (say("mean"), say("RMS"), say("largest"), say("smallest"))

@@ -12,17 +12,16 @@ from equipoise.mechanism.outputs.spoken import body_named
 from equipoise.quantities import angle, told
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest
-from equipoise.signals import figures, highest_at
+from equipoise.signals import highest_at
 
 
 def belt_blocks(forces: Forces) -> Iterator[Block]:
     """Strands of all belts."""
-    theta = forces.motion.crank_angle
     rows: list[tuple[Cell, ...]] = []
     for belt in forces.belts.values():
         ends = f"{body_named(belt.by)} → {body_named(belt.on)}"
         for strand, tension in ((say("left"), belt.left), (say("right"), belt.right)):
-            found = figures(theta, tension)
+            found = forces.motion.figures(tension)
             cells = (Value(found.mean), Value(found.rms), largest(found), smallest(found))
             rows.append((strand, ends, *cells))
     labels = (say("mean"), say("RMS"), say("largest"), say("smallest"))

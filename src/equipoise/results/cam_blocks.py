@@ -15,7 +15,6 @@ from equipoise.mechanism.outputs.spoken import body_named
 from equipoise.quantities import PER_RPM, angle, told
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest
-from equipoise.signals import figures
 
 if TYPE_CHECKING:
     from equipoise.mechanism.assembly.joints import Structure
@@ -28,16 +27,17 @@ def cam_blocks(analysis: Analysis) -> Iterator[Block]:
     if not analysis.machine.cams:
         return
     rows: list[tuple[Cell, ...]] = []
+    motion, solved = analysis.resolved.motion, analysis.resolved.solved
     limited = any(one.lift_off_speed is not None for one in analysis.cams.values())
     for name, one in analysis.cams.items():
-        steep = figures(analysis.crank_angle, abs(analysis.motion.pressure_angles[name]))
+        steep = motion.figures(abs(motion.pressure_angles[name]))
         row: tuple[Cell, ...] = (
             name.replace(" to ", " → "),
             Value(one.least_radius),
             largest(steep),
         )
-        if analysis.solved is not None:
-            force = figures(analysis.crank_angle, analysis.solved.cams[name].normal)
+        if solved is not None:
+            force = motion.figures(solved.cams[name].normal)
             speed = one.lift_off_speed
             limit = None if speed is None else Value(speed, at=one.lift_off_at)
             row = (*row, smallest(force), largest(force), limit)

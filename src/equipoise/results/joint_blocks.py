@@ -14,7 +14,6 @@ from equipoise.mechanism.outputs.spoken import body_named, joint_named
 from equipoise.quantities import Display, display
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest
-from equipoise.signals import figures
 
 if TYPE_CHECKING:
     from equipoise.mechanism.dynamics.forces import Forces
@@ -38,7 +37,7 @@ def springs_table(analysis: Analysis) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for number, one in analysis.motion.springs.items():
         spring = analysis.machine.springs[int(number) - 1]
-        length, pull = (figures(analysis.crank_angle, values) for values in (one.length, one.pull))
+        length, pull = map(analysis.motion.figures, (one.length, one.pull))
         ends = f"{spring.point} → {spring.to}"
         rows.append((number, ends, *(f(x) for x in (length, pull) for f in (smallest, largest))))
     heads = (say("shortest"), say("longest")), (say("smallest pull"), say("largest"))
@@ -66,6 +65,7 @@ def display_of_joints(analysis: Analysis) -> Display:
 
 def joint_table(analysis: Analysis) -> Table:
     """The force in every joint, mesh and bearing."""
+    analysis = analysis.resolved
     forces = analysis.forces
     joints: dict[str, JointForce] = forces.solved.contacts
     across = forces.across if analysis.machine.has_planes else None
@@ -95,7 +95,7 @@ MOMENT, TILTING = to_say("moment"), to_say("tilting moment")
 
 def _told(analysis: Analysis, joint: JointForce) -> tuple[Cell, ...]:
     """Which bodies it is between, and mean, RMS and largest of a force."""
-    found = figures(analysis.crank_angle, joint.size)
+    found = analysis.motion.figures(joint.size)
     ends = f"{body_named(joint.by)} → {body_named(joint.on)}"
     return ends, Value(found.mean), Value(found.rms), largest(found)
 

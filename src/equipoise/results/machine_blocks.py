@@ -13,7 +13,7 @@ from equipoise.mechanism.outputs.spoken import body_named
 from equipoise.mechanism.parts.bodies import inertia_of, together
 from equipoise.quantities import Dimension, Display, angle, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
-from equipoise.signals import Array, Figures, figures
+from equipoise.signals import Array, Figures
 
 if TYPE_CHECKING:
     from equipoise.mechanism.dynamics.assessment import FourBar
@@ -276,13 +276,13 @@ def angles_told(analysis: Analysis) -> str:
 
 def points_table(analysis: Analysis) -> Iterator[Table]:
     """Places of moving points, and how fast they become; nothing where there are none."""
-    theta = analysis.crank_angle
+    motion = analysis.resolved.motion
     rows: list[tuple[Cell, ...]] = []
-    for name, point in analysis.motion.points.items():
+    for name, point in motion.points.items():
         if name in analysis.machine.frame:
             continue
         reach = float(np.max(np.abs(point.place)))
-        tops = (figures(theta, np.abs(v)) for v in (point.velocity, point.acceleration_vector))
+        tops = (motion.figures(np.abs(v)) for v in (point.velocity, point.acceleration_vector))
         rows.append((name, span(point.x, reach), span(point.y, reach), *map(largest, tops)))
     columns = (
         "",

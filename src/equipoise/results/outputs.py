@@ -19,9 +19,10 @@ from equipoise.mechanism.dynamics.undecided import refuse_unbounded
 from equipoise.mechanism.kinematics.stroke_figures import DeadPosition, Stroke, declared_figures
 from equipoise.mechanism.outputs.declared import DECLARED, GROUPS, Declared, declared
 from equipoise.quantities import SI, Dimension, Display, display
-from equipoise.signals import Array, Figures, Periodic, figures
+from equipoise.signals import Array, Figures, Periodic
 
 if TYPE_CHECKING:
+    from equipoise.mechanism.kinematics.motion import Motion
     from equipoise.mechanism.parts.balance import Objective
 
 FAR = 5.0
@@ -73,6 +74,12 @@ class Output:
         """(N,) over the crank angles."""
         return self.declared.values(self.analysis, self.item)
 
+    @cached_property
+    def resolved(self) -> Array:
+        """(M,) over the crank angles that resolve where forces jump; the values without jumps."""
+        whole = self.analysis.resolved
+        return self.values if whole is self.analysis else self.declared.values(whole, self.item)
+
     @property
     def drawn(self) -> Array:
         """The values (N,) without those that are far beyond the others, where it has no bound."""
@@ -89,12 +96,14 @@ class Output:
     @cached_property
     def figures(self) -> Figures:
         """Mean, RMS, peak and extremes."""
-        return figures(self.analysis.crank_angle, self.values)
+        motion: Motion = self.analysis.resolved.motion
+        return motion.figures(self.resolved)
 
     @cached_property
     def periodic(self) -> Periodic:
         """The values by order; the crank angles must be those of a whole cycle."""
-        return Periodic.of(self.values, self.analysis.motion.turns)
+        motion: Motion = self.analysis.resolved.motion
+        return motion.periodic(self.resolved)
 
 
 class Outputs:

@@ -20,6 +20,7 @@ import numpy as np
 from equipoise.errors import ModelError, ResponseError
 from equipoise.mechanism.dynamics.forces import Forces, forces
 from equipoise.mechanism.formulas.kernels import cross
+from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.planes import moments_across
@@ -45,12 +46,22 @@ DEFAULT_EXCITATION_MODEL: ExcitationModel = "moment"
 gives 0 for a support that pitches about the crank's axis, however hard it is shaken."""
 
 ANGLES = 720
-"""Crank angles in a turn from which orders are taken; more where loads may set in at once."""
+"""Crank angles in a turn from which orders are taken; more where loads have kinks."""
 SINGULAR = 1e10
 """Condition of an order's equations above which it meets an undamped mode."""
 
 
 # -- what the linkages do --------------------------------------------------------------------------
+
+
+def motion_of(machine: Machine) -> Motion:
+    """Motion of one linkage at constant speed, from which orders are taken, jumps resolved."""
+    planting = machine.planting
+    sharp = bool(machine.loads) or (planting is not None and planting.soil is not None)
+    usual = resolved(move(machine, ANGLES, acceleration=0.0))
+    if usual.sampling is None and sharp:  # tables have kinks, whose orders fall slowly
+        return move(machine, ANGLES * 8, acceleration=0.0)
+    return usual
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +80,7 @@ class Excitation:
 
     @cached_property
     def motion(self) -> Motion:
-        sudden = bool(self.machine.loads) or self._in_soil
-        return move(self.machine, ANGLES * (8 if sudden else 1), acceleration=0.0)
+        return motion_of(self.machine)
 
     @property
     def _in_soil(self) -> bool:
@@ -102,7 +112,7 @@ class Excitation:
 
     @cached_property
     def _spread(self) -> Array:
-        return spread(self.machine, self.motion.crank_angle)
+        return spread(self.motion)
 
     @cached_property
     def weights(self) -> list[tuple[Array, Array]]:
@@ -171,7 +181,7 @@ class Excitation:
     def _on_pivot(self, speed: float) -> Periodic:
         """What one linkage does, as `about_reference` takes it; (5, K + 1)."""
         if self._in_soil:
-            return Periodic.of(self._signals(self.motion.at(speed)), self.motion.turns)
+            return self.motion.periodic(self._signals(self.motion.at(speed)))
         still, moving = self._parts
         return Periodic(still + speed**2 * moving, self.motion.turns)
 
@@ -179,7 +189,7 @@ class Excitation:
     def _parts(self) -> tuple[Array, Array]:
         """What does not depend on the speed, and what grows with its square."""
         still, moving = (self._signals(self.motion.at(speed)) for speed in (0.0, 1.0))
-        both = Periodic.of(np.stack([still, moving - still]), self.motion.turns)
+        both = self.motion.periodic(np.stack([still, moving - still]))
         return both.amplitudes[0], both.amplitudes[1]
 
     def _signals(self, motion: Motion) -> Array:

@@ -163,18 +163,18 @@ def _power(motion: Motion, demands: Mapping[str, Demand]) -> Array:
     return total
 
 
-def spread(machine: Machine, theta: Array) -> Array:
+def spread(motion: Motion) -> Array:
     """Mean mass matrix (6, 6) of the links of one row about the frame's origin, in its plane 0.
 
     Coordinates as in `vibration.body`.  Links are flat: their own inertia about the lateral axis
     is twice that about an axis in the plane, in the mean over directions.
     """
-    motion = move(machine, theta)
+    machine = motion.machine
     total = np.zeros((6, 6))
     for mass, own, place, *_ in _bodies(motion, 0j):
         x, y = place.real, place.imag
-        xx, yy, xy = (float(np.mean(v)) * mass for v in (x * x, y * y, x * y))
-        sx, sy = float(np.mean(x)) * mass, float(np.mean(y)) * mass
+        xx, yy, xy = (float(motion.mean(v)) * mass for v in (x * x, y * y, x * y))
+        sx, sy = float(motion.mean(x)) * mass, float(motion.mean(y)) * mass
         total[:3, :3] += mass * np.eye(3)
         total[:3, 3:] += np.array([[0, 0, -sy], [0, 0, sx], [sy, -sx, 0]])
         total[3:, 3:] += np.array(
@@ -194,7 +194,7 @@ def _spread_across(motion: Motion) -> Array:
         mz, moment = moments_across(link, anchor)
         zz = sum(mass * z**2 for mass, _, z in masses_of(link))
         center = motion.state[p(anchor)[0]] * mz + motion.state[u(name)[0]] * moment
-        mean = complex(np.mean(center))
+        mean = complex(motion.mean(center + np.zeros(len(motion.crank_angle))))
         total[:3, 3:] += np.array([[0, mz, 0], [-mz, 0, 0], [0, 0, 0]])
         zx, yz = -mean.real, -mean.imag
         total[3:, 3:] += np.array([[zz, 0, zx], [0, zz, yz], [zx, yz, 0]])

@@ -120,7 +120,7 @@ def force_amplitudes(linear: Linear, speed: float) -> Array:
 def _torque(linear: Linear, speed: float) -> Periodic:
     """Torque on all cranks on solid ground."""
     motion = linear.excitation.motion.at(speed)
-    one = Periodic.of(forces(motion).drive_torque, motion.turns)
+    one = motion.periodic(forces(motion).drive_torque)
     return reduce(add, (one.shifted(row.phase) for row in rows_of(linear.body.machine)))
 
 

@@ -12,6 +12,7 @@ from equipoise.errors import ResponseError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.forces import forces
+from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.machine import Drive, Machine
@@ -303,8 +304,8 @@ def motor_setting(machine: Machine, speed: float) -> tuple[float, float]:
     motor = machine.drive.motor
     assert motor is not None
     sense = float(np.sign(speed))
-    of_row = forces(move(machine, SAMPLES, speed, 0.0)).drive_torque
-    torque = float(np.mean(of_row)) * len(rows_of(machine))
+    motion = resolved(move(machine, SAMPLES, speed, 0.0))
+    torque = float(motion.mean(forces(motion).drive_torque)) * len(rows_of(machine))
     own = speed_at(motor, sense * torque / motor.ratio)
     if motor.mean_speed == "free":
         return sense * own / motor.ratio, 0.0

@@ -12,6 +12,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.i18n import Note, speaking
+from equipoise.mechanism.kinematics.motion import move
 from equipoise.present.cells import grid, noted, printed
 from equipoise.present.composition import balance_blocks
 from equipoise.present.pictures import pictures
@@ -36,7 +37,7 @@ def test_shares_of_links_follow_from_masses_and_accelerations():
         for name, center in motion.mass_centers.items()
     }
     whole = sum(pulls.values())
-    by_link = shares(found.analysis.forces.split.by_link("shaking_force"))
+    by_link = shares(found.analysis.forces.split.by_link("shaking_force"), motion)
     for name, pull in pulls.items():
         expected = np.vdot(whole, pull).real / np.vdot(whole, whole).real
         assert by_link[name] == pytest.approx(expected, rel=1e-9)
@@ -45,10 +46,11 @@ def test_shares_of_links_follow_from_masses_and_accelerations():
 
 
 def test_parts_that_cancel_but_for_rounding_have_no_shares() -> None:
-    turning = np.exp(1j * np.arange(8))
+    turning, motion = np.exp(1j * np.arange(8)), move(eq.load("yamashita-1"), 8)
     parts = {"one": turning, "other": -turning * (1 + 1e-15)}
-    assert shares(parts) == {"one": 0.0, "other": 0.0}
-    assert shares({"one": turning, "other": 0 * turning}) == {"one": pytest.approx(1), "other": 0.0}
+    assert shares(parts, motion) == {"one": 0.0, "other": 0.0}
+    alone = shares({"one": turning, "other": 0 * turning}, motion)
+    assert alone == {"one": pytest.approx(1), "other": 0.0}
 
 
 def test_cycles_are_told_of_drives_without_a_crank() -> None:

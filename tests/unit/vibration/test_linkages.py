@@ -198,8 +198,8 @@ def test_no_loads() -> None:
 def test_spread_in_the_plane_is_the_mean_of_the_sums(name: str) -> None:
     """About the frame's origin: mass, first moment and moment of inertia."""
     machine = machine_of(name)
-    theta = eq.move(machine, 360).crank_angle
-    found, mean = spread(machine, theta), sums(machine, theta, 0j, 1.0)
+    motion = eq.move(machine, 360)
+    found, mean = spread(motion), sums(machine, motion.crank_angle, 0j, 1.0)
     first = np.mean(mean.first)
     wanted = [
         [mean.mass, 0, -first.imag],
@@ -215,8 +215,7 @@ def test_spread_in_space_is_the_mean_energy() -> None:
     machine = eq.load("yamashita-1")
     for name in machine.links:
         machine = machine.with_link(name, inertia=0.0)
-    theta = eq.move(machine, 90).crank_angle
-    motion = eq.move(machine, theta)
+    motion = eq.move(machine, 90)
     rate = np.random.default_rng(0).normal(size=6)
     energy = 0.0
     for name, link in machine.links.items():
@@ -224,14 +223,13 @@ def test_spread_in_space_is_the_mean_energy() -> None:
         places = np.stack([center.real, center.imag, 0 * center.real], axis=-1)
         velocity = rate[:3] + np.cross(rate[3:], places)
         energy += (link.mass or 0.0) * float(np.mean(np.sum(velocity**2, axis=1))) / 2
-    assert rate @ spread(machine, theta) @ rate / 2 == pytest.approx(energy)
+    assert rate @ spread(motion) @ rate / 2 == pytest.approx(energy)
 
 
 def test_a_flat_link_has_half_its_inertia_about_an_axis_in_its_plane() -> None:
     plain, heavy = eq.load("yamashita-1"), eq.load("yamashita-1")
     heavy = heavy.with_link("rocker", inertia=(plain.links["rocker"].inertia or 0) + 0.4)
-    theta = eq.move(plain, 90).crank_angle
-    more = spread(heavy, theta) - spread(plain, theta)
+    more = spread(eq.move(heavy, 90)) - spread(eq.move(plain, 90))
     np.testing.assert_allclose(more, np.diag([0, 0, 0, 0.2, 0.2, 0.4]), atol=1e-12)
 
 

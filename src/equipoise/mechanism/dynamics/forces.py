@@ -137,7 +137,9 @@ class Forces(Exerted):
     def work(self) -> dict[str, float]:
         """Work of each drive in a cycle, J; crank angles have to be those of a whole cycle."""
         angle = 2 * np.pi * self.motion.turns * np.sign(self.motion.speed)
-        return {link: float(np.mean(one) * angle) for link, one in self._work_by_angle.items()}
+        return {
+            link: float(self.motion.mean(one) * angle) for link, one in self._work_by_angle.items()
+        }
 
     @cached_property
     def _work_by_angle(self) -> dict[str, Array]:

@@ -11,10 +11,8 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.parts.force_elements import ROUNDING
 from equipoise.mechanism.parts.machine import Load, LoadTable, Machine
-
-ROUNDING = 1e-9
-"""rad: a window includes its first crank angle and excludes its last, whatever their rounding."""
 
 
 def _interpolated(load: Load, table: LoadTable, crank_angle: Array) -> list[Array]:
@@ -102,8 +100,7 @@ def _edges(load: Load, turns: int) -> Array:
     if load.table is not None:
         again = np.arange(0.0, cycle - 1.0, 2 * pi * load.table.turns)
         found.append(np.add.outer(again, load.table.crank_angle).ravel())
-    if load.start is not None and load.stop is not None:
-        again = np.arange(0.0, cycle - 1.0, 2 * pi)
-        found.append(np.add.outer(again, [load.start, load.stop]).ravel())
+    for angle, every in load.jumps:
+        found.append(np.arange(0.0, cycle - 1.0, 2 * pi * every) + angle)
     angles = np.concatenate(found)
     return np.unique(np.append(np.mod(angles, cycle), cycle))

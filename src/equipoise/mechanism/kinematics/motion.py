@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise import signals
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism.assembly.builder import Group
 from equipoise.mechanism.assembly.cam_fits import Fit, fits_of, pressure_angle
@@ -24,6 +25,7 @@ from equipoise.mechanism.kinematics.rates import LinkMotion, PointMotion, Slider
 from equipoise.mechanism.kinematics.swinging import middle_angle, solve_swinging
 from equipoise.mechanism.parts.machine import Drive, FurtherDrive, Machine, Slider, Spring
 from equipoise.quantities.units import HUGE
+from equipoise.signals import Figures, JumpSampling, Periodic
 
 MOST_ANGLES = 400_000
 """In one analysis; it takes about a kilobyte for each crank angle and link."""
@@ -35,9 +37,10 @@ class Motion:
 
     crank_angle : (N,) rad.
     speed, acceleration : of the crank, rad/s and rad/s2.
-    whole_cycle : whether the crank angles are equally spaced over the whole cycle, so that means
-        over them are means over time.
+    whole_cycle : whether the crank angles are equally spaced over the whole cycle, or those of a
+        sampling of it, so that `mean` is the mean over time.
     state : every value of the steps, by the names told in `mechanism.assembly.steps`.
+    sampling : whose crank angles these are; None where it is an equally spaced grid, or any angles.
     """
 
     linkage: Linkage
@@ -46,6 +49,7 @@ class Motion:
     acceleration: float
     whole_cycle: bool
     state: State
+    sampling: JumpSampling | None = None
 
     @property
     def machine(self) -> Machine:
@@ -55,6 +59,39 @@ class Motion:
     def turns(self) -> int:
         """Turns of the crank in one cycle."""
         return self.linkage.cycle.turns
+
+    @property
+    def shares(self) -> Array | None:
+        """Share (N,) of each crank angle in a mean; None where they are equal."""
+        return None if self.sampling is None else self.sampling.shares
+
+    def mean(self, values: Array) -> Array:
+        """Mean (...) over the cycle of values (..., N); crank angles have to be of a whole one."""
+        return signals.mean(values, self.shares)
+
+    def figures(self, values: Array) -> Figures:
+        """Mean, RMS and extremes of values (N,)."""
+        return self.figures_of_each(values[None])[0]
+
+    def figures_of_each(self, values: Array) -> list[Figures]:
+        """Mean, RMS and extremes of each of several signals (M, N)."""
+        if self.sampling is None:
+            return signals.figures_of_each(self.crank_angle, values)
+        return self.sampling.figures_of_each(values)
+
+    def shown(self, values: Array) -> tuple[Array, Array]:
+        """Crank angles, rad, and values (M,) of values (N,) that curves go through, of a sampling
+        its grid and both sides of jumps.
+        """
+        if self.sampling is None:
+            return self.crank_angle, values
+        return self.sampling.at[self.sampling.shown], values[self.sampling.shown]
+
+    def periodic(self, values: Array) -> Periodic:
+        """Values (..., N) over a whole cycle by order."""
+        if self.sampling is None:
+            return Periodic.of(values, self.turns)
+        return self.sampling.periodic(values)
 
     def at(self, speed: float | None = None, acceleration: float | None = None) -> Motion:
         """The same positions at another speed (rad/s) or acceleration (rad/s2) of the crank."""

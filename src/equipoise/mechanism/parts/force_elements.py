@@ -34,8 +34,13 @@ MEAN_SPEEDS = ("held", "free")
 OUTSIDE = ("zero", "hold", "wrap")
 TURN = 2 * pi * (1 + 1e-12)
 """rad: a whole turn, rounding included."""
+ROUNDING = 1e-9
+"""rad: a window includes its first crank angle and excludes its last, whatever their rounding."""
 NEARLY = 1e-4
 """rad: by how much the last digit of a table's angles may miss a whole turn."""
+STEP_WIDTH, STEP_SHARE = 2 * pi / 1800, 0.01
+"""rad, and share of a table's largest value: rows no farther apart, between which a column changes
+by more, are a step, for which a table has no other way: its crank angles rise from row to row."""
 SAME_LOAD = 1e-6
 """Share of a table's largest value by which what is given twice may differ."""
 MOST_TURNS = 100
@@ -69,6 +74,16 @@ class LoadTable(Frozen):
     def covers(self) -> bool:
         """Whether the rows tell the load at every crank angle."""
         return self.span >= 2 * pi * self.turns - NEARLY
+
+    @property
+    def steps(self) -> Iterator[float]:
+        """Crank angles of the rows between which it changes suddenly, rad."""
+        rows = [*zip(self.crank_angle, zip(*self.values, strict=True), strict=True)]
+        largest = max((abs(value) for column in self.values for value in column), default=0.0)
+        for (begin, one), (end, other) in pairwise(rows):
+            change = max(abs(b - a) for a, b in zip(one, other, strict=True))
+            if end - begin <= STEP_WIDTH and change > STEP_SHARE * largest:
+                yield from (begin, end)
 
 
 @declared
@@ -126,10 +141,20 @@ class Load(Frozen):
     )
 
     @property
-    def jumps(self) -> bool:
-        """Whether it sets in or ends suddenly."""
-        gap = self.table is not None and not self.table.covers and self.outside != "wrap"
-        return gap or self.start is not None
+    def jumps(self) -> tuple[tuple[float, int], ...]:
+        """Where it sets in, ends or changes suddenly: crank angle, rad, and the turns of the crank
+        after which it does so again.
+        """
+        found, table = [], self.table
+        if self.start is not None and self.stop is not None:
+            rest = (self.stop - self.start) % (2 * pi)
+            if min(rest, 2 * pi - rest) > ROUNDING:
+                found += [(self.start, 1), (self.stop, 1)]
+        if table is not None:
+            if not table.covers and self.outside != "wrap":
+                found += [(table.crank_angle[0], table.turns), (table.crank_angle[-1], table.turns)]
+            found += [(angle, table.turns) for angle in table.steps]
+        return tuple(dict.fromkeys(found))
 
 
 @declared

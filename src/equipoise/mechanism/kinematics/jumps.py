@@ -1,0 +1,141 @@
+"""Crank angles at which forces jump, and motions that are taken piece by piece between them.
+
+Loads, motion laws and soil say themselves where they set in, end or change suddenly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from functools import partial
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.mechanism.assembly.steps import Array
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.kinematics.tip import crossings, surface_of
+from equipoise.mechanism.parts.cams import Cam
+from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.signals import JumpSampling
+
+ANGLES = 720
+"""In a turn, between two of which a cam passes a knot of its law, or a tip the soil's surface, once
+at most."""
+SAME = 1e-9
+"""rad, within which jumps are one."""
+ACCELERATION = 2
+"""Order of the derivative of a motion law that forces follow from."""
+
+
+def jumps_of(linkage: Linkage) -> Array:
+    """Crank angles (J,) within the cycle of one row at which forces may jump, rising, rad.
+
+    Raises
+    ------
+    MotionError : the crank cannot turn fully.
+    """
+    known: Array | None = linkage.__dict__.get("_jumps")
+    if known is None:
+        known = np.empty(0)
+        if may_jump(linkage.machine):
+            turns = linkage.cycle.turns
+            every = [*declared_jumps(linkage.machine, turns), *_jumps_on_the_way(linkage)]
+            known = _within(every, turns)
+        linkage.__dict__["_jumps"] = known
+    return known
+
+
+def jumps_of_rows(linkage: Linkage) -> Array:
+    """Crank angles (J,) of the first row, rising, rad, at which forces in any row may jump."""
+    found, machine = jumps_of(linkage), linkage.machine
+    return of_rows(machine, found, linkage.cycle.turns) if len(found) else found
+
+
+def of_rows(machine: Machine, jumps: Array, turns: int) -> Array:
+    """Crank angles of the first row, rising, rad, at which any row is where one row jumps (J,)."""
+    phases = [row.phase for row in machine.rows] or [0.0]
+    return _within([np.subtract.outer(jumps, phases).ravel()], turns)
+
+
+def may_jump(machine: Machine) -> bool:
+    """Whether there is anything that jumps, as far as is known without motion."""
+    laws = [*machine.laws.values(), *(cam.law for cam in machine.cams)]
+    soil = machine.planting is not None and machine.planting.soil is not None
+    return (
+        soil
+        or any(load.jumps for load in machine.loads)
+        or any(len(law.jumps(ACCELERATION)) for law in laws)
+    )
+
+
+def declared_jumps(machine: Machine, turns: int) -> Iterator[Array]:
+    """Crank angles, rad, in so many turns at which loads and the laws of drives jump."""
+    for load in machine.loads:
+        for angle, every in load.jumps:
+            yield angle + 2 * pi * np.arange(0, turns, every)
+    for law in machine.laws.values():
+        again = 2 * pi * np.arange(0, turns, law.turns)
+        yield np.add.outer(again, law.jumps(ACCELERATION)).ravel()
+
+
+def _within(every: Iterable[Array], turns: int) -> Array:
+    """Crank angles of a cycle, each once, rising, rad."""
+    angles = np.concatenate([np.empty(0), *every])
+    found = np.sort(np.mod(angles + SAME, 2 * pi * turns)) - SAME
+    return np.maximum(found[np.diff(found, prepend=-1.0) > SAME], 0.0)
+
+
+def resolved(motion: Motion) -> Motion:
+    """A motion over a whole cycle at crank angles that resolve its jumps; itself without any."""
+    if not motion.whole_cycle or motion.sampling is not None:
+        return motion
+    jumps = jumps_of_rows(motion.linkage)
+    if not len(jumps):
+        return motion
+    sampling = JumpSampling.of(motion.crank_angle, motion.turns, jumps)
+    moved = move(motion.machine, sampling.crank_angle, motion.speed, motion.acceleration)
+    return replace(moved, whole_cycle=True, sampling=sampling)
+
+
+def _jumps_on_the_way(linkage: Linkage) -> Iterator[Array]:
+    """Crank angles at which cams come to knots of their laws, and tips pass the soil's surface."""
+    machine = linkage.machine
+    for cam in machine.cams:
+        yield from _knots(linkage, cam)
+    if machine.planting is not None and machine.planting.soil is not None:
+        surface = surface_of(machine)
+        for arm in machine.planting.every_arm:
+            yield _crossed(linkage, partial(_height, arm.tip, surface))
+
+
+def _height(tip: str, surface: float, motion: Motion) -> Array:
+    """Height (N,) of a tip over the soil's surface, m."""
+    return np.asarray(motion.points[tip].y - surface)
+
+
+def _knots(linkage: Linkage, cam: Cam) -> Iterator[Array]:
+    """Crank angles at which a cam has turned to a knot of its law."""
+    for knot in cam.law.jumps(ACCELERATION):
+        found = _crossed(linkage, partial(_beyond, cam, knot, np.sin))
+        if len(found):  # half a turn away the sine is 0, too
+            yield found[_beyond(cam, knot, np.cos, move(linkage.machine, found)) > 0]
+
+
+def _beyond(cam: Cam, knot: float, read: Callable[[Any], Any], motion: Motion) -> Array:
+    """Sine or cosine (N,) of the angle by which a cam has turned beyond a knot."""
+    ends = (cam.driver, cam.carrier)
+    driver, carrier = (0.0 if one == FRAME else motion.links[one].angle for one in ends)
+    return np.asarray(read(driver - carrier - knot))
+
+
+def _crossed(linkage: Linkage, read: Callable[[Motion], Array]) -> Array:
+    """Crank angles of a cycle at which what is read of a motion passes zero."""
+
+    def signal(theta: Array) -> Array:
+        return np.reshape(read(move(linkage.machine, theta.ravel())), theta.shape)
+
+    turns = linkage.cycle.turns
+    return crossings(signal, np.linspace(0.0, 2 * pi * turns, ANGLES * turns + 1))
