@@ -10,18 +10,20 @@ phi_k); peaks are looked for on the signal itself, as the largest of all its top
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from math import pi
 from typing import Any, Literal
 
 import numpy as np
 
+from equipoise.balancing.jumping_rows import JumpingRows, smoothed
 from equipoise.balancing.levers import lever, signals_of_row
 from equipoise.balancing.objectives import read_rows
 from equipoise.errors import UsageError
 from equipoise.mechanism.dynamics.forces import forces
+from equipoise.mechanism.kinematics.jumps import jumps_of
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.balance import Measure, Objective
 from equipoise.mechanism.parts.machine import Machine
@@ -29,7 +31,7 @@ from equipoise.mechanism.parts.objectives import GAUGES, output_of, wrong_object
 from equipoise.results.analysis import Analysis
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.forced import chosen_model, steady_speed
-from equipoise.vibration.linear import ANGLES, Linear, gauges_of
+from equipoise.vibration.linear import Linear, gauges_of, motion_of
 from equipoise.vibration.linkages import rows_of
 
 Combine = Literal["sum", "squares"]
@@ -54,10 +56,12 @@ class RowSignals:
     amplitudes : complex (V, m, C, K + 1) of V speeds, m rows, C components (two of a vector) and
         the orders 0 to K of the period, in the output's unit.
     turns : of the crank in one period.
+    jumping : the same as functions of the crank angle, where forces jump and all orders count.
     """
 
     amplitudes: Array
     turns: int = 1
+    jumping: JumpingRows | None = None
 
     @property
     def orders(self) -> Array:
@@ -83,7 +87,8 @@ class RowSignals:
 
     def alone(self, row: int) -> RowSignals:
         """What one row does without the others."""
-        return RowSignals(self.amplitudes[:, row : row + 1], self.turns)
+        jumping = None if self.jumping is None else self.jumping.alone(row)
+        return RowSignals(self.amplitudes[:, row : row + 1], self.turns, jumping)
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,31 +124,42 @@ class Rows:
         else:
             rows, signal = rows_of(self.machine), self._alike(output) or self._one
             levers = np.ones((len(rows), 1, 1))
+            read: Callable[[Motion], Array] = partial(self._read, output)
             if signal is self._one:
-                about, motion = objective.about, self._motion
+                about, motion, read = objective.about, self._motion, signals_of_row
                 levers = np.array([lever(motion, output, row, about) for row in rows])
-            found = RowSignals((levers @ signal.amplitudes)[None], signal.turns)
+            amplitudes, jumping = (levers @ signal.amplitudes)[None], None
+            if len(jumps := jumps_of(self._motion.linkage)):
+
+                def at(theta: Array) -> Array:
+                    return np.asarray(levers @ read(move(self.machine, theta, acceleration=0.0)))
+
+                jumping = JumpingRows.of(at, jumps, signal.turns)
+            found = RowSignals(amplitudes, signal.turns, jumping)
         return found.kept(objective.orders)
 
     @cached_property
     def _motion(self) -> Motion:
-        planting = self.machine.planting
-        sudden = bool(self.machine.loads) or (planting is not None and planting.soil is not None)
-        return move(self.machine, ANGLES * (8 if sudden else 1), acceleration=0.0)
+        return motion_of(self.machine)
 
     @cached_property
     def _one(self) -> Periodic:
         """Signals of one row (8, K + 1), each cut off where its own rounding begins."""
-        each, turns = signals_of_row(self._motion), self._motion.turns
-        return Periodic(_padded([Periodic.of(one, turns).amplitudes for one in each]), turns)
+        motion = self._motion
+        each = [motion.periodic(one).amplitudes for one in signals_of_row(motion)]
+        return Periodic(_padded(each), motion.turns)
 
     def _alike(self, output: str) -> Periodic | None:
         """A signal (1, K + 1) that is the same wherever its row is, such as the drive torque."""
         one = output_of(output, self.machine)
         if one.needs == "rows" or one.about or one.part:
             return None
-        values = one.values(Analysis(self._motion, forces(self._motion)), one.item_of(output) or "")
-        return Periodic.of(values[None], self._motion.turns)
+        return self._motion.periodic(self._read(output, self._motion))
+
+    def _read(self, output: str, motion: Motion) -> Array:
+        """An output (1, N) of one row that is the same wherever the row is."""
+        one = output_of(output, self.machine)
+        return one.values(Analysis(motion, forces(motion)), one.item_of(output) or "")[None]
 
     def _gauge(self, name: str, speeds: Sequence[float]) -> RowSignals:
         chosen_model(self.machine, None, False)  # refuses a machine without a support
@@ -186,7 +202,24 @@ class Term:
 
     def values(self, phases: Array) -> Array:
         """Value (...) at phases (..., m), rad; of several speeds the loudest."""
+        if self.jumping is not None:
+            return self.jumping.values(np.asarray(phases), self.measure)
         return np.asarray(np.max(self.each(self.signals.total(phases)), axis=-1))
+
+    @property
+    def jumping(self) -> JumpingRows | None:
+        """The rows as functions of the crank angle, where extremes are measured that may jump."""
+        return self.signals.jumping if self.measure in ("peak", "peak_to_peak") else None
+
+    @property
+    def smoothed(self) -> Term:
+        """A term of few orders that is nowhere larger; itself where nothing jumps."""
+        if self.jumping is None:
+            return self
+        signals = RowSignals(
+            smoothed(self.signals.amplitudes, self.signals.turns), self.signals.turns
+        )
+        return replace(self, signals=signals)
 
     def each(self, total: Array) -> Array:
         """Measure (...) of signals by their orders (..., C, K + 1)."""
@@ -272,6 +305,12 @@ class Cost:
         if self.combine == "sum" or len(parts) == 1:
             return np.asarray(sum(parts) + beyond)
         return np.asarray(np.sqrt(sum(part**2 for part in parts)) + beyond)
+
+    @property
+    def smoothed(self) -> Cost:
+        """A cost that is nowhere larger, of terms that do not jump."""
+        terms, limits = (tuple(one.smoothed for one in some) for some in (self.terms, self.limits))
+        return replace(self, terms=terms, limits=limits)
 
     @property
     def whole(self) -> float:

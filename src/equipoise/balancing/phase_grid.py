@@ -139,10 +139,14 @@ class Grid:
 
     def _by_samples(self, term: Term) -> Callable[[Array], Array]:
         """Value (B,) of numbers of steps (B, m), by samples of the signal."""
-        phases = np.arange(self.levels) * self.step
-        turned = term.signals.turned(np.repeat(phases[:, None], self.cost.rows, axis=1))
+        phases = np.repeat(np.arange(self.levels)[:, None] * self.step, self.cost.rows, axis=1)
         theta = np.arange(self._samples) * (2 * np.pi / self._samples)
-        samples = synthesis(turned, theta).astype(np.float32)
+        if term.jumping is None:
+            samples = synthesis(term.signals.turned(phases), theta)
+        else:  # (levels, 1, m, C, samples), as the other
+            angles = np.broadcast_to(theta * term.signals.turns, (self.levels, self._samples))
+            samples = np.transpose(term.jumping.each(phases, angles), (1, 0, 3, 2))[:, None]
+        samples = samples.astype(np.float32)
 
         def judge(levels: Array) -> Array:
             values = np.asarray(sum(samples[levels[:, k], :, k] for k in range(self.cost.rows)))

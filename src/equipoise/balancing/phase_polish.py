@@ -10,6 +10,7 @@ phases, since the signal is level there.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -36,6 +37,8 @@ CURVED, LEAP = 6, 0.05
 """Times that tops are looked for anew and followed; change of a phase meanwhile, rad."""
 REACH = 0.1
 """How far a top may move meanwhile, rad."""
+FINEST, MORE_WAYS = 1e-6, 6
+"""rad: least step of a search without slopes; ways by chance that it tries."""
 TINY = 1e-300
 
 
@@ -44,8 +47,42 @@ def polished(cost: Cost, phases: Array, step: float) -> Array:
 
     step : of the grid, rad.
     """
+    if any(term.jumping is not None for term in cost.measured):
+        phases = _compass(cost, phases, step)
+        phases = _compass(cost, _better(cost, phases, _by_tops(cost, phases, step)), step / 8)
+        return phases
     found = _newton(cost, phases) if cost.smooth else _by_tops(cost, phases, step)
+    return _better(cost, phases, found)
+
+
+def _better(cost: Cost, phases: Array, found: Array) -> Array:
     return found if cost.values(found) < cost.values(phases) else phases
+
+
+# -- jumps -----------------------------------------------------------------------------------------
+
+
+def _compass(cost: Cost, phases: Array, size: float) -> Array:
+    """Phases (m,) from which no step leads to anything better, in ever smaller steps from a size,
+    rad: of one row, of two, and some by chance.
+
+    Where jumps of two rows pass each other the peak itself jumps, which no slope foretells.
+    """
+    free, chance = len(phases) - 1, np.random.default_rng(1)
+    each = np.eye(free)
+    pairs = [a + sign * b for k, a in enumerate(each) for b in each[:k] for sign in (1, -1)]
+    known = np.vstack([each, *(one[None] for one in pairs)])
+    best, here = phases, float(cost.values(phases))
+    while size > FINEST:
+        ways = np.vstack([known, chance.normal(size=(MORE_WAYS, free))])
+        moves = np.pad(size * np.vstack([ways, -ways]), ((0, 0), (1, 0)))
+        values = cost.values(best + moves)
+        k = int(np.argmin(values))
+        if values[k] < here * (1 - GAIN):
+            best, here = best + moves[k], float(values[k])
+        else:
+            size /= 2
+    return best
 
 
 # -- mean squares ----------------------------------------------------------------------------------
@@ -237,20 +274,27 @@ class Tops:
     """Tops of a term's signals, to be followed while the phases change a little.
 
     places : speed -> crank angles (P,), rad, of tops and of bottoms, as far as the measure has use
-        for them.
+        for them; where signals jump, those of sides of jumps too, with the rows that these go with.
     """
 
     term: Term
-    places: tuple[tuple[Array, Array], ...]
+    places: tuple[tuple[Any, Any], ...]
 
     @classmethod
     def of(cls, term: Term, phases: Array) -> Tops:
         """All tops at phases (m,), rad."""
+        if (jumping := term.jumping) is not None:
+            return cls(term, ((jumping.anchors(phases, 1.0), jumping.anchors(phases, -1.0)),))
         signals = [Periodic(one, term.signals.turns) for one in term.signals.total(phases)]
         return cls(term, tuple((_looked_for(one, 1), _looked_for(one, -1)) for one in signals))
 
     def pieces(self, phases: Array) -> Pieces:
         """Values (P,) whose largest is the term's, and their slopes (P, m) by the phases (m,)."""
+        if (jumping := self.term.jumping) is not None:
+            ((first, second),) = self.places
+            high = jumping.followed(phases, first[0], first[1], 1.0)
+            low = jumping.followed(phases, second[0], second[1], -1.0)
+            return self._of_ends(high, low, jumping.is_vector)
         turned = self.term.signals.turned(phases)
         found = [self._of_speed(*each) for each in zip(turned, self.places, strict=True)]
         return np.concatenate([v for v, _ in found]), np.vstack([s for _, s in found])
@@ -264,11 +308,18 @@ class Tops:
         total = Periodic(np.sum(turned, axis=0), term.signals.turns)
         if term.measure == "area":
             return _area(total, slopes)
-        high, rising = _tops_with_slopes(total, slopes, places[0], 1)
-        if term.measure == "peak" and len(total.amplitudes) > 1:
+        high, low = (
+            _tops_with_slopes(total, slopes, each, sign)
+            for each, sign in zip(places, (1, -1), strict=True)
+        )
+        return self._of_ends(high, low, len(total.amplitudes) > 1)
+
+    def _of_ends(self, of_tops: Pieces, of_bottoms: Pieces, is_vector: bool) -> Pieces:
+        """Of tops, and of bottoms with their sign turned; a vector's size has tops alone."""
+        (high, rising), (low, falling) = of_tops, of_bottoms
+        if self.term.measure == "peak" and is_vector:
             return high, rising
-        low, falling = _tops_with_slopes(total, slopes, places[1], -1)
-        if term.measure == "peak":
+        if self.term.measure == "peak":
             return np.concatenate([high, low]), np.vstack([rising, falling])
         # The largest of all sums is that of the largest; low values come with their sign turned.
         both = (high[:, None] + low).ravel()

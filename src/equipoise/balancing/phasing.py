@@ -104,7 +104,8 @@ def choose_phases(
     search = PhaseSearch(machine, tuple(objectives), phases or Phases(), combine, tuple(limits))
     pool = search.pool(progress or (lambda done, total: None))
     found = search.best(pool)
-    proof = prove(search.cost, found, search.improved)
+    known = float(search.cost.values(found))
+    proof = prove(search.cost.smoothed, found, search.improved, least=known)
     if proof.phases is not found:
         found = search.best(np.vstack([pool, proof.phases]))
     for term in search.cost.limits:
