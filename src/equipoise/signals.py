@@ -21,6 +21,8 @@ Array = np.ndarray[Any, Any]
 
 LEAST_SAMPLES, SAMPLES_PER_ORDER, NEWTON_ROUNDS = 720, 8, 4
 """Samples in a turn among which the highest is looked for; steps from there to the top."""
+AT_ONCE = 2**22
+"""Products of an order and an angle that are held at a time: 64 MiB."""
 EQUAL, ROUNDING = 1e-9, 1e-12
 """Share of a signal's range within which tops are equal, and of its size that is rounding."""
 GAUSS_POINTS, LONGEST_PANEL = 16, pi / 4
@@ -209,8 +211,26 @@ def harmonics(samples: Array, orders: int | None = None) -> Array:
 
 def synthesis(amplitudes: Array, theta: Array) -> Array:
     """Values at angles theta (M,), rad, of complex amplitudes Y_0 ... Y_n; shape (..., M)."""
-    orders = np.arange(amplitudes.shape[-1])
-    return (amplitudes @ np.exp(1j * np.outer(orders, theta))).real
+    orders, theta = np.arange(amplitudes.shape[-1]), np.asarray(theta)
+    step = max(1, AT_ONCE // len(orders))
+    parts = [
+        (amplitudes @ np.exp(1j * np.outer(orders, theta[k : k + step]))).real
+        for k in range(0, max(len(theta), 1), step)
+    ]
+    return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=-1)
+
+
+def _folded_samples(amplitudes: Array, count: int) -> Array:
+    """Values (..., count), equally spaced over a period, of more orders than they tell apart.
+
+    At such angles order n is the same as n less any multiple of the count.
+    """
+    orders = amplitudes.shape[-1]
+    rounds = -(-orders // count)
+    missing = [(0, 0)] * (amplitudes.ndim - 1) + [(0, rounds * count - orders)]
+    padded = np.pad(amplitudes, missing).reshape(*amplitudes.shape[:-1], rounds, count)
+    values: Array = np.fft.ifft(padded.sum(axis=-2), axis=-1).real * count
+    return values
 
 
 @dataclass(frozen=True, eq=False)
@@ -264,7 +284,7 @@ class Periodic:
         half[..., 0] *= 2
         most = (count - 1) // 2
         if half.shape[-1] > most + 1:  # more orders than the samples can hold apart
-            return self.values(np.arange(count) * (self.period / count))
+            return _folded_samples(self.amplitudes, count)
         return np.fft.irfft(half, count, axis=-1) * count
 
     def shifted(self, phase: float) -> Periodic:
@@ -363,6 +383,12 @@ class Periodic:
 
     def _at(self, theta: Array) -> Array:
         """Value of each signal (...) at a crank angle of its own (...)."""
-        turning = np.exp(1j * np.multiply.outer(theta, self.orders))
-        value: Array = np.sum((self.amplitudes * turning).real, axis=-1)
-        return value
+        count = len(self.orders)
+        amplitudes, flat = self.amplitudes.reshape(-1, count), np.ravel(theta)
+        step = max(1, AT_ONCE // count)
+        value = np.empty(len(flat))
+        for k in range(0, len(flat), step):
+            some = slice(k, k + step)
+            turning = np.exp(1j * np.multiply.outer(flat[some], self.orders))
+            value[some] = np.sum((amplitudes[some] * turning).real, axis=-1)
+        return value.reshape(np.shape(theta))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise import signals
 from equipoise.errors import UsageError
 from equipoise.signals import Periodic, figures, harmonics, highest_at, synthesis, within_period
 
@@ -385,3 +386,26 @@ def test_angles_short_of_a_period_by_rounding_are_zero() -> None:
     np.testing.assert_allclose(
         within_period(given, 2 * np.pi), [0, 0, 7 - 2 * np.pi, 2 * np.pi - 1]
     )
+
+
+# -- of very many orders ---------------------------------------------------------------------------
+
+
+def test_samples_of_more_orders_than_they_tell_apart() -> None:
+    """A sum over orders, angle by angle, comes to the same."""
+    random = np.random.default_rng(7)
+    signal = Periodic(random.normal(size=(2, 23)) + 1j * random.normal(size=(2, 23)), 3)
+    for count in (4, 7, 8, 45, 46, 60):
+        theta = np.arange(count) * (signal.period / count)
+        assert signal.samples(count) == pytest.approx(signal.values(theta), abs=1e-12)
+
+
+def test_signals_in_parts_are_those_of_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    random = np.random.default_rng(8)
+    signal = Periodic(random.normal(size=(3, 2, 11)) + 1j * random.normal(size=(3, 2, 11)), 2)
+    theta = np.linspace(0, 9, 37)
+    values, extremes = signal.values(theta), signal.extreme(1)
+    monkeypatch.setattr(signals, "AT_ONCE", 25)
+    assert signal.values(theta) == pytest.approx(values, abs=1e-12)
+    assert np.array_equal(signal.extreme(1)[0], extremes[0])
+    assert signal.values(np.empty(0)).shape == (3, 2, 0)

@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from equipoise.balancing.multi_row import AREA_SAMPLES, Cost, Term, by_orders
-from equipoise.signals import Array
+from equipoise.signals import AT_ONCE, Array, Periodic
 
 HALVINGS = 48
 """Of a side, below which phases are told apart no more."""
@@ -28,6 +28,8 @@ POINTS = 7
 """At which a row's function is taken over its interval."""
 PEAK_SAMPLES = 720
 """In a turn, at which a peak is read."""
+MOST_AT_ONCE = 2**25
+"""Products of points and amplitudes over which boxes are bounded together: half a GiB."""
 MOST_CUTS, STIFF, STEPS, SMALL = 60, 1e3, 10, 1e-6
 """Directions in which numbers are bounded; how hard they are pushed back, and in how many steps;
 share of an objective from which it counts as that much where it vanishes."""
@@ -109,6 +111,12 @@ class Bounder:
     cost: Cost
     numbers: Numbers
     prices: tuple[float, ...]
+
+    @property
+    def most_at_once(self) -> int:
+        """Boxes that are bounded together at most: few where signals have very many orders."""
+        of_one = (1 + len(self.numbers.low)) * self.cost.rows * len(self._orders) * POINTS
+        return max(1, MOST_AT_ONCE // (2 * of_one))
 
     @property
     def half(self) -> float:
@@ -308,18 +316,23 @@ def _read_in_time(term: Term, total: Array) -> tuple[Array, Array]:
     """
     turns, area = term.signals.turns, term.measure == "area"
     count = (AREA_SAMPLES if area else PEAK_SAMPLES) * turns
-    theta = np.arange(count) * (2 * np.pi / (count // turns))
-    waves = np.exp(1j * np.outer(term.signals.orders, theta))
-    values = (total @ waves).real
+    step = max(1, AT_ONCE // (total[0].size + total[0, ..., 0].size * count)) if len(total) else 1
+    if len(total) > step:
+        parts = [_read_in_time(term, total[k : k + step]) for k in range(0, len(total), step)]
+        sizes, readings = (np.concatenate(one) for one in zip(*parts, strict=True))
+        return sizes, readings
+    values = Periodic(total, turns).samples(count)
     if area:
         signs = np.sign(values[..., :1, :])
-        readings = (2 * np.pi / count) * (signs @ waves.T)
+        orders = np.arange(total.shape[-1]) % count
+        readings = (2 * np.pi / count) * np.fft.fft(signs, axis=-1)[..., orders].conj()
         return 2 * np.pi * np.mean(np.abs(values[..., 0, :]), axis=-1), readings
 
     def at(places: Array) -> tuple[Array, Array]:
         """Values (B, V, C) at crank angles (B, V), and their waves (B, V, 1, K + 1)."""
         found = np.take_along_axis(values, places[..., None, None], axis=-1)[..., 0]
-        return found, waves.T[places][..., None, :]
+        theta = places * (2 * np.pi * turns / count)
+        return found, np.exp(1j * np.multiply.outer(theta, term.signals.orders))[..., None, :]
 
     if values.shape[2] > 1:
         found, wave = at(np.argmax(np.sum(values**2, axis=2), axis=-1))

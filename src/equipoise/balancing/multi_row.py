@@ -29,7 +29,7 @@ from equipoise.mechanism.parts.balance import Measure, Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, output_of, wrong_objective
 from equipoise.results.analysis import Analysis
-from equipoise.signals import Array, Periodic
+from equipoise.signals import AT_ONCE, Array, Periodic
 from equipoise.vibration.forced import chosen_model, steady_speed
 from equipoise.vibration.linear import Linear, gauges_of, motion_of
 from equipoise.vibration.linkages import rows_of
@@ -204,7 +204,13 @@ class Term:
         """Value (...) at phases (..., m), rad; of several speeds the loudest."""
         if self.jumping is not None:
             return self.jumping.values(np.asarray(phases), self.measure)
-        return np.asarray(np.max(self.each(self.signals.total(phases)), axis=-1))
+        flat = phases.reshape(-1, phases.shape[-1])
+        step = max(1, AT_ONCE // self._samples)
+        parts = [
+            np.max(self.each(self.signals.total(flat[k : k + step])), axis=-1)
+            for k in range(0, max(len(flat), 1), step)
+        ]
+        return np.concatenate(parts).reshape(phases.shape[:-1])
 
     @property
     def jumping(self) -> JumpingRows | None:
@@ -234,6 +240,13 @@ class Term:
         signal = Periodic(total[..., 0, :], self.signals.turns)
         high, low = highest(signal, 1), -highest(signal, -1)
         return high - low if self.measure == "peak_to_peak" else np.maximum(high, -low)
+
+    @property
+    def _samples(self) -> int:
+        """Numbers that are held at a time to judge one set of phases."""
+        speeds, rows, components, count = self.signals.amplitudes.shape
+        in_time = max(SAMPLES * self.signals.turns, 16 * count)
+        return int(max(speeds * components * in_time, rows * count))
 
     @cached_property
     def shares(self) -> Array:
@@ -372,5 +385,10 @@ def followed(flat: Periodic, owner: Array, start: Array, reach: float) -> Array:
 
 def _at(signal: Periodic, owner: Array, theta: Array) -> Array:
     """Values (T,) of signals `owner` (T,) at crank angles (T,)."""
-    turning = np.exp(1j * np.outer(theta, signal.orders))
-    return np.asarray(np.sum((signal.amplitudes[owner] * turning).real, axis=1))
+    step = max(1, AT_ONCE // len(signal.orders))
+    values = np.empty(len(theta))
+    for k in range(0, len(theta), step):
+        some = slice(k, k + step)
+        turning = np.exp(1j * np.outer(theta[some], signal.orders))
+        values[some] = np.sum((signal.amplitudes[owner[some]] * turning).real, axis=1)
+    return values

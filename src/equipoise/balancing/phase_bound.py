@@ -81,13 +81,14 @@ class _Search:
     def run(self, phases: Array, least: float) -> Proof:
         best, looked, room = phases, 1, self.close * self.cost.whole
         most = MOST_BOXES // (2 if len(self.numbers.low) else 1)
+        batch = min(BATCH, self.bounder.most_at_once)
         boxes, _, _ = self.bounder.bounded(self._first)
         left = np.inf
         while len(boxes.bounds) and np.min(boxes.bounds) < least - room:
             if looked >= (most if np.min(boxes.bounds) > 0 else HOPELESS):
                 break
             order = np.argsort(boxes.bounds, kind="stable")
-            cut, values, slopes = self.bounder.bounded(self._halves(boxes.of(order[:BATCH])))
+            cut, values, slopes = self.bounder.bounded(self._halves(boxes.of(order[:batch])))
             looked += len(values)
             if len(values):
                 self.numbers.cut(slopes[np.argmin(cut.bounds)])
@@ -95,7 +96,7 @@ class _Search:
                     place = np.argmin(values)
                     found, value = self.improve(cut.middles[place], float(values[place]))
                     best, least = (found, value) if value < least else (best, least)
-            boxes = boxes.of(order[BATCH:]).with_more(cut)
+            boxes = boxes.of(order[batch:]).with_more(cut)
             closed = (boxes.bounds >= least - room) | (np.max(boxes.halvings, axis=1) > HALVINGS)
             left = min(left, float(np.min(boxes.bounds[closed], initial=np.inf)))
             boxes = boxes.of(~closed)

@@ -26,6 +26,8 @@ MOST = 5_000_000
 """Arrangements that are looked at."""
 MOST_PAIRS, MOST_SAMPLES = 150_000_000, 1_000_000_000
 """Look-ups of pairs, and samples, that one search may take: some ten seconds."""
+MOST_TABLE = 2**27
+"""Samples that are held, of every row at every phase: half a GiB."""
 CHUNK, SAMPLED_CHUNK = 50_000, 4_000
 SAMPLES = 96
 """In a turn, on which peaks are judged until they are polished."""
@@ -79,7 +81,8 @@ class Grid:
         )
         pairs = rows * (rows - 1) // 2 * sum(by_orders(term.measure) for term in terms)
         count = self.count
-        return count <= MOST and count * pairs <= MOST_PAIRS and count * summed <= MOST_SAMPLES
+        quick = count <= MOST and count * pairs <= MOST_PAIRS and count * summed <= MOST_SAMPLES
+        return quick and self.levels * summed <= MOST_TABLE
 
     @property
     def _samples(self) -> int:
@@ -94,7 +97,8 @@ class Grid:
         ]
         levels, costs = np.zeros((0, self.cost.rows), np.int64), np.zeros(0)
         done = 0
-        for chunk in self._chunks(SAMPLED_CHUNK if sampled else CHUNK):
+        few = max(1, SAMPLED_CHUNK // self.cost.terms[0].signals.turns)
+        for chunk in self._chunks(few if sampled else CHUNK):
             found = self.cost.of([judge(chunk) for judge in judges])
             levels, costs = np.vstack([levels, chunk]), np.concatenate([costs, found])
             if len(costs) > KEPT:
@@ -142,11 +146,12 @@ class Grid:
         phases = np.repeat(np.arange(self.levels)[:, None] * self.step, self.cost.rows, axis=1)
         theta = np.arange(self._samples) * (2 * np.pi / self._samples)
         if term.jumping is None:
-            samples = synthesis(term.signals.turned(phases), theta)
+            turned = term.signals.turned(phases)
+            samples = np.stack([synthesis(one, theta).astype(np.float32) for one in turned])
         else:  # (levels, 1, m, C, samples), as the other
             angles = np.broadcast_to(theta * term.signals.turns, (self.levels, self._samples))
             samples = np.transpose(term.jumping.each(phases, angles), (1, 0, 3, 2))[:, None]
-        samples = samples.astype(np.float32)
+            samples = samples.astype(np.float32)
 
         def judge(levels: Array) -> Array:
             values = np.asarray(sum(samples[levels[:, k], :, k] for k in range(self.cost.rows)))

@@ -1,0 +1,81 @@
+"""What signals of very many orders hold at a time, as a cycle of hundreds of turns has them."""
+
+from __future__ import annotations
+
+import tracemalloc
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from equipoise.balancing import box_bounds, multi_row
+from equipoise.balancing.box_bounds import largest_reading
+from equipoise.balancing.multi_row import Cost, RowSignals, Term
+from equipoise.balancing.phase_grid import Grid
+from equipoise.mechanism.parts.balance import Measure, Objective
+from equipoise.signals import Array, Periodic
+
+TURNS, ORDERS = 200, 6000
+
+
+def amplitudes(*shape: int) -> Array:
+    random = np.random.default_rng(3)
+    fading = 1.0 / (1 + np.arange(shape[-1])) ** 2
+    return (random.normal(size=shape) + 1j * random.normal(size=shape)) * fading
+
+
+def peak_of(call: Callable[[], Any]) -> float:
+    """Memory that a call holds at most beside what was there, MiB."""
+    tracemalloc.start()
+    try:
+        call()
+        return tracemalloc.get_traced_memory()[1] / 2**20
+    finally:
+        tracemalloc.stop()
+
+
+def term(measure: Measure, rows: int = 2, orders: int = ORDERS, turns: int = TURNS) -> Term:
+    return Term(
+        Objective("shaking_moment", measure), RowSignals(amplitudes(1, rows, 1, orders), turns)
+    )
+
+
+def test_values_of_a_signal() -> None:
+    signal = Periodic(amplitudes(4, ORDERS), TURNS)
+    assert peak_of(lambda: signal.samples(720)) < 300
+    assert peak_of(lambda: signal.values(np.linspace(0, 1, 1_500))) < 300
+
+
+@pytest.mark.parametrize("measure", ["peak", "rms", "area"])
+def test_costs_of_many_phases(measure: Measure) -> None:
+    phases = np.random.default_rng(4).uniform(0, 6, (15, 2))
+    assert peak_of(lambda: term(measure).values(phases)) < 700
+
+
+@pytest.mark.parametrize("measure", ["peak", "area"])
+def test_readings_of_many_boxes(measure: Measure) -> None:
+    some = term(measure)
+    total = some.signals.total(np.random.default_rng(5).uniform(0, 6, (60, 2)))
+    assert peak_of(lambda: largest_reading(some, total)) < 700
+
+
+def test_a_grid_whose_table_is_too_large_is_none() -> None:
+    few = Cost((term("peak", orders=20, turns=1),))
+    assert Grid(few, 360).affordable
+    assert not Grid(Cost((term("peak", orders=20),)), 72 * TURNS).affordable
+
+
+@pytest.mark.parametrize("measure", ["peak", "peak_to_peak", "area", "rms"])
+def test_what_is_computed_in_parts_is_that_of_the_whole(
+    measure: Measure, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    some = term(measure, orders=30, turns=2)
+    phases = np.random.default_rng(6).uniform(0, 6, (7, 2))
+    total = some.signals.total(phases)
+    values, readings = some.values(phases), largest_reading(some, total)
+    for module in (multi_row, box_bounds):
+        monkeypatch.setattr(module, "AT_ONCE", 3000)
+    assert some.values(phases) == pytest.approx(values, rel=1e-12)
+    for part, whole in zip(largest_reading(some, total), readings, strict=True):
+        assert part == pytest.approx(whole, rel=1e-12)
