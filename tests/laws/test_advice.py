@@ -1,10 +1,16 @@
-"""Advice to be trusted: nothing gets worse without a word, and what is told can be built."""
+"""Advice that a designer would follow: what is offered unasked, on bundled and random machines.
+
+Checked anew, without rooms and comparisons: solids against pins and links at more crank angles,
+figures by whole analyses.
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from itertools import combinations
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,185 +19,182 @@ import equipoise as eq
 from equipoise.balancing.advice import advise
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.told import worse_told
-from equipoise.mechanism.parts.body_checks import outlines
+from equipoise.mechanism.checks import bodies_at
+from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.support import Gauge, Row
 from equipoise.results.outputs import output_named
-from laws.test_vibration_laws import load_free, supported
+from laws.test_vibration_laws import supported
 from support.machines import make
 
-KINDS = ("crank_rocker", "slider_crank", "stephenson", "quick_return")
+KINDS = ("crank_rocker", "slider_crank", "stephenson", "quick_return", "scotch_yoke", "watt")
 EXAMPLES = Path(eq.__file__).parent / "examples"
 BUNDLED = sorted(
     file.stem for file in EXAMPLES.glob("*.toml") if "\n[drive]" in file.read_text("utf-8")
 )
-ROWS = ((), (), (Row(phase=0.7, lateral=-0.2), Row(phase=2.9, lateral=0.2)))
-"""Two machines of three have one row."""
-TELLING = 1.01 * (1 + 1e-4)
-"""Growth that has to be told, however its figure is sampled."""
+IN_A_BATCH = 34
+"""Random machines of a kind that are looked at with each seed: 204 of all kinds."""
+ON_MOUNTS = 7
+"""Every so-manieth of them stands on mounts, with two gauges; the one after it has three rows."""
+ANGLES = 720
+SHARE, GAIN, GROWTH, TRIFLE = 1 / 3, 0.15, 1.0101, 0.1
+"""Most mass over that of the moving links; least gain; most growth of a headline figure, rounding
+included; share of its yardstick up to which a figure may grow."""
+SIZES = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8)
+STOCK = {size * unit for unit in (1e-5, 1e-4, 1e-3, 1e-2) for size in SIZES}
+"""Thicknesses of plate, m."""
 
 
 @cache
-def random_machine(kind: str, seed: int) -> eq.Machine:
-    """A machine on mounts with two gauges, every other one with a range of speeds."""
-    machine = supported(load_free(make(kind, seed).machine), seed, rows=ROWS[seed % 3])
+def loaded(kind: str, seed: int) -> eq.Machine:
+    """A random machine with loads, some of them on mounts or in rows."""
+    machine = make(kind, seed).machine.with_drive(acceleration=0.0)
     rng = np.random.default_rng([seed, 5])
-    (first,) = list(machine.support.gauges.values())[:1] or (Gauge((0.0, 0.0, 0.0)),)  # type: ignore[union-attr]
-    place = tuple(np.array(first.point or (0.0, 0.0, 0.0)) + np.append(rng.normal(size=2), 0.0))
-    gauges = {"cab": Gauge(place), "sill": Gauge(place, 0.0)}
-    machine = machine.with_support(gauges=gauges).with_drive(acceleration=0.0)
-    speed = abs(machine.drive.speed)
-    return machine.with_drive(speeds=(0.8 * speed, 1.3 * speed)) if seed % 2 else machine
+    if not machine.loads:
+        link = str(rng.choice(list(machine.links)))
+        point = next(iter(machine.links[link].points))
+        force = tuple(rng.normal(size=2) * 100)
+        machine = replace(machine, loads=(eq.Load(link, point, force=force),))
+    if seed % ON_MOUNTS == 0:
+        machine = supported(machine, seed)
+        gauges = {"cab": Gauge((0.0, 0.0, 0.0)), "sill": Gauge((0.0, 0.0, 0.0), 0.0)}
+        machine = machine.with_support(gauges=gauges)
+    elif seed % ON_MOUNTS == 1:
+        machine = machine.with_rows((Row(), Row(phase=0.7, lateral=0.2), Row(lateral=0.4)))
+    return machine
 
 
-def readings(machine: eq.Machine, speeds: list[float]) -> dict[str, list[float]]:
-    """RMS about the mean of each gauge at some speeds, and peak to peak at that of the drive."""
-    found: dict[str, list[float]] = {}
-    if machine.support is None:
-        return found
-    for speed in speeds:
-        for name, gauge in eq.respond(machine, speed).gauges.items():
-            found.setdefault(f"gauges.{name}", []).append(float(gauge.displacement.vibration_rms))
-            if speed == machine.drive.speed:
-                size = float(gauge.displacement.peak_to_peak)
-                found[f"gauges.{name}"].append(size)
+# -- what is checked -------------------------------------------------------------------------------
+
+
+def sectors(found: Balanced) -> list[tuple[str, complex, dict[str, Any], float | None]]:
+    """Link, centre, piece and plane of each sector that is added."""
+    return [
+        (change.link, complex(*change.values["center"]), piece, change.values.get("plane"))
+        for change in found.changes
+        for piece in change.values.get("pieces", ())
+    ]
+
+
+def lies_in(piece: dict[str, Any], seen: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Whether places seen from its pivot, in the axes of its link, lie in a sector."""
+    away, ahead = np.abs(seen), np.angle(seen * np.exp(-1j * piece["direction"]))
+    between = (piece["inner_radius"] < away) & (away < piece["outer_radius"])
+    return np.asarray(between & (np.abs(ahead) < piece["angle"] / 2))
+
+
+def is_clear(found: Balanced) -> None:
+    """No sector goes through a pin or shaft, or through a link in its plane, at any crank angle."""
+    machine = found.original
+    motion = eq.move(machine, ANGLES)
+    joined = {name for name, bodies in bodies_at(machine.bodies).items() if len(bodies) > 1}
+    for link, center, piece, plane in sectors(found):
+        points, own = machine.links[link].points, motion.links[link]
+        (pivot,) = (name for name in points if complex(*points[name]) == center)
+        home = motion.points[pivot].place
+
+        def seen(places: Any, home: Any = home, own: Any = own) -> Any:
+            return (places - home) * np.exp(-1j * own.angle)
+
+        for name in joined - {pivot} if plane is None else joined - points.keys():
+            assert not np.any(lies_in(piece, seen(motion.points[name].place))), (link, name)
+        for name, other in machine.links.items():
+            if machine.has_planes or name == link or points.keys() & other.points.keys():
+                continue
+            arms = [seen(motion.points[point].place) for point in other.points]
+            lines = [
+                a + (b - a) * t for a, b in combinations(arms, 2) for t in np.linspace(0, 1, 25)
+            ]
+            mine = [complex(*place) - center for place in points.values()]
+            pairs = [*combinations(mine, 2)] or [(0j, 0j)]
+            own_line = np.array([a + (b - a) * t for a, b in pairs for t in np.linspace(0, 1, 25)])
+            size = max(piece["outer_radius"], *(abs(a - b) for a, b in pairs))
+            near = min((float(np.min(np.abs(own_line[:, None] - line))) for line in lines),
+                       default=np.inf)  # fmt: skip
+            if near > 0.1 * size:  # else they pass over each other, in planes beside each other
+                assert not any(np.any(lies_in(piece, line)) for line in lines), (link, name)
+
+
+def can_be_drawn(found: Balanced) -> None:
+    """Radii of 10 mm, of 1 mm where all is small; whole degrees; plate in stock; one piece each."""
+    for _, _, piece, _ in sectors(found):
+        assert piece["shape"] == "sector"
+        grid = 10e-3 if piece["outer_radius"] >= 20e-3 * (1 - 1e-9) else 1e-3
+        for name in ("outer_radius", "inner_radius"):
+            assert piece[name] / grid == pytest.approx(round(piece[name] / grid), abs=1e-9)
+        for name in ("angle", "direction"):
+            degrees = np.degrees(piece[name])
+            assert degrees == pytest.approx(round(degrees), abs=1e-6)
+        assert min(abs(piece["thickness"] / one - 1) for one in STOCK) < 1e-9
+        assert piece["angle"] <= np.pi * (1 + 1e-9) and piece["thickness"] <= 0.03 * (1 + 1e-9)
+        flat = piece["outer_radius"] ** 2 - piece["inner_radius"] ** 2
+        assert piece["mass"] == pytest.approx(7850 * piece["thickness"] * piece["angle"] / 2 * flat)
+
+
+def headlines(machine: eq.Machine) -> dict[tuple[str, str], float]:
+    """Peaks of what shakes, peak to peak of what drives, the largest force of each kind of joint;
+    and what gauges read.
+    """
+    analysis = eq.analyze(machine, acceleration=0.0)
+    found: dict[tuple[str, str], float] = {}
+    for name, one in analysis.summary.items():
+        known = declared(name)
+        if known is None or not known[0].yardstick or f"rows.{name}" in analysis.summary:
+            continue
+        swings = known[0].yardstick == "effort" and known[0].dimension == "torque"
+        measure = "peak_to_peak" if swings else "peak"
+        key = known[0].name, measure
+        found[key] = max(found.get(key, 0.0), float(getattr(one, measure)))
+    if machine.support is not None and machine.support.gauges:
+        for name, gauge in eq.respond(machine).gauges.items():
+            found[f"gauges.{name}", "rms"] = float(gauge.velocity.vibration_rms)
     return found
 
 
-def figures(machine: eq.Machine) -> dict[str, list[float]]:
-    """RMS and peak of every force of a row, sampled."""
-    analysis = eq.analyze(replace(machine, support=None, rows=(), balance=None), 720)
-    forces = analysis.forces
-    signals = {
-        "shaking_force": np.abs(forces.shaking_force.value),
-        "shaking_force.x": forces.shaking_force.x,
-        "shaking_force.y": forces.shaking_force.y,
-        "shaking_moment": forces.shaking_moment,
-        "drive_torque": forces.drive_torque,
-        **{f"joints.{name}": joint.size for name, joint in forces.joints.items()},
-    }
-    return {
-        name: [float(np.sqrt(np.mean(values**2))), float(np.max(np.abs(values)))]
-        + [float(np.ptp(values))] * (name == "drive_torque")
-        for name, values in signals.items()
-    }
-
-
-def sampled(machine: eq.Machine, found: Balanced) -> dict[str, list[float]]:
-    """Both, of a machine at the speeds that count in what was found."""
-    speeds = {s for one in found.plan.objectives for s in one.speeds}
-    return readings(machine, sorted({machine.drive.speed, *speeds})) | figures(machine)
+def no_headline_is_worse(found: Balanced) -> None:
+    assert found.advice is not None
+    scales = {one.family: one.yardstick for one in found.advice.before}
+    before, after = headlines(found.original), headlines(found.machine)
+    for key, old in before.items():
+        if key in scales and not key[0].startswith("transmission"):
+            assert after[key] <= max(GROWTH * old, TRIFLE * scales[key]), (key, old, after[key])
 
 
 def check(found: Balanced) -> None:
-    """Every figure that grew, found anew, stands in the sentences."""
-    if not found.helps:
-        return
-    told, rows = " ".join(worse_told(found)), len(found.original.rows)
-    before, after = (sampled(machine, found) for machine in (found.original, found.machine))
-    largest = {
-        kind: max(max(values) for name, values in before.items() if name.startswith(kind))
-        for kind in {name.partition(".")[0].partition("_")[0] for name in before}
-    }
-    for name, old in before.items():
-        top = largest[name.partition(".")[0].partition("_")[0]]
-        grown = [b > TELLING * a and b > 1e-5 * top for a, b in zip(old, after[name], strict=True)]
-        if any(grown):
-            assert output_named(name, rows) in told, (name, old, after[name], told)
-
-
-def dearest(found: Balanced) -> float:
-    """Largest growth of a gauge, or of a force or moment as a whole, found anew: over its value
-    before, or where that is below a tenth of the largest of its unit over that one.
-    """
-    before, after = (sampled(machine, found) for machine in (found.original, found.machine))
-    units = {"gauges": "mm", "shaking_moment": "N m", "drive_torque": "N m"}
-    unit = {name: units.get(name.partition(".")[0], "N") for name in before}
-    top = {
-        of: max(max(before[name]) for name in before if unit[name] == of) for of in unit.values()
-    }
-    growth = [0.0]
-    for name, old in before.items():
-        for a, b in zip(old, after[name], strict=True):
-            over = a if a > 0.1 * top[unit[name]] else top[unit[name]]
-            if not name.endswith((".x", ".y")) and b > 1e-5 * over:
-                growth.append((b - a) / over)
-    return max(growth)
-
-
-def worth_it(found: Balanced) -> None:
-    """What is recommended gains 5 %, and nothing else grows by more than twice its gain; where
-    nothing is, nothing does.
-    """
+    """What is offered can be built, is worth its mass, and leaves no headline figure worse."""
     if found.helps:
-        assert found.gain >= 0.05
-        assert dearest(found) <= 2 * found.gain * (1 + 1e-3)
-        return
-    for one in found.tried:
-        assert one.gain < 0.05 or dearest(one) > 2 * one.gain * (1 - 0.05)
+        is_clear(found)
+        can_be_drawn(found)
+        no_headline_is_worse(found)
+        share = max(found.added_mass, 0.0) / found.original.mass
+        assert share <= SHARE * (1 + 1e-9)
+        assert found.gain >= max(GAIN, share)
+        pairs = [found.objectives[one.name] for one in found.plan.objectives]
+        assert found.gain == pytest.approx(1 - np.mean([new / old for old, new in pairs]))
+    else:
+        assert not any(one.helps for one in found.tried)
 
 
-def thickest(found: Balanced, link: str, reach: float) -> float:
-    """The thickest plate that a workshop would screw on a link, m."""
-    own = [b.thickness or b.outer_diameter or 0.0 for b in found.original.links[link].bodies]
-    return min(0.3 * reach, 3 * max(own, default=0.0) or np.inf, 0.03)
-
-
-def reach_of(machine: eq.Machine, link: str, at: str) -> float:
-    """From a point of a link to what is farthest of it, m."""
-    body = machine.links[link]
-    pin = complex(*body.points[at])
-    ends = [complex(*point) for point in body.points.values()]
-    for part in body.bodies:
-        for corners, radius in outlines(part, body.points):
-            turned = radius * np.exp(2j * np.pi * np.linspace(0, 1, 361))
-            ends += [end for corner in corners for end in corner + turned]
-    return float(np.max(np.abs(np.array(ends) - pin)))
-
-
-def buildable(found: Balanced) -> None:
-    """Sectors are no larger than their link, of plate to be had, no heavier than links."""
-    added = 0.0
-    for change in found.changes:
-        if change.kind != "added mass":
-            assert change.kind == "phases"
-            continue
-        reach = reach_of(found.original, change.link, change.values["at"])
-        for piece in change.values["pieces"]:
-            assert piece["shape"] == "sector"
-            assert 0 < piece["inner_radius"] < piece["outer_radius"] <= reach * (1 + 1e-4)
-            most = thickest(found, change.link, reach)
-            assert 0 < piece["thickness"] <= most * (1 + 1e-6)
-            assert piece["angle"] <= 2 * np.pi * (1 + 1e-9)
-            added += piece["mass"]
-    assert added <= found.original.mass * (1 + 1e-6)
+def grown_is_told(found: Balanced) -> None:
+    """Every output that grew by more than 1 % stands in the sentences on what gets worse."""
+    told, rows = " ".join(worse_told(found)), len(found.original.rows)
+    for one in found.worse:
+        assert output_named(one.objective.output, rows if rows > 1 else 1) in told
 
 
 @pytest.mark.parametrize("seed", range(50))
 @pytest.mark.parametrize("kind", KINDS)
-def test_random_machines_on_mounts(kind: str, seed: int) -> None:
-    """Of 200 of them (`--seeds 50`)."""
-    machine = random_machine(kind, seed)
-    found = advise(machine)
-    check(found)
-    buildable(found)
-    worth_it(found)
-    kept = [one for one in found.tried if one.helps and not one.harms]
-    assert not found.helps or found.harms == (not kept)
-    speeds = {speed for one in found.plan.objectives for speed in one.speeds}
-    assert (len(speeds) >= 3) == bool(machine.drive.speeds)
+def test_random_machines_with_loads(kind: str, seed: int) -> None:
+    """Of 204 of them; `--seeds 5` looks at 1020."""
+    for number in range(IN_A_BATCH):
+        check(advise(loaded(kind, IN_A_BATCH * seed + number)))
 
 
 @pytest.mark.parametrize("name", BUNDLED)
 def test_bundled_machines(name: str) -> None:
-    """By their own plans, and as if they had none."""
+    """As if they had no plan."""
     machine = eq.load(name)
     if any(link.mass is None for link in machine.links.values()):
         pytest.skip("without masses")
-    if machine.balance is not None and not machine.balance.geared:  # whose many gears take long
-        check(advise(machine))
     found = advise(machine.with_balance(None))
     check(found)
-    buildable(found)
-    worth_it(found)
-    if machine.support is not None and machine.support.gauges:
-        assert all(one.output.startswith("gauges.") for one in found.plan.objectives)
+    grown_is_told(found)

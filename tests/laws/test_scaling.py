@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.advice import pin_of, reach_of
+from equipoise.balancing.room import pin_of, reach_of
 from equipoise.figures.animation import laid_out
 from equipoise.mechanism.parts.balance import (
     MATERIALS,

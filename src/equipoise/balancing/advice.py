@@ -1,55 +1,67 @@
-"""What helps most, where nobody said what may be changed: remedies that can be built, tried.
+"""What a good designer would do, where nobody said what may be changed.
 
-The aims are what a machine is judged by: what its gauges read, RMS about the mean, at the speeds
-at which it runs; without gauges the RMS of its shaking force.  Remedies are other phases of rows,
-which cost nothing, and counterweights of steel plate, as far about their pins as links reach.
+First what is large on the machine (`results.yardsticks`).  Balancing aims at the largest figure
+that shakes: what gauges read at the speeds at which the machine runs, a force, a moment or a
+couple.  Remedies are other phases of rows, which cost nothing, holes, and counterweights of steel
+plate in the room that there is (`balancing.room`, `balancing.remedies`).  A remedy is offered where
+it takes away enough of its aim for its mass, and leaves no headline figure worse; to leave the
+machine as it is, is an answer too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
-from math import floor, log10
 
-from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.compared import WORTH, too_dear
+from equipoise.balancing.balanced import Balanced, Price
+from equipoise.balancing.headlines import (
+    Advice,
+    assessed,
+    flywheel_for,
+    headline_objectives,
+    watched_of,
+    worse_headlines,
+)
 from equipoise.balancing.multi_row import Rows, Term
+from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
-from equipoise.errors import MassError, ModelError, ResponseError, UsageError
-from equipoise.i18n import Note
-from equipoise.mechanism.assembly.steps import size_of_bodies
-from equipoise.mechanism.dynamics.forces import massless
-from equipoise.mechanism.parts.balance import (
-    MATERIALS,
-    AddedMass,
-    Balance,
-    Limit,
-    Objective,
-    Phases,
-    Weight,
-    largest_mass,
+from equipoise.balancing.remedies import (
+    MASS_PRICE,
+    MOST_ADDED,
+    Comparison,
+    Watched,
+    added_sector,
+    best_cuts,
+    best_holes,
+    best_sectors,
+    is_worth,
+    with_cut,
+    with_hole,
+    with_sectors,
 )
-from equipoise.mechanism.parts.body_checks import outlines
+from equipoise.balancing.room import Room, pivots_of, room_about, rooms_of_planes
+from equipoise.balancing.workshop import Change
+from equipoise.errors import EquipoiseError, MassError, ModelError, ResponseError, UsageError
+from equipoise.i18n import Note
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.parts.balance import Balance, Limit, Objective, Phases
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import GAUGES
+from equipoise.vibration.forced import check_moving
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.resonance import resonances
 
 Solve = Callable[[Machine, Balance], Balanced]
+Remedy = tuple[Machine, tuple[Change, ...], Balance]
+"""A changed machine, what is changed, and the plan that frees it."""
 
-SMALLEST = 0.05
-"""Room of a counterweight on a link that has no other point than its pin, m; less in a machine
-that is smaller."""
-THICK, HUB = 0.3, 0.2
-"""Over a link's reach: the thickest plate, and the inner radius, inside which the shaft is."""
-THICKER, THICKEST = 3.0, 0.03
-"""Over the thickness of the link that carries it, and m: beyond, no workshop screws it on."""
-PLATES = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
-"""Thicknesses to be had, times a power of ten."""
 CLEAR = 0.5
-"""Share of the most that any remedy gains from which a simpler one is offered."""
-ROUNDS = 3
-"""How often a remedy that harms is looked for again."""
+"""Share of the most that any remedy scores from which a simpler one is offered."""
+NOTICED = 0.01
+"""Share of an aim from which a change of it is told."""
+ROUNDING = 1e-9
+"""Over a limit: by how much a figure may be above it."""
 LOUD, MOST_RESONANCES = 0.1, 2
 """Share of the loudest from which a resonance among the speeds is looked at; how many of them."""
 
@@ -57,10 +69,9 @@ LOUD, MOST_RESONANCES = 0.1, 2
 def advise(machine: Machine, solve: Solve = balance) -> Balanced:
     """The machine's own plan carried out; where it has none, the remedy that helps most.
 
-    What the file frees, or wants to become small, is kept; what it leaves out is as above.  Of the
-    remedies that are worth building the simplest is taken that brings at least half of what the
-    best one does, before all one by which no gauge gets worse; where none is, the one that gains
-    most, of which `Balanced.helps` tells that it is not.  All are in `Balanced.tried`.
+    What the file frees, or wants to become small, and its limits are kept.  Where nothing is worth
+    building the result says so by `Balanced.helps`.  Everything that was tried is in
+    `Balanced.tried`.
 
     Parameters
     ----------
@@ -69,173 +80,245 @@ def advise(machine: Machine, solve: Solve = balance) -> Balanced:
     Raises
     ------
     MassError : a link has no mass given.
-    UsageError : nothing that is tried has an effect on anything that counts.
+    UsageError : what the file frees has no effect on anything that counts.
     """
     if missing := massless(machine):
         raise MassError(missing)
     own = machine.balance or Balance()
     if own.objectives and not own.changes_nothing:
         return solve(machine, own)
-    found: list[Balanced] = []
-    problems: list[UsageError] = []
-    for plan in remedies(machine, own):
-        if plan.phases is not None and plan.masses and any(one.helps for one in found):
-            continue  # both together are for machines that neither helps
-        try:
-            one = _weighed(machine, replace(plan, objectives=aims_of(machine, plan)), solve)
-        except UsageError as problem:
-            problems.append(problem)
-        else:
-            found.append(one)
-            if one.helps and one.gain >= CLEAR and not one.harms:
-                break  # of which nothing brings twice as much
-    if not problems and not found:
-        raise UsageError(
-            Note(
-                "there is nothing that could be tried: no link has a pin in the frame and "
-                "another point, which would tell the room of a counterweight; say in "
-                "[balance] what may be changed"
-            )
-        )
-    if not found:
-        raise problems[0]
-    return replace(_chosen(found), tried=tuple(found))
-
-
-def _weighed(machine: Machine, plan: Balance, solve: Solve) -> Balanced:
-    """A plan carried out; where that harms, again such that it does not, if that is worth it."""
-    first = found = _as_tried(solve(machine, plan))
-    held: dict[Objective, Limit] = {}
-    for _ in range(ROUNDS if plan.phases is None else 0):
-        new = {one.objective: one for one in _held(found)} if found.gain >= WORTH else {}
-        if not new:
-            break
-        held |= new
-        try:
-            found = _as_tried(solve(machine, replace(plan, limits=(*plan.limits, *held.values()))))
-        except UsageError:  # the least that a weight does is too much
-            break
-    return found if found.helps else first
-
-
-def _as_tried(found: Balanced) -> Balanced:
-    """A result that is held to what is asked of remedies."""
-    return replace(found, tried=(found,))
-
-
-def _held(found: Balanced) -> Iterator[Limit]:
-    """Limits by which a remedy does no harm: no gauge gets worse, and nothing else grows by more
-    than half of what is gained, since with them less is.
-    """
-    if found.harms:
-        yield from (Limit(replace(one, weight=1.0), ratio=1.0) for one in found.plan.objectives)
-    if len(found.original.rows) > 1 or not too_dear(found.worse, found.gain):
-        return  # limits are those of all rows together
-    half = found.gain / 2
-    for one in found.worse:
-        if one.group != "gauges" and one.before and one.weight > half:
-            rms = replace(one.objective, measure="rms")  # a cone, where a peak is hundreds
-            yield Limit(rms, ratio=1 + half * one.growth / one.weight)
-
-
-def _chosen(found: list[Balanced]) -> Balanced:
-    """The first that brings half of what the best one does; before all without harm to gauges."""
-    good = [one for one in found if one.helps]
-    fair = [one for one in good if not one.harms] or good or found
-    most = max(one.gain for one in fair)
-    return next(one for one in fair if one.gain >= (CLEAR * most if good else most))
-
-
-# -- what is tried ---------------------------------------------------------------------------------
-
-
-def remedies(machine: Machine, own: Balance) -> Iterator[Balance]:
-    """Plans without objectives, the simplest first: what the file frees, or what can be built, with
-    weights that are together no heavier than all links of a row.
-
-    own : what the file says of balancing.
-    """
     if not own.changes_nothing:
-        yield own
-        return
-    crank, rows = machine.drive.link, len(machine.rows) > 1
-    pinned = [name for name, link in machine.links.items() if machine.frame.keys() & link.points]
-    swept = [link for link in dict.fromkeys((crank, *pinned)) if _reach(machine, link)]
-    each = [counterweight_on(machine, link) for link in swept]
-    if sum(largest_mass(one.weight) for one in each) > machine.mass > 0 and own.added_mass is None:
-        own = replace(own, added_mass=machine.mass)
-    if rows:
-        yield replace(own, phases=Phases())
-    if each:
-        yield replace(own, masses=tuple(each[:1]))
-    if len(each) > 1:
-        yield replace(own, masses=tuple(each))
-    if rows and each:
-        yield replace(own, masses=tuple(each), phases=Phases())
+        return solve(machine, replace(own, objectives=_aims_of(machine, own)))
+    check_moving(machine)
+    return _Adviser(machine.with_balance(None), own, solve).advised()
 
 
-def counterweight_on(machine: Machine, link: str) -> AddedMass:
-    """A sector of steel plate within the reach of a link, from a fifth of it; the plate is the
-    thickest of at most 0.3 of the reach, three times the link's own thickness, and 30 mm.
+def beside(found: Balanced, machine: Machine) -> Balanced:
+    """Advice on a machine without its counterweights, judged beside the machine that has them."""
+    advice, aims = found.advice, found.plan.objectives
+    if advice is None:
+        return found
+    before = dict(zip((one.name for one in aims), Problem.values_of(machine, aims), strict=True))
+    objectives = {name: (before[name], after) for name, (_, after) in found.objectives.items()}
+    judged = replace(found, original=machine, objectives=objectives)
+    _, figures = assessed(machine)
+    share = max(judged.added_mass, 0.0) / (machine.mass or 1.0)
+    worth = found.helps and bool(is_worth(judged.gain, share))
+    offered = worth and not worse_headlines(figures, advice.after)
+    return replace(judged, advice=replace(advice, before=figures, offered=offered))
+
+
+class _Adviser:
+    """Remedies of a machine, tried one after the other.
+
+    own : what the file says of balancing: aims, limits, the most that may be added.
     """
-    reach, bodies = reach_of(machine, link), machine.links[link].bodies
-    own = max((one.thickness or one.outer_diameter or 0.0 for one in bodies), default=0.0)
-    plate = plate_of(min(THICK * reach, THICKER * own or THICKEST))
-    sector = Weight("sector", reach, HUB * reach, plate, MATERIALS["steel"])
-    return AddedMass(link, pin_of(machine, link), sector)
+
+    def __init__(self, machine: Machine, own: Balance, solve: Solve) -> None:
+        self.machine, self.own, self.solve = machine, own, solve
+        self.analysis, self.before = assessed(machine)
+        given = own.added_mass
+        self.most_mass = MOST_ADDED * machine.mass if given is None else given
+        self.known: dict[tuple[Objective, ...], list[float]] = {}
+        values = self.values(tuple(one.objective for one in own.limits))
+        limits = zip(own.limits, values, strict=True)
+        self.watched = (
+            *watched_of(self.analysis, self.before),
+            *(Watched((one.objective,), _most_of(one, value)) for one, value in limits),
+        )
+
+    def advised(self) -> Balanced:
+        """The remedy that is offered, else the best that was tried, else the machine as it is."""
+        tried: list[Balanced] = []
+        for objectives in self.aims():
+            found = [*self.remedies(replace(self.own, objectives=objectives))]
+            tried += found
+            if good := [one for one in found if one.helps]:
+                most = max(map(_score, good))
+                best = next(one for one in good if _score(one) >= CLEAR * most)
+                return replace(best, tried=tuple(tried))
+        if not tried:
+            return self.unchanged()
+        return replace(max(tried, key=lambda one: one.gain), tried=tuple(tried))
+
+    def values(self, objectives: tuple[Objective, ...]) -> list[float]:
+        """Values of the machine as it is."""
+        if objectives not in self.known:
+            self.known[objectives] = Problem.values_of(self.machine, objectives)
+        return self.known[objectives]
+
+    def aims(self) -> Iterator[tuple[Objective, ...]]:
+        """What is to become small, the largest first."""
+        if self.own.objectives:
+            yield self.own.objectives
+            return
+        large = [one for one in self.before if one.is_large and one.is_shaking]
+        gauges = [one for one in large if one.output.startswith(GAUGES)]
+        if gauges and (aims := gauge_aims(self.machine)):
+            yield aims
+        for one in large:
+            if one not in gauges:
+                yield (Objective(one.output.removeprefix("rows.")),)
+
+    def remedies(self, plan: Balance) -> Iterator[Balanced]:
+        """What is tried, the simplest first; nothing more where half of the aim is gone."""
+        for one in self._each(plan):
+            yield one
+            if one.helps and one.gain >= CLEAR:
+                return  # of which nothing brings twice as much
+
+    def _each(self, plan: Balance) -> Iterator[Balanced]:
+        if len(self.machine.rows) > 1:
+            yield from self.phases(plan)
+        for link in pivots_of(self.machine):
+            yield from self.changed(plan, (room_about(self.machine, link),))
+        for rooms in rooms_of_planes(self.machine):
+            yield from self.changed(plan, rooms)
+
+    def phases(self, plan: Balance) -> Iterator[Balanced]:
+        """Other phases of the rows."""
+        rows = Rows(self.machine)
+        try:
+            moved = [one for one in plan.objectives if Term(one, rows.signals(one)).influenced]
+            free = replace(plan, phases=Phases(), objectives=tuple(moved))
+            found = self.solve(self.machine, free)
+        except EquipoiseError:  # aims within one row, or that no phase changes
+            return
+        yield self.judged(found)
+
+    def changed(self, plan: Balance, rooms: tuple[Room, ...]) -> Iterator[Balanced]:
+        """Mass taken off a link, or sectors on it, that gain."""
+        comparison = Comparison(self.machine, plan, rooms, self.watched)
+        if not comparison.influences:
+            return
+        if len(rooms) == 1:
+            off = (with_hole(self.machine, rooms[0], one) for one in best_holes(comparison))
+            yield from self.first_good((*one, plan) for one in off)
+            off = (with_cut(self.machine, rooms[0], one) for one in best_cuts(comparison))
+            yield from self.first_good((*one, plan) for one in off)
+        shapes = best_sectors(comparison, self.most_mass, opposite=len(rooms) > 1)
+        yield from self.first_good(
+            (
+                *with_sectors(self.machine, rooms, each),
+                replace(plan, masses=tuple(map(added_sector, rooms, each))),
+            )
+            for each in shapes
+        )
+
+    def first_good(self, remedies: Iterable[Remedy]) -> Iterator[Balanced]:
+        """The first that is worth building, with what is proved of it; else the first."""
+        first: Balanced | None = None
+        for machine, changes, plan in remedies:
+            found = self.judged(self.result(machine, changes, plan))
+            first = first or found
+            if found.helps:
+                yield self.proved(found)
+                return
+        if first is not None and first.gain >= NOTICED:
+            yield first
+
+    def result(self, machine: Machine, changes: tuple[Change, ...], plan: Balance) -> Balanced:
+        """A changed machine beside the one that it comes from."""
+        aims = plan.objectives
+        pairs = zip(aims, self.values(aims), Problem.values_of(machine, aims), strict=True)
+        objectives = {one.name: (old, new) for one, old, new in pairs}
+        shares = [new / old if old else float(new > 0) for old, new in objectives.values()]
+        cost = plan.combined(shares)
+        limits = self.own.limits
+        asked = tuple(one.objective for one in limits)
+        reached = zip(limits, self.values(asked), Problem.values_of(machine, asked), strict=True)
+        prices = {
+            one.name: Price(_most_of(one, old), new, 0.0, unit_of(one.objective, machine))
+            for one, old, new in reached
+        }
+        method = Note("comparison of shapes")
+        return Balanced(
+            machine, self.machine, plan, changes, objectives, cost, cost, method, prices, 0
+        )
+
+    def proved(self, found: Balanced) -> Balanced:
+        """With the bound of every sector in its room, round or not."""
+        if not found.plan.masses:
+            return found
+        limits = tuple(
+            limit
+            for one in self.watched
+            for limit in one.limits()
+            if not limit.objective.output.startswith(GAUGES)
+        )
+        kept = (Note("where no headline figure gets worse"),)
+        for asked, scope in ((limits, kept), (self.own.limits, ())):
+            plan = replace(found.plan, limits=asked, added_mass=self.most_mass)
+            try:
+                proof = self.solve(self.machine, plan)
+            except UsageError:  # the least that a limit allows is too much for the program
+                continue
+            return replace(
+                found,
+                bound=min(proof.bound, found.cost),
+                method=proof.method,
+                looked_at=proof.looked_at,
+                scope=(*scope, *proof.scope),
+                notes=proof.notes,
+            )
+        return found
+
+    def judged(self, found: Balanced) -> Balanced:
+        """With what its figures are against their yardsticks, and whether it is offered."""
+        _, after = assessed(found.machine)
+        share = max(found.added_mass, 0.0) / (self.machine.mass or 1.0)
+        enough = bool(is_worth(found.gain, share)) and self.keeps_limits(found)
+        offered = enough and not worse_headlines(self.before, after)
+        flywheel = flywheel_for(self.analysis, self.before)
+        return replace(found, advice=Advice(self.before, after, offered, flywheel))
+
+    def keeps_limits(self, found: Balanced) -> bool:
+        """Whether the limits that the file gives are kept."""
+        return all(one.used <= one.at_most * (1 + ROUNDING) for one in found.prices.values())
+
+    def unchanged(self) -> Balanced:
+        """The machine as it is, where nothing that could be tried acts on what is large."""
+        objectives = next(self.aims(), headline_objectives(self.before))
+        plan = replace(self.own, objectives=objectives)
+        found = self.result(self.machine, (), plan)
+        flywheel = flywheel_for(self.analysis, self.before)
+        return replace(found, advice=Advice(self.before, self.before, False, flywheel))
 
 
-def plate_of(most: float) -> float:
-    """The thickest plate (m) to be had that is at most so thick."""
-    most = min(most, THICKEST) * (1 + 1e-9)
-    unit = 10.0 ** floor(log10(most))
-    return float(max(size * unit for size in PLATES if size * unit <= most))
+def _score(found: Balanced) -> float:
+    """Gain, less the price of mass."""
+    share = max(found.added_mass, 0.0) / (found.original.mass or 1.0)
+    return found.gain - MASS_PRICE * share
 
 
-def pin_of(machine: Machine, link: str) -> str:
-    """The link's point in the frame; its first point where it has none."""
-    points = machine.links[link].points
-    return next((name for name in points if name in machine.frame), next(iter(points)))
+def _most_of(limit: Limit, before: float) -> float:
+    """The most that a limit allows, SI units."""
+    return limit.at_most if limit.at_most is not None else (limit.ratio or 0.0) * before
 
 
-def reach_of(machine: Machine, link: str) -> float:
-    """Distance of what of a link is farthest from its pin, m: a point, or an edge of a body."""
-    return _reach(machine, link) or min(SMALLEST, float(size_of_bodies(machine)))
+# -- what gauges are read for ----------------------------------------------------------------------
 
 
-def _reach(machine: Machine, link: str) -> float:
-    """The same; 0 where nothing tells how large the link is."""
-    body = machine.links[link]
-    places = [(complex(*point), 0.0) for point in body.points.values()]
-    for part in body.bodies:
-        for corners, radius in outlines(part, body.points):
-            places += [(corner, max(radius, 0.0)) for corner in corners]
-    center = complex(*body.points[pin_of(machine, link)])
-    return max(abs(place - center) + radius for place, radius in places)
-
-
-# -- what it is judged by --------------------------------------------------------------------------
-
-
-def aims_of(machine: Machine, plan: Balance) -> tuple[Objective, ...]:
-    """What is to become small: the plan's own objectives; else what every gauge reads at each of
-    `running_speeds`, where the plan can change it; else the shaking force.
-    """
-    if plan.objectives:
-        return plan.objectives
-    force = (Objective("shaking_force"),)
+def gauge_aims(machine: Machine) -> tuple[Objective, ...]:
+    """What every gauge reads at each of `running_speeds`; nothing without a steady state."""
     if machine.support is None:
-        return force
+        return ()
     try:
         linear = Linear.of(machine)
         speeds = running_speeds(machine, linear)
-        each = [(speed,) for speed in speeds] if len(speeds) > 1 else [()]
         names = gauges_of(linear.body)
-        wanted = [(f"gauges.{name}", at) for name in names for at in each]
-        aims = tuple(Objective(name, "ripple", speeds=at) for name, at in wanted)
-        return tuple(_moved(machine, replace(plan, objectives=aims))) or force
-    except (ModelError, ResponseError):  # without a steady state the gauges tell nothing
-        return force
+    except (ModelError, ResponseError):
+        return ()
+    each = [(speed,) for speed in speeds] if len(speeds) > 1 else [()]
+    return tuple(Objective(f"gauges.{name}", "ripple", speeds=at) for name in names for at in each)
+
+
+def _aims_of(machine: Machine, plan: Balance) -> tuple[Objective, ...]:
+    """What a plan that frees something is to make small: what gauges read, where it can change it;
+    else the shaking force.
+    """
+    moved = _moved(machine, replace(plan, objectives=gauge_aims(machine)))
+    return tuple(moved) or (Objective("shaking_force"),)
 
 
 def _moved(machine: Machine, plan: Balance) -> Iterator[Objective]:
@@ -243,8 +326,6 @@ def _moved(machine: Machine, plan: Balance) -> Iterator[Objective]:
     rows = Rows(machine) if plan.phases is not None else None
     weights = replace(plan, phases=None)
     problem = None if weights.changes_nothing else Problem.of(machine, weights)
-    if problem is not None:
-        problem = replace(problem, plan=weights)
     for one in plan.objectives:
         turned = rows is None or Term(one, rows.signals(one)).influenced
         if turned and (problem is None or problem.moves(one)):

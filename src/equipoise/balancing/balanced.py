@@ -15,6 +15,7 @@ from equipoise.balancing import compared
 from equipoise.balancing.design_variables import Bound
 from equipoise.balancing.effects import ANGLES
 from equipoise.balancing.geared import geared_range
+from equipoise.balancing.headlines import Advice
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.phasing import Phasing
 from equipoise.balancing.problem import ADDED
@@ -70,6 +71,7 @@ class Balanced(Result):
     phasing : of rows, where their phases were free.
     scope : of what the bound is proved, where that is not all that the plan allows.
     tried : where nobody said what may be changed, every remedy that was tried, this one among them.
+    advice : where nobody said so, what it is judged by.
     """
 
     machine: Machine
@@ -86,6 +88,7 @@ class Balanced(Result):
     phasing: Phasing | None = None
     scope: tuple[Note, ...] = ()
     tried: tuple[Balanced, ...] = ()
+    advice: Advice | None = None
 
     @property
     def gap(self) -> float:
@@ -144,16 +147,11 @@ class Balanced(Result):
 
     @property
     def helps(self) -> bool:
-        """Whether it is worth a change; of what nobody asked for more is wanted."""
-        if self.tried:
-            return compared.worth(self.worse, self.gain)
+        """Whether it is worth a change; of what nobody asked for, whether it is offered."""
+        if self.advice is not None:
+            return self.advice.offered
         moved = (abs(b - a) > compared.WORSE * a for a, b in self.objectives.values())
         return bool(self.plan.limits) or any(moved)
-
-    @property
-    def harms(self) -> bool:
-        """Whether a gauge gets worse."""
-        return any(one.group == "gauges" for one in self.worse)
 
     @property
     def sensitivities(self) -> dict[str, Any]:
@@ -215,6 +213,16 @@ class Balanced(Result):
             if name.startswith(("shaking_", "rows.")) and new.get(name, 0.0) > GONE * old[name] > 0
         }
 
+    def _advised(self) -> dict[str, Any]:
+        """What is large, whether the change is offered, and what was tried."""
+        assert self.advice is not None
+        return {
+            "offered": self.advice.offered,
+            "large": [one.to_dict() for one in self.advice.before],
+            "tried": [_tried(one) for one in self.tried],
+            "flywheel": self.advice.flywheel,
+        }
+
     def to_dict(self, wanted: Collection[str] | None = None) -> dict[str, Any]:
         """The machine-readable output, SI units and radians.
 
@@ -246,7 +254,7 @@ class Balanced(Result):
             "planting_kept": self.planting_kept,
             **({"sensitivities": self.sensitivities} if asked else {}),
             **({} if self.phasing is None else {"rows": self.phasing.to_dict()}),
-            **({"tried": [_tried(one) for one in self.tried]} if self.tried else {}),
+            **({} if self.advice is None else self._advised()),
             "notes": list(map(str, self.notes)),
         }
 

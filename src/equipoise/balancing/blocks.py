@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 from equipoise.balancing.compared import WORSE
 from equipoise.balancing.objectives import unit_of as si_unit
+from equipoise.balancing.outcome import advice_blocks
 from equipoise.balancing.told import (
     figure_named,
     figure_unit,
-    nothing_told,
     proof_told,
-    tried_blocks,
     worse_told,
 )
 from equipoise.balancing.workshop import sentences
@@ -65,9 +64,9 @@ def balanced_blocks(found: Balanced) -> Iterator[Block]:
 
 def outcome_blocks(found: Balanced) -> Iterator[Block]:
     """The same without what machine it is."""
-    yield from tried_blocks(found)
-    if found.tried and not found.helps:
-        yield from map(Text, nothing_told(found))
+    if found.advice is not None:
+        yield from advice_blocks(found)
+    if found.advice is not None and not found.helps:
         return
     if found.plan.objectives:
         yield objectives_table(found)
@@ -76,7 +75,7 @@ def outcome_blocks(found: Balanced) -> Iterator[Block]:
     yield from (Text(line, "worse") for line in worse_told(found))
     if found.phasing is not None:
         yield from phasing_blocks(found.phasing)
-    yield Text(proof_told(found))
+    yield from map(Text, proof_told(found))
     yield before_after(found)
     if found.prices:
         yield _prices(found)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,9 +23,6 @@ from equipoise.vibration.forced import respond
 
 WORSE = 0.01
 """Share by which a figure has to grow to be told as worse."""
-WORTH, PRICE = 0.05, 2.0
-"""Share of what counts that a remedy has to take away to be worth building; and how many times that
-share anything else may grow for it."""
 SMALL = 0.1
 """Of the largest figure of its unit before: the growth of what was less is measured by that one."""
 FAINT = 1e-6
@@ -95,16 +92,6 @@ def worse_of(
         most = seen.setdefault(key, grown)
         seen[key] = replace(most, weight=max(most.weight, grown.weight))
     return tuple(seen.values())
-
-
-def worth(worse: Sequence[Worse], gain: float) -> bool:
-    """Whether a remedy is worth building: it gains `WORTH`, and nothing is too dear for that."""
-    return gain >= WORTH and not too_dear(worse, gain)
-
-
-def too_dear(worse: Sequence[Worse], gain: float) -> list[Worse]:
-    """Figures that grow by more than `PRICE` times the share that is gained."""
-    return [one for one in worse if one.weight > PRICE * max(gain, 0.0)]
 
 
 def _is_part(one: Objective) -> bool:

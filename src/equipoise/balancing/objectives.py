@@ -239,15 +239,22 @@ def read_rows(linear: Linear, reading: Array, speed: float) -> Array:
 
 def measured(values: Array, measure: Measure) -> float:
     """Measure of a signal (N,) over a whole cycle."""
+    return float(measured_each(values, measure))
+
+
+def measured_each(values: Array, measure: Measure) -> Array:
+    """Measures (...) of signals (..., N) over a whole cycle."""
     if measure == "ripple":
-        return measured(values - np.mean(values), "rms")
+        return measured_each(values - np.mean(values, axis=-1, keepdims=True), "rms")
     if measure == "rms":
-        return float(np.sqrt(np.mean(np.abs(values) ** 2)))
-    if measure == "peak":
-        return float(np.max(np.abs(values)))
-    if measure == "peak_to_peak":
-        return float(np.max(values) - np.min(values))
-    return float(2 * pi * np.mean(np.abs(values)))
+        found = np.sqrt(np.mean(np.abs(values) ** 2, axis=-1))
+    elif measure == "peak":
+        found = np.max(np.abs(values), axis=-1)
+    elif measure == "peak_to_peak":
+        found = np.max(values, axis=-1) - np.min(values, axis=-1)
+    else:
+        found = 2 * pi * np.mean(np.abs(values), axis=-1)
+    return np.asarray(found)
 
 
 def unit_of(objective: Objective, machine: Machine) -> str:

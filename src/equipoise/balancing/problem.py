@@ -157,12 +157,12 @@ class Problem:
     def signals(self) -> dict[str, list[Signal]]:
         """Signals of each objective and limit, over its scale."""
         return {
-            one.name: [signal.divided(self.scale(one)) for signal in self._raw[one.name]]
+            one.name: [signal.divided(self.scale(one)) for signal in self.unscaled[one.name]]
             for one in self.asked
         }
 
     @cached_property
-    def _raw(self) -> dict[str, list[Signal]]:
+    def unscaled(self) -> dict[str, list[Signal]]:
         """Signals of each objective and limit, in SI units."""
         unique = {one.name: one for one in self.asked}
         return {name: signals_of(self.effects, one, self.close) for name, one in unique.items()}
@@ -217,7 +217,7 @@ class Problem:
 
     def _effect(self, objective: Objective) -> float:
         """The largest effect of a unit of any number, SI."""
-        signals = self._raw[objective.name]
+        signals = self.unscaled[objective.name]
         return max(float(np.max(np.abs(signal.columns), initial=0.0)) for signal in signals)
 
     @cached_property

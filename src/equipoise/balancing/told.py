@@ -9,14 +9,11 @@ from math import ceil, floor, isinf, log10
 from operator import eq
 from typing import TYPE_CHECKING
 
-from equipoise.balancing.compared import PRICE, WORTH, too_dear
 from equipoise.balancing.objectives import unit_of
-from equipoise.balancing.workshop import sentences
 from equipoise.i18n import said, say, spoken, to_say
 from equipoise.mechanism.outputs.declared import GROUPS
 from equipoise.mechanism.parts.balance import CUT, Balance, Objective, Weight, material_of
-from equipoise.quantities import PER_RPM, brief, change, percent, told
-from equipoise.results.blocks import Block, Change, Column, Table, Text
+from equipoise.quantities import PER_RPM, brief, percent, told
 from equipoise.results.outputs import (
     MEASURES,
     objective_named,
@@ -98,13 +95,17 @@ def figure_unit(found: Balanced, name: str) -> str:
 # -- what is proved --------------------------------------------------------------------------------
 
 
-def proof_told(found: Balanced) -> str:
-    """What is proved: of which freedom, of which aim, at which speed."""
-    return say(
+def proof_told(found: Balanced) -> Iterator[str]:
+    """What is proved: of which freedom, of which aim, at which speed; nothing where no program was
+    solved.
+    """
+    if not (free := [*freedoms(found.plan)]):
+        return
+    yield say(
         "Proof, by {method}: with {freedom}, no choice makes {aims} smaller than here by more than "
         "{gap} of the value before{scope}.",
         method=said(found.method),
-        freedom=listed(freedoms(found.plan)),
+        freedom=listed(free),
         aims=aims_told(found),
         gap=gap_told(found.gap),
         scope=scope_of(found),
@@ -204,131 +205,3 @@ def _room(weight: Weight) -> str:
     return (
         shape if isinf(weight.radius) else say("{shape} within {outer}", shape=shape, outer=outer)
     )
-
-
-# -- what was tried --------------------------------------------------------------------------------
-
-
-def tried_blocks(found: Balanced) -> Iterator[Block]:
-    """Where the file does not say what may be changed: what was tried, and how to ask for more."""
-    if not found.tried:
-        return
-    template = to_say(
-        "The file does not say what may be changed. So remedies that can be built were tried: "
-        "counterweights of steel plate within the reach of their links, together no heavier than "
-        "the links. [balance] in the file asks for something else, or options such as --objective, "
-        "--counterweight and --move-cm."
-    )
-    of_rows = to_say(
-        "The file does not say what may be changed. So remedies that can be built were tried: "
-        "phases of the rows, and counterweights of steel plate within the reach of their links, "
-        "together no heavier than the links of a row. [balance] in the file asks for something "
-        "else, or options such as --objective, --phases, --counterweight and --move-cm."
-    )
-    yield Text(say(of_rows if len(found.original.rows) > 1 else template))
-    rows = (
-        (listed(freedoms(one.plan)), Change(1.0, 1 - one.gain), _price(one)) for one in found.tried
-    )
-    columns = (Column(say("remedy")), Column(say("change")), Column(say("what gets worse")))
-    title = say("What was tried to make smaller {aims}", aims=aims_told(found))
-    yield Table(title, columns, tuple(rows))
-    template = to_say(
-        "Worth building is what takes away at least {least} %, and makes nothing else larger by "
-        "more than {price} % of that share."
-    )
-    yield Text(say(template, least=percent(WORTH, 0), price=percent(PRICE, 0)))
-
-
-def _price(found: Balanced) -> str:
-    """A gauge that gets worse, or what grows most for what is gained."""
-    if found.harms:
-        return say("a gauge gets worse")
-    most = max(found.worse, key=lambda one: one.weight, default=None)
-    return "" if most is None else _grown(found, most)
-
-
-def nothing_told(found: Balanced) -> Iterator[str]:
-    """That balancing brings nothing; how small the aims are, and what is proved."""
-    if found.tried:
-        template = to_say(
-            "Of what can be built easily nothing that was tried makes {aims} smaller by {least} %; "
-            "the most, {gain} %, by {freedom}."
-        )
-        dear = to_say(
-            "Nothing that was tried is worth building: {freedom} would make {aims} smaller by "
-            "{gain} %, but these far larger: {figures}."
-        )
-        yield say(
-            template if found.gain < WORTH else dear,
-            aims=aims_told(found),
-            least=percent(WORTH, 0),
-            gain=percent(max(found.gain, 0.0), 1),
-            freedom=listed(freedoms(found.plan)),
-            figures=say("; ").join(_grown(found, one) for one in too_dear(found.worse, found.gain)),
-        )
-    else:
-        for one, (before, _) in found.aims.items():
-            unit = shown_in(unit_of(one, found.original), [before])
-            yield say(
-                "{what}, {value} {unit}, is {already}.",
-                what=capital(objective_named(one, len(found.original.rows))),
-                value=unit.text(before, digits=3),
-                unit=unit.name,
-                already=good_already(found),
-            )
-    yield proof_told(found)
-
-
-def good_already(found: Balanced) -> str:
-    """What a machine is where balancing brings nothing, as a part of a sentence."""
-    if found.tried:
-        return say("nothing that was tried is worth building")
-    return say("already as small as what may be changed can make it")
-
-
-# -- what helps most -------------------------------------------------------------------------------
-
-LARGE = 0.5
-"""Added mass over that of all links from which it is told."""
-
-
-def helps_told(balanced: Balanced) -> Iterator[str]:
-    """What to change, what that brings, and what it costs."""
-    if not balanced.helps:
-        yield from nothing_told(balanced)
-        return
-    for made in balanced.changes:
-        first, *pieces = sentences(made)
-        yield say("{sentence}.", sentence="; ".join([first, *pieces]) if balanced.tried else first)
-    yield from _heavy(balanced)
-    for one, (before, after) in balanced.aims.items():
-        unit = shown_in(unit_of(one, balanced.original), [before])
-        yield say(
-            "{what}: {before} → {after} {unit} ({change}).",
-            what=capital(objective_named(one, len(balanced.original.rows))),
-            before=unit.text(before, digits=3),
-            after=unit.text(after, before, 3),
-            unit=unit.name,
-            change=change(before, after) or percent(0),
-        )
-    yield from worse_told(balanced)
-    yield proof_told(balanced)
-    if balanced.planting_kept:
-        yield say("The planting figures stay as they are.")
-
-
-def _heavy(balanced: Balanced) -> Iterator[str]:
-    """That the mass to be added is large, where it is."""
-    links = balanced.original.mass
-    added = sum(
-        float(dict(change.values)["mass"])
-        for change in balanced.changes
-        if change.kind == "added mass"
-    )
-    if added > LARGE * links > 0:
-        yield say(
-            "That is a large mass for this linkage: all its links together have {links}, and "
-            "{added} are added.",
-            links=told(links, "mass", "kg", digits=3),
-            added=told(added, "mass", "kg", digits=3),
-        )

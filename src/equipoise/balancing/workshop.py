@@ -25,7 +25,7 @@ SIZE_OF_0 = 1e-15
 class Change:
     """One thing to change.
 
-    kind : ``center of mass``, ``added mass``, ``spring``, ``gears``, ``phases``.
+    kind : ``center of mass``, ``added mass``, ``removed mass``, ``spring``, ``gears``, ``phases``.
     link : what is changed.  values : its figures in SI units and radians.
     """
 
@@ -137,6 +137,8 @@ def sentences(change: Change) -> Iterator[str]:
         yield what
         for piece in values["pieces"]:
             yield say("{link}, made as: {piece}", link=link, piece=_made(piece, values["center"]))
+    elif change.kind == "removed mass":
+        yield _taken_off(link, values)
     elif change.kind == "spring":
         yield _spring(link, values)
     elif change.kind == "gears":
@@ -158,6 +160,30 @@ def _added(link: str, values: dict[str, Any]) -> str:
         "at {direction} in the axes of the link ({moment})",
         radius=told(values["radius"], "length"),
         direction=_direction(values["direction"]),
+        moment=told(values["moment"], "unbalance", "g mm"),
+        **words,
+    )
+
+
+def _taken_off(link: str, values: dict[str, Any]) -> str:
+    words = {
+        "link": link,
+        "mass": told(values["mass"], "mass"),
+        "radius": told(values["radius"], "length"),
+        "point": values["at"],
+        "direction": _direction(values["direction"]),
+    }
+    if "hole_radius" in values:
+        return say(
+            "{link}: drill a hole of {diameter} through body {number}, its centre {radius} from "
+            "{point} at {direction} in the axes of the link, which takes {mass} off",
+            diameter=told(2 * values["hole_radius"], "length"),
+            number=values["body"],
+            **words,
+        )
+    return say(
+        "{link}: take {mass} off, {radius} from {point} at {direction} in the axes of the link "
+        "({moment})",
         moment=told(values["moment"], "unbalance", "g mm"),
         **words,
     )

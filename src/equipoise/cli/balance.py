@@ -85,9 +85,9 @@ def balance(
 
 def _refuse(found: Balanced) -> None:
     """Write no machine that is not better."""
-    from equipoise.balancing.told import nothing_told
+    from equipoise.balancing.outcome import nothing_told
 
-    if found.tried:
+    if found.advice is not None:
         told = next(nothing_told(found)).removesuffix(".")
         raise UsageError(f"--out: nothing is written: {told[:1].lower()}{told[1:]}")
 

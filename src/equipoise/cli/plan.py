@@ -136,7 +136,7 @@ class Freed:
 
     def plan(self, machine: Machine) -> Balance:
         """The file's plan, with what is free in the place of what the file says."""
-        from equipoise.balancing.advice import pin_of
+        from equipoise.balancing.room import pin_of
         from equipoise.mechanism.checks import unknown
         from equipoise.mechanism.parts.balance import AddedMass, Balance, CenterMove, Phases
 
@@ -168,7 +168,7 @@ class Freed:
 
     def weight(self, machine: Machine, link: str) -> Weight:
         """A weight of the given shape; in a room as large as the link where nothing else holds."""
-        from equipoise.balancing.advice import reach_of
+        from equipoise.balancing.room import reach_of
         from equipoise.mechanism.checks import unknown
         from equipoise.mechanism.parts.balance import MATERIALS, Weight
 

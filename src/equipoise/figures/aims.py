@@ -118,16 +118,12 @@ def _whole(text: str) -> str:
 
 
 def aims_of(found: Balanced) -> Iterator[Aim]:
-    """Each signal that a plan asks for, by itself at each speed.
-
-    Of the limits of a remedy, which nobody asked for, those that stand in the way.
-    """
+    """Each signal that a plan asks for, by itself at each speed."""
     asked: dict[Objective, list[tuple[Objective, float | None]]] = {}
     wanted: list[tuple[Objective, float | None]] = [(one, None) for one in found.plan.objectives]
     for limit in found.plan.limits:
         price = found.prices[limit.name]
-        if price.active or not found.tried:
-            wanted.append((limit.objective, price.at_most))
+        wanted.append((limit.objective, price.at_most))
     for one, most in wanted:
         for speed in one.speeds or (found.original.drive.speed,):
             own = replace(one, speeds=(speed,), weight=1.0)

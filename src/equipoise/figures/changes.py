@@ -45,11 +45,16 @@ FAR, NEAR = 2.0, 0.02
 each other look like one."""
 NAMES = {
     "mass": to_say("added mass"),
+    "cut": to_say("mass taken off"),
     "move": to_say("centre of mass, from old to new"),
     "gear": to_say("pitch circles of new gears"),
     "spring": to_say("new spring"),
     "room": to_say("room allowed"),
 }
+
+
+CURVES = {"cut": "room"}
+"""Kind of what is drawn as a line -> its look, where that is another's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,6 +148,8 @@ def additions(posed: Posed, changes: tuple[Change, ...], plan: Balance) -> Itera
     for change in changes:
         if change.kind == "added mass":
             yield from _pieces(posed, change)
+        elif change.kind == "removed mass":
+            yield _cut(posed, change)
         elif change.kind == "center of mass":
             yield _moved(posed, change)
         elif _is_spring(change):
@@ -170,6 +177,17 @@ def _pieces(posed: Posed, change: Change) -> Iterator[Addition]:
         text = say("{mass} on {link}", mass=grams(piece["mass"]), link=link)
         outline, holes, edge = _shape(posed.angle(change.link), piece, center, place)
         yield Addition("mass", outline, edge, text, _way(place - center), holes)
+
+
+def _cut(posed: Posed, change: Change) -> Addition:
+    """A hole, or the place at which mass is taken off."""
+    values, machine = change.values, posed.machine
+    place = posed.at(change.link, values["place"])
+    pivot = posed.at(change.link, machine.links[change.link].points[values["at"]])
+    text = say("{mass} off {link}", mass=grams(values["mass"]), link=short(change.link, SHORT))
+    hole = values.get("hole_radius")
+    outline = np.array([place]) if hole is None else circle(place, MM * hole)
+    return Addition("cut", outline, place, text, _way(place - pivot))
 
 
 def _shape(
@@ -275,9 +293,9 @@ def _panel(scene: Scene, k: int, new: list[Addition]) -> Panel:
         x,
         y,
         tuple(
-            Curve.of(one.outline, say(NAMES[one.kind]), one.kind)
+            Curve.of(one.outline, say(NAMES[one.kind]), CURVES.get(one.kind, one.kind))
             for one in new
-            if one.kind in ("room", "gear")
+            if one.kind in ("room", "gear") or (one.kind == "cut" and len(one.outline) > 1)
         ),
         (*_dots(new), *_texts(new, NEAR * size), *joint_names(scene, k, optional=True)),
         arrows=tuple(Arrow(complex(old), complex(at), "move") for old, at in moves if old != at),
@@ -304,6 +322,8 @@ def _dots(new: list[Addition]) -> Iterator[Mark]:
     for one in new:
         if one.kind == "mass" and len(one.outline) == 1:
             yield Mark.of(one.outline[0], "", "point mass", label=say(NAMES["mass"]))
+        elif one.kind == "cut" and len(one.outline) == 1:
+            yield Mark.of(one.outline[0], "", "old center", label=say(NAMES["cut"]))
         elif one.kind == "move":
             yield Mark.of(one.outline[0], "", "old center")
             yield Mark.of(one.outline[1], "", "move", label=say(NAMES["move"]))
@@ -318,5 +338,5 @@ def _texts(new: list[Addition], near: float) -> Iterator[Mark]:
         left = [one for one in left if one not in alike]
         text = first.text if len(alike) == 1 else f"{len(alike)} × {first.text}"
         wish = float(np.degrees(np.angle(first.away)))
-        role = {"mass": "added mass", "spring": "move"}.get(first.kind, first.kind)
+        role = {"mass": "added mass", "spring": "move", "cut": "move"}.get(first.kind, first.kind)
         yield Mark.of(first.at, text, role, wish, sign=False)

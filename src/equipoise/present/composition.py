@@ -9,7 +9,7 @@ from typing import Any
 
 import equipoise
 from equipoise.balancing.blocks import outcome_blocks
-from equipoise.balancing.told import nothing_told
+from equipoise.balancing.outcome import nothing_told
 from equipoise.errors import UsageError
 from equipoise.handheld import blocks as of_tools
 from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
@@ -141,7 +141,7 @@ def balance_blocks(found: Findings) -> Iterator[Block]:
     """What may be changed, what is to be changed, and every figure before and after."""
     balanced = found.balanced
     assert balanced is not None
-    if found.helped or balanced.tried:
+    if found.helped or balanced.advice is not None:
         yield from outcome_blocks(balanced)
     else:
         yield from map(Text, nothing_told(balanced))

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.balancing.objectives import unit_of
-from equipoise.balancing.told import capital, figure_named, figure_unit, good_already
+from equipoise.balancing.outcome import good_already
+from equipoise.balancing.told import capital, figure_named, figure_unit
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs.spoken import joint_named, named
 from equipoise.present.shaking import NOTHING, Shaking, acting, largest_joint, largest_of

@@ -48,10 +48,14 @@ class Tile:
 
 @dataclass(frozen=True)
 class Answer:
-    """A part of the summary: what it answers, and the answer in sentences."""
+    """A part of the summary: what it answers, and the answer in sentences.
+
+    worse : those of the sentences that say what gets worse, which stand out.
+    """
 
     question: str
     sentences: tuple[str, ...]
+    worse: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import pi
 
-from equipoise.balancing.told import capital, good_already, helps_told
+from equipoise.balancing.compared import WORSE
+from equipoise.balancing.outcome import good_already, helps_told
+from equipoise.balancing.told import capital, worse_told
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs.spoken import joint_named, named
@@ -24,6 +26,7 @@ from equipoise.quantities import (
     told,
 )
 from equipoise.results.analysis_blocks import display_of_totals, scale_of, shares
+from equipoise.results.blocks import worse_if
 from equipoise.results.drive_blocks import pushed_named
 from equipoise.results.joint_blocks import display_of_joints
 from equipoise.results.outputs import CAUSES, objective_named, shown_in
@@ -45,7 +48,8 @@ def answers(found: Findings) -> Iterator[Answer]:
         yield Answer(say("What shakes, and how much"), tuple(_shaken(found, shaking)))
         yield Answer(say("Why"), tuple(_why(found)))
         if found.balanced is not None:
-            yield Answer(say("What helps most"), tuple(helps_told(found.balanced)))
+            worse = tuple(worse_told(found.balanced)) if found.helped else ()
+            yield Answer(say("What helps most"), tuple(helps_told(found.balanced)), worse)
     if vibration := tuple(vibration_told(found)):
         yield Answer(say("What that does to the support"), vibration)
     if planting := tuple(planting_told(found)):
@@ -112,7 +116,9 @@ def _tile(
 ) -> Tile:
     before = unit.text(value, scale, 3)
     later = "" if after is None else unit.text(after, max(scale, abs(value)), 3)
-    return Tile(label, before, unit.name, note, later if later != before else "")
+    grows = after is not None and abs(after) > (1 + WORSE) * abs(value)
+    grown = worse_if(grows and later not in (before, "0"))
+    return Tile(label, before, unit.name, note, later if later != before else "", grown)
 
 
 def _at(crank_angle: float) -> str:

@@ -3,8 +3,8 @@
 `assess` gives them ranked, the largest first.  Which outputs are assessed, and against what, is
 declared with them (`yardstick` in `mechanism.outputs.declared`):
 
-    weight        a force that shakes the frame: peak, over the weight of the machine or the largest
-                  load from outside, whichever is larger
+    weight        a force that shakes the frame: peak, over the weight of the machine or a quarter
+                  of the largest load from outside, whichever is larger
     span          a moment that shakes the frame: peak, over that force at the span of the feet
     bearings      a moment across the plane: peak, over that force at the span across the plane
     effort        a torque: peak to peak, over its mean; where that is less than what lifts the
@@ -34,10 +34,11 @@ from typing import Any, Protocol
 import numpy as np
 
 from equipoise.i18n import Note, say, to_say
-from equipoise.mechanism.assembly.steps import size_of_bodies
+from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.dynamics import acting
-from equipoise.mechanism.outputs.declared import DECLARED
+from equipoise.mechanism.outputs.declared import DECLARED, declared
 from equipoise.mechanism.parts.machine import STANDARD_GRAVITY, Machine
+from equipoise.mechanism.parts.objectives import GAUGES
 from equipoise.quantities import SI, Dimension, angle, number, percent, told
 from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import FIGURES, Output
@@ -46,6 +47,11 @@ LARGE, NOTHING = 1.0, 1e-9
 """Ratio from which a figure is large, and up to which it is rounding."""
 PRESSURE, SWINGING_PRESSURE, TRANSMISSION = radians(30), radians(45), radians(40)
 """Largest pressure angles of a cam, and smallest transmission angle of a dyad, rad."""
+LOAD_SHARE = 0.25
+"""Of the largest load: a force that shakes the frame is felt beside the loads from there on."""
+SHAKING = ("weight", "span", "bearings", "vibration")
+"""Yardsticks of what counterweights and phases are for."""
+MEAN = to_say("its mean")
 VIBRATION = 4.5e-3
 """RMS of a velocity, m/s, beyond which a machine should not run for long."""
 
@@ -96,6 +102,32 @@ class FigureAssessment:
     def unit(self) -> str:
         """SI unit of value and yardstick."""
         return SI[self.dimension]
+
+    @property
+    def family(self) -> tuple[str, str]:
+        """Name of its declared output, such as ``joints.{}``, and of the figure.
+
+        A gauge is a family of its own.
+        """
+        known = None if self.output.startswith(GAUGES) else declared(self.output)
+        name = self.output if known is None else known[0].name
+        return name, self.figure.rpartition(".")[2]
+
+    @property
+    def yardstick_kind(self) -> str:
+        """The yardstick that its output is declared with; empty of what is no output."""
+        known = declared(self.output)
+        return "" if known is None else known[0].yardstick
+
+    @property
+    def is_shaking(self) -> bool:
+        """Whether it is what shakes the frame, or how a support vibrates."""
+        return self.yardstick_kind in SHAKING
+
+    @property
+    def is_swing_about_mean(self) -> bool:
+        """Whether it is a torque that swings about the mean that does the work."""
+        return self.yardstick_kind == "effort" and self.against == MEAN
 
     @property
     def is_large(self) -> bool:
@@ -232,9 +264,9 @@ class _Scales:
 
     @cached_property
     def steadying(self) -> tuple[float, Note]:
-        """The larger of weight and load from outside, and which it is."""
-        if self.outer_load > self.weight:
-            return self.outer_load, Note("the largest load")
+        """The larger of weight and a share of the load from outside, and which it is."""
+        if LOAD_SHARE * self.outer_load > self.weight:
+            return LOAD_SHARE * self.outer_load, Note("a quarter of the largest load")
         supported = self.machine.support is not None
         return self.weight, Note("the weight of the machine") if supported else Note(LINKS)
 
@@ -281,7 +313,7 @@ class _Scales:
                 if point in machine.frame]  # fmt: skip
         pins += [machine.frame[one.through] for one in machine.sliders if one.on == "frame"]
         sizes = (_extent([place[:2] for place in places]) for places in (feet, pins))
-        return next((size for size in sizes if size > 0), float(size_of_bodies(machine)))
+        return next((size for size in sizes if size > 0), size_of_links(machine))
 
     @cached_property
     def span_across(self) -> float:
@@ -295,11 +327,11 @@ class _Scales:
 
     @cached_property
     def throw(self) -> float:
-        """From the driven link's pin to its farthest point; half the largest body without one."""
+        """From the driven link's pin to its farthest point; half the largest link without one."""
         points = self.machine.links[self.machine.drive.link].points
         pivot = complex(*points[self.analysis.motion.linkage.pivot])
         reach = max(abs(complex(*point) - pivot) for point in points.values())
-        return reach or float(size_of_bodies(self.machine)) / 2
+        return reach or size_of_links(self.machine) / 2
 
 
 LINKS = to_say("the weight of the moving links")
@@ -364,7 +396,7 @@ def _effort(scales: _Scales, output: Output) -> FigureAssessment | None:
         return _entry(output, "peak", rows * force, what)
     mean = abs(output.analysis.summary[output.name].mean)
     if mean >= rows * scales.links_weight * scales.throw:
-        return _entry(output, "peak_to_peak", mean, Note("its mean"))
+        return _entry(output, "peak_to_peak", mean, Note(MEAN))
     force, what = scales.undriven
     against = Note("{force} at the throw of the crank", force=what)
     return _entry(output, "peak_to_peak", rows * force * scales.throw, against)
@@ -461,4 +493,4 @@ def _reach_of_support(machine: Machine) -> float:
     held = [place for place in places if place is not None]
     center = np.array(support.center_of_mass)
     reach = max((float(np.linalg.norm(np.array(point) - center)) for point in held), default=0.0)
-    return reach or float(size_of_bodies(machine))
+    return reach or size_of_links(machine)

@@ -17,11 +17,11 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.advice import pin_of
 from equipoise.balancing.design_variables import LinkParameters, with_parameters
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.objectives import Near, measured, signals_of, unit_of
 from equipoise.balancing.problem import Problem
+from equipoise.balancing.room import pin_of
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.checks import unknown

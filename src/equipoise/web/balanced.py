@@ -10,17 +10,17 @@ from threading import Lock
 from types import MappingProxyType
 from typing import Any, Protocol
 
-from equipoise.balancing.advice import advise
+from equipoise.balancing.advice import advise, beside
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.objectives import unit_of as si_unit
 from equipoise.balancing.optimisation import balance
+from equipoise.balancing.outcome import nothing_told
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.told import (
     aims_told,
     figure_named,
     figure_unit,
-    nothing_told,
     proof_told,
     worse_told,
 )
@@ -51,7 +51,8 @@ GAIN = 1e-3
 def balanced(base: Design, hold: bool = False) -> Balanced:
     """By the plan that was used last, or as `advise` does it; with the errors of `balance`.
 
-    hold : whether no gauge may read more than it does, whatever the plan says.
+    hold : whether no gauge may read more than it does, whatever the plan says; advice makes none
+        read more anyway.
 
     A counterweight of which a plan is free to choose another is replaced: the plan begins without
     it, and what was before is nevertheless the machine as it is shown.
@@ -68,7 +69,19 @@ def balanced(base: Design, hold: bool = False) -> Balanced:
         aims = {name: (before[name], after) for name, (_, after) in found.objectives.items()}
         return replace(found, original=shown, objectives=aims)
 
-    return advise(base.machine, solve) if base.plan is None else solve(base.machine, base.plan)
+    return _advised(base) if base.plan is None else solve(base.machine, base.plan)
+
+
+def _advised(base: Design) -> Balanced:
+    """As `advise` does it, in the place of all counterweights that there are."""
+    weights = _weighted(base)
+    found = advise(base.without(weights).machine)
+    return beside(found, base.machine.with_balance(None)) if weights else found
+
+
+def _weighted(base: Design) -> list[str]:
+    """Links that have a counterweight."""
+    return [name for name, weight in base.counterweights.items() if weight.mass]
 
 
 def _held(machine: Machine, plan: Balance) -> Balance:
@@ -81,12 +94,13 @@ def _held(machine: Machine, plan: Balance) -> Balance:
 
 def _replaced(base: Design, plan: Balance) -> list[str]:
     """Links that have a counterweight on the pin where the plan may add mass."""
-    return [
-        name
-        for name, weight in base.counterweights.items()
-        if weight.mass
-        and any(one.link == name and one.at == pin_of(base.own, name) for one in plan.masses)
-    ]
+    free = {(one.link, one.at) for one in plan.masses}
+    return [name for name in _weighted(base) if (name, pin_of(base.own, name)) in free]
+
+
+def _taken_away(base: Design, found: Balanced) -> list[str]:
+    """Links whose counterweights a result takes away, or replaces."""
+    return _weighted(base) if found.advice is not None else _replaced(base, found.plan)
 
 
 def _aims_of(machine: Machine, plan: Balance) -> dict[str, float]:
@@ -99,7 +113,7 @@ def _aims_of(machine: Machine, plan: Balance) -> dict[str, float]:
 
 def nothing_gained(found: Balanced) -> str | None:
     """The sentence that what was to become small hardly does; None where it does."""
-    if found.tried:
+    if found.advice is not None:
         return None if found.helps else " ".join(nothing_told(found))
     if found.gain > GAIN:
         return None
@@ -116,7 +130,7 @@ def balanced_design(base: Design, found: Balanced) -> Design:
 
     base : what was balanced.
     """
-    weights = {**base.without(_replaced(base, found.plan)).counterweights, **_weights(base, found)}
+    weights = {**base.without(_taken_away(base, found)).counterweights, **_weights(base, found)}
     links, whole = {}, True
     for name, link in found.machine.links.items():
         own, weight = base.own.links.get(name), weights.get(name)
@@ -194,7 +208,7 @@ def balanced_told(base: Solved, after: Solved, found: Balanced) -> Values:
     base, after : the design before and after, computed; what the page reads of these beside it is
         told as it is read there.
     """
-    replaced = _replaced(base.design, found.plan)
+    replaced = _taken_away(base.design, found)
     old, new = found.before, found.after
     names = [name for name in old if name in new and not name.startswith("planting.")]
     figures = {name: (old[name], new[name]) for name in names} | _read(base, after)
@@ -207,7 +221,7 @@ def balanced_told(base: Solved, after: Solved, found: Balanced) -> Values:
         "figures": [_figure(found, name, *figures[name]) for name in names],
         "worse": list(worse_told(found)),
         "gauges_worse": any(one.group == "gauges" for one in found.worse),
-        "proof": proof_told(found),
+        "proof": " ".join(proof_told(found)),
         "notes": list(map(said, found.notes)),
     }
 

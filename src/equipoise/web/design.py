@@ -10,7 +10,7 @@ from math import cos, pi, sin
 from types import MappingProxyType
 from typing import Any
 
-from equipoise.balancing.advice import reach_of
+from equipoise.balancing.room import reach_of
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.parts.balance import Balance

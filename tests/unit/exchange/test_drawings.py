@@ -20,7 +20,7 @@ SAME = 1e-9
 STEEL = 7850.0
 DENSITY = {("balance-shafts", "crank"): 7200.0}
 """kg/m3; cast iron where the file says so."""
-BALANCED = {name: eq.balancing.advise(eq.load(name)) for name in ("balance-shafts", "yamashita-1")}
+BALANCED = {name: eq.balancing.advise(eq.load(name)) for name in ("balance-shafts", "kim-chung-c")}
 
 
 def drawn(what: object, path: Path) -> ezdxf.document.Drawing:
@@ -111,7 +111,7 @@ def test_counterweights_weigh_what_they_are_to(name: str, tmp_path: Path) -> Non
             )
             same_lengths(tree, label, corners(line))
             seen += 1
-    assert seen > 1
+    assert seen > (name == "balance-shafts")
 
 
 def svg(what: object, path: Path) -> ET.Element:

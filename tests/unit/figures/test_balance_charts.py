@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.advice import advise
 from equipoise.balancing.balanced import Balanced
 from equipoise.figures import balancing as view
 from equipoise.figures.aims import aims_of
@@ -127,15 +126,6 @@ def test_a_gauge_is_drawn_at_each_speed_at_which_it_is_read() -> None:
     joint = chart.panels[6]
     assert joint.title.startswith("force in joint A")
     assert [line.at for line in joint.lines] == [result.prices[limit.name].at_most]
-
-
-def test_of_limits_that_nobody_asked_for_those_are_drawn_that_stand_in_the_way() -> None:
-    result = advise(eq.load("yamashita-1"))
-    assert result is not None and result.tried
-    asked = [one.output for aim in aims_of(result) for one, _ in aim.asked]
-    active = [one.objective.output for one in result.plan.limits if result.prices[one.name].active]
-    assert asked == [*(one.output for one in result.plan.objectives), *active]
-    assert len(active) < len(result.plan.limits)
 
 
 def test_what_did_not_change_is_left_out() -> None:

@@ -87,7 +87,8 @@ def test_a_load_that_is_larger_takes_the_place_of_the_weight() -> None:
     load = eq.Load(link, point, force=(3e4, 4e4))
     loaded = assessed(replace(machine, loads=(load,)))["shaking_force.peak"]
     inside = assessed(replace(machine, loads=(replace(load, reaction="frame"),)))
-    assert loaded.yardstick == pytest.approx(5e4) and str(loaded.against) == "the largest load"
+    assert loaded.yardstick == pytest.approx(5e4 / 4)
+    assert str(loaded.against) == "a quarter of the largest load"
     assert inside["shaking_force.peak"].yardstick == pytest.approx(9.80665 * machine.mass)
 
 
@@ -105,7 +106,8 @@ def test_a_torque_is_measured_by_its_mean_where_there_is_work_to_do() -> None:
     analysis = eq.analyze(eq.load("quick-return"))
     torque = analysis.forces.drive_torque
     found = {one.figure: one for one in assess(analysis)}["drive_torque.peak_to_peak"]
-    assert found.ratio == pytest.approx(np.ptp(torque) / abs(np.mean(torque)))
+    # Samples miss a load that begins between two of them by a step of one in 360.
+    assert found.ratio == pytest.approx(np.ptp(torque) / abs(np.mean(torque)), rel=0.01)
     idle = assessed(pump())["drive_torque.peak_to_peak"]
     assert idle.yardstick > 0 and str(idle.against) != "its mean"
 

@@ -23,7 +23,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from equipoise.mechanism.formulas import joint_kernels
-from equipoise.mechanism.parts.machine import FRAME, Machine, Vector
+from equipoise.mechanism.parts.machine import FRAME, Machine, Vector, size_of
 
 Array = np.ndarray[Any, Any]
 State = dict[str, Any]
@@ -155,6 +155,15 @@ def size_of_bodies(machine: Machine) -> Any:
         sizes.append(np.hypot(*spans))
     size = reduce(np.maximum, sizes)
     return size + (size == 0)
+
+
+def size_of_links(machine: Machine) -> float:
+    """Size of the largest moving link, m; that of the largest body where all are points.
+
+    A point of the frame that nothing uses does not change it.
+    """
+    largest = max(size_of(link.points) for link in machine.links.values())
+    return largest or float(size_of_bodies(machine))
 
 
 def demand_names(link: str) -> tuple[str, str]:

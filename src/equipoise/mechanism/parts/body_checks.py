@@ -229,7 +229,7 @@ def _wrong_holes(body: Body, points: Points) -> Wrong:
     outline = outlines(body, points)
     holes = [(place_of(hole.at, points), hole.radius) for hole in body.holes]
     for number, (center, radius) in enumerate(holes, 1):
-        if any(not _fits(center, radius * (1 - ROUNDING), one) for one in outline):
+        if any(not fits(center, radius * (1 - ROUNDING), one) for one in outline):
             yield (
                 f"holes[{number}]",
                 f"does not lie within the {body.shape}; move it, or make it smaller",
@@ -242,7 +242,7 @@ def _wrong_holes(body: Body, points: Points) -> Wrong:
         yield "holes", f"leave nothing of the {body.shape}; make them smaller"
 
 
-def _fits(center: complex, radius: float, outline: Outline) -> bool:
+def fits(center: complex, radius: float, outline: Outline) -> bool:
     """Whether a circle lies on the body's side of an outline."""
     corners, size = outline
     if size:

@@ -1,0 +1,156 @@
+"""Headline figures of a machine: its figures against their yardsticks, and what may not grow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import floor, log10
+
+import numpy as np
+
+from equipoise.balancing.remedies import Watched
+from equipoise.errors import ModelError, ResponseError
+from equipoise.mechanism.assembly.steps import size_of_links
+from equipoise.mechanism.outputs.declared import declared
+from equipoise.mechanism.parts.balance import Objective
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import GAUGES, MEASURES
+from equipoise.results.analysis import Analysis, analyze
+from equipoise.results.yardsticks import FigureAssessment, assess
+from equipoise.vibration.forced import respond
+
+GROWTH, TRIFLE = 1.01, 0.1
+"""Times its value before, a headline figure may be after; share of its yardstick up to which a
+figure may grow."""
+STEADY = 0.05
+"""Share of its mean by which a crank's speed may swing where a flywheel is advised: between 0.02 of
+engines and 0.2 of presses and crushers (Norton, Design of Machinery, table 11-4)."""
+DIGITS, LITTLE = 2, 0.1
+"""Of a flywheel that is advised; share of it that nobody misses."""
+
+Assessment = tuple[FigureAssessment, ...]
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What an advised machine is judged by.
+
+    before, after : figures against their yardsticks, the largest first.
+    offered : whether the remedy gains enough for its mass, and leaves no headline figure worse.
+    flywheel : moment of inertia, kg m2, of one that would keep the crank's speed steady; None where
+        the swing of the drive's torque is not what is large, or it is there already.
+    """
+
+    before: tuple[FigureAssessment, ...]
+    after: tuple[FigureAssessment, ...]
+    offered: bool
+    flywheel: float | None = None
+
+    @property
+    def worse(self) -> tuple[tuple[FigureAssessment, FigureAssessment], ...]:
+        """Headline figures that are worse, before and after."""
+        return worse_headlines(self.before, self.after)
+
+
+def assessed(machine: Machine) -> tuple[Analysis, Assessment]:
+    """A machine at constant speed, and its figures against their yardsticks."""
+    analysis = analyze(machine, acceleration=0.0)
+    readings = None
+    if machine.support is not None and machine.support.gauges:
+        try:
+            readings = respond(machine).gauges
+        except (ModelError, ResponseError):  # without a steady state gauges tell nothing
+            readings = None
+    return analysis, assess(analysis, readings)
+
+
+def worse_headlines(
+    before: Assessment, after: Assessment
+) -> tuple[tuple[FigureAssessment, FigureAssessment], ...]:
+    """Figures of two assessments that grew by more than 1 %, each before and after.
+
+    What stays below a tenth of its yardstick is no headline.  Yardsticks are those before, which
+    the change itself may have moved.
+    """
+    old = {one.family: one for one in before}
+    pairs = ((old[new.family], new) for new in after if new.family in old)
+    return tuple((was, new) for was, new in pairs if _ratio(was, new) > allowed_ratio(was))
+
+
+def allowed_ratio(was: FigureAssessment) -> float:
+    """The ratio that a figure may have after a change."""
+    return max(GROWTH * was.ratio, TRIFLE)
+
+
+def _ratio(was: FigureAssessment, new: FigureAssessment) -> float:
+    """The ratio of a figure after a change, by the yardstick before."""
+    by_value = not new.is_limit and bool(was.value)
+    return was.ratio * abs(new.value / was.value) if by_value else new.ratio
+
+
+def watched_of(analysis: Analysis, entries: Assessment) -> Iterator[Watched]:
+    """Headline figures that masses change, and the most that they may become."""
+    for one in entries:
+        if one.output.startswith(GAUGES):
+            yield from _watched_gauge(analysis.machine, one)
+            continue
+        family, measure = one.family
+        known = declared(one.output)
+        if known is None or known[0].reason or measure not in MEASURES:
+            continue
+        members = [
+            out.name.removeprefix("rows.")
+            for out in analysis.outputs
+            if out.declared.name == family
+        ]
+        objectives = tuple(Objective(name, measure) for name in members)
+        yield Watched(objectives, allowed_ratio(one) * abs(one.value) / one.ratio)
+
+
+def _watched_gauge(machine: Machine, one: FigureAssessment) -> Iterator[Watched]:
+    """What a gauge reads at the machine's own speed."""
+    from equipoise.balancing.problem import Problem
+
+    for objective in (Objective(one.output, "ripple"), Objective(one.output, "peak_to_peak")):
+        yield Watched((objective,), GROWTH * Problem.value_of(machine, objective))
+
+
+def headline_objectives(entries: Assessment) -> tuple[Objective, ...]:
+    """The largest figure that can be an objective; the shaking force where there is none."""
+    for one in entries:
+        known, measure = declared(one.output), one.figure.rpartition(".")[2]
+        gauge = one.output.startswith(GAUGES)
+        if gauge:
+            return (Objective(one.output, "ripple"),)
+        if known is not None and not known[0].reason and measure in MEASURES:
+            name = one.output.removeprefix("rows.")
+            return (Objective(name, measure),)
+    return (Objective("shaking_force"),)
+
+
+def flywheel_for(analysis: Analysis, entries: Assessment) -> float | None:
+    """Moment of inertia (kg m2) on the crank that keeps its speed within `STEADY` of the mean,
+    beside what turns with it already; None where the drive's torque is not the largest figure,
+    nothing is missing, or a disc as large as the largest link would be heavier than all links.
+
+    The torque of the drive at constant speed, less its mean, does the work that speeds the crank
+    up: I = (largest less smallest work) / (`STEADY` w^2).
+    """
+    machine = analysis.machine
+    largest = next(iter(entries), None)
+    if largest is None or not machine.has_crank or not largest.is_swing_about_mean:
+        return None
+    torque = analysis.outputs[largest.output].values
+    step = abs(2 * np.pi * analysis.motion.turns) / len(torque)
+    work = np.cumsum(torque - np.mean(torque)) * step
+    needed = float(np.ptp(work)) / (STEADY * analysis.motion.speed**2)
+    motor = machine.drive.motor
+    there = machine.drive.flywheel + (motor.inertia * motor.ratio**2 if motor else 0.0)
+    missing = needed - there
+    heavy = 2 * missing / size_of_links(machine) ** 2 > machine.mass
+    return None if heavy or missing < LITTLE * needed else _rounded_up(missing)
+
+
+def _rounded_up(value: float) -> float:
+    unit = 10.0 ** (floor(log10(value)) - DIGITS + 1)
+    return float(np.ceil(value / unit * (1 - 1e-9)) * unit)

@@ -1,0 +1,296 @@
+"""Where a counterweight may lie: what of a machine comes near a link's pivot, at any crank angle.
+
+Pins and shafts are taken to reach through every plane.  Links are where they are declared
+to be: the outlines of their bodies, or straight lines between their points.  Where no planes are
+declared, a link is taken to lie beside those that it is pinned to and those that it passes over,
+and in one plane with all others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations, pairwise
+
+import numpy as np
+
+from equipoise.mechanism.assembly.steps import size_of_bodies, size_of_links
+from equipoise.mechanism.checks import bodies_at
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.kinematics.tip import surface_of
+from equipoise.mechanism.parts.bodies import Body
+from equipoise.mechanism.parts.body_checks import outlines
+from equipoise.mechanism.parts.links import Link
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.signals import Array
+from equipoise.symbols.wheels import wheels_of
+
+ANGLES, EDGE_SAMPLES, CIRCLE_SAMPLES = 120, 9, 24
+"""Crank angles in a turn at which bodies are looked at; places on an edge, and on a circle."""
+CLEARANCE, LEAST_CLEARANCE = 0.02, 2e-3
+"""Over the size of the largest link, and m: both together keep a counterweight from the middle of a
+pin, whose size no model tells, and from the edge of a body."""
+SIZE, LARGER = 0.25, 2.0
+"""Over the size of the largest link, and over the reach of its own link, up to twice that share of
+the largest link: how far a counterweight reaches at most, where its link does not reach farther."""
+DIRECTIONS = 360
+"""In which the room is known: whole degrees."""
+
+
+@dataclass(frozen=True, eq=False)
+class Room:
+    """Room about the pivot of a link.
+
+    link, at : the link, and its point in the frame.  plane : z of the weight's middle, m; None for
+        the link's own.
+    reach : (360,) m, how far out a weight may lie, by direction in the link's axes in degrees.
+    own_pins : (K,) complex, m, further pins of the link itself, seen from the pivot.
+    most_thick : m, of a plate.  clearance : m, from the middle of pins.
+    """
+
+    link: str
+    at: str
+    plane: float | None
+    reach: Array
+    own_pins: Array
+    most_thick: float
+    clearance: float
+
+    @property
+    def largest(self) -> float:
+        """Largest radius that is free in any direction, m."""
+        return float(np.max(self.reach))
+
+    def is_free(self, inner: float, outer: float, direction: Array, width: Array) -> Array:
+        """Whether sectors (...) between two radii (m) lie in the room; their middle and width are
+        in degrees, in the link's axes.
+        """
+        reach = self.reach.copy()
+        for pin in self.own_pins:
+            clearance = min(self.clearance, abs(pin) / 2)
+            if inner - clearance < abs(pin) < outer + clearance:
+                _keep_clear(reach, np.array([pin]), clearance)
+        blocked = np.append(0, np.cumsum(np.tile(reach < outer, 3)))
+        first = np.floor(direction - width / 2).astype(int) % DIRECTIONS + DIRECTIONS
+        last = first + np.minimum(np.ceil(width).astype(int), DIRECTIONS) + 1
+        return np.asarray(blocked[last] == blocked[first])
+
+
+def pivots_of(machine: Machine) -> dict[str, str]:
+    """Links that turn about one point of the frame, the driven one first, and that point."""
+    found = {
+        name: pins[0]
+        for name, link in machine.links.items()
+        if len(pins := [point for point in link.points if point in machine.frame]) == 1
+    }
+    drive = machine.drive.link
+    return {name: found[name] for name in sorted(found, key=lambda name: name != drive)}
+
+
+def room_about(machine: Machine, link: str, plane: float | None = None) -> Room:
+    """The room about a link's pivot.
+
+    plane : z of the weight's middle, m; that of the link if None.
+    """
+    motion, at, own = move(machine, ANGLES), pivots_of(machine)[link], machine.links[link]
+    size = size_of_links(machine)
+    clearance = CLEARANCE * size + LEAST_CLEARANCE
+    pivot = complex(*machine.frame[at])
+    turn = np.exp(-1j * motion.links[link].angle)
+    reach = _reach(own, at)
+    most = max(reach, SIZE * size, min(LARGER * reach, LARGER * SIZE * size))
+    thick = _most_thick(machine, link, most)
+    free = np.full(DIRECTIONS, min(most, _over_ground(machine, pivot)))
+    own_wheels, wheels = _wheels(motion, link, at)
+    free = np.minimum(free, min(own_wheels, default=np.inf))
+    bodies = _bodies(motion, link, plane, thick)
+    for places in (*_pins(motion, link), *bodies, *wheels):
+        seen = (np.broadcast_to(places, turn.shape) - pivot) * turn
+        _keep_clear(free, seen, clearance)
+    # A weight in a plane of its own lies beyond the webs between which the link's pins are.
+    pins = _joined(machine) & own.points.keys() - {at} if plane is None else set()
+    center = complex(*own.points[at])
+    own_pins = np.array([complex(*own.points[pin]) - center for pin in sorted(pins)], complex)
+    return Room(link, at, plane, np.maximum(free, 0.0), own_pins, thick, clearance)
+
+
+def rooms_of_planes(machine: Machine) -> Iterator[tuple[Room, Room]]:
+    """Both ends of a shaft with pins in several planes: a couple of weights, one at each end.
+
+    Weights lie halfway between the outermost pin and the bearing beyond it, or, where there is
+    none, as far outside as half the least distance of two pins.
+    """
+    for link in pivots_of(machine):
+        planes = sorted({*machine.links[link].planes.values(), *_planes_at(machine, link)})
+        if len(planes) < 2:
+            continue
+        held = [one.plane for one in machine.bearings.values() if one.link == link]
+        gap = min(b - a for a, b in pairwise(planes)) / 2
+        low = max((z for z in held if z < planes[0]), default=planes[0] - 2 * gap)
+        high = min((z for z in held if z > planes[-1]), default=planes[-1] + 2 * gap)
+        ends = ((planes[0] + low) / 2, (planes[-1] + high) / 2)
+        most = min(planes[0] - low, high - planes[-1]) / 2
+        rooms = [room_about(machine, link, plane) for plane in ends]
+        first, second = (replace(one, most_thick=min(one.most_thick, most)) for one in rooms)
+        yield first, second
+
+
+def _planes_at(machine: Machine, link: str) -> Iterator[float]:
+    """Planes in which other links are pinned to a link."""
+    for name, other in machine.links.items():
+        for point in machine.links[link].points.keys() & other.points.keys():
+            if name != link and point not in machine.frame:
+                yield other.plane_of(point)
+
+
+def _keep_clear(reach: Array, seen: Array, clearance: float) -> None:
+    """Cut the room where something comes, at places seen from the pivot (N,), m.
+
+    Between two crank angles it is no farther from one of them than half of its way.
+    """
+    step = float(np.max(np.abs(np.diff(np.append(seen, seen[0])))))
+    away, clear = np.abs(seen), clearance + step / 2
+    ahead = np.degrees(np.angle(seen)) % 360
+    half = np.degrees(np.arcsin(np.minimum(1.0, clear / np.maximum(away, clear))))
+    half = np.where(away > clear, half, 180.0)
+    apart = np.abs((np.arange(DIRECTIONS)[:, None] - ahead + 180) % 360 - 180)
+    free = np.where(apart <= half + 1, away - clear, np.inf)
+    np.minimum(reach, np.min(free, axis=1), out=reach)
+
+
+def _joined(machine: Machine) -> set[str]:
+    """Points of pins and shafts; those of guides only say where a line is."""
+    return {name for name, bodies in bodies_at(machine.bodies).items() if len(bodies) > 1}
+
+
+def _pins(motion: Motion, link: str) -> Iterator[Array]:
+    """Places of pins and shafts that are none of the link's own."""
+    machine = motion.machine
+    own = machine.links[link].points
+    here = [machine.frame[name] for name in own if name in machine.frame]
+    for name in sorted(_joined(machine) - own.keys()):
+        if machine.frame.get(name) not in here:
+            yield motion.points[name].place
+
+
+def _bodies(motion: Motion, link: str, plane: float | None, thick: float) -> Iterator[Array]:
+    """Places on other links that lie in the plane of a weight on a link."""
+    machine = motion.machine
+    known, own = machine.has_planes, machine.links[link]
+    z = own.plane if plane is None else plane
+    for name, other in machine.links.items():
+        if name == link or (not known and own.points.keys() & other.points.keys()):
+            continue
+        tracks = []
+        solids: list[Body | None] = [one for one in other.bodies if one.shape != "point"]
+        for body in solids or [None]:
+            there = other.plane if body is None or body.plane is None else body.plane
+            across = 0.0 if body is None else body.thickness or body.outer_diameter or 0.0
+            if not known or abs(there - z) < (thick + across) / 2:
+                tracks += [_track(motion, name, place) for place in outline_of(other, body)]
+        if known or not _pass_over(motion, link, tracks):
+            yield from tracks
+
+
+def _wheels(motion: Motion, link: str, at: str) -> tuple[list[float], list[Array]]:
+    """Radii of gears and pulleys about a link's pivot, beyond which belts and other gears are; and
+    places on other gears and pulleys.
+    """
+    machine, own, others = motion.machine, list[float](), list[Array]()
+    angles = {name: float(one.angle[0]) for name, one in motion.links.items()}
+    for wheel in wheels_of(motion.linkage.joints, machine.bodies, angles):
+        if (wheel.link, wheel.center) == (link, at):
+            curve = wheel.curve
+            own.append(wheel.radius if curve is None else float(np.min(np.abs(curve))))
+        elif wheel.link != link:
+            turned = 2 * np.pi * np.arange(CIRCLE_SAMPLES) / CIRCLE_SAMPLES
+            edge = wheel.radius * np.exp(1j * turned)
+            tracks = [motion.points[wheel.center].place + place for place in edge.tolist()]
+            others += [] if _pass_over(motion, link, tracks) else tracks
+    return own, others
+
+
+def _pass_over(motion: Motion, link: str, tracks: Sequence[Array]) -> bool:
+    """Whether places on another link pass over a link, so that they lie in another plane."""
+    line = np.array(
+        [_track(motion, link, at) for at in outline_of(motion.machine.links[link], None)]
+    )
+    clear = CLEARANCE * size_of_links(motion.machine)
+    return any(bool(np.any(np.abs(line - track) < clear)) for track in tracks)
+
+
+def _track(motion: Motion, link: str, place: complex) -> Array:
+    """Where a place in a link's axes goes, (N,)."""
+    name, point = next(iter(motion.machine.links[link].points.items()))
+    arm = (place - complex(*point)) * np.exp(1j * motion.links[link].angle)
+    return np.asarray(motion.points[name].place + arm)
+
+
+def outline_of(link: Link, body: Body | None) -> Iterator[complex]:
+    """Places on the outline of a body in the link's axes, m; on straight lines between the points
+    of the link where no body is given.
+    """
+    if body is None:
+        points = [complex(*point) for point in link.points.values()]
+        for one, other in combinations(points, 2):
+            yield from _between(one, other)
+        if len(points) == 1:
+            yield points[0]
+        return
+    for corners, radius in outlines(body, link.points):
+        if radius:
+            turned = 2 * np.pi * np.arange(CIRCLE_SAMPLES) / CIRCLE_SAMPLES
+            yield from (corners[0] + abs(radius) * np.exp(1j * turned)).tolist()
+            continue
+        for one, other in zip(corners, [*corners[1:], corners[0]], strict=True):
+            yield from _between(one, other)
+
+
+def _between(one: complex, other: complex) -> Iterator[complex]:
+    yield from (one + (other - one) * np.linspace(0, 1, EDGE_SAMPLES)).tolist()
+
+
+def _over_ground(machine: Machine, pivot: complex) -> float:
+    """Height of a pivot over the soil, m."""
+    if machine.planting is None:
+        return np.inf
+    return max(0.0, pivot.imag - surface_of(machine))
+
+
+def _reach(link: Link, at: str) -> float:
+    """From a link's pivot to its farthest point or the farthest edge of its bodies, m."""
+    center = complex(*link.points[at])
+    places = [(complex(*point), 0.0) for point in link.points.values()]
+    for body in link.bodies:
+        for corners, radius in outlines(body, link.points):
+            places += [(corner, max(radius, 0.0)) for corner in corners]
+    return max(abs(place - center) + radius for place, radius in places)
+
+
+SMALLEST = 0.05
+"""Room of a counterweight on a link that has no other point than its pin, m; less in a machine
+that is smaller."""
+
+
+def pin_of(machine: Machine, link: str) -> str:
+    """The link's point in the frame; its first point where it has none."""
+    points = machine.links[link].points
+    return next((name for name in points if name in machine.frame), next(iter(points)))
+
+
+def reach_of(machine: Machine, link: str) -> float:
+    """Distance of what of a link is farthest from its pin, m: a point, or an edge of a body."""
+    own = _reach(machine.links[link], pin_of(machine, link))
+    return own or min(SMALLEST, float(size_of_bodies(machine)))
+
+
+THICK, THICKER, THICKEST = 0.3, 3.0, 0.03
+"""Of a plate: over its largest radius; over the thickness of the link that carries it; and m,
+beyond which no workshop screws it on."""
+
+
+def _most_thick(machine: Machine, link: str, reach: float) -> float:
+    """Thickest plate that a link can carry, m."""
+    bodies = machine.links[link].bodies
+    own = max((one.thickness or one.outer_diameter or 0.0 for one in bodies), default=0.0)
+    return float(min(THICK * reach, THICKER * own or THICKEST, THICKEST))
