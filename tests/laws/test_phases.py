@@ -46,7 +46,9 @@ class Dumb:
         self.waves = np.fft.fftfreq(720, 1 / 720)
         self.scales = [1.0] * len(wishes)
         before = self.values([row.phase for row in machine.rows])
-        self.scales = [value / wish.weight for value, wish in zip(before, wishes, strict=True)]
+        root = 1.0 if combine == "sum" else 0.5  # a weight of squares multiplies the square
+        weights = [wish.weight**root for wish in wishes]
+        self.scales = [value / weight for value, weight in zip(before, weights, strict=True)]
 
     def values(self, phases: Sequence[float]) -> list[float]:
         turning = np.exp(1j * np.outer(phases, self.waves))

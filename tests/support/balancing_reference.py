@@ -329,7 +329,9 @@ class Problem:
         self.affine = self._affine(wishes)
         count = len(self.plan.objectives)
         self.goals, self.kept = self.affine[:count], self.affine[count:]
-        self.weights = [one.weight for one in self.plan.objectives]
+        # a weight multiplies the value, or in a sum of squares the square of it
+        root = 0.5 if self.plan.combine == "squares" else 1.0
+        self.weights = [one.weight**root for one in self.plan.objectives]
         self.limits = [
             limit.at_most if limit.at_most is not None else (limit.ratio or 0.0) * goal.before
             for limit, goal in zip(self.plan.limits, self.kept, strict=True)

@@ -307,7 +307,7 @@ def _prices(found: Solution) -> dict[str, Price]:
     """
     problem, plan = found.problem, found.problem.plan
     only = plan.objectives[0] if len(plan.objectives) == 1 else None
-    unit = 1.0 if only is None else problem.scale(only) / only.weight
+    unit = 1.0 if only is None else problem.scale(only) / plan.factors[0]
     prices = {}
 
     def add(bound: Bound, scale: float, rounding: float) -> None:

@@ -25,7 +25,7 @@ from equipoise.errors import UsageError
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.jumps import jumps_of
 from equipoise.mechanism.kinematics.motion import Motion, move
-from equipoise.mechanism.parts.balance import Measure, Objective
+from equipoise.mechanism.parts.balance import Measure, Objective, cost_factor
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, output_of, wrong_objective
 from equipoise.results.analysis import Analysis
@@ -279,8 +279,8 @@ class Term:
 
 @dataclass(frozen=True, eq=False)
 class Cost:
-    """Several objectives as one: their weighted sum, or the root of the sum of squares, each over
-    the value that counts as one; it rises steeply where limits are more than their scale.
+    """Several objectives as one: their weighted sum, or the root of the weighted sum of squares,
+    each over the value that counts as one; it rises steeply where limits are more than their scale.
     """
 
     terms: tuple[Term, ...]
@@ -303,8 +303,9 @@ class Cost:
 
     @cached_property
     def factors(self) -> Array:
-        """Weight over scale of each term."""
-        return np.array([term.objective.weight / term.scale for term in self.terms])
+        """What each term is multiplied by before all are combined."""
+        factors = [cost_factor(term.objective.weight, self.combine) for term in self.terms]
+        return np.array(factors) / [term.scale for term in self.terms]
 
     def values(self, phases: Array) -> Array:
         """Combined value (...) at phases (..., m), rad."""

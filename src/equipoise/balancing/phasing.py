@@ -91,7 +91,7 @@ def choose_phases(
     ----------
     objectives : outputs with their measures; see `multi_row.Rows.signals`.
     phases : how finely to look; every 5 deg if None.
-    combine : several objectives by their weighted sum, or by the root of the sum of squares.
+    combine : several objectives by their weighted sum, or the root of that of their squares.
     progress : is told how many arrangements of the grid have been looked at.
     limits : what must be kept.
 

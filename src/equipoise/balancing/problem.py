@@ -266,12 +266,12 @@ class Problem:
         return int(term[0])
 
     def _cost(self, program: Program, terms: list[int]) -> None:
-        weights = [one.weight for one in self.plan.objectives]
+        own = self.plan.factors
         if self.plan.combine == "sum" or len(terms) == 1:
-            program.cost = dict(zip(terms, weights, strict=True))
+            program.cost = dict(zip(terms, own, strict=True))
             return
         whole = program.numbers(1)
-        factors = np.diag([1.0, *weights])
+        factors = np.diag([1.0, *own])
         program.cones(Affine.of([int(whole[0]), *terms], factors), len(factors))
         program.cost = {int(whole[0]): 1.0}
 

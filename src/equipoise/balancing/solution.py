@@ -205,13 +205,13 @@ def _least_squares(problem: Problem, free: Array, given: Array) -> Array | None:
     """
     matrices, vectors = [], []
     lifts = ~free & (given == 0)
-    for one in problem.plan.objectives:
+    for one, factor in zip(problem.plan.objectives, problem.plan.factors, strict=True):
         (signal,) = problem.signals[one.name]
         if np.max(np.abs(signal.columns[lifts]), initial=0.0) > WITHOUT_EFFECT:
             return None  # an inertia that grows with the square of a place
         matrix, vector = mean_square_rows(signal, one.measure)
-        matrices.append(one.weight * matrix[:, free])
-        vectors.append(one.weight * (vector + matrix @ given))
+        matrices.append(factor * matrix[:, free])
+        vectors.append(factor * (vector + matrix @ given))
     found = given.copy()
     found[free] = np.linalg.lstsq(np.concatenate(matrices), -np.concatenate(vectors), rcond=None)[0]
     return found
@@ -284,7 +284,7 @@ def _way_out(problem: Problem, clash: list[str]) -> Note:
         least = asked.built.program.solve().value * asked.scale(limit.objective)
     except NoSolutionError:
         return Note("allow more of one of them")
-    least /= limit.objective.weight
+    least /= relaxed.factors[0]
     unit = unit_of(limit.objective, problem.machine)
     told = {"name": limit.name, "least": least, "unit": unit}
     found = Note("{name} can become {least:.4g} {unit} at the least", **told)

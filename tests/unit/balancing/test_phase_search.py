@@ -257,10 +257,11 @@ def test_row_1_keeps_its_phase_and_rows_their_places() -> None:
 def test_combined_value(combine: str) -> None:
     wishes = [replace(FORCE, weight=2.0), Objective("drive_torque", "ripple")]
     found = choose_phases(rows(3, 0.5), wishes, combine=combine)  # type: ignore[arg-type]
-    shares = np.array([found.after[w.name] / found.before[w.name] * w.weight for w in wishes])
-    expected = np.sum(shares) if combine == "sum" else np.linalg.norm(shares)
+    shares = np.array([found.after[w.name] / found.before[w.name] for w in wishes])
+    weights = np.array([2.0, 1.0])
+    expected = weights @ shares if combine == "sum" else np.sqrt(weights @ shares**2)
     assert found.combined[1] == pytest.approx(expected, rel=1e-12)
-    assert found.combined[0] == pytest.approx(3.0 if combine == "sum" else np.hypot(2.0, 1.0))
+    assert found.combined[0] == pytest.approx(3.0 if combine == "sum" else np.sqrt(3.0))
 
 
 def test_objective_that_is_0_before_counts_over_all_rows_alone() -> None:

@@ -93,7 +93,7 @@ def test_no_phases_on_a_grid_with_their_best_masses_are_better() -> None:
             one = eq.balance(turned, plan).machine
         except eq.EquipoiseError:  # where masses do nothing
             one = turned
-        shares = np.array([rms(one, w.output) for w in wishes]) / old * [1.0, 0.5]
+        shares = np.array([rms(one, w.output) for w in wishes]) / old * [1.0, np.sqrt(0.5)]
         assert np.linalg.norm(shares) >= found.cost - CLOSE
         assert np.linalg.norm(shares) >= found.bound - 1e-9
 

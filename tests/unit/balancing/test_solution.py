@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize
 
 import equipoise as eq
 from equipoise.balancing.balanced import Balanced, Price
@@ -84,12 +86,16 @@ def test_cost_of_numbers_is_that_of_their_machine(combine: str) -> None:
     before = eq.analyze(MACHINE, 720, acceleration=0.0).forces
     shares = (
         np.sqrt(np.mean(forces.shaking_force.size**2) / np.mean(before.shaking_force.size**2)),
-        0.5 * np.max(np.abs(forces.drive_torque)) / np.max(np.abs(before.drive_torque)),
+        np.max(np.abs(forces.drive_torque)) / np.max(np.abs(before.drive_torque)),
     )
-    wanted = sum(shares) if combine == "sum" else np.hypot(*shares)
+
+    def whole(first: float, second: float) -> float:
+        return first + 0.5 * second if combine == "sum" else np.sqrt(first**2 + 0.5 * second**2)
+
+    wanted = whole(*shares)
     assert problem.cost_at(NUMBERS) == pytest.approx(wanted, rel=1e-9)
     assert problem.cost_of(changed) == pytest.approx(wanted, rel=1e-9)
-    assert problem.cost_of(MACHINE) == pytest.approx(1.5 if combine == "sum" else np.hypot(1, 0.5))
+    assert problem.cost_of(MACHINE) == pytest.approx(whole(1.0, 1.0))
 
 
 def test_program_holds_the_cost() -> None:
@@ -254,6 +260,24 @@ def test_the_cone_program_finds_the_same(name: str, monkeypatch: pytest.MonkeyPa
     assert found.cost == pytest.approx(program.cost, abs=1e-8)
     assert found.cost <= program.cost + 1e-12
     assert program.bound <= found.cost + 1e-9
+
+
+@pytest.mark.parametrize("weight", [0.2, 2.0, 9.0])
+def test_weights_multiply_the_squares(weight: float) -> None:
+    """What is least is weight * x^2 + y^2, over values before: against Nelder and Mead."""
+    both = (replace(LIFT, weight=weight), Objective("shaking_force.x"))
+    found = balance(MACHINE, Balance(moves=(MOVE,), objectives=both, combine="squares"))
+    before = np.array([Problem.value_of(MACHINE, one) for one in both])
+
+    def cost(place: np.ndarray[Any, Any]) -> float:
+        moved = MACHINE.with_link("coupler", center_of_mass=tuple(map(float, place)))
+        shares = [Problem.value_of(moved, one) for one in both] / before
+        return float(np.sqrt(weight * shares[0] ** 2 + shares[1] ** 2))
+
+    start = MACHINE.links["coupler"].center_of_mass
+    blind = minimize(cost, start, method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12})
+    assert found.cost == pytest.approx(blind.fun, rel=1e-8)
+    assert found.machine.links["coupler"].center_of_mass == pytest.approx(blind.x, abs=1e-6)
 
 
 def test_the_least_squares_is_flat_there() -> None:

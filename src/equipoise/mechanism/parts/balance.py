@@ -7,7 +7,7 @@ the link that they belong to.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from math import degrees, hypot, pi, radians
+from math import degrees, hypot, pi, radians, sqrt
 from typing import Any, Literal
 
 from equipoise.errors import ModelError
@@ -113,6 +113,13 @@ class Phases(Frozen):
     )
 
 
+def cost_factor(weight: float, combine: Literal["sum", "squares"]) -> float:
+    """What an objective is multiplied by before all are combined: in the root of a weighted sum of
+    squares it is the square that its weight multiplies.
+    """
+    return sqrt(weight) if combine == "squares" else weight
+
+
 @declared
 class Balance(Frozen):
     """What may be changed, what is to become small, and what must be kept."""
@@ -159,8 +166,13 @@ class Balance(Frozen):
 
     def combined(self, values: Sequence[float]) -> float:
         """Objectives, each over its value before, as one number."""
-        found = [one.weight * value for one, value in zip(self.objectives, values, strict=True)]
+        found = [factor * value for factor, value in zip(self.factors, values, strict=True)]
         return hypot(*found) if self.combine == "squares" else sum(found)
+
+    @property
+    def factors(self) -> tuple[float, ...]:
+        """What each objective, over its value before, is multiplied by before they are combined."""
+        return tuple(cost_factor(one.weight, self.combine) for one in self.objectives)
 
     @property
     def changes_nothing(self) -> bool:
