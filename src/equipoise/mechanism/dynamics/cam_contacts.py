@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from math import isfinite
 from typing import Any
 
@@ -13,11 +14,19 @@ from equipoise.i18n import to_say
 from equipoise.mechanism.assembly.cam_fits import fits_of, sharpest
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.forces import Forces
+from equipoise.mechanism.dynamics.forces import forces as forces_of
 from equipoise.mechanism.dynamics.reactions import reactions
-from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.motion import MOST_ANGLES, Motion, move
 from equipoise.mechanism.kinematics.stroke_figures import figure
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.signals import ROUNDING, highest_at
+
+PER_TURN = 360
+"""Crank angles in a turn among which the place where a follower lifts off is looked for first."""
+NEAR, MOST_PLACES = 1.1, 16
+"""Squares of speeds, over the least sample, up to which a place may be the lowest; most places."""
+ROUNDS, FINER = 3, 24
+"""How often such a place is looked at more closely, and how much more so each time: to 1e-6 rad."""
 
 
 @dataclass(frozen=True)
@@ -76,6 +85,7 @@ class LetGo:
     at: float
 
 
+@lru_cache(maxsize=1)  # figures and notes of the same analysis ask for it
 def let_go(forces: Forces) -> tuple[LetGo, ...]:
     """Of each cam that springs close, where and from which speed its follower lifts off.
 
@@ -83,33 +93,84 @@ def let_go(forces: Forces) -> tuple[LetGo, ...]:
     weight, loads and springs do, and what an acceleration of the crank adds at any speed.  Soil,
     which resists faster fingers more, is taken as it is at the speed analysed.
     """
-    machine, motion = forces.motion.machine, forces.motion
-    sprung = [cam for cam in machine.cams if cam.closed_by == "spring"]
-    if not sprung:
-        return ()
-    fast = forces.at(speed=1.0, acceleration=0.0).inertia
-    squared = reactions(motion, fast, forces.solved).cams
-    return tuple(
-        _let_go(cam, motion, forces.cams[cam.name].normal, squared[cam.name].normal)
-        for cam in sprung
-    )
+    sprung = [cam for cam in forces.motion.machine.cams if cam.closed_by == "spring"]
+    fine = _finely(forces) if sprung else forces
+    return tuple(_let_go(cam, forces, fine) for cam in sprung)
 
 
-def _let_go(cam: Cam, motion: Motion, normal: Array, per_speed2: Array) -> LetGo:
-    """From the normal force, and the share of it that a speed of 1 rad/s asks for."""
-    theta, speed = motion.crank_angle, motion.speed
-    at_rest = normal - per_speed2 * speed**2
-    worst = int(highest_at(-at_rest))
-    if at_rest[worst] <= 0:
-        limit, place = 0.0, worst
-    else:
-        with np.errstate(divide="ignore"):
-            squares = np.where(per_speed2 < 0, -at_rest / per_speed2, np.inf)
-        place = int(highest_at(-squares, smooth=False))
-        limit = float(np.sqrt(squares[place]))
+def _finely(forces: Forces) -> Forces:
+    """Forces at so many crank angles that the lowest of a curve lies beside the lowest of them."""
+    motion = forces.motion
+    per_turn = min(PER_TURN, MOST_ANGLES // motion.turns)
+    if not motion.whole_cycle or len(motion.crank_angle) >= per_turn * motion.turns:
+        return forces
+    return _forces_at(forces, per_turn)
+
+
+def _forces_at(like: Forces, angles: int | Array) -> Forces:
+    motion = like.motion
+    return forces_of(move(motion.machine, angles, motion.speed, motion.acceleration), like.about)
+
+
+def _let_go(cam: Cam, forces: Forces, fine: Forces) -> LetGo:
+    theta, normal = forces.motion.crank_angle, forces.cams[cam.name].normal
     k = int(highest_at(-normal))
     least = float(normal[k]), float(theta[k])
-    return LetGo(cam, _ranges(theta, normal), least, limit, float(theta[place]))
+    return LetGo(cam, _ranges(theta, normal), least, *_limit(cam.name, fine))
+
+
+def _limit(name: str, forces: Forces) -> tuple[float, float]:
+    """Speed from which a follower lifts off, rad/s, and crank angle, rad, at which it does.
+
+    Between the samples it lifts off at a lower speed than at any of them, so that every place which
+    may be the lowest is looked at ever more closely.  That needs no derivative: laws of cams jump
+    in their acceleration, and are lowest just beside that.
+    """
+    theta = forces.motion.crank_angle
+    at_rest, per_speed2 = _at_rest(name, forces)
+    worst = int(highest_at(-at_rest))
+    if at_rest[worst] <= 0:
+        return 0.0, float(theta[worst])
+    squares = _squares(at_rest, per_speed2)
+    first = int(highest_at(-squares, smooth=False))
+    if not isfinite(squares[first]) or len(theta) < 2:
+        return float(np.sqrt(squares[first])), float(theta[first])
+    return _lowest(name, forces, squares)
+
+
+def _lowest(name: str, forces: Forces, squares: Array) -> tuple[float, float]:
+    """The same, from the squares of that speed at each crank angle of the forces."""
+    motion, theta = forces.motion, forces.motion.crank_angle
+    ends = (-np.inf, np.inf) if motion.whole_cycle else (theta[0], theta[-1])
+    low = (squares <= np.roll(squares, 1)) & (squares <= np.roll(squares, -1))
+    places = np.flatnonzero(low & (squares <= NEAR * np.min(squares)))
+    places = np.sort(places[np.argsort(squares[places], kind="stable")][:MOST_PLACES])
+    step, at, least = theta[1] - theta[0], theta[places], squares[places]
+    for _ in range(ROUNDS):
+        near = np.clip(at[:, None] + step * np.linspace(-1, 1, 2 * FINER + 1), *ends)
+        found = _squares(*_at_rest(name, _forces_at(forces, near.ravel()))).reshape(near.shape)
+        best = np.argmin(found, axis=1)[:, None]
+        better = np.take_along_axis(found, best, 1)[:, 0] < least * (1 - ROUNDING)
+        at = np.where(better, np.take_along_axis(near, best, 1)[:, 0], at)
+        least = np.where(better, np.take_along_axis(found, best, 1)[:, 0], least)
+        step /= FINER
+    k = int(highest_at(-least, smooth=False))
+    return float(np.sqrt(least[k])), float(at[k] % (2 * np.pi * motion.turns))
+
+
+def _at_rest(name: str, forces: Forces) -> tuple[Array, Array]:
+    """Normal force on a follower as its crank stands still, N, and what a speed of 1 rad/s adds."""
+    fast = forces.at(speed=1.0, acceleration=0.0).inertia
+    per_speed2 = reactions(forces.motion, fast, forces.solved).cams[name].normal
+    return forces.cams[name].normal - per_speed2 * forces.motion.speed**2, per_speed2
+
+
+def _squares(at_rest: Array, per_speed2: Array) -> Array:
+    """Square of the speed at which the normal force is 0, at each crank angle; inf where never."""
+    squares = np.full(len(at_rest), np.inf)
+    with np.errstate(divide="ignore", over="ignore"):
+        np.divide(-at_rest, per_speed2, out=squares, where=per_speed2 < 0)
+    return squares
 
 
 def _ranges(theta: Array, normal: Array) -> tuple[tuple[float, float], ...]:
