@@ -6,11 +6,12 @@ two unknowns, a sliding joint a force across its line and a couple, a gear pair 
 tangential force at the pitch point, a belt the difference of its strands' tensions, and the drive
 its torque.  A linkage with one free motion and no redundant constraint has as many unknowns as
 equations.  Where joints hold too much, the forces of least squares are those of the rule that the
-package states: couples count as forces at the largest distance of two points of a body.
+package states: couples count as forces at the largest distance of two joints on one body.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import chain, combinations
@@ -255,9 +256,14 @@ def cylinder(machine: Machine, drive: Drive | FurtherDrive, poses: Poses) -> Con
 
 
 def extent(machine: Machine) -> float:
-    """Return the largest distance of two points of a body."""
+    """Return the largest distance of two joints on one body: of its pins, and of what slides."""
+    on_several = Counter(point for points in machine.bodies.values() for point in points)
+    sliding = {(one.link, one.point) for one in machine.sliders}
     pairs = (
-        pair for points in machine.bodies.values() for pair in combinations(points.values(), 2)
+        (points[a], points[b])
+        for body, points in machine.bodies.items()
+        for a, b in combinations(points, 2)
+        if all(on_several[end] > 1 or (body, end) in sliding for end in (a, b))
     )
     return max(float(np.hypot(*np.subtract(*pair))) for pair in pairs)
 

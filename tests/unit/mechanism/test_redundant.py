@@ -12,6 +12,7 @@ import equipoise as eq
 from equipoise.errors import EquipoiseError, MobilityError, ModelError, UsageError
 from equipoise.exchange import mjcf, modelica
 from equipoise.exchange.formats import Job
+from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.shared import IDLE
 from equipoise.mechanism.dynamics.across import exerted_in
 from equipoise.mechanism.dynamics.undecided import idle_told, undecided
@@ -131,6 +132,29 @@ def test_two_guides_move_as_one_does() -> None:
     np.testing.assert_allclose(
         both.forces.joints["C"].value, alone.forces.joints["C"].value, atol=1e-9
     )
+
+
+def test_points_at_which_nothing_is_joined_leave_forces_as_they_are() -> None:
+    """On the frame or on a link, and wherever along its line a guide is said to go through."""
+    body = heavy(C=(0.1, 0.0), U=(-0.2, -0.1), V=(0.2, 0.1))
+    block = replace(guided(), links={**guided().links, "block": body})
+    further = block.links["block"]
+    beside = replace(
+        block,
+        frame={**block.frame, "Z": (9.0, 7.0)},
+        links={
+            **block.links,
+            "block": replace(further, points={**further.points, "T": (3.0, 1.0)}),
+        },
+    )
+    along = replace(block, frame={**block.frame, "G": (5.0, -0.1)})
+    wanted = eq.analyze(block, 90).forces.joints
+    for changed in (beside, along):
+        found = eq.analyze(changed, 90).forces.joints
+        for name, force in wanted.items():
+            assert found[name].x == pytest.approx(force.x, abs=1e-9), name
+            assert found[name].y == pytest.approx(force.y, abs=1e-9), name
+    assert undecided(assemble(block)).reach == pytest.approx(1.0)  # the rod, between its pins
 
 
 def test_two_guides_need_two_names() -> None:

@@ -162,8 +162,8 @@ class Shared(LoopForces):
         self, state: State, poses: Poses, senses: Sequence[Any]
     ) -> tuple[Array, Array, Array]:
         """Equations (N, 3 n, m) of all free bodies without dimension, and the units (3 n,) of rows
-        and (m,) of unknowns: moments are counted as forces at the largest distance
-        of two points of a body.
+        and (m,) of unknowns: moments are counted as forces at the largest distance of two joints on
+        one body.
 
         The last unknowns are the torques of the drives.
         """
@@ -276,10 +276,24 @@ class Shared(LoopForces):
         return frozenset(force for force, some in owners if any(some))
 
 
-def _largest_distance(machine: Machine) -> float:
-    """Between two points of a body, m, however its axes lie; 1 where all bodies are points."""
-    bodies = [[planar(place) for place in points.values()] for points in machine.bodies.values()]
-    return max(abs(a - b) for places in bodies for a in places for b in places) or 1.0
+def _span_of_joints(machine: Machine, joints: Structure, apart: set[str]) -> float:
+    """Largest distance of two joints on one body, m, among bodies that are not `apart`.
+
+    A guide counts where its link slides; the point of its line that the file names says nothing of
+    its size, and counts only where nothing else does.  1 where all joints of each body coincide.
+    """
+    ends = [(body, point) for point, bodies in joints.pins.items() for body in bodies]
+    ends += [(one.link, one.point) for one in joints.sliders]
+    through = [(one.on, one.through) for one in joints.sliders]
+
+    def span(named: list[tuple[str, str]]) -> float:
+        places: dict[str, list[complex]] = {}
+        for body, point in named:
+            if body not in apart:
+                places.setdefault(body, []).append(planar(machine.bodies[body][point]))
+        return max((abs(a - b) for own in places.values() for a in own for b in own), default=0.0)
+
+    return span(ends) or span(ends + through) or 1.0
 
 
 def shared(
@@ -305,7 +319,7 @@ def shared(
     loops += [maker.coupling(one) for one in joints.couplings if one.driven in links]
     loops.sort(key=lambda loop: (loop.name, loop.on.body) != (pivot, links[0]))
     anchors = tuple(maker.anchors.values())
-    size = _largest_distance(builder.machine)
+    size = _span_of_joints(builder.machine, joints, apart)
     whole = LoopGroup(links, anchors, ((FRAME, pivot),), (), tuple(loops), (), size)
     reactions = tuple(map(maker.reaction, loops))
     every = (*reactions, *(one for group in decided for one in group.reactions))
