@@ -35,7 +35,7 @@ from equipoise.mechanism.assembly.steps import (
     size_of_bodies,
     u,
 )
-from equipoise.mechanism.dynamics.forces import inertia_about, massless
+from equipoise.mechanism.dynamics.forces import inertia_moved, massless
 from equipoise.mechanism.formulas import cam_kernels, kernels
 from equipoise.mechanism.parts.couplings import coupled
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive
@@ -190,7 +190,7 @@ def _write_inertia(writer: Writer) -> None:
 
 def _inertia(writer: Writer, link: str, place: int) -> Read:
     anchor = writer.linkage.anchors[link]
-    return lambda found: inertia_about(found.machine.links[link], anchor)[place]
+    return lambda found: inertia_moved(found.machine, link, anchor)[place]
 
 
 def _write_frame(writer: Writer, what: str, demands: list[Held]) -> None:

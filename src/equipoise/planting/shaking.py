@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.mechanism.assembly.family import column
 from equipoise.mechanism.assembly.steps import State, p, u
-from equipoise.mechanism.dynamics.forces import inertia_about, massless
+from equipoise.mechanism.dynamics.forces import inertia_moved, massless
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.tip import TipCurve, lowest_within
 from equipoise.planting.stroke import Figures, acceleration_of_drive, whole_cycle
@@ -49,7 +49,7 @@ class _Parts:
     def _of(self, link: str) -> tuple[Array, ...]:
         """Mass, first moment and moment of inertia of a link, (P, 1) each."""
         anchor = self.curve.family.first.anchors[link]
-        numbers = (inertia_about(machine.links[link], anchor) for machine in self.curve.machines)
+        numbers = (inertia_moved(machine, link, anchor) for machine in self.curve.machines)
         return tuple(map(column, zip(*numbers, strict=True)))
 
     def of(self, name: str) -> Callable[[Array], Array]:

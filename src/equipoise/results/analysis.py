@@ -152,6 +152,9 @@ class Analysis(Result):
             whole["roll_moment"] += roll - row.lateral * y
             whole["yaw_moment"] += yaw + row.lateral * x
             whole[effort] += exerted
+        twice = (len(rows) - 1) * self.solved.flywheel_torque  # rows on one shaft share a flywheel
+        whole["shaking_moment"] += twice
+        whole[effort] -= twice
         return whole
 
     def whole(self, name: str) -> str:

@@ -10,6 +10,9 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.sensitivity import sensitivities
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.figures import Figure
+from equipoise.codegen.gram import MassBatch
 from equipoise.errors import MobilityError, ModelError, MotionError, UsageError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.assessment import remarks
@@ -160,3 +163,51 @@ def test_a_page_can_take_such_a_machine_apart_and_put_it_together_again():
     assert again.design.own.assembly == machine.assembly
     status = status_of(found)
     assert (status["mobility"], status["drive"]) == (2, None)
+
+
+# -- flywheel --------------------------------------------------------------------------------------
+
+WHEEL = 0.02
+"""kg m2."""
+
+
+@pytest.mark.parametrize("name", ["yamashita-1", "transplanter", "lee-kim-b"])
+def test_a_flywheel_counts_as_inertia_of_the_crank(name: str) -> None:
+    """Where the crank is accelerated: in every output, and in the shares by cause."""
+    machine = eq.load(name).with_drive(acceleration=-35.0)
+    crank = machine.links[machine.drive.link]
+    assert crank.inertia is not None
+    beside = machine.with_drive(flywheel=WHEEL)
+    within = machine.with_link(machine.drive.link, inertia=crank.inertia + WHEEL)
+    found, wanted, without = (eq.analyze(one, 90) for one in (beside, within, machine))
+    for output, figures in wanted.summary.items():
+        assert found.summary[output].rms == pytest.approx(figures.rms, rel=1e-12), output
+    torque = found.forces.drive_torque - without.forces.drive_torque
+    assert torque == pytest.approx(-35.0 * WHEEL)
+    assert sum(found.forces.split.drive_torque.reshape(-1, 90)) == pytest.approx(
+        found.forces.drive_torque, rel=1e-10, abs=1e-10
+    )
+    still = eq.analyze(beside, 90, acceleration=0.0).forces.drive_torque
+    assert still == pytest.approx(eq.analyze(machine, 90, acceleration=0.0).forces.drive_torque)
+
+
+def test_rows_share_one_flywheel() -> None:
+    machine = eq.load("four-row-transplanter").with_drive(acceleration=20.0)
+    found, without = (
+        eq.analyze(one, 90).together for one in (machine.with_drive(flywheel=WHEEL), machine)
+    )
+    assert found["drive_torque"] - without["drive_torque"] == pytest.approx(20.0 * WHEEL)
+    assert found["shaking_moment"] - without["shaking_moment"] == pytest.approx(-20.0 * WHEEL)
+
+
+@pytest.mark.parametrize("kind", [Batch, MassBatch])
+def test_loops_have_the_flywheel(kind) -> None:
+    machine = eq.load("yamashita-1").with_drive(acceleration=-35.0, flywheel=WHEEL)
+    names = ("drive_torque", "shaking_moment", "frame_moment")
+    wanted = [Figure(name, "mean") for name in names]
+    batch = kind(machine, ["links.coupler.mass"], wanted, 90)
+    masses = [0.1, 2.0]
+    figures, _ = batch(np.array(masses)[:, None])
+    for row, mass in zip(figures, masses, strict=True):
+        forces = eq.analyze(machine.with_link("coupler", mass=mass), 90).forces
+        assert row == pytest.approx([np.mean(getattr(forces, name)) for name in names])

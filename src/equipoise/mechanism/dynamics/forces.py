@@ -129,6 +129,11 @@ class Forces(Exerted):
         return belt.tension or 0.0
 
     @property
+    def flywheel_torque(self) -> float:
+        """Torque that accelerates the flywheel, N m; rows on one shaft share it."""
+        return self.motion.machine.drive.flywheel * self.motion.acceleration
+
+    @property
     def power(self) -> Array:
         """Power fed in by all drives, W."""
         return np.asarray(sum(self._work_by_angle.values()) * self.motion.speed)
@@ -201,7 +206,7 @@ def forces(motion: Motion, about: str | Vector | complex | None = None) -> Force
     speed2, gravity = motion.speed**2, complex(*machine.gravity)
     inertia, weights = {}, {}
     for link in machine.links:
-        mass, moment, turning = inertia_about(machine.links[link], motion.linkage.anchors[link])
+        mass, moment, turning = inertia_moved(machine, link, motion.linkage.anchors[link])
         inertia[link] = demand_of_inertia(motion, link, speed2, mass, moment, turning)
         weights[link] = kernels.weight_demand(motion.state[f"u({link})"], mass, moment, gravity)
     held = acting.load_demands(motion), acting.spring_demands(motion), acting.inner_demands(motion)
@@ -229,6 +234,17 @@ def inertia_about(body: Link, point: str) -> tuple[float, complex, float]:
     shift = planar(body.points[point]) - planar(body.center_of_mass)
     mass, moment, inertia = kernels.about(body.mass, 0.0, body.inertia, shift)
     return mass, moment, inertia
+
+
+def inertia_moved(machine: Machine, link: str, point: str) -> tuple[float, complex, float]:
+    """As `inertia_about`, with the flywheel that turns with the drive's link."""
+    mass, moment, inertia = inertia_about(machine.links[link], point)
+    return mass, moment, inertia + flywheel_on(machine, link)
+
+
+def flywheel_on(machine: Machine, link: str) -> float:
+    """Moment of inertia (kg m2) of what turns with a link beside it: the drive's flywheel."""
+    return machine.drive.flywheel if link == machine.drive.link else 0.0
 
 
 def demand_of_inertia(
@@ -294,10 +310,11 @@ def _causes(whole: Forces, link: str) -> list[Demand]:
     body = motion.machine.links[link]
     mass, moment, _ = inertia_about(body, whole.anchor(link))
     as_point = abs(moment) ** 2 / mass if mass else 0.0
+    turning = (body.inertia or 0.0) + flywheel_on(motion.machine, link)
     speed2 = motion.speed**2
     return [
         demand_of_inertia(motion, link, speed2, mass, moment, as_point),
-        demand_of_inertia(motion, link, speed2, 0.0, 0.0, body.inertia),
+        demand_of_inertia(motion, link, speed2, 0.0, 0.0, turning),
         whole.weights[link],
         whole.loads.get(link, (0j, 0.0)),
         whole.springs.get(link, (0j, 0.0)),
