@@ -186,4 +186,4 @@ if __name__ == "__main__":
     found = simulate()
     print("crank_angle [rad],drive_torque [N m]")
     for angle, torque in zip(found["crank_angle"], found["drive_torque"], strict=True):
-        print(f"{angle!r},{torque!r}")
+        print(f"{float(angle)!r},{float(torque)!r}")

@@ -10,8 +10,10 @@ from typing import ClassVar
 import numpy as np
 
 from equipoise.errors import MassError, ModelError
+from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import Place
 from equipoise.results.result import Result
 from equipoise.signals import Array
 from equipoise.vibration.body import MISSING
@@ -26,6 +28,7 @@ class FreeVibration(Result):
 
     linear : the machine as a linear system.  modes : by frequency.
     preloads : force (N) or torque (N m) of each mount at rest.
+    notes : what a reader has to know.
     """
 
     shown_in: ClassVar[str] = "vibration.sweep_blocks"
@@ -34,6 +37,7 @@ class FreeVibration(Result):
     linear: Linear
     modes: tuple[Mode, ...]
     preloads: Mapping[str, float]
+    notes: tuple[Note, ...] = ()
 
     @property
     def machine(self) -> Machine:
@@ -43,6 +47,13 @@ class FreeVibration(Result):
     def coordinates(self) -> tuple[str, ...]:
         """What the parts of a shape belong to: displacements and rotations of the support."""
         return self.linear.body.support.coordinates
+
+    @property
+    def reference(self) -> Place:
+        """The point (x, y, z), m, in the frame about which matrices and shapes are: the support's
+        pivot, or its centre of mass.
+        """
+        return self.linear.body.support.reference
 
     @cached_property
     def gauges(self) -> Mapping[str, Array]:
@@ -61,11 +72,13 @@ class FreeVibration(Result):
             "title": self.machine.title,
             "model": self.linear.excitation.model,
             "coordinates": list(self.coordinates),
+            "reference": list(self.reference),
             "modes": modes,
             "mass": self.linear.mass,
             "damping": self.linear.damping,
             "stiffness": self.linear.stiffness,
             "preloads": dict(self.preloads),
+            "notes": list(map(str, self.notes)),
         }
 
 
@@ -87,4 +100,4 @@ def modes(machine: Machine, model: str | None = None) -> FreeVibration:
     if missing := massless(machine):
         raise MassError(missing)
     linear = Linear.of(machine, excitation_model_of(model))
-    return FreeVibration(linear, linear.modes, linear.rest.preload)
+    return FreeVibration(linear, linear.modes, linear.rest.preload, tuple(linear.unsettled))

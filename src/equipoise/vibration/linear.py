@@ -10,6 +10,7 @@ the linkage's mass rides at the drive's pivot, in the first it is spread as in t
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, reduce
 from operator import add
@@ -18,6 +19,7 @@ from typing import Literal
 import numpy as np
 
 from equipoise.errors import ModelError, ResponseError
+from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.dynamics.forces import Forces, forces
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.kinematics.jumps import resolved
@@ -25,6 +27,7 @@ from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.planes import moments_across
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, Gauge, Row
+from equipoise.quantities import Dimension, told
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import (
     Body,
@@ -47,6 +50,10 @@ gives 0 for a support that pitches about the crank's axis, however hard it is sh
 
 ANGLES = 720
 """Crank angles in a turn from which orders are taken; more where loads have kinks."""
+OF_FREEDOMS: tuple[Dimension, ...] = (*("force",) * 3, *("torque",) * 3)
+"""What holds the support in each of `FREEDOMS`."""
+LEFT_OVER = 1e-3
+"""Share of all loads up to which preloads hold the weight: they are rounded in a file."""
 SINGULAR = 1e10
 """Condition of an order's equations above which it meets an undamped mode."""
 
@@ -251,6 +258,35 @@ class Linear:
     def stiffness(self) -> Array:
         """Of the mounts that carry something, of preloads and of weights."""
         return self._free(self._of_mounts("spring") + self.rest.stiffness)
+
+    @property
+    def unsettled(self) -> Iterator[Note]:
+        """That preloads leave a part of the weight over, where they do."""
+        weights = [force for force, _ in self.excitation.weights]
+        loads = sum(float(np.linalg.norm(force)) for force in weights)
+        loads += sum(map(abs, self.rest.preload.values()))
+        reach = max(float(np.linalg.norm(at - self.body.reference)) for at in self._places)
+        scale = loads * np.array([1.0, 1.0, 1.0, reach, reach, reach])
+        parts = [
+            Note(to_say("{size} in {coordinate}"), coordinate=Note(name), size=told(over, kind))
+            for name, over, kind, least in zip(
+                FREEDOMS, self.rest.unbalance, OF_FREEDOMS, LEFT_OVER * scale, strict=True
+            )
+            if name in self.body.support.coordinates and abs(over) > least
+        ]
+        if parts:
+            template = to_say(
+                "the preloads do not hold the weight, but leave {parts} over; modes and linear "
+                "models are those of the drawn position, in which the machine does not rest"
+            )
+            yield Note(template, parts=all_of(parts))
+
+    @property
+    def _places(self) -> list[Array]:
+        """Where weights and mounts act, (3,) each."""
+        mounts = self.body.support.mounts.values()
+        points = [np.array(mount.point) for mount in mounts if mount.point is not None]
+        return [*points, *(at for _, at in self.excitation.weights)]
 
     def _of_mounts(self, part: Literal["spring", "damper"]) -> Array:
         total = np.zeros((6, 6))

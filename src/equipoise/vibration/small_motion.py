@@ -38,6 +38,7 @@ def respond_linear(linear: Linear, speed: float) -> Response:
     moved = linear.motion(speed)
     moving = moved.derivative() * speed
     mounts, notes = _mounts(linear, moved, moving, speed)
+    notes.extend(linear.unsettled)
     if any(mode.eigenvalue.real > NEUTRAL * mode.natural_frequency for mode in linear.modes):
         said = to_say("the support falls over by itself: it does not stand in the drawn position")
         notes.append(Note(said))

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.i18n import say
-from equipoise.quantities import PER_RPM, Dimension, number
+from equipoise.i18n import say, to_say
+from equipoise.quantities import PER_RPM, Dimension, display, number
 from equipoise.results.blocks import Block, Cell, Column, Many, Notes, Span, Table, Text, Value
 from equipoise.signals import Array
 from equipoise.vibration.blocks import model_told, modes_table, reading
@@ -106,6 +106,7 @@ def free_blocks(free: FreeVibration) -> Iterator[Block]:
     else:
         yield Text(say("Mass of the linkages at the drive's pivot."))
     yield Text(model_told(model))
+    yield Text(_reference_told(free))
     yield modes_table(free.modes)
     yield _met(free)
     title = say("Shapes; displacements in m beside rotations in rad, amplitude and phase")
@@ -113,6 +114,28 @@ def free_blocks(free: FreeVibration) -> Iterator[Block]:
     yield _shapes(title, dict(zip(free.coordinates, parts, strict=True)))
     yield _shapes(say("Shapes at the gauges"), free.gauges)
     yield _rest(free)
+    if free.notes:
+        yield Notes(free.notes)
+
+
+def _reference_told(free: FreeVibration) -> str:
+    """About which point matrices and shapes are."""
+    shown = display("length", [*free.reference], "mm")
+    place = ", ".join(shown.text(part, NEAR) for part in free.reference)
+    support = free.linear.body.support
+    template = (
+        to_say("Displacements, masses and stiffnesses are those of the support's pivot, ({place}).")
+        if support.pivot is not None
+        else to_say(
+            "Displacements, masses and stiffnesses are those of the support's centre of mass, "
+            "({place})."
+        )
+    )
+    return say(template, place=shown.with_unit(place))
+
+
+NEAR = 1e-3
+"""m beside which a coordinate that is smaller than atoms is 0."""
 
 
 def _met(free: FreeVibration) -> Block:

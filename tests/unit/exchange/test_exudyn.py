@@ -49,6 +49,18 @@ def test_drive_torque(name: str, tmp_path: Path) -> None:
     assert np.max(apart) < 2e-4 * np.max(np.abs(wanted))
 
 
+def test_the_script_prints_a_table_of_numbers(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "model.py"
+    eq.export(replace(eq.load("lee-kim-a"), loads=(), balance=None), path)
+    runpy.run_path(str(path), run_name="__main__")
+    header, *rows = capsys.readouterr().out.splitlines()
+    assert header == "crank_angle [rad],drive_torque [N m]"
+    assert len(rows) > 100
+    assert all(len([*map(float, row.split(","))]) == 2 for row in rows)
+
+
 @compared(EXUDYN, "gauges of the exported script from rest", 1e-5)
 @pytest.mark.parametrize("name", SHAKEN)
 def test_a_support_from_rest(name: str, tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 
+from equipoise.mechanism.parts.bodies import MATERIALS
 from equipoise.schema import dumps, examples, json_schema, load, loads
 from equipoise.schema.studies import load_study
 from unit.schema.samples import EVERYTHING, FOUR_BAR, VALIDATOR, survives
@@ -41,6 +42,14 @@ def test_it_is_a_schema_without_foreign_addresses(name: str) -> None:
     addresses = re.findall(r"https?://[^\"]*", written(name))
     assert addresses == ["https://json-schema.org/draft/2020-12/schema"]
     assert "null" not in written(name)
+
+
+def test_densities_of_materials_stand_at_each_of_their_keys() -> None:
+    schema = written("model.schema.json")
+    told = ", ".join(f"{name} {density:.0f}" for name, density in MATERIALS.items())
+    assert schema.count(f"; densities in kg/m^3: {told}") == schema.count('"tungsten alloy"') > 0
+    page = (Path(__file__).parents[3] / "docs" / "model-file.md").read_text(encoding="utf-8")
+    assert page.count(f"; densities in kg/m^3: {told} |") == page.count('`"tungsten alloy"`') > 0
 
 
 @pytest.mark.parametrize("text", [FOUR_BAR, EVERYTHING], ids=["four-bar", "everything"])

@@ -18,7 +18,19 @@ from equipoise.vibration.linear import Linear
 from equipoise.vibration.resonance import AMPLIFIED, Resonance, resonances
 from equipoise.vibration.response import Mode, Model
 from equipoise.vibration.sweep import sweep_speed
-from unit.vibration.build import STIFFNESS, Array, Gauge, Mount, block, cart, rig, springs
+from support.printing import printed
+from unit.vibration.build import (
+    SPEED,
+    STIFFNESS,
+    Array,
+    Gauge,
+    Mount,
+    block,
+    cart,
+    rig,
+    springs,
+    weightless,
+)
 
 
 def of(mass: object, damping: object, stiffness: object) -> tuple[Mode, ...]:
@@ -207,6 +219,48 @@ def test_the_linkage_rides_where_the_model_has_it() -> None:
     assert linear == torque == pytest.approx(sqrt(3252.81677175 / (inertia + 1.145 * 1.34**2)))
     assert moment != pytest.approx(linear, rel=1e-3)
     assert {eq.modes(one).linear.excitation.model for one in (rig(), springs())} == {"moment"}
+
+
+def left_over(share: float) -> eq.Machine:
+    """A block on two feet whose preloads are a share of its weight; 0.2 of that on one of them."""
+    weight = 10.0 * 9.80665 * share
+    feet = {
+        "left": Mount((-0.3, 0.0, 0.0), stiffness=2e4, damping=30.0, preload=0.5 * weight),
+        "right": Mount((0.3, 0.0, 0.0), stiffness=2e4, damping=30.0, preload=0.5 * weight),
+        "along": Mount((0.0, 0.0, 0.0), direction=0.0, stiffness=1e4, damping=30.0, preload=0.0),
+    }
+    return block(mounts=feet)
+
+
+def test_preloads_that_do_not_hold_the_weight_are_noted() -> None:
+    """By `modes` and the linear models; the exact one finds where the machine rests."""
+    light = left_over(0.5)
+    (note,) = eq.modes(light).notes
+    assert "the preloads do not hold the weight, but leave -49.03 N in heave over" in str(note)
+    assert eq.modes(light).to_dict()["notes"] == [str(note)]
+    assert eq.modes(left_over(1.0002)).notes == ()  # as rounded in a file
+    assert eq.modes(springs()).notes == ()
+    for model in ("linear", "torque", "moment", "coupled"):
+        assert note in respond(light, SPEED, model).notes
+    assert not any("preloads" in str(one) for one in respond(light, SPEED, "exact").notes)
+    (swept,) = (one for one in sweep_speed(light, 3.0, 9.0, speeds=4).notes if "preload" in one)
+    assert swept == note
+
+
+@pytest.mark.parametrize("machine", [rig(), springs(), cart()], ids=["pivot", "plane", "space"])
+def test_matrices_are_about_the_reference_point(machine: eq.Machine) -> None:
+    """The pivot, or the centre of mass, of which no mass of the support lies to one side."""
+    found = eq.modes(machine)
+    assert found.to_dict()["reference"] == list(found.reference)
+    support = machine.support
+    assert support is not None
+    wanted = support.center_of_mass if support.pivot is None else (*support.pivot, 0.0)
+    assert found.reference == wanted
+    words = " ".join(printed(found.blocks()).split())
+    assert ("of the support's pivot, (" if support.pivot else "centre of mass, (") in words
+    if support.pivot is None:  # of the support alone no mass lies beside its centre
+        mass = np.array(eq.modes(weightless(machine)).to_dict()["mass"])
+        assert np.max(np.abs(mass[:2, -1])) < 1e-12
 
 
 def test_told_values() -> None:

@@ -104,6 +104,8 @@ def material_key(prefix: str, text: str) -> dict[str, Key]:
     """The key of a material beside that of a density."""
     kind = Text(suggested=(*MATERIALS,))
     name = f"{prefix}material"
+    known = ", ".join(f"{material} {density:.0f}" for material, density in MATERIALS.items())
+    text = f"{text}; densities in kg/m^3: {known}"
     return {name: Key(name, kind, text, default=None, example="steel")}
 
 
