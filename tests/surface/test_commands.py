@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import csv
-import gc
 import io
 import json
 import math
 import os
 import re
 import runpy
+import signal
 import subprocess
 import sys
 import threading
@@ -727,8 +727,34 @@ def test_a_command_that_takes_long_says_so(monkeypatch: pytest.MonkeyPatch) -> N
     assert re.match(r"still computing, \d+ s\n", heard.getvalue())
 
 
+def test_long_work_between_two_steps_says_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A line that was told long ago does not count."""
+    twice = threading.Event()
+
+    class Heard(io.StringIO):
+        def write(self, text: str) -> int:
+            done = super().write(text)
+            if self.getvalue().count("still computing") > 1:
+                twice.set()
+            return done
+
+    def balanced(*_: object, progress: Any, **__: object) -> None:
+        progress(3, 40)
+        assert twice.wait(30)
+
+    monkeypatch.delenv("EQUIPOISE_PROGRESS")
+    monkeypatch.setattr("equipoise.cli.SIGN", 0.05)
+    monkeypatch.setattr("equipoise.balancing.optimisation.balance", balanced)
+    monkeypatch.setattr("sys.stderr", heard := Heard())
+    with pytest.raises(AttributeError):  # there is nothing to show
+        run(["balance", "balance-crank"])
+    assert re.search(r"^still computing, \d+ s; program 3 of 40$", heard.getvalue(), re.MULTILINE)
+
+
 def test_linear_algebra_takes_no_thread_beside_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(gc, "disable", lambda: None)
+    for name in ("_collect_later", "_limit_memory"):  # which are for a process of its own
+        monkeypatch.setattr(f"equipoise.cli.{name}", lambda: None)
+    monkeypatch.setattr(signal, "signal", lambda *_: None)
     monkeypatch.setattr(sys, "stdout", io.StringIO())
     told = []
     monkeypatch.setattr("equipoise.cli.run", lambda: told.extend(map(os.getenv, ONE_THREAD)))

@@ -160,13 +160,13 @@ def test_lines_in_a_log_grow_fewer(
                 told.append((second, line))
     seconds = [second for second, _ in told]
     assert seconds[:4] == [5, 10, 15, 23]
-    assert len(seconds) < 20
-    assert np.all(np.diff(seconds) >= 5)
+    assert len(seconds) < 25
+    assert np.all(np.diff(seconds) >= 5) and np.all(np.diff(seconds) <= 60)
     assert told[0][1] == (
         "0 %, 50 of 10000 designs, 10 designs/s; best so far: height 250.0 mm; "
         "failed: does not turn fully 5\n"
     )
-    assert "40 %, 4050 of 10000 designs, 10 designs/s, 9 min 55 s left; best" in told[-3][1]
+    assert "24 %, 2400 of 10000 designs, 10 designs/s, 12 min 40 s left; best" in told[9][1]
     closing = capsys.readouterr().err
     assert closing.startswith(
         "9990 designs computed in 16 min 39 s, 10 designs/s; best: height 250"

@@ -114,8 +114,9 @@ def _refuse(error: Exception) -> int:
     return 2
 
 
-SIGN = 5.0
-"""s without a word, after which a line tells that work goes on; then twice as long each time."""
+SIGN, RAREST = 5.0, 50.0
+"""s without a word, after which a line tells that work goes on; then twice as long each time, and
+at last so long."""
 
 
 @contextmanager
@@ -131,9 +132,11 @@ def _signs_of_life(given: Sequence[str]) -> Iterator[None]:
         wait = SIGN
         while not ended.wait(wait):
             progress = sys.modules.get("equipoise.cli.progress")
-            if progress is None or not progress.shown_now:
-                print(f"still computing, {monotonic() - begun:.0f} s", file=sys.stderr)
-            wait *= 2
+            share = "" if progress is None else progress.so_far(wait)
+            if share is not None:
+                words = f"still computing, {monotonic() - begun:.0f} s"
+                print("; ".join(filter(None, [words, share])), file=sys.stderr)
+            wait = min(2 * wait, RAREST)
 
     thread = Thread(target=tell, daemon=True)
     thread.start()

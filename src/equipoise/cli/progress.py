@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from equipoise.studies.outcomes import Outcome, Progress
     from equipoise.studies.study import Study
 
-SECONDS, GROWTH, LONGEST = 5.0, 0.5, 600.0
+SECONDS, GROWTH, LONGEST = 5.0, 0.5, 60.0
 """The first line in a log comes after so many seconds, the next after this share of the time so
 far, and at the latest after so many s.
 """
@@ -32,8 +32,20 @@ SURE, LATEST = 0.02, 60.0
 """Share of the designs, or time in s, after which a rate is one: loops are compiled at first."""
 
 
-shown_now = False
-"""Whether something is told at the moment, so that nothing else need be."""
+_shown_now: _Log | _Bar | None = None
+"""What tells how far work is at the moment."""
+
+
+def so_far(seconds: float) -> str | None:
+    """How far work is, in words that may be empty; None where that was shown so many s ago or less,
+    so that nothing else need be.
+    """
+    shown = _shown_now
+    if shown is None:
+        return ""
+    if isinstance(shown, _Bar) or monotonic() - shown.last < seconds:
+        return None
+    return "" if shown.step is None else shown.step().share
 
 
 @dataclass(frozen=True)
@@ -66,20 +78,20 @@ def _shown(first: float = SECONDS) -> Iterator[Show]:
     if sys.stderr is None or os.environ.get("EQUIPOISE_PROGRESS") == "off":
         yield lambda step, last: check()
         return
-    global shown_now  # noqa: PLW0603 - there is one standard error
-    shown_now = True
+    global _shown_now  # noqa: PLW0603 - there is one standard error
     try:
         if not sys.stderr.isatty():
-            yield _checking(_Log(first).add)
+            _shown_now = log = _Log(first)
+            yield _checking(log.add)
             return
         from rich.console import Console
         from rich.live import Live
 
-        bar = _Bar()
+        _shown_now = bar = _Bar()
         with Live(bar, console=Console(stderr=True), transient=True, refresh_per_second=4):
             yield _checking(bar.add)
     finally:
-        shown_now = False
+        _shown_now = None
 
 
 def _checking(show: Show) -> Show:
@@ -91,17 +103,20 @@ def _checking(show: Show) -> Show:
 
 
 class _Log:
-    """A line now and then."""
+    """A line now and then.  last : moment of the last one, or of the beginning."""
 
     def __init__(self, first: float) -> None:
-        self.start, self.next = monotonic(), first
+        self.start = self.last = monotonic()
+        self.next = first
+        self.step: Callable[[], Step] | None = None
 
     def add(self, step: Callable[[], Step], last: bool) -> None:
+        self.step = step
         after = monotonic() - self.start
         if after < self.next and not last:
             return
         self.next = after + min(max(SECONDS, GROWTH * after), LONGEST)
-        told = step()
+        told, self.last = step(), monotonic()
         more = (f"{name}: {text}" for name, text in told.more.items() if text)
         line = "; ".join([", ".join(filter(None, [told.share, told.at])), *more])
         with suppress(OSError):  # who does not want to read it gets the result all the same
