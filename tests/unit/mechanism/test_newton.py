@@ -6,13 +6,13 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from math import degrees, pi
+from math import degrees, pi, radians
 
 import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.errors import EquipoiseError, ModelError, MotionError
+from equipoise.errors import ChangePointError, EquipoiseError, ModelError, MotionError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.newton import LoopGroup
 from laws.subjects import families_of, is_force, outputs, sizes
@@ -340,3 +340,16 @@ def test_split_and_regressor_go_through_loops() -> None:
     for name, joint in found.joints.items():
         got = values @ rows[f"joints/{name}/value"]
         np.testing.assert_allclose(got, joint.value, rtol=0, atol=1e-12 * force)
+
+
+@pytest.mark.parametrize("lean", [0.7, radians(0.25)])
+def test_a_bifurcation_is_called_one(lean: float) -> None:
+    """A four-bar of equal opposite sides: where it lies in line it goes on parallel or crossed."""
+    place = (float(np.cos(lean)), float(np.sin(lean)))
+    given = four_bar(1.0, 0.3, 1.0, 0.3, "right")
+    rough = with_position(replace(given, frame={**given.frame, "D": place}))
+    with only_loops(), pytest.raises(ChangePointError, match="two ways there") as caught:
+        eq.move(rough, 36)
+    at = caught.value.crank_angle
+    assert abs(np.sin(at - lean)) < radians(0.5)  # a step of the grid
+    assert "change point at crank angle" in str(caught.value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from math import acos, asin, degrees, pi
 
@@ -348,3 +349,29 @@ def test_a_change_point_asked_for_is_told_in_radians() -> None:
     with pytest.raises(ChangePointError, match="asked for") as caught:
         eq.move(given, [whole.value.crank_angle])
     assert caught.value.crank_angle == whole.value.crank_angle
+
+
+def test_guides_that_become_parallel_jam_and_are_no_bifurcation() -> None:
+    """A block in a slot of the crank and a guide of the frame: where both point the same way."""
+    given = machine(
+        {"A": ORIGIN, "H": (0.0, 0.5)},
+        {"crank": heavy(A=ORIGIN, B=(0.3, 0.0)), "shoe": heavy(J=ORIGIN), "block": heavy(J=ORIGIN)},
+        sliders=(
+            eq.Slider("shoe", "J", "crank", "A", 0.0),
+            eq.Slider("block", "J", FRAME, "H", 0.25),
+        ),
+    )
+    with pytest.raises(ChangePointError, match=r"it jams at crank angle 14\.32 deg, where"):
+        eq.move(given)
+
+
+def test_a_narrow_gap_ends_the_range_on_both_sides() -> None:
+    """It lies between the crank angles at which the linkage is followed."""
+    a, b, c = 1.0, 0.3, 0.7
+    d = a + b - c - 1e-6
+    with pytest.raises(RangeError) as caught:
+        eq.move(leaning(four_bar(a, b, c, d), float(np.radians(0.25))))
+    words = str(caught.value)
+    low, high = (float(part) for part in re.findall(r"at (-?[0-9.]+) deg", words))
+    assert 359 < high - low < 360
+    assert "other such ranges" not in words

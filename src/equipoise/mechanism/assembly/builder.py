@@ -44,6 +44,7 @@ class Group:
     point : of an inner joint that slides, the point that stands for it where no other dyad has
         that.  dead : says what the links do where the margin is zero.
     through : whether they go on through change points, where the margin is zero.
+    jams : whether they come to no place where the margin is zero, instead of to two branches.
     equal : whether they close a four-bar of equal opposite sides, so that they could.
     """
 
@@ -57,6 +58,7 @@ class Group:
     point: str = ""
     dead: Note | str = ""
     through: bool = False
+    jams: bool = False
     equal: bool = False
 
 

@@ -54,7 +54,7 @@ class FullTurn:
         if smallest < -CHANGE_POINT:
             raise self.range_error(group, margin, at, names)
         if smallest < CHANGE_POINT and not group.through:
-            reason = bifurcation(at, group.dead)
+            reason = (jam if group.jams else bifurcation)(at, group.dead)
             message = Note(WITHOUT_CURE, reason=reason)
             joint = group.joint if group.equal else ""
             raise ChangePointError(message, at, joint, reason=reason)
@@ -165,6 +165,15 @@ def bifurcation(angle: float, dead: Note | str) -> Note:
     return Note(
         "change point at crank angle {angle}, a bifurcation: {dead} there, and the assembly mode "
         "after it is undetermined",
+        angle=_in_degrees(angle),
+        dead=dead,
+    )
+
+
+def jam(angle: float, dead: Note | str) -> Note:
+    """Say at which crank angle, rad, a linkage comes to no place, and what it does there."""
+    return Note(
+        "the crank cannot turn fully: it jams at crank angle {angle}, where {dead}",
         angle=_in_degrees(angle),
         dead=dead,
     )

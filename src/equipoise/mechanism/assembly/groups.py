@@ -189,7 +189,7 @@ def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         shift = guide.turn * builder.arm(outer.link, guide.point, pin)
         shapes += (guide.along, shift, guide.turn)
     turns = (f"u({first.body})", f"u({second.body})")
-    return _dyad(
+    group = _dyad(
         builder,
         (first, second),
         (first.reaction(pin), second.reaction(pin), pin_reaction(pin, second.link, first.link)),
@@ -198,6 +198,7 @@ def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         at=pin,
         dead=Note("the lines of {near!r} and {far!r} are parallel", near=near.name, far=far.name),
     )
+    return replace(group, jams=True)
 
 
 def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Group:

@@ -49,7 +49,9 @@ QUINTIC = np.array([
 
 
 class BranchError(MotionError):
-    """Newton's method finds no solution near the one before."""
+    """Newton's method finds no solution near the one before, at `crank_angle` (rad)."""
+
+    crank_angle: float = float("nan")
 
 
 Levels = tuple[Array, Array, Array]  # the unknowns, and their two derivatives
@@ -184,7 +186,10 @@ class LoopGroup:
     def check(self, good: Any, theta: Any) -> None:
         """Raise an error that names the first crank angle at which something failed."""
         if not np.all(good):
-            raise BranchError(self.failure(np.ravel(theta)[int(np.argmin(good))]))
+            angle = float(np.ravel(theta)[int(np.argmin(good))])
+            error = BranchError(self.failure(angle))
+            error.crank_angle = angle
+            raise error
 
     def sizes(self, steps: Array) -> Array:
         """Steps of the unknowns (n, ...) without dimension."""

@@ -6,8 +6,9 @@ dyad is stretched out or folded, or the loop equations of a group have no soluti
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import degrees, pi
 from typing import Any, Protocol
 
@@ -27,6 +28,10 @@ LEAST = 1e-4
 """rad: range below which ends of a swing are hardly told apart in a file."""
 FINER, ROUNDS = 16, 6
 """Into how many parts the step is parted in which an end lies, and how often."""
+LOOP_ROUNDS = 3
+"""The same where Newton's method takes each step: to 1/4000 of a degree."""
+NEAR, THINNER = 10, 4
+"""Steps before an end, all of which are taken again, and one of so many before them."""
 
 
 class Assembled(Protocol):
@@ -112,9 +117,26 @@ def range_of(linkage: Assembled, stuck: MotionError) -> Reach:
     MotionError : `stuck`, where there is no such range.
     """
     start, others = _start(linkage, stuck)
-    low, first = _end(linkage, start, -1)
-    high, second = _end(linkage, start, 1)
+    gaps = np.array([*_gaps(stuck)])
+    low, first = _end(linkage, start, -1, gaps)
+    high, second = _end(linkage, start, 1, gaps)
+    if max(start - low, high - start) >= 2 * pi:  # on other branches, which a turn leads to
+        raise stuck
     return Reach(low, high, (first, second), others)
+
+
+def _gaps(stuck: MotionError) -> Iterator[float]:
+    """Crank angles that cannot be passed, which may lie between two that are looked at."""
+    if isinstance(stuck, ChangePointError):
+        yield stuck.crank_angle
+    for (_, end), (begin, _) in pairwise(_in_turn(stuck)):
+        yield 0.5 * (end + begin)
+
+
+def _in_turn(stuck: MotionError) -> list[tuple[float, float]]:
+    """Ranges in which a crank can be, in order, and the first one a turn later."""
+    ranges = sorted(stuck.ranges) if isinstance(stuck, RangeError) else []
+    return [*ranges, *((low + 2 * pi, high + 2 * pi) for low, high in ranges[:1])]
 
 
 def _has_loops(linkage: Assembled) -> bool:
@@ -129,7 +151,7 @@ def _start(linkage: Assembled, stuck: MotionError) -> tuple[float, int]:
     good = _closed(linkage, theta)
     begins = int(np.sum(good & ~np.roll(good, 1)))
     if good[0]:
-        return 0.0, begins - 1
+        return 0.0, max(begins - 1, 0)  # none begins where only narrow gaps are between
     if not begins or linkage.needed_references:
         raise stuck
     apart = np.round(np.minimum(theta, 2 * pi - theta)[good], 9)
@@ -141,19 +163,31 @@ def _closed(linkage: Assembled, theta: Array) -> Array:
     """At which crank angles (N,) all dyads can be closed."""
     with np.errstate(all="ignore"):
         state = run(linkage.motion, linkage.start(theta))
-    margins = [state[group.margin] for group in linkage.groups if group.margin is not None]
-    good = [np.broadcast_to(margin > CHANGE_POINT, theta.shape) for margin in margins]
+    margins = [(state[one.margin], _least(one)) for one in linkage.groups if one.margin is not None]
+    good = [np.broadcast_to(margin, theta.shape) > least for margin, least in margins]
     return np.all(good, axis=0) if good else np.ones(theta.shape, bool)
 
 
-def _end(linkage: Assembled, start: float, side: int) -> tuple[float, Note | str]:
+def _least(group: Group) -> float:
+    """Margin that a dyad has to stay above; one that goes on through change points comes to 0."""
+    return -CHANGE_POINT if group.through else CHANGE_POINT
+
+
+def _end(linkage: Assembled, start: float, side: int, gaps: Array) -> tuple[float, Note | str]:
     """The crank angle up to which the linkage follows from a start, and what it does there."""
-    way = start + side * np.linspace(0.0, 2 * pi, POINTS + 1)
+    steps = np.append(np.linspace(0.0, 2 * pi, POINTS + 1), side * (gaps - start) % (2 * pi))
+    way = start + side * np.unique(steps)
     good = _followed(linkage, way)
-    for _ in range(ROUNDS if good < len(way) else 0):
+    if good == len(way):
+        return float(way[-1]), ""
+    kept = np.append(way[:good][:-NEAR:THINNER], way[:good][-NEAR:])
+    way, good = np.append(kept, way[good]), len(kept)
+    for _ in range(LOOP_ROUNDS if _has_loops(linkage) else ROUNDS):
         last = way[good - 1]
         way = np.append(way[: good - 1], np.linspace(last, way[good], FINER + 1))
         good = _followed(linkage, way)
+        if good == len(way):  # it is reached by smaller steps
+            break
     return float(way[good - 1]), _stop(linkage, way[: good + 1])
 
 
@@ -166,15 +200,15 @@ def _followed(linkage: Assembled, way: Array) -> int:
 
 def _solvable(linkage: Assembled, way: Array) -> int:
     """The same, as far as groups of loops are concerned."""
-    low, high = 1, len(way)
-    while low < high:
-        middle = (low + high + 1) // 2
+    count = len(way)
+    while count > 1:
         try:
-            _closed(linkage, way[:middle])
-            low = middle
-        except MotionError:
-            high = middle - 1
-    return low
+            _closed(linkage, way[:count])
+            break
+        except BranchError as error:
+            failed = int(np.argmin(np.abs(way[:count] - error.crank_angle)))
+            count = max(min(failed, count - 1), 1)
+    return count
 
 
 def _stop(linkage: Assembled, way: Array) -> Note | str:
@@ -195,7 +229,7 @@ def _stopping(linkage: Assembled, way: Array) -> Group:
                 run(group.motion, state)
         except MotionError:
             return group
-        if group.margin is not None and not np.ravel(state[group.margin])[-1] > CHANGE_POINT:
+        if group.margin is not None and not np.ravel(state[group.margin])[-1] > _least(group):
             return group
     return linkage.groups[-1]
 

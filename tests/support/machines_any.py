@@ -1,0 +1,412 @@
+"""Machines of any kind, from nothing: model files that nobody has looked at, by a seed.
+
+One half grows dyad by dyad, gear by gear: any body may carry the next, so that inner joints share
+points, cranks stop and sides change.  The other half begins with a random machine of a kind of its
+own (`machines`, `machines_cams`, `machines_redundant`, `machines_strokes`).  Both are given drives,
+motions, motors, loads, springs, supports, rows, further gears whose cycle is long, and a balance.
+Most can be analysed; what cannot has to be refused in a sentence.
+"""
+
+from __future__ import annotations
+
+import random
+import tomllib
+from cmath import exp, phase, pi, rect
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+import equipoise as eq
+from equipoise.mechanism.parts.machine import Machine
+from support import machines, machines_cams, machines_redundant
+
+Document = dict[str, Any]
+LAWS = ("modified sine", "cycloidal", "3-4-5", "harmonic", "s-curve")
+
+
+def mm(value: float) -> str:
+    return f"{value:.6g} mm"
+
+
+def deg(angle: float) -> str:
+    return f"{np.degrees(angle):.6g} deg"
+
+
+def pair(place: complex, unit: str = "mm") -> list[str]:
+    return [f"{place.real:.6g} {unit}", f"{place.imag:.6g} {unit}"]
+
+
+class Growing:
+    """A linkage drawn at crank angle 0, in mm, that grows body by body.
+
+    bodies : points by name, in the frame's axes.  far : about how far each body moves, mm.
+    """
+
+    def __init__(self, chance: random.Random) -> None:
+        self.chance = chance
+        size = 10 ** chance.uniform(1, 2)
+        crank = rect(size, 0.0)
+        self.size = size
+        self.bodies: dict[str, dict[str, complex]] = {
+            "frame": {"A": 0j}, "crank": {"A": 0j, "B": crank}
+        }  # fmt: skip
+        self.far = {"frame": 0.0, "crank": size}
+        self.document: Document = {"assembly": {}, "sliders": [], "gears": [], "belts": []}
+        self.loops = False
+
+    # -- where the next joint is -------------------------------------------------------------------
+
+    def body(self, moving: bool = False) -> str:
+        names = [name for name in self.bodies if name != "frame" or not moving]
+        return self.chance.choice(names[-4:] if self.chance.random() < 0.7 else names)
+
+    def joint(self, body: str, others: complex = 0j) -> str:
+        """A point of a body: one that there is, such as a pin, or a new one."""
+        chance, points = self.chance, self.bodies[body]
+        if body != "frame" and chance.random() < 0.7:
+            return chance.choice([*points])
+        name = f"P{sum(map(len, self.bodies.values()))}"
+        way = rect(self.size * chance.uniform(1, 6), chance.uniform(-pi, pi))
+        points[name] = (others if body == "frame" else next(iter(points.values()))) + way
+        return name
+
+    def link(self, kind: str, **points: complex) -> str:
+        name = f"{kind} {len(self.bodies)}"
+        self.bodies[name] = points
+        return name
+
+    def slide(self, link: str, point: str, on: str, through: str, angle: float) -> None:
+        slider = {"link": link, "point": point, "on": on, "through": through,
+                  "direction": deg(angle), "angle": deg(-angle)}  # fmt: skip
+        if self.chance.random() < 0.1:
+            slider["label"] = self.chance.choice(["guide", point, "mode"])
+        self.document["sliders"].append(slider)
+
+    def entry(self, joint: str, side: str) -> None:
+        """A side in the table, which is left out or wrong now and then."""
+        draw = self.chance.random()
+        if draw > 0.05:
+            wrong = {"left": "right", "forward": "backward"}
+            self.document["assembly"][joint] = wrong.get(side, side) if draw > 0.97 else side
+
+    # -- what it can grow by -----------------------------------------------------------------------
+
+    def two_bars(self) -> None:
+        one, other = self.body(moving=True), self.body()
+        first, second = self.joint(one), self.joint(other)
+        p, q = self.bodies[one][first], self.bodies[other][second]
+        apart, far = abs(q - p), 1.2 * (self.far[one] + self.far[other])
+        total = (apart + far) * self.chance.uniform(1.02, 1.7)
+        difference = max(apart - far, 0.0) * self.chance.uniform(-0.9, 0.9)
+        long, short = (total + difference) / 2, (total - difference) / 2
+        cosine = (apart**2 + long**2 - short**2) / (2 * apart * long) if apart else 0.0
+        if not apart or abs(cosine) >= 1:
+            return
+        sense = self.chance.choice((1, -1))
+        inner = p + rect(long, phase(q - p) + sense * float(np.arccos(cosine)))
+        name = f"J{len(self.bodies)}"
+        self.far[self.link("bar", **{first: p, name: inner})] = far
+        self.far[self.link("lever", **{second: q, name: inner})] = far
+        self.entry(name, "left" if sense > 0 else "right")
+
+    def rod_and_block(self) -> None:
+        one, other = self.body(moving=True), self.body()
+        first = self.joint(one)
+        p, angle = self.bodies[one][first], self.chance.uniform(-pi, pi)
+        through = self.joint(other, p)
+        along, base = exp(1j * angle), self.bodies[other][through]
+        offset = ((p - base) / along).imag
+        far = 1.2 * (self.far[one] + self.far[other])
+        rod = (abs(offset) + far) * self.chance.uniform(1.1, 3)
+        sense = self.chance.choice((1, -1))
+        way = sense * float(np.sqrt(max(rod**2 - offset**2, 0.0)))
+        inner = p + along * (way - 1j * offset)
+        name = f"J{len(self.bodies)}"
+        self.far[self.link("rod", **{first: p, name: inner})] = far
+        block = self.link("block", **{name: inner})
+        self.far[block] = far
+        self.slide(block, name, other, through, angle)
+        self.entry(name, "forward" if sense > 0 else "backward")
+
+    def block_on_arm(self) -> None:
+        one, other = self.body(moving=True), self.body()
+        first, second = self.joint(one), self.joint(other)
+        p, q = self.bodies[one][first], self.bodies[other][second]
+        if p == q or first == second:
+            return
+        angle = phase(p - q)
+        block = self.link("block", **{first: p})
+        arm = self.link("arm", **{second: q})
+        far = 1.2 * (self.far[one] + self.far[other])
+        self.far[block] = self.far[arm] = far
+        if self.chance.random() < 0.7:
+            self.slide(block, first, arm, second, angle)
+        else:
+            self.slide(arm, second, block, first, angle)
+        slider = self.document["sliders"][-1]
+        taken = first in self.document["assembly"] or self.chance.random() < 0.3
+        own = slider.get("label") or f"{slider['link']} on {slider['on']}"
+        sense = "forward" if slider["link"] == block else "backward"
+        self.entry(own if taken else slider["point"], sense)
+
+    def two_blocks(self) -> None:
+        one, other = self.body(moving=True), self.body()
+        angle = self.chance.uniform(-pi, pi)
+        through, second = self.joint(one), self.joint(other)
+        p, q = self.bodies[one][through], self.bodies[other][second]
+        other_angle = angle + self.chance.uniform(0.5, 2.6)
+        along, across = exp(1j * angle), exp(1j * other_angle)
+        way = ((q - p) / across).imag / (along / across).imag
+        name = f"J{len(self.bodies)}"
+        far = 1.5 * (self.far[one] + self.far[other])
+        for kind, on, base, line in (
+            ("shoe", one, through, angle),
+            ("block", other, second, other_angle),
+        ):
+            link = self.link(kind, **{name: p + along * way})
+            self.far[link] = far
+            self.slide(link, name, on, base, line)
+
+    def yoke(self) -> None:
+        one = self.body(moving=True)
+        first = self.joint(one)
+        p, angle = self.bodies[one][first], self.chance.uniform(-pi, pi)
+        through = self.joint("frame")
+        block, yoke = (
+            self.link("block", **{first: p}),
+            self.link("yoke", **{f"Y{len(self.bodies)}": p}),
+        )
+        self.far[block] = self.far[yoke] = self.far[one]
+        (point,) = self.bodies[yoke]
+        self.slide(block, first, yoke, point, angle + self.chance.uniform(0.4, 2.7))
+        self.slide(yoke, point, "frame", through, angle)
+
+    def gear(self) -> None:
+        driver = self.body(moving=True)
+        carrier = "frame" if self.chance.random() < 0.6 else self.body(moving=True)
+        pin = self.joint(carrier)
+        wheel = self.link("wheel", **{pin: self.bodies[carrier][pin]})
+        self.far[wheel] = self.far[carrier]
+        if driver == carrier:
+            driver = "frame"
+        chance = self.chance
+        teeth = [chance.randint(10, 60), chance.randint(10, 60)]
+        if chance.random() < 0.25:
+            belt = {"between": [driver, wheel], "carrier": carrier, "teeth": teeth, "pitch": "5 mm",
+                    "tension": "60 N"}  # fmt: skip
+            self.document["belts"].append(belt)
+            return
+        size: Document = chance.choice(
+            [{"teeth": teeth}, {"ratio": chance.choice([-1, -2, 0.5, -0.75])}]
+        )
+        gear = {"between": [driver, wheel], "carrier": carrier, **size}
+        if chance.random() < 0.2:
+            gear |= {"teeth": [31, 31], "shape": {"kind": "elliptic", "eccentricity": 0.3}}
+            gear.pop("ratio", None)
+        self.document["gears"].append(gear)
+
+    def triad(self) -> None:
+        """A plate on three bars, which no dyad solves."""
+        one = self.body(moving=True)
+        first, chance = self.joint(one), self.chance
+        p = self.bodies[one][first]
+        corners = [
+            p + rect(self.size * chance.uniform(2, 4), chance.uniform(-pi, pi)) for _ in range(3)
+        ]
+        names = [f"{letter}{len(self.bodies)}" for letter in "KLM"]
+        pins = [first, self.joint("frame", p), self.joint("frame", p)]
+        ends = [p, *(self.bodies["frame"][pin] for pin in pins[1:])]
+        self.far[self.link("plate", **dict(zip(names, corners, strict=True)))] = self.far[one]
+        for name, corner, pin, end in zip(names, corners, pins, ends, strict=True):
+            self.far[self.link("bar", **{pin: end, name: corner})] = self.far[one]
+        self.loops = True
+
+    def parallel_crank(self) -> None:
+        """A four-bar of equal opposite sides on the crank."""
+        way = rect(self.size * self.chance.uniform(1.5, 5), self.chance.uniform(-pi, pi))
+        number = len(self.bodies)
+        a, b, c = f"A{number}", "B", f"C{number}"
+        self.bodies["frame"][a] = way
+        points = self.bodies["crank"]
+        self.far[self.link("coupler", **{b: points["B"], c: points["B"] + way})] = self.size
+        self.far[self.link("follower", **{a: way, c: points["B"] + way})] = self.size
+        self.entry(c, self.chance.choice(["left", "parallel", "parallel", "antiparallel"]))
+
+    def grown(self) -> Document:
+        """The document, with what a file says of links, frame and position."""
+        chance = self.chance
+        ways: list[Callable[[], None]] = [
+            self.two_bars, self.two_bars, self.two_bars, self.rod_and_block, self.rod_and_block,
+            self.block_on_arm, self.block_on_arm, self.two_blocks, self.yoke, self.gear, self.gear,
+            self.triad, self.parallel_crank,
+        ]  # fmt: skip
+        for _ in range(chance.choice((1, 1, 2, 2, 3, 3, 4, 6))):
+            chance.choice(ways)()
+        found = {name: part for name, part in self.document.items() if part}
+        links = {name: points for name, points in self.bodies.items() if name != "frame"}
+        found["frame"] = {"points": {name: pair(at) for name, at in self.bodies["frame"].items()}}
+        found["links"] = {name: self.of_link(points) for name, points in links.items()}
+        found["drive"] = {"link": "crank"}
+        if self.loops:
+            known = {name: pair(at) for points in links.values() for name, at in points.items()}
+            found["position"] = {"points": known}
+        return found
+
+    def of_link(self, points: dict[str, complex]) -> Document:
+        chance = self.chance
+        shift = rect(self.size, 1.0) if chance.random() < 0.2 else 0j
+        center = sum(points.values()) / len(points) - shift
+        mass = 10 ** chance.uniform(-1, 1)
+        return {
+            "points": {name: pair(at - shift) for name, at in points.items()},
+            "mass": f"{mass:.4g} kg",
+            "center_of_mass": pair(center),
+            "inertia": f"{mass * self.size**2 * chance.uniform(0.3, 3):.4g} kg mm^2",
+        }
+
+
+# -- what any machine is given ---------------------------------------------------------------------
+
+
+def dress(chance: random.Random, document: Document) -> None:
+    """Give a linkage a drive, forces and what carries it."""
+    drive = document["drive"]
+    drive["speed"] = f"{chance.choice((1, -1)) * 10 ** chance.uniform(0.5, 3.5):.4g} rpm"
+    _drive(chance, drive)
+    _forces(chance, document)
+    if chance.random() < 0.35:
+        _carried(chance, document)
+    if chance.random() < 0.15:
+        _long_cycle(chance, document)
+    if chance.random() < 0.3:
+        link = chance.choice([*document["links"]])
+        at = next(iter(document["links"][link]["points"]))
+        document["balance"] = {
+            "masses": [{"link": link, "at": at, "radius": "80 mm", "mass": "3 kg"}],
+            "objectives": [{"output": "shaking_force.y", "measure": "rms"}],
+        }
+
+
+def _drive(chance: random.Random, drive: Document) -> None:
+    pushes = drive.keys() & {"motion", "stroke", "between", "slider"}
+    if chance.random() < 0.3:
+        drive["acceleration"] = f"{chance.uniform(-20, 20):.4g} rad/s^2"
+    if pushes:
+        return
+    match chance.choice(
+        ("plain", "plain", "plain", "motor", "flywheel", "sine", "segments", "spline")
+    ):
+        case "motor":
+            table = {"no_load_speed": f"{10 ** chance.uniform(2, 4):.4g} rpm",
+                     "stall_torque": f"{10 ** chance.uniform(-2, 2):.4g} N m",
+                     "ratio": round(chance.uniform(1, 30), 2), "inertia": "400 g cm^2"}  # fmt: skip
+            drive["motor"] = table | chance.choice([{}, {"mean_speed": "free"}])
+        case "flywheel":
+            drive["flywheel"] = "0.1 kg m^2"
+        case "sine":
+            low = chance.uniform(-180, 150)
+            ends = [f"{low:.4g} deg", f"{low + chance.uniform(5, 90):.4g} deg"]
+            drive["motion"] = {"between": ends, "phase": f"{chance.uniform(0, 360):.4g} deg"}
+        case "segments":
+            parts = [f"{chance.uniform(-60, 60):.4g} deg" for _ in range(2)]
+            drive["motion"] = {"start": parts[0], "segments": [
+                {"over": "120 deg", "to": parts[1], "law": chance.choice(LAWS)},
+                {"over": "60 deg", "to": parts[1]},
+                {"over": "180 deg", "to": parts[0], "law": chance.choice(LAWS)},
+            ]}  # fmt: skip
+        case "spline":
+            values = [f"{chance.uniform(-30, 30):.4g} deg" for _ in range(4)]
+            angles = ["0 deg", "80 deg", "170 deg", "260 deg"]
+            drive["motion"] = {"crank_angles": angles, "values": values}
+
+
+def _forces(chance: random.Random, document: Document) -> None:
+    loads = document.setdefault("loads", [])
+    for _ in range(chance.choice((0, 0, 1, 2))):
+        link = chance.choice([*document["links"]])
+        point = chance.choice([*document["links"][link]["points"]])
+        size = 10 ** chance.uniform(0, 4)
+        force = pair(rect(size, chance.uniform(-pi, pi)), "N")
+        load = {"link": link} | chance.choice(
+            [{"point": point, "force": force}, {"torque": f"{size / 50:.4g} N m"}]
+        )
+        if chance.random() < 0.5:
+            start = chance.uniform(-360, 720)
+            load |= {"from": f"{start:.5g} deg", "to": f"{start + chance.uniform(1, 359):.5g} deg"}
+        loads.append(load)
+    springs = document.setdefault("springs", [])
+    if chance.random() < 0.25:
+        link = chance.choice([*document["links"]])
+        point = chance.choice([*document["links"][link]["points"]])
+        hook = f"S{len(springs)}"
+        document["frame"]["points"][hook] = pair(rect(300, chance.uniform(-pi, pi)))
+        spring = {"link": link, "point": point, "to": hook, "stiffness": "2 N/mm"}
+        springs.append(spring | chance.choice([{}, {"free_length": "50 mm"}]))
+
+
+def _carried(chance: random.Random, document: Document) -> None:
+    stiffness = [f"{10 ** chance.uniform(3, 6):.4g} N/m" for _ in range(3)]
+    mounts: Document = {
+        name: {"point": pair(complex(x, -200)), "stiffness": k, "damping": "200 N s/m"}
+        for name, x, k in (("left", -400, stiffness[0]), ("right", 500, stiffness[1]))
+    }
+    mounts["along"] = {
+        "point": ["0 mm", "-200 mm"], "direction": "0 deg", "stiffness": stiffness[2]
+    }  # fmt: skip
+    if chance.random() < 0.2:
+        mounts["left"]["one_sided"] = True
+    document["support"] = {
+        "freedoms": chance.choice([["surge", "heave", "pitch"], ["heave"], ["pitch"], ["surge"]]),
+        "mass": "60 kg",
+        "center_of_mass": ["0 mm", "100 mm"],
+        "inertia": "4 kg m^2",
+        "mounts": mounts,
+        "gauges": {"handle": {"point": ["-900 mm", "700 mm"]}},
+    }
+    if chance.random() < 0.3:
+        document["rows"] = [{}, {"phase": f"{chance.uniform(0, 360):.4g} deg"}]
+
+
+def _long_cycle(chance: random.Random, document: Document) -> None:
+    """A train of gears that comes back after up to 60 turns."""
+    turns = chance.choice((7, 12, 23, 41, 60))
+    document["frame"]["points"]["long"] = ["777 mm", "13 mm"]
+    link = {"points": {"long": ["0 mm", "0 mm"]}, "mass": "1 kg", "inertia": "0.01 kg m^2",
+            "center_of_mass": ["10 mm", "0 mm"]}  # fmt: skip
+    document["links"]["long wheel"] = link
+    gear = {"between": [document["drive"]["link"], "long wheel"], "teeth": [turns + 1, turns]}
+    document["gears"] = [*document.get("gears", ()), gear]
+
+
+# -- a machine by its seed -------------------------------------------------------------------------
+
+STROKED = 40
+"""One in so many is pushed by a cylinder, which takes longest to be drawn."""
+
+
+def of_kind(chance: random.Random) -> Document:
+    """A machine of a kind, as its file."""
+    seed = chance.randrange(2**31)
+    if chance.randrange(STROKED) == 0:
+        from support import machines_strokes
+
+        kind = chance.choice([*machines_strokes.TOGETHER, *machines_strokes.TURNING])
+        together = kind in machines_strokes.TOGETHER
+        make = machines_strokes.together if together else machines_strokes.stroked
+        machine: Machine = make(kind, seed).machine
+    else:
+        kinds = (machines.KINDS, machines_cams.ALL, machines_redundant.REDUNDANT)
+        machine = machines.make(chance.choice([*chance.choice(kinds)]), seed).machine
+    plain = {load for load in machine.loads if load.table is not None}
+    machine = replace(machine, loads=tuple(x for x in machine.loads if x not in plain))
+    return tomllib.loads(eq.dumps(machine))
+
+
+def document(seed: int) -> Document:
+    """The model file of a machine, the same at every call."""
+    chance = random.Random(seed)
+    found = Growing(chance).grown() if chance.random() < 0.6 else of_kind(chance)
+    dress(chance, found)
+    return {"schema": 1, "title": f"Machine {seed}"} | found
