@@ -285,8 +285,8 @@ def reach_of(machine: Machine, link: str) -> float:
 
 
 THICK, THICKER, THICKEST = 0.3, 3.0, 0.03
-"""Of a plate: over its largest radius; over the thickness of the link that carries it; and m,
-beyond which no workshop screws it on."""
+"""Of a plate: over the largest radius of its room; over the thickness of the link that carries it;
+and m, beyond which no workshop screws it on."""
 
 
 def _most_thick(machine: Machine, link: str, reach: float) -> float:
