@@ -9,9 +9,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import ezdxf
+import numpy as np
 import pytest
 
-from surface.running import Result, command, example_text
+from surface.running import Result, command, equipoise, example_text, refused
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 
@@ -118,3 +120,21 @@ def test_a_terminal_of_a_thousand_million_columns(command_line: str) -> None:
     assert result.status == 0, result.err
     assert peak < 300
     assert max(map(len, result.out.splitlines())) <= 1000
+
+
+def test_an_option_that_is_repeated_ten_thousand_times() -> None:
+    result = equipoise("analyze", "yamashita-1", *["--output=joints.B"] * 10_000)
+    told = refused(result)
+    assert "--output: given 10000 times; give it 200 times at most" in told
+
+
+def test_a_spline_of_very_many_points(folder: Path) -> None:
+    drawing = ezdxf.new()
+    angles = np.linspace(0, 6, 20_000)
+    points = np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
+    drawing.modelspace().add_open_spline(points.tolist())
+    drawing.saveas(folder / "spline.dxf")
+    result, peak = peak_of("import", "spline.dxf", "-o", "machine.toml")
+    assert result.status == 2
+    assert "a spline of 20000 points, of the layer '0': needs 8.94 GiB of memory" in result.err
+    assert peak < 500

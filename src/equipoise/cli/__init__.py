@@ -11,6 +11,7 @@ import os
 import shutil
 import signal
 import sys
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from threading import Event, Thread, Timer
@@ -21,7 +22,7 @@ from cyclopts import App, CycloptsError, Parameter
 
 from equipoise import __version__
 from equipoise.cli.help import Laid
-from equipoise.errors import EquipoiseError, to_paste
+from equipoise.errors import EquipoiseError, UsageError, to_paste
 from equipoise.interrupts import check, recorded
 from equipoise.partial import together
 
@@ -79,6 +80,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
             _ = app[name]
     try:
         with recorded(), together(), _signs_of_life(given):
+            check_repeated(given)
             app(
                 arguments,
                 exit_on_error=False,
@@ -105,6 +107,26 @@ def run(arguments: Sequence[str] | None = None) -> int:
         print(f"equipoise: the output cannot be written ({error.strerror})", file=sys.stderr)
         return 2
     return 0
+
+
+MOST_REPEATED = 200
+"""Times that an option may be given: the time to read them grows with the square of it."""
+
+
+def check_repeated(words: Sequence[str]) -> None:
+    """Refuse a command line on which an option is repeated too often.
+
+    Raises
+    ------
+    UsageError : the sentence names the option and how often it was given.
+    """
+    options = Counter(word.partition("=")[0] for word in words if word.startswith("--"))
+    for name, count in options.most_common(1):
+        if count > MOST_REPEATED:
+            raise UsageError(
+                f"{name}: given {count} times; give it {MOST_REPEATED} times at most, and run the "
+                "command again for the others"
+            )
 
 
 def _refuse(error: Exception) -> int:

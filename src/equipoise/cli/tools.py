@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, get_args, get_origin
 
 from cyclopts import App
 
-from equipoise.cli import app
+from equipoise.cli import app, check_repeated
 from equipoise.cli.outputs import heard
 from equipoise.errors import UsageError, unknown
 from equipoise.fence import Fence, fenced
@@ -129,6 +129,7 @@ class Tool:
         printed, told, both = io.StringIO(), io.StringIO(), list[str]()
         token = heard.set(both)
         try:
+            check_repeated(line)
             with redirect_stdout(printed), redirect_stderr(told), fenced(fence), together():
                 app(line, exit_on_error=False, print_error=False, result_action="return_value")
         finally:

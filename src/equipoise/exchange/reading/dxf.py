@@ -10,9 +10,11 @@ from io import BytesIO
 from itertools import count as count_from
 from typing import Any
 
-from equipoise.errors import ModelError, needed
+from equipoise.errors import EquipoiseError, ModelError, needed
 from equipoise.exchange.reading.found import Read
 from equipoise.exchange.reading.strokes import WORDS, Drawing, Marks, Ring, Stroke, skeleton
+from equipoise.i18n import Note
+from equipoise.limits import check_memory
 
 UNITS = {1: 0.0254, 2: 0.3048, 4: 1e-3, 5: 1e-2, 6: 1.0, 8: 2.54e-8, 9: 2.54e-5, 10: 0.9144,
          13: 1e-6, 14: 0.1}  # fmt: skip
@@ -26,6 +28,8 @@ DAMAGED = "recovered invalid floating"
 """How ezdxf begins to tell that it has read a number otherwise than it is written."""
 SKEW = 1e-6
 """How far a line may leave the plane over its distance from the origin: rounding."""
+MATRICES = 3
+"""Of the size of a spline's points squared, that ezdxf holds at a time."""
 CURVES = {"ARC", "ELLIPSE", "SPLINE", "LINE", "LWPOLYLINE", "POLYLINE"}
 
 
@@ -45,7 +49,7 @@ def read(data: bytes, marks: Marks, unit: float | None) -> Read:
         with _heard() as warnings:
             document, _ = recover.read(BytesIO(data))
             drawing = _drawing(document, unit)
-    except (ModelError, MemoryError):
+    except (EquipoiseError, MemoryError):
         raise
     except Exception as error:  # of many kinds, where a file is damaged
         raise ModelError("", NONE) from error
@@ -128,6 +132,8 @@ def _add(drawing: Drawing, entity: Any, scale: float) -> None:
         drawing.areas += [Stroke(tuple(_corners(path, scale)), names, True)
                           for path in from_hatch(entity) if len(path)]  # fmt: skip
     elif kind in CURVES:
+        if kind == "SPLINE":
+            _check_size(entity)
         path = make_path(entity)
         if not len(path):
             return
@@ -135,6 +141,14 @@ def _add(drawing: Drawing, entity: Any, scale: float) -> None:
         places = [*_corners(path, scale)]
         closed = len(places) > 2 and abs(places[-1] - places[0]) < 1e-12 * scale
         drawing.strokes.append(Stroke(tuple(places[:-1] if closed else places), names, closed))
+
+
+def _check_size(spline: Any) -> None:
+    """Pieces of a spline come from equations between all of its points, which ezdxf holds whole."""
+    count = max(len(spline.control_points), len(spline.fit_points))
+    layer = spline.dxf.layer
+    what = Note("a spline of {count} points, of the layer {layer!r}", count=count, layer=layer)
+    check_memory(MATRICES * 8.0 * count**2, what)
 
 
 def _check_flat(path: Any, layer: str) -> None:
