@@ -122,9 +122,12 @@ class Linkage:
             raise with_cures(self, error) from None
 
     def close(self) -> Cycle:
-        """The closed motion; its errors say only where the turn ends."""
-        check = None if self.shared is None else self.shared.check
-        return close(self.machine, self.groups, self.near, check)
+        """The closed motion, which is kept; its errors say only where the turn ends."""
+        if "cycle" not in self.__dict__:
+            check = None if self.shared is None else self.shared.check
+            self.__dict__["cycle"] = close(self.machine, self.groups, self.near, check)
+        kept: Cycle = self.__dict__["cycle"]
+        return kept
 
     def of(self, machine: Machine) -> Linkage:
         """The same linkage for a machine that differs in nothing but masses, speed or gravity."""

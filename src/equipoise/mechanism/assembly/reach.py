@@ -45,8 +45,7 @@ class Assembled(Protocol):
     def motion(self) -> Sequence[Step]: ...
     @property
     def needed_references(self) -> list[str]: ...
-    @property
-    def cycle(self) -> Any: ...
+    def close(self) -> Any: ...
     def start(self, theta: Array) -> State: ...
 
 
@@ -103,7 +102,7 @@ def reach(linkage: Assembled) -> Reach | None:
     MotionError : its motion does not repeat.
     """
     try:
-        _ = linkage.cycle
+        linkage.close()
     except (RangeError, ChangePointError, BranchError) as error:
         return range_of(linkage, error)
     return None
