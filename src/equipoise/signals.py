@@ -180,6 +180,11 @@ class JumpSampling:
         """Places (M,) of the grid and of both sides of jumps: what is drawn, and has extremes."""
         return np.flatnonzero(self.shares == 0.0)
 
+    @cached_property
+    def grid(self) -> Array:
+        """Places (N,) of the equally spaced crank angles."""
+        return np.flatnonzero((self.shares == 0.0) & (self.at == self.crank_angle))
+
     def figures_of_each(self, samples: Array) -> list[Figures]:
         """Mean, RMS and extremes of each of several signals (M, N)."""
         return figures_of_each(self.at, samples, self.shares, self.shown)

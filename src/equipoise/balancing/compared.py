@@ -12,6 +12,7 @@ from equipoise.balancing.multi_row import Rows, Term
 from equipoise.balancing.objectives import measured
 from equipoise.errors import EquipoiseError, ModelError, ResponseError
 from equipoise.mechanism.dynamics.forces import forces
+from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import DECLARED, GROUPS, declared
 from equipoise.mechanism.parts.balance import Balance, Objective
@@ -141,11 +142,11 @@ def figures_of(machine: Machine) -> dict[str, float]:
 
     Moments are about the drive's pivot; areas are under the absolute value over 360 deg, in J.
     """
-    motion = move(machine, ANGLES, acceleration=0.0)
+    motion = resolved(move(machine, ANGLES, acceleration=0.0))
     figures = {"mass": machine.mass}
     for one in Outputs(Analysis(motion, forces(motion))):
         for measure in one.declared.compared if one.declared.is_of_row else ():
-            figures[f"{one.name}.{measure}"] = measured(one.component, measure)
+            figures[f"{one.name}.{measure}"] = measured(one.component, measure, motion.sampling)
     return figures | _of_rows(machine) | _of_support(machine)
 
 

@@ -1,7 +1,7 @@
 """What the free numbers do to every output of a machine: signals that are linear in them.
 
-A signal over equally spaced crank angles of a whole cycle is start (N,) + numbers @ columns (K, N),
-real, or complex where it is a vector in the plane.
+A signal over equally spaced crank angles of a whole cycle, or over those that resolve jumps, is
+start (N,) + numbers @ columns (K, N), real, or complex where it is a vector in the plane.
 """
 
 from __future__ import annotations
@@ -27,13 +27,14 @@ from equipoise.mechanism.dynamics.reactions import (
 )
 from equipoise.mechanism.dynamics.undecided import refuse_unbounded
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.outputs.declared import Declared, Found, matches
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import balanced_names
 from equipoise.mechanism.parts.places import in_frame
-from equipoise.signals import Array
+from equipoise.signals import Array, JumpSampling, Periodic
 
 ANGLES = 720
 """Crank angles in a turn at which balancing looks."""
@@ -41,11 +42,35 @@ ANGLES = 720
 
 @dataclass(frozen=True, eq=False)
 class Signal:
-    """start (N,) + numbers @ columns (K, N); turns of the crank in the N samples."""
+    """start (N,) + numbers @ columns (K, N); turns of the crank in the N samples.
+
+    sampling : at whose crank angles the samples are, where forces jump.
+    """
 
     start: Array
     columns: Array
     turns: int = 1
+    sampling: JumpSampling | None = None
+
+    @property
+    def angles(self) -> Array:
+        """Crank angle (N,), rad, that each sample stands for in a mean over one turn."""
+        if self.sampling is None:
+            return np.full(len(self.start), 2 * np.pi / len(self.start))
+        return 2 * np.pi * self.sampling.shares
+
+    @property
+    def shown(self) -> Signal:
+        """The samples that extremes are taken from: the grid and both sides of jumps."""
+        return self if self.sampling is None else self._of(self.sampling.shown)
+
+    @property
+    def on_grid(self) -> Signal:
+        """The samples at equally spaced crank angles."""
+        return self if self.sampling is None else self._of(self.sampling.grid)
+
+    def _of(self, places: Array) -> Signal:
+        return Signal(self.start[places], self.columns[:, places], self.turns)
 
     def at(self, numbers: Array) -> Array:
         """The signal (N,) for numbers (K,)."""
@@ -55,12 +80,16 @@ class Signal:
         """The signal with these orders of the crank's speed only; all of them if there are none."""
         if not orders:
             return self
+        if self.sampling is not None:
+            return self._with_orders(lambda n: np.any(np.isclose(n[:, None], orders), axis=1))
         places = np.fft.fftfreq(len(self.start), 1 / len(self.start)) / self.turns
         wanted = np.any(np.isclose(np.abs(places)[:, None], orders, atol=1e-9), axis=1)
         return self.filtered(lambda amplitudes: np.where(wanted, amplitudes, 0.0))
 
     def ahead_by(self, phase: float) -> Signal:
-        """The signal ahead by a phase, rad."""
+        """The signal ahead by a phase, rad; of one that jumps, as far as its orders reach."""
+        if self.sampling is not None:
+            return self._with_orders(lambda n: np.exp(1j * phase * n))
         orders = np.fft.fftfreq(len(self.start), 1 / len(self.start)) / self.turns
         turning = np.exp(1j * phase * orders)
         return self.filtered(lambda amplitudes: amplitudes * turning)
@@ -74,8 +103,22 @@ class Signal:
 
         return Signal(changed(self.start), changed(self.columns), self.turns)
 
+    def _with_orders(self, factors: Callable[[Array], Array]) -> Signal:
+        """With its amplitudes times factors of their orders (n,), at the same crank angles."""
+        sampling = self.sampling
+        assert sampling is not None
+
+        def changed(values: Array) -> Array:
+            if np.iscomplexobj(values):
+                return np.asarray(changed(values.real) + 1j * changed(values.imag))
+            found = sampling.periodic(values)
+            turned = Periodic(found.amplitudes * factors(found.orders), found.turns)
+            return turned.values(sampling.crank_angle)
+
+        return replace(self, start=changed(self.start), columns=changed(self.columns))
+
     def divided(self, scale: float) -> Signal:
-        return Signal(self.start / scale, self.columns / scale, self.turns)
+        return replace(self, start=self.start / scale, columns=self.columns / scale)
 
 
 class Effects:
@@ -93,7 +136,8 @@ class Effects:
         like: Machine | None = None,
     ) -> None:
         self.machine, self.parts, self.like = machine, tuple(parts), like
-        self.motion = move(machine, ANGLES, acceleration=0.0) if motion is None else motion
+        usual = move(machine, ANGLES, acceleration=0.0) if motion is None else motion
+        self.motion = resolved(usual)
         self.count = sum(part.count for part in parts)
         ends = np.cumsum([part.count for part in parts]).tolist()
         places = [slice(end - one.count, end) for one, end in zip(parts, ends, strict=True)]
@@ -104,6 +148,13 @@ class Effects:
     def at(self, speed: float) -> Effects:
         """The same at another speed, rad/s."""
         return Effects(self.machine, self.parts, self.motion.at(speed))
+
+    def of_row(self, phase: float) -> Effects:
+        """Of a linkage ahead by a phase, rad, at the same crank angles of the first one."""
+        motion = self.motion
+        moved = move(self.machine, motion.crank_angle + phase, motion.speed, motion.acceleration)
+        turned = replace(moved, whole_cycle=motion.whole_cycle, sampling=motion.sampling)
+        return Effects(self.machine, self.parts, turned, self.like)
 
     def signal(self, output: str, about: str | None = None) -> Signal:
         """An output by name; complex where it is a vector.
@@ -118,7 +169,7 @@ class Effects:
             one.component(one.vector(Found(self.motion, forces_of(self, pole)), item))
             for forces_of in (Present, Unit)
         )
-        return Signal(start, self.full(columns), self.motion.turns)
+        return Signal(start, self.full(columns), self.motion.turns, self.motion.sampling)
 
     def _declared(self, output: str) -> tuple[Declared, str]:
         joints = self.start.joints
@@ -137,7 +188,8 @@ class Effects:
         for link, (force, moment) in self.start.weights.items():
             at = self.motion.state[f"p({self.start.anchor(link)})"]
             start = start - moment - kernels.cross(at - about, force)
-        return Signal(start, self.moment(self.weight, about), self.motion.turns)
+        columns, motion = self.moment(self.weight, about), self.motion
+        return Signal(start, columns, motion.turns, motion.sampling)
 
     @cached_property
     def start(self) -> Forces:
@@ -201,7 +253,8 @@ class Effects:
         """A run whose gears are in contact on the flanks that count."""
         if self.like is None or not self.machine.couplings:
             return self.start.solved
-        return forces(move(self.like, ANGLES, acceleration=0.0).at(self.motion.speed)).solved
+        theta = ANGLES if self.motion.sampling is None else self.motion.crank_angle
+        return forces(move(self.like, theta, acceleration=0.0).at(self.motion.speed)).solved
 
     def full(self, columns: Array) -> Array:
         """Columns (K, N), also where the output is the same at every crank angle."""

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.signals import Array
+from equipoise.signals import Array, JumpSampling
 
 SPACING = pi / 720
 """rad, between the nodes of splines, and between samples among which tops are looked for: values
@@ -103,6 +103,17 @@ class JumpingRows:
             return high
         low = self._highest(phases, -1.0)
         return high + low if measure == "peak_to_peak" else np.maximum(high, low)
+
+    def rms(self, phases: Array, about_mean: bool = False) -> float:
+        """RMS of the sum of all rows at phases (m,), rad, or that about its mean."""
+        grid = np.arange(round(self.period / SPACING)) * SPACING
+        edges = (self.jumps - phases[:, None]).ravel()
+        sampling = JumpSampling.of(grid, self.turns, edges)
+        total = np.sum(self.each(phases, sampling.crank_angle), axis=0)
+        shares = sampling.shares[:, None]
+        if about_mean:
+            total = total - np.sum(shares * total, axis=0)
+        return float(np.sqrt(np.sum(shares * total**2)))
 
     @property
     def is_vector(self) -> bool:

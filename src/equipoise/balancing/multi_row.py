@@ -263,8 +263,13 @@ class Term:
         return float(sum(term.values(np.zeros(1)) for term in alone))
 
     def value_at(self, phases: Array) -> float:
-        """Value at phases (m,), 0 where it is what rounding leaves of the rows' own."""
-        value = float(self.values(phases))
+        """Value at phases (m,), 0 where it is what rounding leaves of the rows' own.
+
+        Mean squares of what jumps are those of its pieces, not of the orders that are kept.
+        """
+        value, jumping = float(self.values(phases)), self.signals.jumping
+        if jumping is not None and by_orders(self.measure):
+            value = jumping.rms(phases, self.measure == "ripple")
         return value if value > NOTHING * self.single else 0.0
 
     @cached_property

@@ -8,7 +8,7 @@ derivative by each number there.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from math import pi
 
@@ -26,7 +26,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, OF_ROWS, WITHIN, output_of, quantity_of
 from equipoise.mechanism.parts.support import Row
 from equipoise.quantities import SI
-from equipoise.signals import Array, Periodic
+from equipoise.signals import Array, JumpSampling, Periodic, mean
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import rows_of
 
@@ -64,14 +64,18 @@ def signals_of(effects: Effects, objective: Objective, near: Near) -> list[Signa
 
 def of_all_rows(effects: Effects, output: str, about: str | None = None) -> Signal:
     """An output summed over all rows in their phases."""
-    return in_their_phases(of_rows_alone(effects, output, about), effects.machine)
-
-
-def in_their_phases(each: Sequence[Signal], machine: Machine) -> Signal:
-    """The sum of what rows do in phase 0, each ahead by its phase."""
-    turned = [one.ahead_by(row.phase) for one, row in zip(each, machine.rows, strict=True)]
+    rows = effects.machine.rows
+    if effects.motion.sampling is None:
+        each = of_rows_alone(effects, output, about)
+        turned = [one.ahead_by(row.phase) for one, row in zip(each, rows, strict=True)]
+    else:  # at each row's own crank angles
+        by_phase = {
+            phase: of_rows_alone(effects.of_row(phase), output, about)
+            for phase in {row.phase for row in rows}
+        }
+        turned = [by_phase[row.phase][k] for k, row in enumerate(rows)]
     start, columns = sum(one.start for one in turned), sum(one.columns for one in turned)
-    return Signal(np.asarray(start), np.asarray(columns), turned[0].turns)
+    return replace(turned[0], start=np.asarray(start), columns=np.asarray(columns))
 
 
 def of_rows_alone(effects: Effects, output: str, about: str | None = None) -> list[Signal]:
@@ -80,7 +84,7 @@ def of_rows_alone(effects: Effects, output: str, about: str | None = None) -> li
     if axis in {"x", "y"} and kind:
         part = np.real if axis == "x" else np.imag
         whole = of_rows_alone(effects, kind, about)
-        return [Signal(part(one.start), part(one.columns), one.turns) for one in whole]
+        return [replace(one, start=part(one.start), columns=part(one.columns)) for one in whole]
     machine = effects.machine
     force = effects.signal("frame_force" if output.startswith("frame") else "shaking_force")
     one = force.divided(np.inf)
@@ -93,7 +97,7 @@ def of_rows_alone(effects: Effects, output: str, about: str | None = None) -> li
         arm = arm_of(machine, effects.motion, row, about)
         there = moment_of_row(output, row, arm, force.start, one.start)
         by_number = moment_of_row(output, row, arm, force.columns, one.columns)
-        found.append(Signal(there, by_number, one.turns))
+        found.append(replace(one, start=there, columns=by_number))
     return found
 
 
@@ -196,7 +200,7 @@ def _wrench(effects: Effects, linear: Linear, rows: Sequence[Row]) -> Periodic:
         rocking = np.vstack([still, effects.signal("rocking_moment").columns])
     moments = _moments(effects, linear)
     signals = np.stack([forces.real, forces.imag, moments, rocking.real, rocking.imag])
-    one = Periodic.of(signals, effects.motion.turns)
+    one = effects.motion.periodic(signals)
     flat, total = one.amplitudes.reshape(5, -1), Periodic(np.zeros((6, 1, 1)), one.turns)
     for place in rows:
         here = excitation.about_reference(flat, place).reshape(6, *one.amplitudes.shape[1:])
@@ -209,7 +213,7 @@ def _moments(effects: Effects, linear: Linear) -> Array:
     signal = effects.signal("frame_moment")
     both = np.vstack([signal.start, signal.columns])
     weight = effects.weight_moment(linear.excitation.pivot)
-    means = np.mean(np.vstack([weight.start, weight.columns]), axis=1, keepdims=True)
+    means = effects.motion.mean(np.vstack([weight.start, weight.columns]))[:, None]
     return np.asarray(both - means)
 
 
@@ -237,24 +241,25 @@ def read_rows(linear: Linear, reading: Array, speed: float) -> Array:
 # -- measures --------------------------------------------------------------------------------------
 
 
-def measured(values: Array, measure: Measure) -> float:
-    """Measure of a signal (N,) over a whole cycle."""
-    return float(measured_each(values, measure))
+def measured(values: Array, measure: Measure, sampling: JumpSampling | None = None) -> float:
+    """Measure of a signal (N,) over a whole cycle, equally spaced or of a sampling."""
+    return float(measured_each(values, measure, sampling))
 
 
-def measured_each(values: Array, measure: Measure) -> Array:
-    """Measures (...) of signals (..., N) over a whole cycle."""
+def measured_each(values: Array, measure: Measure, sampling: JumpSampling | None = None) -> Array:
+    """Measures (...) of signals (..., N) over a whole cycle, equally spaced or of a sampling."""
+    shares = None if sampling is None else sampling.shares
     if measure == "ripple":
-        return measured_each(values - np.mean(values, axis=-1, keepdims=True), "rms")
+        return measured_each(values - mean(values, shares)[..., None], "rms", sampling)
     if measure == "rms":
-        found = np.sqrt(np.mean(np.abs(values) ** 2, axis=-1))
-    elif measure == "peak":
-        found = np.max(np.abs(values), axis=-1)
-    elif measure == "peak_to_peak":
-        found = np.max(values, axis=-1) - np.min(values, axis=-1)
-    else:
-        found = 2 * pi * np.mean(np.abs(values), axis=-1)
-    return np.asarray(found)
+        return np.asarray(np.sqrt(mean(np.abs(values) ** 2, shares)))
+    if measure == "area":
+        return np.asarray(2 * pi * mean(np.abs(values), shares))
+    if sampling is not None:
+        values = values[..., sampling.shown]
+    if measure == "peak":
+        return np.asarray(np.max(np.abs(values), axis=-1))
+    return np.asarray(np.max(values, axis=-1) - np.min(values, axis=-1))
 
 
 def unit_of(objective: Objective, machine: Machine) -> str:
@@ -272,8 +277,11 @@ def mean_square_rows(signal: Signal, measure: Measure) -> tuple[Array, Array]:
     a Gram matrix.
     """
     both = np.vstack([signal.columns, signal.start])
+    shares = None if signal.sampling is None else signal.sampling.shares
     if measure == "ripple":
-        both = both - np.mean(both, axis=1, keepdims=True)
+        both = both - mean(both, shares)[:, None]
+    if shares is not None:
+        both = both * np.sqrt(shares * len(shares))
     samples = np.concatenate([both.real, both.imag], axis=1) if np.iscomplexobj(both) else both
     upper = np.linalg.qr(samples.T, mode="r") / np.sqrt(both.shape[1])
     return upper[:, :-1], upper[:, -1]
@@ -294,6 +302,8 @@ def bound_measure(
     numbers : (K,) places of the signal's numbers in the program.
     bound : one row; where it is a limit by itself, `name` is the limit's, in the bound's unit.
     """
+    if measure in {"peak", "peak_to_peak"}:
+        signal = signal.shown
     count, one = len(signal.start), Affine.fixed(1.0)
     value = Affine(signal.columns.T, numbers, signal.start)
     if measure in {"rms", "ripple"}:
@@ -324,7 +334,7 @@ def bound_measure(
         for sign in (1.0, -1.0):
             factors = sparse.hstack([each, sign * value.factors])
             program.nonnegative(Affine(factors, columns, sign * value.constant))
-        program.nonnegative(bound - Affine.of(sizes, np.full(count, 2 * pi / count)), name, one)
+        program.nonnegative(bound - Affine.of(sizes, signal.angles), name, one)
 
 
 def _beside(bound: Affine, count: int, inner: Affine) -> Affine:

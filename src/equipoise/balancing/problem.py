@@ -119,7 +119,10 @@ class Problem:
         """The same of several, in their order."""
         effects, near = Effects(machine, ()), Near(machine)
         return [
-            max(measured(found.start, one.measure) for found in signals_of(effects, one, near))
+            max(
+                measured(found.start, one.measure, found.sampling)
+                for found in signals_of(effects, one, near)
+            )
             for one in objectives
         ]
 
@@ -139,7 +142,7 @@ class Problem:
         x = np.concatenate(numbers)
         each = ((one.measure, self.signals[one.name]) for one in self.plan.objectives)
         return self.plan.combined(
-            [max(measured(s.at(x), how) for s in found) for how, found in each]
+            [max(measured(s.at(x), how, s.sampling) for s in found) for how, found in each]
         )
 
     def scale(self, objective: Objective) -> float:

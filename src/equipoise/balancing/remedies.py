@@ -149,7 +149,8 @@ class Comparison:
     def _signals(self) -> dict[str, list[Signal]]:
         """Of each objective and headline figure, in SI units, at fewer crank angles."""
         found = {}
-        for name, signals in self.problem.unscaled.items():
+        for name, every in self.problem.unscaled.items():
+            signals = [one.on_grid for one in every]
             steps = [max(1, len(one.start) // (SAMPLES * one.turns)) for one in signals]
             found[name] = [
                 Signal(one.start[::step], one.columns[:, ::step], one.turns)
@@ -197,7 +198,7 @@ class Comparison:
         each = []
         for signal in self._signals[one.name]:
             values = [
-                measured_each(signal.start + some @ signal.columns, one.measure)
+                measured_each(signal.start + some @ signal.columns, one.measure, signal.sampling)
                 for some in np.array_split(numbers, 1 + len(numbers) // CHUNK)
             ]
             each.append(np.concatenate(values))

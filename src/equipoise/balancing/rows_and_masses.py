@@ -325,4 +325,6 @@ def of_each_row(effects: Effects, objective: Objective, near: Near) -> Array:
     samples = np.array([[np.vstack([one.start, one.columns]) for one in rows] for rows in found])
     parts = [samples.real, samples.imag] if np.iscomplexobj(samples) else [samples]
     whole = np.moveaxis(np.stack(parts, axis=2), 3, 0)
+    if (sampling := found[0][0].sampling) is not None:
+        return sampling.periodic(whole).amplitudes
     return Periodic.of(whole, found[0][0].turns).amplitudes

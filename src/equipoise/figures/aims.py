@@ -132,7 +132,9 @@ def aims_of(found: Balanced) -> Iterator[Aim]:
     least = {"force": force, "torque": moment}
     effects = [Effects(machine, ()) for machine in (found.original, found.machine)]
     for signal, of_it in asked.items():
-        before, after = (signals_of(each, signal, Near(each.machine))[0] for each in effects)
+        before, after = (
+            signals_of(each, signal, Near(each.machine))[0].on_grid for each in effects
+        )
         dimension = str(output_of(signal.output, found.original).dimension)
         yield Aim(found.original, tuple(of_it), before, after, least.get(dimension, 0.0))
 

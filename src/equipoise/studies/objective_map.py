@@ -150,7 +150,7 @@ def linear_value(
         except EquipoiseError:
             return nan
         changed = np.concatenate([found[link] - own for link, own in start.items()])
-        return measured(signal.at(changed), of.measure)
+        return measured(signal.at(changed), of.measure, signal.sampling)
 
     return value
 

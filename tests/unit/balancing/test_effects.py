@@ -129,7 +129,7 @@ def test_every_output_is_that_of_the_changed_machine(kind: str, seed: int) -> No
         },
     }
     for (output, pole), values in wanted.items():
-        signal = problem.effects.signal(output, pole)
+        signal = problem.effects.signal(output, pole).on_grid
         assert signal.turns == forces.motion.turns
         error = np.max(np.abs(signal.at(x) - values)) / np.max(np.abs(values))
         assert error < EXACT, (output, pole)
@@ -140,7 +140,7 @@ def test_moment_of_weight(kind: str) -> None:
     problem = subject(kind, 2)
     numbers = some_numbers(problem, 2)
     changed = eq.forces(eq.move(problem.machine_with(numbers), ANGLES, acceleration=0.0))
-    found = problem.effects.weight_moment(changed.about).at(np.concatenate(numbers))
+    found = problem.effects.weight_moment(changed.about).on_grid.at(np.concatenate(numbers))
     scale = np.max(np.abs(changed.weight_moment))
     assert scale > 0
     assert np.max(np.abs(found - changed.weight_moment)) < EXACT * scale
