@@ -30,7 +30,7 @@ from equipoise.balancing.remedies import (
     MASS_PRICE,
     MOST_ADDED,
     Comparison,
-    Watched,
+    HeadlineLimit,
     added_sector,
     best_cuts,
     best_holes,
@@ -124,7 +124,7 @@ class _Adviser:
         limits = zip(own.limits, values, strict=True)
         self.watched = (
             *watched_of(self.analysis, self.before),
-            *(Watched((one.objective,), _most_of(one, value)) for one, value in limits),
+            *(HeadlineLimit((one.objective,), _most_of(one, value)) for one, value in limits),
         )
 
     def advised(self) -> Balanced:

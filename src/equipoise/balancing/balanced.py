@@ -345,7 +345,14 @@ def _notes(found: Solution) -> Iterator[Note]:
     yield from filter(None, (part.stopped(x) for part, x in problem.with_numbers(found.numbers)))
     if rows > 1 and any(part.mass_place is not None for part in problem.parts):
         yield Note("masses are those of one row; the machine has {rows}", rows=rows)
-    if found.ties > 1:
+    if found.ties > found.weighed:
+        yield Note(
+            "{count} of the ratios tried are as good, and the lightest of {weighed} of them was "
+            "taken; drive and joints may tell them apart: give them a limit",
+            count=found.ties,
+            weighed=found.weighed,
+        )
+    elif found.ties > 1:
         yield Note(
             "{count} of the ratios tried are as good, and the lightest was taken;"
             " drive and joints may tell them apart: give them a limit",

@@ -8,7 +8,8 @@ from math import floor, log10
 
 import numpy as np
 
-from equipoise.balancing.remedies import Watched
+from equipoise.balancing.problem import Problem
+from equipoise.balancing.remedies import HeadlineLimit
 from equipoise.errors import ModelError, ResponseError
 from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.outputs.declared import declared
@@ -88,7 +89,7 @@ def _ratio(was: FigureAssessment, new: FigureAssessment) -> float:
     return was.ratio * abs(new.value / was.value) if by_value else new.ratio
 
 
-def watched_of(analysis: Analysis, entries: Assessment) -> Iterator[Watched]:
+def watched_of(analysis: Analysis, entries: Assessment) -> Iterator[HeadlineLimit]:
     """Headline figures that masses change, and the most that they may become."""
     for one in entries:
         if one.output.startswith(GAUGES):
@@ -104,15 +105,13 @@ def watched_of(analysis: Analysis, entries: Assessment) -> Iterator[Watched]:
             if out.declared.name == family
         ]
         objectives = tuple(Objective(name, measure) for name in members)
-        yield Watched(objectives, allowed_ratio(one) * abs(one.value) / one.ratio)
+        yield HeadlineLimit(objectives, allowed_ratio(one) * abs(one.value) / one.ratio)
 
 
-def _watched_gauge(machine: Machine, one: FigureAssessment) -> Iterator[Watched]:
+def _watched_gauge(machine: Machine, one: FigureAssessment) -> Iterator[HeadlineLimit]:
     """What a gauge reads at the machine's own speed."""
-    from equipoise.balancing.problem import Problem
-
     for objective in (Objective(one.output, "ripple"), Objective(one.output, "peak_to_peak")):
-        yield Watched((objective,), GROWTH * Problem.value_of(machine, objective))
+        yield HeadlineLimit((objective,), GROWTH * Problem.value_of(machine, objective))
 
 
 def headline_objectives(entries: Assessment) -> tuple[Objective, ...]:

@@ -90,8 +90,10 @@ LARGE = 1e300
 """A cost that every solution is below, while none is known."""
 CLOSER, NEARER = 1e-10, 1e-6
 """Of the cost, and of a ratio or direction, to which the best ones of a range are followed."""
-TIE, MOST_TIES = 5e-9, 24
-"""Difference in cost that is none; choices among which the lightest is looked for."""
+TIE, MOST_TIES, LIGHT_TIES = 5e-9, 24, 8
+"""Difference in cost that is none; choices, all over the range, among which the lightest is looked
+for; and those beside them that looked lightest at first.
+"""
 BEST_CHOICES, STEPS, MOST_STEPS = 3, 40, 80
 """Choices that are followed; first steps over a range; programs that are solved for each."""
 
@@ -166,9 +168,14 @@ def _scan(
         if gearing.ranges and np.isfinite(values[k]):
             _follow(gearing, meshes[k], at)
     least = min(one.best.value for _, one in found)
-    ties = {mesh for mesh, one in found if one.best.value <= least + TIE}
+    ties = {
+        mesh: one.problem.mass_added(one.numbers)
+        for mesh, one in found
+        if one.best.value <= least + TIE
+    }
     equal = sorted(ties, key=lambda mesh: (mesh.ratio, mesh.direction))
-    tried = equal[:: max(1, len(equal) // MOST_TIES)]
+    light = sorted(equal, key=ties.__getitem__)[:LIGHT_TIES]
+    tried = dict.fromkeys([*equal[:: max(1, len(equal) // MOST_TIES)], *light])
     lightest = min(
         (start.with_gears(gearing, mesh).solved() for mesh in tried),
         key=lambda one: one.problem.mass_added(one.numbers),
@@ -178,7 +185,7 @@ def _scan(
         "{method}, for each of {count} choices of gears", method=lightest.method, count=len(found)
     )
     best = replace(lightest.best, nodes=count)
-    return replace(lightest, method=method, best=best, ties=len(equal))
+    return replace(lightest, method=method, best=best, ties=len(equal), weighed=len(tried))
 
 
 def _follow(gearing: Gearing, start: Mesh, cost: Callable[[Mesh], float]) -> None:

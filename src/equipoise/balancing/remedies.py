@@ -59,7 +59,7 @@ FEW = 4
 
 
 @dataclass(frozen=True)
-class Watched:
+class HeadlineLimit:
     """A headline figure that may not grow.
 
     objectives : the figure of each member of a family, of which the largest counts.
@@ -133,7 +133,7 @@ class Comparison:
     machine: Machine
     plan: Balance
     rooms: tuple[Room, ...]
-    watched: tuple[Watched, ...]
+    watched: tuple[HeadlineLimit, ...]
 
     @cached_property
     def problem(self) -> Problem:
@@ -371,7 +371,7 @@ def _with_masses_of(machine: Machine, name: str, link: Link) -> Machine:
 
 
 @dataclass(frozen=True)
-class Drilled:
+class DrilledHole:
     """A hole through a body of a link: number of the body, centre from the pivot, radius; m."""
 
     body: int
@@ -385,7 +385,7 @@ HOLE_RADII = (5e-3, 10e-3, 15e-3, 20e-3, 30e-3, 40e-3)
 """m."""
 
 
-def best_holes(comparison: Comparison) -> Iterator[Drilled]:
+def best_holes(comparison: Comparison) -> Iterator[DrilledHole]:
     """Holes in the bodies of a link that take off what is too much, the best first."""
     room = comparison.rooms[0]
     link = comparison.machine.links[room.link]
@@ -396,7 +396,7 @@ def best_holes(comparison: Comparison) -> Iterator[Drilled]:
             yield holes[k]
 
 
-def _taken(link: Link, holes: Sequence[Drilled]) -> Shapes:
+def _taken(link: Link, holes: Sequence[DrilledHole]) -> Shapes:
     """What holes take off, below 0."""
     plates = [link.bodies[one.body] for one in holes]
     thick = np.array([(body.thickness or 0.0) * (body.density or 0.0) for body in plates])
@@ -406,7 +406,7 @@ def _taken(link: Link, holes: Sequence[Drilled]) -> Shapes:
     return Shapes(holes, mass, mass * place, mass * (np.abs(place) ** 2 + radius**2 / 2))
 
 
-def _holes(link: Link, room: Room) -> Iterator[Drilled]:
+def _holes(link: Link, room: Room) -> Iterator[DrilledHole]:
     """Holes that lie in a body, and keep away from its edge, from lines between the link's points
     and from other holes.
     """
@@ -421,7 +421,7 @@ def _holes(link: Link, room: Room) -> Iterator[Drilled]:
             clear = radius + room.clearance
             for place in places:
                 if np.min(np.abs(points - place)) > clear and _drillable(body, link, place, clear):
-                    yield Drilled(number, complex(place) - pivot, radius)
+                    yield DrilledHole(number, complex(place) - pivot, radius)
 
 
 def _grid(edges: Sequence[tuple[list[complex], float]]) -> Iterator[complex]:
@@ -450,7 +450,9 @@ def _drillable(body: Body, link: Link, place: complex, clear: float) -> bool:
     return apart and all(fits(place, clear, edge) for edge in outlines(body, link.points))
 
 
-def with_hole(machine: Machine, room: Room, hole: Drilled) -> tuple[Machine, tuple[Change, ...]]:
+def with_hole(
+    machine: Machine, room: Room, hole: DrilledHole
+) -> tuple[Machine, tuple[Change, ...]]:
     """The machine with a hole in a body of a link, and what that changes."""
     link = machine.links[room.link]
     at = complex(*link.points[room.at]) + hole.place

@@ -42,7 +42,8 @@ SHARES = (1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 0.003)
 class Solution:
     """Best numbers of one problem, the machine that they make, and the gears it has.
 
-    ties : choices of gears that are as good.
+    ties : choices of gears that are as good.  weighed : how many of these were made as light as can
+        be.
     """
 
     problem: Problem
@@ -52,6 +53,7 @@ class Solution:
     method: Note
     meshes: tuple[Change, ...] = ()
     ties: int = 1
+    weighed: int = 1
 
 
 def solve_problem(
