@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from equipoise.balancing.compared import WORSE
+from equipoise.balancing.compared import FAINT, WORSE
 from equipoise.balancing.objectives import unit_of as si_unit
 from equipoise.balancing.outcome import advice_blocks
 from equipoise.balancing.told import (
@@ -104,7 +104,8 @@ def objectives_table(found: Balanced) -> Table:
         rows.append((name, *pair, Change(before, after, worse_if(after > (1 + WORSE) * before))))
     if len(rows) > 1:
         share = found.cost / found.whole
-        rows.append((f"{say('together')}, %", Value(100.0), Value(100 * share), Change(1.0, share)))
+        left = Value(100 * share if share > FAINT else 0.0)
+        rows.append((f"{say('together')}, %", Value(100.0), left, Change(1.0, share)))
     columns = (Column(""), *(Column(say(label)) for label in BEFORE_AFTER))
     return Table(say("What was made small"), columns, tuple(rows))
 
@@ -129,7 +130,8 @@ def before_after(found: Balanced) -> Table:
         changed: Cell = say("new")
         if old is not None:
             nothing = 1e-10 * least
-            worse = worse_if(new > (1 + WORSE) * max(old, nothing) and name != "mass")
+            grown = new > (1 + WORSE) * max(old, nothing) and new > FAINT * largest[_kin(unit)]
+            worse = worse_if(grown and name != "mass")
             changed = Change(old, new, worse) if old > nothing else None
             if changed is None and isinstance(has, Value):  # there is no share to stand out
                 has = replace(has, emphasis=worse)
@@ -178,8 +180,14 @@ def _shown(unit: str) -> tuple[float, str]:
     return told.factor, told.unit
 
 
+FASTER = 10.0
+"""Over the speed of the machine: a speed at which a machine shakes as before, and which is so much
+faster, tells no more than that next to nothing is left."""
+
+
 def _speeds(found: Balanced) -> Iterator[tuple[Cell, ...]]:
-    speeds = found.equivalent_speeds
+    most = FASTER * abs(found.original.drive.speed)
+    speeds = {name: one for name, one in found.equivalent_speeds.items() if abs(one) <= most}
     several = any(name.startswith("rows.") for name in speeds)
     for name, speed in speeds.items():
         if name.startswith("rows.shaking_") if several else name.count(".") == 1:

@@ -26,7 +26,7 @@ WORSE = 0.01
 """Share by which a figure has to grow to be told as worse."""
 SMALL = 0.1
 """Of the largest figure of its unit before: the growth of what was less is measured by that one."""
-FAINT = 1e-6
+FAINT = 1e-4
 """Of the largest figure of its unit: what is smaller is nobody's concern."""
 IMPORTANT = tuple(dict.fromkeys(("gauges", "rows", *GROUPS)))
 """Groups of outputs in the order in which a reader asks for them."""

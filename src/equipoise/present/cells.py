@@ -17,6 +17,9 @@ Kind = tuple[Dimension | None, str | None]
 """Dimension and unit of a number; those of one kind have one unit in a table."""
 Sizes = Mapping[tuple[int, Kind], float]
 """The largest number of each kind in each column; what is rounding beside it is told as 0."""
+FAINT, FAINT_IN_ROW = 1e-5, 1e-4
+"""Over the largest number of its kind in a table, and in a row, which tells one thing: a smaller
+number has no meaning for a reader, since the large one has four digits, and is shown as 0."""
 
 UNCHANGED = change(1.0, 1.0)
 """What `change` tells of two equal figures."""
@@ -95,13 +98,28 @@ def _row(
     table: Table, row: tuple[Cell, ...], shown: Mapping[Kind, Display], sizes: Sizes
 ) -> Iterator[Text]:
     unit = _unit_of_row(table, row, shown)
+    faint = _faint(table, row, sizes)
     for place, (column, cell) in enumerate(zip(table.columns, row, strict=True)):
         least = {kind: size for (at, kind), size in sizes.items() if at == place}
-        text = _text(cell, column, shown, least)
+        text = _text(cell, column, shown, least, faint if column.alike else {})
         if place == 0 and unit:
             comma = say(", ").replace(" ", "\N{NO-BREAK SPACE}")
             text = replace(text, text=comma.join(filter(None, (text.text, unit))))
         yield text
+
+
+def _faint(table: Table, row: tuple[Cell, ...], sizes: Sizes) -> dict[Kind, float]:
+    """Of each kind with a dimension, the size up to which numbers of a row have no meaning."""
+    whole = {kind: 0.0 for _, kind in sizes if kind[0] is not None}
+    for (place, kind), size in sizes.items():
+        if kind in whole and table.columns[place].alike:
+            whole[kind] = max(whole[kind], FAINT * size)
+    for column, cell in zip(table.columns, row, strict=True):
+        for value in _values(cell):
+            kind = _kind(value, column)
+            if kind in whole and isfinite(value.value):
+                whole[kind] = max(whole[kind], FAINT_IN_ROW * abs(value.value))
+    return whole
 
 
 def _unit_of_row(table: Table, row: tuple[Cell, ...], shown: Mapping[Kind, Display]) -> str:
@@ -168,7 +186,11 @@ def _head(column: Column, cells: tuple[Cell, ...], shown: Mapping[Kind, Display]
 
 
 def _text(
-    cell: Cell, column: Column, shown: Mapping[Kind, Display], sizes: Mapping[Kind, float]
+    cell: Cell,
+    column: Column,
+    shown: Mapping[Kind, Display],
+    sizes: Mapping[Kind, float],
+    faint: Mapping[Kind, float],
 ) -> Text:
     if cell is None or isinstance(cell, str):
         return Text(cell or "")
@@ -176,7 +198,7 @@ def _text(
         share = change(cell.before, cell.after)
         return Text(say("same") if share == UNCHANGED else share, "", True, cell.emphasis)
     if isinstance(cell, Many):
-        told = [_text(value, column, shown, sizes) for value in cell.values]
+        told = [_text(value, column, shown, sizes, faint) for value in cell.values]
         more = [say("and {count} more", count=cell.more)] if cell.more else []
         words = say(", ").join([*(one.told for one in told), *more])
         return Text(words, emphasis=next((one.emphasis for one in told if one.emphasis), None))
@@ -185,11 +207,12 @@ def _text(
         unit, size = shown[kind], sizes[kind]
         scale = max(abs(cell.low), abs(cell.high), cell.scale)
         ends = [Value(end, scale, None, cell.digits, cell.after) for end in (cell.low, cell.high)]
-        low, high = (_number(end, unit, column.dimension, size) for end in ends)
+        least = faint.get(kind, 0.0)
+        low, high = (_number(end, unit, column.dimension, size, least) for end in ends)
         equal = cell.high - cell.low <= ROUNDING * scale or low == high
         return Text(high if equal else say("{low} to {high}", low=low, high=high), number=True)
     kind = _kind(cell, column)
-    text = _number(cell, shown[kind], kind[0], sizes[kind] * column.alike)
+    text = _number(cell, shown[kind], kind[0], sizes[kind] * column.alike, faint.get(kind, 0.0))
     at = ""
     if cell.at is not None:
         place = Value(cell.at, after=1 if column.at[0] == "angle" else None)
@@ -197,10 +220,22 @@ def _text(
     return Text(text, at, number=True, emphasis=cell.emphasis)
 
 
-def _number(cell: Value, unit: Display, dimension: Dimension | None, size: float = 0.0) -> str:
-    """A value as text.  size : of the largest beside it; plain numbers have none in common."""
+def _number(
+    cell: Value,
+    unit: Display,
+    dimension: Dimension | None,
+    size: float = 0.0,
+    faint: float = 0.0,
+) -> str:
+    """A value as text.
+
+    size : of the largest beside it; plain numbers have none in common.  faint : up to which a
+    number is shown as 0.
+    """
     if isnan(cell.value):
         return say("none")
+    if abs(cell.value) < faint:
+        return "0"
     if cell.after is None:
         scale = abs(cell.scale) if dimension is None else max(abs(cell.scale), size)
         return unit.text(cell.value, scale, cell.digits)

@@ -96,7 +96,7 @@ def place_told(xy: tuple[float, ...]) -> str:
 
 def model_blocks(machine: Machine) -> Iterator[Block]:
     """Everything that a model says in numbers."""
-    mass, inertia = Column(say("mass"), "mass", "g"), Column(say("inertia"), "inertia", "kg mm^2")
+    mass, inertia = mass_columns()
     rows: list[tuple[Cell, ...]] = []
     unit = display("length", [part for xy in every_place(machine) for part in xy])
     for name, link in machine.links.items():
@@ -124,6 +124,14 @@ def model_blocks(machine: Machine) -> Iterator[Block]:
         yield Facts(say("Support"), tuple(_support(machine)))
 
 
+def mass_columns() -> tuple[Column, Column]:
+    """Of masses and inertias of a file, which are shown as they are, however small one is."""
+    return (
+        Column(say("mass"), "mass", "g", alike=False),
+        Column(say("inertia"), "inertia", "kg mm^2", alike=False),
+    )
+
+
 def every_place(machine: Machine) -> Iterator[tuple[float, float]]:
     """Points and centres of mass in the axes of their bodies, m."""
     yield from (at for points in machine.bodies.values() for at in points.values())
@@ -143,7 +151,7 @@ def bodies_tables(machine: Machine) -> Iterator[Table]:
             where = place((center.real, center.imag), unit)
             rows.append((name, part, Value(mass), where, Value(inertia)))
     if rows:
-        heads = Column(say("mass"), "mass", "g"), Column(say("inertia"), "inertia", "kg mm^2")
+        heads = mass_columns()
         columns = ("", say("body"), heads[0], f"{say('centre of mass')}, {unit.name}", heads[1])
         yield Table.of(say("What links are made of; places in the axes of each"), columns, rows)
 

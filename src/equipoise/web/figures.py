@@ -69,9 +69,9 @@ def _signed(measure: str, values: Array, size: float) -> float:
 MEASURES = {"rms": (to_say("RMS"), _rms), "peak": (to_say("peak"), _peak)}
 
 
-NOTHING = 1e-12
-"""Of the largest force in the machine, and of its moment over the machine, below which a figure is
-what rounding leaves of forces that cancel."""
+NOTHING = 1e-5
+"""Of the largest force in the machine, and of its moment over the machine, below which a figure has
+no meaning for a reader, as in tables."""
 
 
 def _size_of(machine: Machine) -> float:

@@ -1,0 +1,119 @@
+"""No figure without meaning is printed: what is nothing beside the largest of its kind is 0."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from functools import cache
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.balancing.blocks import _speeds, before_after
+from equipoise.balancing.compared import FAINT as CONCERN
+from equipoise.present.cells import FAINT, FAINT_IN_ROW, grid
+from equipoise.quantities import PER_RPM
+from equipoise.results.blocks import Column, Span, Table, Value
+from support.found import found as found_of
+
+MACHINES = (
+    *("hydraulic-loader", "pick-and-place", "sieve", "twin-engine", "exudyn-slider-crank"),
+    *("planetary-planting-arm", "knife-drive", "yamashita-rig"),
+)
+
+
+@cache
+def tables(name: str) -> tuple[Table, ...]:
+    found = found_of(name)
+    results = (found.analysis, found.balanced, found.response, found.sweep)
+    return tuple(
+        block for one in results if one is not None for block in one.blocks()
+        if isinstance(block, Table)
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_a_number_stands_beside_others_of_its_size_or_is_0(name: str) -> None:
+    """Cells of a dimension, against all of their unit in the table and in the row."""
+    for table in tables(name):
+        shown = grid(table)
+        for row in shown.rows:
+            sizes = [float(cell.text) for cell in row if re.fullmatch(r"-?[\d.e+-]+", cell.text)]
+            units = {head.unit for head in shown.heads if head.unit}
+            if sizes and len(units) <= 1 and "," in row[0].text:  # one unit, said with the row
+                faint = FAINT_IN_ROW * max(map(abs, sizes))
+                assert all(size == 0 or abs(size) >= faint for size in sizes), (table.title, row)
+        for text in (cell.text for row in shown.rows for cell in row):
+            assert not re.search(r"e-(0[6-9]|[1-9])", text), (table.title, text)
+
+
+def test_a_mean_of_rounding_is_0_and_the_json_keeps_it() -> None:
+    analysis = eq.analyze(eq.load("hydraulic-loader"))
+    mean = analysis.to_dict()["summary"]["shaking_force.x"]["mean"]
+    assert 0 < abs(mean) < FAINT_IN_ROW * analysis.summary["shaking_force.x"].peak
+    (frame,) = (one for one in analysis.blocks() if isinstance(one, Table) and "frame" in one.title)
+    (row,) = (row for row in grid(frame).rows if row[0].text.startswith("shaking force x"))
+    assert row[1].text == "0"
+
+
+def test_what_is_small_in_its_own_row_or_in_the_table_is_0() -> None:
+    columns = (Column("what"), Column("mean", "force"), Column("peak", "force"))
+    rows = [
+        ("large", Value(2e3), Value(1e4)),
+        ("tiny in the row", Value(-0.5 * FAINT_IN_ROW * 40.0), Value(40.0)),
+        ("tiny in the table", Value(0.5 * FAINT * 1e4), Value(0.9 * FAINT * 1e4)),
+        ("range", Span(0.3 * FAINT_IN_ROW * 50, 50.0), Value(50.0)),
+        ("angle", Value(5.0, at=0.0), Value(5.0)),
+    ]
+    texts = [[cell.text for cell in row[1:]] for row in grid(Table.of("", columns, rows)).rows]
+    assert texts[1] == ["0", "40.00"] and texts[2] == ["0", "0"]
+    assert texts[3] == ["0 to 50.00", "50.00"]
+    assert grid(Table.of("", columns, rows)).rows[4][1].at == "0.0"
+    loose = (columns[0], replace(columns[1], alike=False), columns[2])
+    assert grid(Table.of("", loose, rows[:2])).rows[1][1].text != "0"
+
+
+def test_a_crank_turns_fully_and_a_rocker_from_one_angle_to_another() -> None:
+    for name, turning, swinging in (
+        ("planetary-planting-arm", {"carrier", "idler", "planet"}, set()),
+        ("four-stroke-engine", {"crank"}, {"rod", "piston"}),
+    ):
+        analysis = eq.analyze(eq.load(name))
+        (table,) = (one for one in analysis.blocks() if isinstance(one, Table)
+                    and one.title.startswith("Links:"))  # fmt: skip
+        texts = {row[0].text: row[1].text for row in grid(table).rows}
+        assert {link for link, text in texts.items() if text == "turns fully"} == turning
+        assert swinging <= texts.keys()
+    part = eq.analyze(eq.load("four-stroke-engine"), np.radians([0.0, 90.0]).tolist())
+    assert "turns fully" not in str([*part.blocks()])
+
+
+def test_only_speeds_that_say_something_are_told() -> None:
+    """A machine of which next to nothing is left shakes as before at millions of rpm."""
+    machine = eq.load("yamashita-1")
+    own = machine.drive.speed
+    speeds = {"shaking_force.rms": 1.4 * own, "shaking_moment.rms": 6.101e6 * PER_RPM}
+    found = SimpleNamespace(original=machine, equivalent_speeds=speeds)
+    assert [(str(row[0]), row[1]) for row in _speeds(found)] == [
+        ("shaking force, RMS", Value(1.4 * own))
+    ]
+
+
+@pytest.mark.parametrize(("grown", "concern"), [(0.5, False), (2.0, True)])
+def test_a_grown_figure_stands_out_only_beside_what_matters(grown: float, concern: bool) -> None:
+    """0.18 N in a joint without force before, beside 10 kN, is nobody's concern."""
+    balanced = found_of("yamashita-1").balanced
+    assert balanced is not None
+    name = next(
+        one for one in balanced.before if one.startswith("joints.") and one.endswith(".peak")
+    )
+    largest = 1e4
+    before = {**balanced.before, name: 0.0, "shaking_force.peak": largest}
+    after = {**balanced.after, name: grown * CONCERN * largest, "shaking_force.peak": largest}
+    like = SimpleNamespace(before=before, after=after, original=balanced.original)
+    table = before_after(like)
+    cells = [cell for row in table.rows for cell in row if isinstance(cell, Value)]
+    (cell,) = (one for one in cells if one.value == after[name])
+    assert (cell.emphasis == "worse") is concern
