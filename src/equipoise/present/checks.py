@@ -18,8 +18,9 @@ from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import PER_RPM, SI, Dimension, angle, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
-from equipoise.results.cam_blocks import cams_told, where_lost
+from equipoise.results.cam_blocks import cams_told
 from equipoise.results.drive_blocks import driven
+from equipoise.results.lost_contacts import where_lost
 from equipoise.results.machine_blocks import bodies_tables, place_told
 from equipoise.vibration.body import Body, at_rest
 from equipoise.vibration.linear import Excitation as Shaking

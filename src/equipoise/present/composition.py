@@ -13,7 +13,7 @@ from equipoise.balancing.outcome import nothing_told
 from equipoise.errors import UsageError
 from equipoise.handheld import blocks as of_tools
 from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
-from equipoise.i18n import LANGUAGES, said, say, speaking, to_say
+from equipoise.i18n import LANGUAGES, Note, said, say, speaking, to_say
 from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.planting.blocks import planting_blocks
 from equipoise.present.drawing import drawings
@@ -27,7 +27,7 @@ from equipoise.present.tool_headlines import judged
 from equipoise.present.tool_summary import tool_answers, tool_tiles
 from equipoise.quantities import PER_RPM, chosen_units, number, showing_by_default
 from equipoise.results.analysis import Analysis
-from equipoise.results.analysis_blocks import force_blocks, motion_blocks
+from equipoise.results.analysis_blocks import force_blocks, motion_blocks, question_blocks
 from equipoise.results.blocks import (
     Block,
     Facts,
@@ -185,7 +185,8 @@ def _sections(
     """
     template = to_say("Made by Equipoise {version} from {file}")
     made = say(template, version=equipoise.__version__, file=found.file)
-    notes = [Notes(found.notes)] if found.notes else []
+    asked = (*found.notes, *questions_of(found))
+    notes = [Notes(asked)] if asked else []
     again = [Listing(say("Command"), command)] if command else []  # as it is, to be copied
     last: Parts = {
         "sources": [Facts("", tuple(sources(found)))],
@@ -247,6 +248,14 @@ def _settings_of_linkage(found: Findings) -> Iterator[str]:
         yield model_told(found.response.model)
     if found.balanced is not None:
         yield say("Balanced by: {method}", method=said(found.balanced.method))
+
+
+def questions_of(found: Findings | ToolFindings) -> tuple[Note | str, ...]:
+    """What may not be meant as the file of a linkage gives it."""
+    if isinstance(found, ToolFindings):
+        return ()
+    blocks = question_blocks(found.analysis)
+    return tuple(note for block in blocks if isinstance(block, Notes) for note in block.notes)
 
 
 KINDS = {".html": "html", ".htm": "html", ".pdf": "pdf"}

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from equipoise.errors import MassError, UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.checks import Named
-from equipoise.mechanism.dynamics.assessment import FourBar, four_bar
+from equipoise.mechanism.dynamics.assessment import FourBar, four_bar, remarks
 from equipoise.mechanism.dynamics.cam_contacts import CamFigures, cam_figures
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
 from equipoise.mechanism.dynamics.shares import CAUSES
@@ -26,7 +27,9 @@ from equipoise.mechanism.kinematics.strokes import dwell, strokes
 from equipoise.mechanism.outputs.declared import DECLARED, Found
 from equipoise.mechanism.parts.machine import Machine, Vector
 from equipoise.mechanism.parts.places import in_frame
+from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import Dimension
+from equipoise.results.lost_contacts import lost_contacts
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
 from equipoise.signals import Array, Figures, Periodic
@@ -178,6 +181,13 @@ class Analysis(Result):
         for row in rows:
             yield one.shifted(row.phase).samples(len(self.crank_angle))
 
+    @cached_property
+    def notes(self) -> tuple[Note | str, ...]:
+        """What to look at again, as `check` asks it: what may not be meant, and where it fails."""
+        lost = () if self.solved is None else lost_contacts(self.solved)
+        asked = (*remarks(self.motion.linkage), *lost, *idle_parts(self.machine.support))
+        return tuple(dict.fromkeys(asked))
+
     @property
     def has_orders(self) -> bool:
         """Whether its crank angles are such that harmonics can be taken."""
@@ -213,7 +223,8 @@ class Analysis(Result):
         split : whether to add every force by cause and by link.
         outputs : names of further outputs that are added; None stands among the values of those
             that are infinite somewhere.
-        strokes : whether to tell figures of sliders, rockers and cams: some milliseconds.
+        strokes : whether to tell figures of sliders, rockers and cams, and notes: some
+            milliseconds.
         """
         result: Values = {
             **self._heading,
@@ -249,6 +260,7 @@ class Analysis(Result):
             result["strokes"] = {name: one.told() for name, one in self.strokes.items()}
             for name, cam in self.cams.items():
                 result["cams"][name] |= cam.told()
+            result["notes"] = list(map(str, self.notes))
         summary: Values = {
             name: {**vars(figure), "peak_to_peak": figure.peak_to_peak}
             for name, figure in self.summary.items()

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say
+from equipoise.mechanism.dynamics.assessment import questions
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.kinematics.dwell import Dwell
 from equipoise.mechanism.kinematics.strokes import SHARE
 from equipoise.mechanism.outputs.spoken import joint_named
+from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import Dimension, Display, angle, display, percent
 from equipoise.quantities.numbers import ROUNDING
 from equipoise.results.belt_blocks import belt_blocks
@@ -54,12 +56,20 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
     if analysis.machine.springs:
         yield springs_table(analysis)
     if analysis.solved is None:
-        yield Notes((massless(machine),))
+        yield Notes((massless(machine), *questions(analysis.motion.linkage)))
         return
     yield from force_blocks(analysis)
     yield from joint_blocks(analysis)
     if machine.belts:
         yield from belt_blocks(analysis.resolved.forces)
+    yield from question_blocks(analysis)
+
+
+def question_blocks(analysis: Analysis) -> Iterator[Block]:
+    """What may not be meant as the file gives it."""
+    linkage, support = analysis.motion.linkage, analysis.machine.support
+    if asked := (*questions(linkage), *idle_parts(support)):
+        yield Notes(asked)
 
 
 # -- motion ----------------------------------------------------------------------------------------
@@ -83,7 +93,7 @@ def motion_blocks(analysis: Analysis) -> Iterator[Block]:
     rows = (
         (
             name,
-            span(link.angle),
+            turned(analysis, name) or span(link.angle),
             span(link.angular_velocity, rate),
             span(link.angular_acceleration, rate**2),
         )
@@ -91,6 +101,15 @@ def motion_blocks(analysis: Analysis) -> Iterator[Block]:
     )
     yield Table.of(say("Links: angle, angular velocity and acceleration"), columns, rows)
     yield from points_table(analysis)
+
+
+def turned(analysis: Analysis, link: str) -> str:
+    """That a link turns fully, where it does: a range of its angle would say nothing more."""
+    motion = analysis.motion
+    if not motion.whole_cycle or not motion.speed:
+        return ""
+    mean = float(np.mean(motion.links[link].angular_velocity)) / motion.speed
+    return say("turns fully") if abs(mean) * motion.turns > 0.5 else ""
 
 
 def strokes_table(analysis: Analysis) -> Table:
@@ -293,8 +312,8 @@ def harmonic_blocks(analysis: Analysis, orders: int, zero: float) -> Iterator[Bl
     # the motion before the forces, as in that table
     for one in sorted(analysis.outputs.ordered, key=lambda one: one.dimension != "acceleration"):
         kind = one.dimension
-        columns = [say("order"), *(Column(label, kind) for label in ("A", "B", "R"))]
-        columns += [Column(say("phase"), "angle"), Column(say("RMS"), kind)]
+        columns = [say("order"), *(Column(label, kind, alike=False) for label in ("A", "B", "R"))]
+        columns += [Column(say("phase"), "angle"), Column(say("RMS"), kind, alike=False)]
         rows = _harmonics(signals[one.name].shifted(zero), orders, 10 * tops[kind])
         yield Table.of(one.declared.title(one.item), columns, rows)
 

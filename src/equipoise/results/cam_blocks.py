@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import degrees, pi
+from math import degrees
 from typing import TYPE_CHECKING
 
-from equipoise.i18n import Note, all_of, say
+from equipoise.i18n import say
 from equipoise.mechanism.assembly.cam_fits import fits_of, sharpest
-from equipoise.mechanism.dynamics.cam_contacts import LetGo, let_go
-from equipoise.mechanism.dynamics.forces import Forces, forces, massless
-from equipoise.mechanism.kinematics.motion import move
-from equipoise.mechanism.outputs.spoken import body_named
-from equipoise.quantities import PER_RPM, angle, told
+from equipoise.quantities import told
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
+from equipoise.results.lost_contacts import lost_contacts
 from equipoise.results.machine_blocks import largest, smallest
 
 if TYPE_CHECKING:
@@ -53,41 +50,8 @@ def cam_blocks(analysis: Analysis) -> Iterator[Block]:
     shown = len(rows[0]) - (len(rows[0]) == len(columns) and not limited)
     title = say("Cams; largest and smallest with the crank angle")
     yield Table.of(title, columns[:shown], (row[:shown] for row in rows))
-    if analysis.solved is not None and (lost := _where_lost(analysis.solved)):
+    if analysis.solved is not None and (lost := lost_contacts(analysis.solved)):
         yield Notes(lost)
-
-
-def lost_told(one: LetGo, sprung: bool) -> Note:
-    """Where nothing keeps a cam's follower there, at the speed analysed.
-
-    sprung : whether the file has springs at all, which may then be too weak.
-    """
-    ranges = [
-        Note("at every crank angle")
-        if b - a >= 2 * pi
-        else Note("at crank angles from {low} to {high}", low=angle(a), high=angle(b))
-        for a, b in one.ranges
-    ]
-    return Note(
-        "{follower} lifts off {cam} {ranges}, where it would have to be held by up to {force}; "
-        "{limit}",
-        follower=one.cam.driven,
-        cam=body_named(one.cam.driver),
-        ranges=all_of(ranges),
-        force=told(-one.least[0], "force"),
-        limit=_limit(one.speed, sprung),
-    )
-
-
-def _limit(speed: float, sprung: bool) -> Note:
-    if speed == 0 and sprung:
-        return Note("its springs are too weak even at rest")
-    if speed == 0:
-        return Note("no [[springs]] press on it")
-    rpm = speed / PER_RPM
-    if sprung:
-        return Note("its springs hold it up to {speed:.4g} rpm", speed=rpm)
-    return Note("without [[springs]] it stays there up to {speed:.4g} rpm", speed=rpm)
 
 
 def cams_told(machine: Machine, joints: Structure) -> Iterator[str]:
@@ -100,15 +64,3 @@ def cams_told(machine: Machine, joints: Structure) -> Iterator[str]:
             f"{cam.closed_by}; least radius of curvature {told(radius, 'length', 'mm')}, at cam "
             f"angle {degrees(where):.4g} deg"
         )
-
-
-def where_lost(machine: Machine) -> tuple[Note, ...]:
-    """Where springs do not keep followers on their cams, at the file's speed."""
-    if not machine.cams or massless(machine):
-        return ()
-    return _where_lost(forces(move(machine)))
-
-
-def _where_lost(found: Forces) -> tuple[Note, ...]:
-    sprung = bool(found.motion.machine.springs)
-    return tuple(lost_told(one, sprung) for one in let_go(found) if one.ranges)

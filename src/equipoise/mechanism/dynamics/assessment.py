@@ -9,7 +9,7 @@ from math import acos, asin, degrees, isclose, pi, sqrt
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.steps import Call
-from equipoise.mechanism.checks import numbered
+from equipoise.mechanism.checks import bodies_at, numbered
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.statics import statics
 from equipoise.mechanism.dynamics.undecided import undecided
@@ -161,6 +161,10 @@ POOR_TRANSMISSION = 30.0
 WIDE_INERTIA, NARROW_INERTIA = 5.0, 0.02
 """Radius of gyration over size of the link above and below which a slip of units is likely: a
 bar's is 0.29, and a factor of 1000 in its inertia makes 0.009 of that.  None is no slip."""
+ODD_LENGTH = 200.0
+"""Over the length of a link that it is joined to: a link so much longer has another unit, as mm and
+m are 1000 apart; cranks of a mm on rods of some 100 mm are made.
+"""
 
 
 LEVEL = 1e-6
@@ -190,6 +194,12 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
     yield from undecided(linkage).told()
     if machine.has_planes:
         yield from statics(linkage).told()
+    yield from questions(linkage)
+
+
+def questions(linkage: Linkage) -> Iterator[Note | str]:
+    """What may not be meant as it is given, such as a number in another unit: a sentence each."""
+    machine = linkage.machine
     yield from crossings(linkage)
     yield from _jerks(machine)
     through = {group.joint for group in linkage.groups if group.through}
@@ -208,14 +218,20 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
             continue
         gyration = sqrt(link.inertia / link.mass)
         if not NARROW_INERTIA * size < gyration < WIDE_INERTIA * size and gyration:
-            yield (
-                f"links.{name}.inertia gives a radius of gyration of {gyration * 1e3:.4g} mm, for "
-                f"a link of {size * 1e3:.4g} mm; check its unit"
+            yield Note(
+                "links.{link}.inertia gives a radius of gyration of {gyration}, for a link of "
+                "{size}; check its unit",
+                link=name,
+                gyration=f"{gyration * 1e3:.4g} mm",
+                size=f"{size * 1e3:.4g} mm",
             )
         x, y = link.center_of_mass
         px, py = next(iter(link.points.values()))
         if sqrt((x - px) ** 2 + (y - py) ** 2) > WIDE_INERTIA * size:
-            yield f"links.{name}.center_of_mass lies far outside the link; check its unit"
+            yield Note(
+                "links.{link}.center_of_mass lies far outside the link; check its unit", link=name
+            )
+    yield from _odd_lengths(linkage)
     yield from _turned_axes(machine)
     used = {slider.through for slider in machine.sliders if slider.on == FRAME}
     used |= {spring.to for spring in machine.springs} | linkage.joints.pins.keys()
@@ -224,6 +240,28 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
     for point in machine.frame:
         if point not in used:
             yield f"frame.points.{point} is not used by any joint or spring"
+
+
+def _odd_lengths(linkage: Linkage) -> Iterator[Note]:
+    """Links that are joined at a pin, one of which is so much longer that its unit may be wrong."""
+    machine = linkage.machine
+    sizes = {name: size_of(link.points) for name, link in machine.links.items()}
+    told: set[frozenset[str]] = set()
+    for bodies in bodies_at(machine.bodies).values():
+        ends = sorted((b for b in bodies if sizes.get(b)), key=lambda body: sizes[body])
+        if len(ends) < 2 or frozenset(ends) in told:
+            continue
+        short, long = ends[0], ends[-1]
+        told.add(frozenset(ends))
+        if sizes[long] > ODD_LENGTH * sizes[short]:
+            yield Note(
+                "links.{long} is {far} long, and {short}, which it is joined to, {near}; check "
+                "their units",
+                long=long,
+                short=short,
+                far=f"{sizes[long] * 1e3:.4g} mm",
+                near=f"{sizes[short] * 1e3:.4g} mm",
+            )
 
 
 def _turned_axes(machine: Machine) -> Iterator[str]:

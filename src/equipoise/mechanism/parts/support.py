@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import ClassVar
 
+import numpy as np
+
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of, to_say
 from equipoise.keys import (
@@ -310,11 +312,42 @@ def _wrong_pivot_inertia(support: Support) -> Iterator[ModelError]:
         )
 
 
-def idle_parts(support: Support | None) -> Iterator[str]:
-    """Mounts and gauges about axes about which the support does not turn."""
+STILL = 1e-9
+"""Over the arm, m: a way along a direction that is rounding."""
+
+
+def idle_parts(support: Support | None) -> Iterator[Note | str]:
+    """Mounts and gauges about axes about which the support does not turn, and gauges along
+    directions in which it does not move where they are.
+    """
     if support is None:
         return
     for kind, items in (("mounts", support.mounts), ("gauges", support.gauges)):
         for name, item in items.items():
             if item.axis is not None and item.axis not in support.coordinates:
                 yield f"support.{kind}.{name} does nothing: the support cannot {item.axis}"
+    for name, gauge in support.gauges.items():
+        if gauge.axis is None and not _moves_along(support, gauge):
+            yield Note(
+                "support.gauges.{name} reads nothing: the support cannot move along its direction "
+                "there",
+                name=name,
+            )
+
+
+def _moves_along(support: Support, gauge: Gauge) -> bool:
+    """Whether any way in which the support can move has a part along the direction of a gauge."""
+    assert gauge.point is not None
+    axes = dict(zip(("roll", "yaw", "pitch"), np.eye(3), strict=True))
+    ways = dict(zip(("surge", "heave", "sway"), np.eye(3), strict=True))
+    center = np.zeros(3)
+    start = support.center_of_mass if support.pivot is None else support.pivot
+    center[: len(start)] = start
+    arm = np.zeros(3)
+    arm[: len(gauge.point)] = gauge.point
+    arm -= center
+    along, least = np.array(unit_vector(gauge.direction)), STILL * (1 + float(np.abs(arm).max()))
+    moved = [
+        np.cross(axes[name], arm) if name in axes else ways[name] for name in support.coordinates
+    ]
+    return any(abs(float(along @ way)) > least for way in moved)
