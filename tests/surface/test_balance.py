@@ -45,10 +45,10 @@ def told(*words: str | Path) -> dict[str, Any]:
 
 
 def test_tables_of_the_papers_counterweight() -> None:
-    result = equipoise("balance", "balance-crank")
+    result = equipoise("balance", "balance-crank", "--full")
     text = succeeded(result)
     assert result.err == ""
-    assert text.splitlines()[1] == "crank driven at 193.0 rpm (20.21 rad/s)"
+    assert text.splitlines()[2] == "crank driven at 193.0 rpm (20.21 rad/s)"
     assert cells(text, "shaking force y, RMS about the mean, N") == ["12.19", "3.016", "-75.2 %"]
     assert (
         "crank: add a counterweight of 1145 g, its centre of mass 35.70 mm from A at -165.98 deg"
@@ -192,7 +192,7 @@ def test_a_balanced_machine_has_no_speed_at_which_it_shakes_as_before() -> None:
 
 def test_rounding_is_not_printed() -> None:
     """A balanced machine shakes by rounding alone, of which no share is told either."""
-    succeeded(equipoise("balance", "exudyn-slider-crank", "-o", "still.toml"))
+    succeeded(equipoise("balance", "--full", "exudyn-slider-crank", "-o", "still.toml"))
     limit = ("--limit", "shaking_force <= 1 N")
     text = run("still.toml", "--move-cm", "rod", "--objective", "shaking_moment", *limit)
     assert cells(text, "shaking force, RMS, N")[0] == "0"
@@ -347,7 +347,7 @@ def test_front() -> None:
     found = [[p["first"], p["second"], 1e3 * p["added_mass"]] for p in content["points"]]
     np.testing.assert_allclose(found, values, rtol=6e-4)
     assert all(point["gap"] < 1e-7 and point["changes"] for point in content["points"])
-    succeeded(equipoise("balance", *FRONT, "--csv", "x.csv"))
+    succeeded(equipoise("balance", "--full", *FRONT, "--csv", "x.csv"))
     lines = Path("x.csv").read_text(encoding="utf-8").splitlines()
     assert lines[0] == "rms of shaking_force.x [N],rms of shaking_force.y [N],added mass [kg]"
     assert len(lines) == 5

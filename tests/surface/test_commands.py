@@ -67,13 +67,13 @@ def test_outputs_and_dwells_are_told_by_name(tmp_path: Path) -> None:
     """A vector by its components; with --csv alone, with --json beside all else."""
     table, name = tmp_path / "out.csv", "centers.coupler/frame"
     found = analyzed("yamashita-1", "--output", name, "--dwell", "0.5 mm")
-    succeeded(equipoise("analyze", "yamashita-1", "--output", name, "--csv", table))
+    succeeded(equipoise("analyze", "--full", "yamashita-1", "--output", name, "--csv", table))
     assert list(found["outputs"]) == [f"{name}.x", f"{name}.y"]
     header = table.read_text().splitlines()[0]
     assert header == f"crank_angle [rad],{name}.x [m],{name}.y [m]"
     assert list(found["dwells"]) == ["C", "P"]
     assert found["dwells"]["P"]["tolerance"] == pytest.approx(0.5e-3)
-    text = succeeded(equipoise("analyze", "stephenson-six-bar", "--dwell", "0.5 deg"))
+    text = succeeded(equipoise("analyze", "--full", "stephenson-six-bar", "--dwell", "0.5 deg"))
     assert re.search(r"^output +0.5000 +120.0 at 128.5$", text, re.MULTILINE)
     assert "Force in each joint" not in text
 
@@ -137,13 +137,13 @@ FREED = [
 OPTIONS = {
     "analyze": [
         *["FILE", "--angles", "--speed", "--acceleration", "--about", "--split", "--csv"],
-        *["--orders", "--crank-zero", "--output", "--dwell", *PRINTED],
+        *["--orders", "--crank-zero", "--output", "--dwell", "--full", *PRINTED],
     ],
     "animate": [
         *["FILE", "--out", "--seconds", "--turns", "--width", "--trace", "--force", "--speed"],
         *["--exaggerate", "--mode", "--dark"],
     ],
-    "balance": ["FILE", "--objective", "--limit", "--speed", "--out", *OUTPUTS, *FREED],
+    "balance": ["FILE", "--objective", "--limit", "--speed", "--out", "--full", *OUTPUTS, *FREED],
     "balance arrangements": ["FILE", "ROWS", "--spacing", "--speed", *PRINTED],
     "balance conditions": ["FILE", "--speed", *PRINTED],
     "balance sensitivities": ["FILE", "OUTPUT", "--crank-zero", "--speed", *PRINTED],
@@ -175,7 +175,7 @@ OPTIONS = {
         *["--out", "--format"],
     ],
     "report": ["FILE", "--out", "--language", "--pdf", "--speed", "--units"],
-    "respond": ["FILE", "--model", "--speed", "--speeds", "--drive", *OUTPUTS],
+    "respond": ["FILE", "--model", "--speed", "--speeds", "--drive", "--full", *OUTPUTS],
     "resume": ["STORE", "--workers", "--cluster", *DRAWN],
     "schema": ["--tool", "--study"],
     "search": [
@@ -187,7 +187,7 @@ OPTIONS = {
     "tolerance": ["STUDY", "--designs", *DRAWN],
     "tool": [
         *["FILE", "--modes", "--number", "--respond", "--speeds", "--at", "--exposure"],
-        *["--duration", *OUTPUTS],
+        *["--duration", "--full", *OUTPUTS],
     ],
     "tool design": ["FILE", "--out", *DRAWN],
     "tool sensitivities": ["FILE", "--speeds", *PRINTED],
@@ -297,7 +297,7 @@ def driving(name: str) -> str:
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_tables_of_an_example(name: str) -> None:
-    result = equipoise("analyze", name)
+    result = equipoise("analyze", name, "--full")
     text = succeeded(result)
     assert unfolded(text).startswith(example(name)["title"]["en"])
     for title in ("Links", "Moving points", "On frame and drive", "Force in each joint"):
@@ -311,7 +311,8 @@ def test_tables_of_an_example(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["check", "analyze"])
 def test_a_model_without_masses_is_told_of(name: str) -> None:
-    text = succeeded(equipoise(name, written(massless())))
+    full = ["--full"] if name == "analyze" else []
+    text = succeeded(equipoise(name, written(massless()), *full))
     assert re.search(r"^ *coupler[ :]", text, re.MULTILINE)
     assert re.search(r"^note: .*mass", text, re.MULTILINE)
     assert "shaking force" not in text
@@ -339,7 +340,7 @@ def test_version() -> None:
 
 @pytest.mark.parametrize(
     ("command", "more"),
-    [("check", ()), ("analyze", ()), ("plant", ("--csv", "tip.csv"))],
+    [("check", ()), ("analyze", ("--full",)), ("plant", ("--csv", "tip.csv"))],
 )
 def test_markup_in_names_is_shown_as_it_stands(command: str, more: tuple[str, ...]) -> None:
     pairs = (("links.coupler", "links.'[bold]coupler[/]'"), ("Planting", "[red]Planting"))
@@ -690,7 +691,8 @@ def test_everything_is_written_or_nothing(monkeypatch: pytest.MonkeyPatch) -> No
         raise UsageError("a figure is missing")
 
     monkeypatch.setattr("equipoise.present.terminal._Printer.table", broken)
-    words = ("balance", "balance-crank", "-o", "new.toml", "--csv", "b.csv", "--plot", "pictures")
+    files = ("-o", "new.toml", "--csv", "b.csv", "--plot", "pictures")
+    words = ("balance", "balance-crank", "--full", *files)
     assert refused(equipoise(*words)) == "a figure is missing"
     assert not list(Path().iterdir())
 

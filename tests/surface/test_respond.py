@@ -54,7 +54,7 @@ def table(path: str) -> tuple[list[str], np.ndarray[Any, Any]]:
 
 @pytest.mark.parametrize("name", GAUGES)
 def test_tables_of_an_example(name: str) -> None:
-    result = equipoise("respond", name)
+    result = equipoise("respond", name, "--full")
     text = succeeded(result)
     assert result.err == ""
     assert text.splitlines()[0] == eq.load(name).title
@@ -67,19 +67,19 @@ def test_tables_of_an_example(name: str) -> None:
 
 @pytest.mark.parametrize("model", MODELS)
 def test_tables_of_a_model(model: str) -> None:
-    text = succeeded(equipoise("respond", RIG, "--model", model))
+    text = succeeded(equipoise("respond", "--full", RIG, "--model", model))
     assert f"by the model {model}: " in text
     assert ("residual" in text) == (model in {"coupled", "exact"})
     assert ("energy in a period" in text) == (model == "exact")
 
 
 def test_all_models_are_compared() -> None:
-    text = succeeded(equipoise("respond", RIG))
+    text = succeeded(equipoise("respond", "--full", RIG))
     (header,) = (line for line in text.splitlines() if line.split() == list(MODELS))
     assert header
     part = text[text.index("Gauges by each model") :]
     assert cells(part, "gauge") == ["12.62", "12.61", "12.00", "12.61", "12.00"]
-    spatial = succeeded(equipoise("respond", "riding-transplanter"))
+    spatial = succeeded(equipoise("respond", "--full", "riding-transplanter"))
     assert any(line.split() == list(MODELS[:3]) for line in spatial.splitlines())
 
 
@@ -122,7 +122,7 @@ def test_the_default_model_is_force_and_moment(name: str) -> None:
 
 def test_models_that_differ_say_so() -> None:
     """(59) is 5.2 % above the exact equations on the paper's rig, whose arm is long."""
-    text = " ".join(succeeded(equipoise("respond", RIG)).split())
+    text = " ".join(succeeded(equipoise("respond", "--full", RIG)).split())
     assert (
         "the models differ: at gauge, linear gives 12.62 mm and exact, which leaves out least, "
         "12.00 mm; where they do not agree, use exact" in text
@@ -147,7 +147,7 @@ def test_a_crank_that_turns_the_other_way() -> None:
     assert content["speed"] == pytest.approx(-193 * RPM)
     assert peak(content) == pytest.approx(12.00, abs=0.02)
     assert "crank driven at -193.0 rpm (-20.21 rad/s)" in succeeded(
-        equipoise("respond", RIG, "--speed", "-193 rpm")
+        equipoise("respond", RIG, "--speed", "-193 rpm", "--full")
     )
 
 
@@ -194,7 +194,7 @@ def test_resonances_of_a_range() -> None:
     assert first["speed"] == content["resonances"][0] == pytest.approx(12.415, abs=5e-4)
     assert (first["order"], first["mode"], first["share"]) == (1, 1, 1)
     assert first["avoid"][0] < first["speed"] < first["avoid"][1]
-    text = succeeded(equipoise("respond", RIG, *words))
+    text = succeeded(equipoise("respond", "--full", RIG, *words))
     assert "crank driven at 20.00 to 300.0 rpm" in text
     assert "96.81 to 136.9" in text
     assert "no resonance in this range" in succeeded(
@@ -212,7 +212,7 @@ def test_a_range_of_the_other_sense() -> None:
 def test_speeds_of_a_range_in_space() -> None:
     words = ("respond", "riding-transplanter", "--speed", "230:250 rpm", "--speeds", "3")
     assert set(read(*words)["gauges"]) == GAUGES["riding-transplanter"]
-    assert "share of the loudest" in succeeded(equipoise(*words))
+    assert "share of the loudest" in succeeded(equipoise(*words, "--full"))
 
 
 # -- the motor, and from rest ----------------------------------------------------------------------
@@ -232,7 +232,7 @@ def test_the_motor_holds_the_mean_speed(name: str, sense: int) -> None:
 
 
 def test_tables_with_the_motor() -> None:
-    text = succeeded(equipoise("respond", RIG, "--drive"))
+    text = succeeded(equipoise("respond", "--full", RIG, "--drive"))
     assert "rad/s), speed by the motor" in text
     assert "speed fluctuates by" in text
     assert "Gauges by each model" not in text
@@ -294,7 +294,7 @@ def test_csv(words: tuple[str, ...], count: int, first: list[str]) -> None:
                                    ("--speed", "-193 rpm", "--drive")])  # fmt: skip
 def test_columns_are_derivatives_of_each_other_by_time(words: tuple[str, ...]) -> None:
     """Whichever way the crank turns; both ends of the bound are the solver's own."""
-    succeeded(equipoise("respond", RIG, *words, "--csv", "out.csv"))
+    succeeded(equipoise("respond", "--full", RIG, *words, "--csv", "out.csv"))
     header, values = table("out.csv")
     columns = dict(zip(header, values.T, strict=True))
     time = columns["time [s]"]
@@ -328,7 +328,7 @@ def test_csv_of_a_range_is_the_json_of_it() -> None:
 
 
 def test_units_of_the_tables() -> None:
-    text = succeeded(equipoise("respond", RIG, "--units", "um, rad/s, cm/s, gn, kgf"))
+    text = succeeded(equipoise("respond", "--full", RIG, "--units", "um, rad/s, cm/s, gn, kgf"))
     numbers = cells(text, "gauge")
     assert re.search(r"^ +um +um +cm/s +cm/s +gn +gn$", text, re.MULTILINE)
     figures = answer()["gauges"]["gauge"]
@@ -343,9 +343,9 @@ def test_units_of_the_tables() -> None:
     assert float(cells(text, "spring")[0]) == pytest.approx(spring, rel=5e-4)
     assert answer("--units", "um, rad/s") == answer()
     words = ("--speed", "20:300 rpm", "--speeds", "2", "--units", "rad/s, cm")
-    text = succeeded(equipoise("respond", RIG, *words))
+    text = succeeded(equipoise("respond", "--full", RIG, *words))
     assert "gauge, cm" in text and "at rad/s" in text
-    pitch = succeeded(equipoise("respond", "walking-transplanter", "--units", "rad"))
+    pitch = succeeded(equipoise("respond", "--full", "walking-transplanter", "--units", "rad"))
     assert re.search(r"^ +rad +rad +rad/s +rad/s +rad/s.2 +rad/s.2$", pitch, re.MULTILINE)
 
 

@@ -69,7 +69,7 @@ def test_json_is_what_python_has() -> None:
 
 @pytest.mark.parametrize("name", TOOLS)
 def test_every_bundled_tool_is_told(name: str) -> None:
-    shown = succeeded(equipoise("tool", name))
+    shown = succeeded(equipoise("tool", "--full", name))
     for words in ("Natural frequencies", "Force at", "Largest forces", "a_hv"):
         assert words in shown
     assert not re.search(r"\b(nan|inf)\b", shown)
@@ -97,14 +97,16 @@ def test_other_places_and_units() -> None:
 def test_unrestrained_shaft_names_its_rigid_modes() -> None:
     text = 'schema = 1\ntitle = "Rod"\n[shaft]\nlength = "1 m"\nmass = "1 kg"\n'
     file = written(text + 'bending_stiffness = "1 N m^2"\n')
-    shown = succeeded(equipoise("tool", file, "--number", "5"))
+    shown = succeeded(equipoise("tool", "--full", file, "--number", "5"))
     assert "rigid: moves to and fro" in shown
     assert "rigid: turns about its left end" in shown
     assert told(file, "--number", "5")["eigenvalues"] == pytest.approx(
         [0, 0, 4.730040745, 7.853204624, 10.99560784], abs=1e-8
     )
     text = example_text("nagamine-irie").replace("harness = {", "# harness = {", 1)
-    assert "rigid: turns about 0.4107 m" in succeeded(equipoise("tool", written(text), "--modes"))
+    assert "rigid: turns about 0.4107 m" in succeeded(
+        equipoise("tool", "--full", written(text), "--modes")
+    )
 
 
 def test_variation() -> None:
@@ -131,7 +133,7 @@ def test_sensitivities_are_those_of_python() -> None:
 def test_a_file_to_start_from() -> None:
     result = equipoise("new", "mine.toml", "--tool")
     assert result.err == "wrote mine.toml; next: equipoise tool mine.toml\n"
-    shown = succeeded(equipoise("tool", "mine.toml"))
+    shown = succeeded(equipoise("tool", "--full", "mine.toml"))
     assert "A day at handle" in shown
     assert "ready: equipoise tool mine.toml" in succeeded(equipoise("check", "mine.toml"))
     refuses("new mine.toml --tool", "is there already")
@@ -257,12 +259,12 @@ def test_what_is_missing_is_told() -> None:
     start = text.index("[[excitations]]")
     written(text[:start] + text[text.index("[operation]") :], to="silent.toml")
     refuses("tool silent.toml --exposure", "excitations: nothing shakes the tool")
-    assert "Force at handle" in succeeded(equipoise("tool", "silent.toml"))
+    assert "Force at handle" in succeeded(equipoise("tool", "--full", "silent.toml"))
     written(text.replace('hand = { stiffness = "51 kgf/cm", hands = 2 }', "", 1), to="unheld.toml")
     refuses("tool unheld.toml --exposure", "no hand holds the tool")
     written(text[: text.index("[operation]")], to="lazy.toml")
     refuses("tool lazy.toml --exposure", "give --respond")
-    assert "Natural frequencies" in succeeded(equipoise("tool", "lazy.toml"))
+    assert "Natural frequencies" in succeeded(equipoise("tool", "--full", "lazy.toml"))
 
 
 def test_new_file_takes_no_others_place() -> None:

@@ -60,12 +60,15 @@ point = ["0 m", "0 m"]
 LINKAGE = [
     ("check",),
     ("analyze",),
+    ("analyze", "--full"),
     ("analyze", "--orders", "2"),
     ("modes",),
     ("respond",),
-    ("respond", "--speed", "5 rpm : 40 rpm", "--speeds", "5"),
+    ("respond", "--full"),
+    ("respond", "--speed", "5 rpm : 40 rpm", "--speeds", "5", "--full"),
     ("simulate", "2 s"),
     ("balance", "--crank-counterweight", "--objective", "shaking_force"),
+    ("balance", "--crank-counterweight", "--objective", "shaking_force", "--full"),
     ("balance conditions",),
     ("balance sensitivities", "shaking_force.y"),
     ("balance arrangements", "2"),
@@ -109,7 +112,7 @@ def test_a_machine_of_micrometres() -> None:
 
     text = re.sub(r'"([-\d.]+)( kg m\^2| kg| m)"', smaller, text).replace("10 rpm", "6000 rpm")
     Path("micro.toml").write_text(text, encoding="utf-8")
-    told = succeeded(equipoise("analyze", "micro.toml"))
+    told = succeeded(equipoise("analyze", "--full", "micro.toml"))
     # what shakes weighs some ng; forces are some pN, lengths some um
     assert re.search(r"crank +crank +A, B +0\.002700$", told, re.MULTILINE)
     assert re.search(r"shaking force x, nN", told) and "-0" not in cells(told, "shaking force x")
@@ -131,7 +134,9 @@ def test_every_table_follows_the_units_that_are_asked_for(words: tuple[str, ...]
 
 def test_the_same_value_whatever_its_unit() -> None:
     rows = {
-        unit: cells(succeeded(equipoise("analyze", pump(), "--units", f"force={unit}")), label)
+        unit: cells(
+            succeeded(equipoise("analyze", "--full", pump(), "--units", f"force={unit}")), label
+        )
         for unit in ("N", "kN", "lbf", "kgf")
         for label in ("shaking force y",)
     }
@@ -145,8 +150,8 @@ def test_the_same_value_whatever_its_unit() -> None:
 
 
 def test_csv_stays_in_si_units_and_names_them() -> None:
-    succeeded(equipoise("analyze", pump(), "--csv", "a.csv"))
-    succeeded(equipoise("analyze", pump(), "--units", "in, lbf", "--csv", "b.csv"))
+    succeeded(equipoise("analyze", "--full", pump(), "--csv", "a.csv"))
+    succeeded(equipoise("analyze", "--full", pump(), "--units", "in, lbf", "--csv", "b.csv"))
     assert Path("a.csv").read_text("utf-8") == Path("b.csv").read_text("utf-8")
     assert "shaking_force.x [N]" in Path("b.csv").read_text("utf-8").splitlines()[0]
 
@@ -215,7 +220,7 @@ def test_wrong_units_of_the_command_line() -> None:
 def test_rounding_is_told_as_nothing_in_harmonics() -> None:
     """Of a machine that is balanced in one direction, other harmonics are -6.9e-15."""
     for name in ("scotch-yoke", "planetary-planting-arm"):
-        text = succeeded(equipoise("analyze", name, "--orders", "6"))
+        text = succeeded(equipoise("analyze", "--full", name, "--orders", "6"))
         assert ROUNDING.findall(text) == []
 
 

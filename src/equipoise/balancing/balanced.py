@@ -74,6 +74,8 @@ class Balanced(Result):
     advice : where nobody said so, what it is judged by.
     """
 
+    headline_in = "balancing.blocks.balanced_headline"
+
     machine: Machine
     original: Machine
     plan: Balance

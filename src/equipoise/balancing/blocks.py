@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from equipoise.balancing.compared import FAINT, WORSE
 from equipoise.balancing.objectives import unit_of as si_unit
-from equipoise.balancing.outcome import advice_blocks
+from equipoise.balancing.outcome import advice_blocks, large_sentences, nothing_told
 from equipoise.balancing.told import (
+    capital,
     figure_named,
     figure_unit,
     proof_told,
@@ -17,7 +18,7 @@ from equipoise.balancing.told import (
 )
 from equipoise.balancing.workshop import sentences
 from equipoise.i18n import said, say, to_say
-from equipoise.quantities import Dimension, display, number
+from equipoise.quantities import Dimension, change, display, number, percent
 from equipoise.results.blocks import (
     Block,
     Cell,
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced, Price
     from equipoise.balancing.phasing import Phasing
 
+MOST_NOTES = 3
+"""Notes that stand first; the others follow with all tables."""
 MOST_ORDERS = 8
 """That are named one by one."""
 USUAL: dict[Dimension, str] = {"length": "mm", "angle": "mrad", "mass": "g", "inertia": "kg mm^2"}
@@ -60,6 +63,58 @@ def balanced_blocks(found: Balanced) -> Iterator[Block]:
     """Changes, before and after, prices of limits, equivalent speeds."""
     yield Text(driven(found.original, found.original.drive.speed))
     yield from outcome_blocks(found)
+
+
+def balanced_headline(found: Balanced, alone: bool = False) -> Iterator[Block]:
+    """What is gained; alone also what to change for it, and what gets worse.
+
+    alone : whether nothing follows, as on a terminal.
+    """
+    if found.advice is not None and not found.helps:
+        if alone:
+            yield from map(Text, nothing_told(found))
+            yield Text(driven(found.original, found.original.drive.speed))
+            yield from map(Text, large_sentences(found.advice, found.original.crank_turns))
+        return
+    aims = tuple(_aims(found))
+    if aims:
+        yield Text(say("{sentence}.", sentence=aims[0]))
+    if not alone:
+        return
+    yield Text(driven(found.original, found.original.drive.speed))
+    if aims[1:]:
+        yield Facts(say("What else was made small"), aims[1:])
+    lines = tuple(line for change in found.changes for line in sentences(change))
+    yield Facts(say("Changes; places and directions in the axes of each link"), lines)
+    yield from (Text(line, "worse") for line in worse_told(found))
+    if found.notes:
+        yield Notes(found.notes[:MOST_NOTES])
+    yield Facts(
+        say("What to look at next"),
+        (
+            say("balance --out FILE: the machine with these changes"),
+            say("balance --full: every figure before and after, and what is proved"),
+        ),
+    )
+
+
+def _aims(found: Balanced) -> Iterator[str]:
+    """What was made small, before and after."""
+    for one, (before, after) in found.aims.items():
+        what = objective_named(one, len(found.original.rows))
+        unit = display(
+            DIMENSIONS.get(si_unit(one, found.original)),
+            [before, after],
+            shown_unit(si_unit(one, found.original)),
+        )
+        yield say(
+            "{what}: {before} → {after} {unit} ({change})",
+            what=capital(what),
+            before=unit.text(before, digits=3),
+            after=unit.text(after, max(before, after), 3),
+            unit=unit.name,
+            change=change(before, after) or percent(0),
+        )
 
 
 def outcome_blocks(found: Balanced) -> Iterator[Block]:

@@ -36,7 +36,7 @@ LARGE = 0.5
 def helps_told(balanced: Balanced) -> Iterator[str]:
     """What is large, what to change, what that brings, and what it costs."""
     if balanced.advice is not None:
-        yield from large_sentences(balanced.advice)
+        yield from large_sentences(balanced.advice, balanced.original.crank_turns)
     if not balanced.helps:
         yield from nothing_told(balanced)
         return
@@ -109,13 +109,13 @@ MOST_LARGE = 3
 """Large figures that are named."""
 
 
-def large_sentences(advice: Advice) -> Iterator[str]:
+def large_sentences(advice: Advice, crank_turns: bool) -> Iterator[str]:
     """What is large on the machine; where nothing is, how large the largest figure is."""
     large = [one for one in advice.before if one.is_large][:MOST_LARGE]
     for one in large:
-        yield say("Large here: {figure}.", figure=sentence(one))
+        yield say("Large here: {figure}.", figure=sentence(one, crank_turns))
     if not large and advice.before:
-        largest = sentence(advice.before[0])
+        largest = sentence(advice.before[0], crank_turns)
         yield say("Nothing is large beside its yardstick. {figure}.", figure=largest)
 
 
@@ -200,7 +200,7 @@ def advice_blocks(found: Balanced) -> Iterator[Block]:
     """What is large, and what was tried against it."""
     advice = found.advice
     assert advice is not None
-    yield from map(Text, large_sentences(advice))
+    yield from map(Text, large_sentences(advice, found.original.crank_turns))
     if not found.helps:
         yield from map(Text, nothing_told(found))
     else:

@@ -21,7 +21,7 @@ from equipoise.cli.options import (
     naming,
     size,
 )
-from equipoise.cli.outputs import Outputs, Printed, check_new, sources_of, write_model
+from equipoise.cli.outputs import Length, Outputs, Printed, check_new, sources_of, write_model
 from equipoise.cli.plan import Freed, plan_of, read_objective
 from equipoise.cli.progress import counted
 from equipoise.errors import UsageError
@@ -44,6 +44,7 @@ def balance(
     speed: Speed = None,
     freed: Freed = Freed(),
     out: Out = None,
+    length: Length = Length(),
     outputs: Outputs = Outputs(),
 ) -> None:
     """What to change so that the machine shakes less, with proof that nothing better exists.
@@ -80,7 +81,7 @@ def balance(
         outputs.draw_result(found)
         if out is not None:  # after tables and pictures, which may fail
             _save(found, out)
-        outputs.show(found)
+        length.show(found, outputs)
 
 
 def _refuse(found: Balanced) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
@@ -26,8 +26,10 @@ from equipoise.cli.options import (
     time_a_day,
 )
 from equipoise.cli.outputs import (
+    MORE,
     Drawings,
     Drawn,
+    Length,
     Outputs,
     Printed,
     check_new,
@@ -36,6 +38,7 @@ from equipoise.cli.outputs import (
 )
 from equipoise.cli.progress import counted
 from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import say
 
 if TYPE_CHECKING:
     import numpy as np
@@ -45,6 +48,7 @@ if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
     from equipoise.handheld.sweep import ToolSweep
+    from equipoise.results.blocks import Block, Section
 
 app = App(name="tool")
 RANGE = '"2000 rpm : 9000 rpm"'
@@ -81,11 +85,12 @@ def tool(
     at: Annotated[Any, sizes("length", "300 mm, 1200 mm")] = None,
     exposure: bool = False,
     duration: Annotated[Any, read_by(time_a_day, '"2 h"')] = None,
+    length: Length = Length(),
     outputs: Outputs = Outputs(),
 ) -> None:
     """A hand-held tool: how its shaft vibrates, and what the hands get.
 
-    Without any of --modes, --respond and --exposure it tells all three.
+    Without any of --modes, --respond and --exposure it tells what stands first of all three.
 
     Parameters
     ----------
@@ -113,12 +118,13 @@ def tool(
     check_belonging("--modes", modes or not names, number=number)
     outputs.check(sources_of(loaded, file))
     asked = Asked(loaded, number, respond, speeds, tuple(at or ()), duration)
+    first = None if names else length
     names = names or default_answers(loaded)
     with naming(file):
         parts = [getattr(asked, name) for name in names]
     if outputs.csv is not None:
         outputs.write(asked.respond.columns)
-    _give(loaded, parts, lambda: asked.pictures(names), outputs)
+    _give(loaded, parts, lambda: asked.pictures(names), outputs, length=first)
 
 
 @dataclass(frozen=True)
@@ -209,23 +215,32 @@ def _give(
     drawings: Drawings,
     outputs: Drawn,
     key: str = "",
+    length: Length | None = None,
 ) -> None:
     """Draw what was found, then print it below what the tool is.
 
     key : of the JSON object below which it stands, if not beside the title.
+    length : how much is printed below what stands first of each part; without, that is left out.
     """
     from equipoise.handheld.blocks import summary_blocks
+    from equipoise.results.blocks import Text
 
     def values() -> Mapping[str, Any]:
         told = {name: one for part in parts for name, one in part.to_dict().items()}
         return {"title": tool.title, **({key: told} if key else told)}
 
     outputs.draw(tool, drawings)
-    outputs.print(
-        tool,
-        values,
-        lambda: chain(summary_blocks(tool), *(part.blocks() for part in parts)),
-    )
+
+    def blocks() -> Iterator[Block | Section]:
+        alone = length is not None and not length.full
+        for part in reversed(parts) if length is not None else ():  # the hands before the shaft
+            yield from part.headline(alone)
+        if alone:
+            yield Text(say(MORE))
+        else:
+            yield from chain(summary_blocks(tool), *(part.blocks() for part in parts))
+
+    outputs.print(tool, values, blocks)
 
 
 # -- other questions -------------------------------------------------------------------------------

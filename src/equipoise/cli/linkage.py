@@ -35,6 +35,7 @@ from equipoise.cli.options import (
 )
 from equipoise.cli.outputs import (
     Drawn,
+    Length,
     Outputs,
     Printed,
     check_new,
@@ -71,6 +72,7 @@ def analyze(
     crank_zero: Angle = None,
     output: Names = None,
     dwell: Annotated[Any, read_by(tolerance, '"0.5 mm"')] = None,
+    length: Length = Length(),
     outputs: Printed = Printed(),
 ) -> None:
     """Motion, shaking force and moment, drive torque and every joint force over a cycle.
@@ -121,7 +123,11 @@ def analyze(
     outputs.print(
         machine,
         lambda: analysis.to_dict(split, chosen) | further,
-        lambda: analysis.blocks(orders=orders, zero=zero, outputs=chosen, dwells=held),
+        lambda: (
+            analysis.blocks(orders=orders, zero=zero, outputs=chosen, dwells=held)
+            if orders is not None or chosen or held is not None
+            else length.blocks(analysis)
+        ),
     )
 
 
@@ -169,6 +175,7 @@ def respond(
     speed: Annotated[Any, read_by(_speeds, '"193 rpm"')] = None,
     speeds: Annotated[int | None, count(2, 20_000)] = None,
     drive: bool = False,
+    length: Length = Length(),
     outputs: Outputs = Outputs(),
 ) -> None:
     """How the support of a machine vibrates under its linkages, at one speed or over a range.
@@ -205,11 +212,13 @@ def respond(
             with counted("speed") as told:
                 count = speeds or sweep.SPEEDS
                 over_speed = sweep.sweep_speed(machine, ends[0], ends[1], model, drive, count, told)
-            outputs.give(over_speed)
+            outputs.give(over_speed, length)
         else:
             found = forced.respond(machine, ends[0] if ends else None, model, drive)
-            others = None if drive or outputs.json else _others(machine, found)
-            outputs.give(found, others=others)
+            others = (
+                _others(machine, found) if length.full and not drive and not outputs.json else None
+            )
+            outputs.give(found, length, others=others)
 
 
 def _others(machine: Machine, found: Response) -> dict[str, Response | None]:

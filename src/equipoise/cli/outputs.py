@@ -22,7 +22,7 @@ from equipoise.cli.options import (
 )
 from equipoise.errors import UsageError
 from equipoise.fence import may_be_replaced
-from equipoise.i18n import Note, in_each, said, say
+from equipoise.i18n import Note, in_each, said, say, to_say
 from equipoise.interrupts import check
 from equipoise.partial import afterwards
 
@@ -43,6 +43,8 @@ Drawings = Callable[[], "Mapping[str, Picture]"]
 """Results are made when they are asked for: what is not wanted is not computed."""
 
 
+MORE = to_say("--full prints all tables, --json every number.")
+"""Below what stands first of a result."""
 heard: ContextVar[list[str] | None] = ContextVar("heard", default=None)
 """Gets the JSON of what is printed in tables, for who wants both."""
 
@@ -100,6 +102,34 @@ class Printed(Shown):
 
 @Parameter(name="*")
 @dataclass(frozen=True)
+class Length:
+    """How much a command prints of what it has found."""
+
+    full: bool = False
+    """Print all tables, not only what stands first: the verdict, what is large, what to look at."""
+
+    def blocks(self, found: Result, **options: Any) -> Iterator[Block | Section]:
+        """What stands first of a result, and all that it shows where that is wanted.
+
+        options : of the result's `blocks`.
+        """
+        from equipoise.results.blocks import Text
+
+        first = found.headline(alone=not self.full) if found.headline_in else ()
+        yield from first
+        if self.full or not first:
+            yield from found.blocks(**options)
+        else:
+            yield Text(say(MORE))
+
+    def show(self, found: Result, outputs: Printed, **options: Any) -> None:
+        """Print a result so; options of its `blocks`."""
+        of = found.title if found.owner is None else found.owner
+        outputs.print(of, found.to_dict, lambda: self.blocks(found, **options))
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
 class Drawn(Printed):
     """What a command prints and draws."""
 
@@ -125,10 +155,16 @@ class Drawn(Printed):
 
         self.draw(found.owner, lambda: pictures_of(found))
 
-    def give(self, found: Result, **options: Any) -> None:
-        """Write the files that are wanted, then print; further arguments as of `show`."""
+    def give(self, found: Result, length: Length | None = None, **options: Any) -> None:
+        """Write the files that are wanted, then print; further arguments as of `show`.
+
+        length : how much is printed; all where not given.
+        """
         self.draw_result(found)
-        self.show(found, **options)
+        if length is None:
+            self.show(found, **options)
+        else:
+            length.show(found, self, **options)
 
 
 @Parameter(name="*")
@@ -168,9 +204,9 @@ class Outputs(Drawn):
 
             write_text(self.csv, csv_text(columns()))
 
-    def give(self, found: Result, **options: Any) -> None:
+    def give(self, found: Result, length: Length | None = None, **options: Any) -> None:
         self.write(found.columns)
-        super().give(found, **options)
+        super().give(found, length, **options)
 
 
 @Parameter(name="*")

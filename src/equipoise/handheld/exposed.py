@@ -94,6 +94,8 @@ class ToolExposure(Result):
     days : the day's exposure of each hand; empty where no work is told.
     """
 
+    headline_in = "handheld.headline.exposure_headline"
+
     shown_in = "handheld.hand_blocks"
 
     response: ToolResponse

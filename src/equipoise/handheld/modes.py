@@ -113,6 +113,8 @@ class ToolModes(Result):
     planes : vertical and lateral; the lateral one is the same object where the tool is alike.
     """
 
+    headline_in = "handheld.headline.modes_headline"
+
     tool: Tool
     places: Array
     planes: tuple[PlaneModes, PlaneModes]

@@ -195,6 +195,8 @@ class ToolSweep(Result):
     further : places (m) that are told of besides the stations.
     """
 
+    headline_in = "handheld.headline.sweep_headline"
+
     tool: Tool
     speed: Array
     transmissions: Transmissions | None

@@ -234,7 +234,7 @@ def _number(
     """
     if isnan(cell.value):
         return say("none")
-    if abs(cell.value) < faint:
+    if cell.after is None and abs(cell.value) < faint:
         return "0"
     if cell.after is None:
         scale = abs(cell.scale) if dimension is None else max(abs(cell.scale), size)

@@ -39,6 +39,7 @@ from equipoise.results.blocks import (
     beside,
 )
 from equipoise.results.drive_blocks import driven
+from equipoise.results.headline import verdict_blocks
 from equipoise.results.joint_blocks import joint_blocks
 from equipoise.results.machine_blocks import angles_told, model_blocks
 from equipoise.vibration.blocks import model_told, response_blocks
@@ -122,7 +123,14 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
         _animation(found),
         *_sections(found, blocks, seen, _settings_of_linkage(found), command),
         lead="" if later is None else say(AFTER),
+        verdict=next(_verdict(found), None),
     )
+
+
+def _verdict(found: Findings) -> Iterator[Text]:
+    """By what a machine is judged first: on its support by what the gauges read, too."""
+    readings = None if found.response is None else found.response.gauges
+    return verdict_blocks(found.analysis, readings)
 
 
 def _joints(analysis: Analysis) -> Iterator[Block]:
@@ -169,7 +177,12 @@ def _of_tool(found: ToolFindings, language: str, command: str) -> Document:
         tuple(tool_answers(found)),
         "",
         *_sections(found, named, {"tool": judged(found)}, (), command),
+        verdict=None if found.exposure is None else _first_text(found.exposure.headline()),
     )
+
+
+def _first_text(blocks: Iterable[Block | Section]) -> Text | None:
+    return next((block for block in blocks if isinstance(block, Text)), None)
 
 
 def _sections(

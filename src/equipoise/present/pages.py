@@ -26,6 +26,7 @@ from equipoise.present.fonts import boxes, check_pdf, families, installed
 from equipoise.present.layout import Looks
 from equipoise.quantities import Units, showing
 from equipoise.results.blocks import Block, Drawn, Emphasis, Section, Table
+from equipoise.results.blocks import Text as RunningText
 from equipoise.results.result import Result
 from equipoise.symbols.looks import LIGHT
 
@@ -65,6 +66,7 @@ class Document:
     language : its code.  subtitle : what runs, how fast.  animation : SVG, empty where none moves.
     appendix : long tables of the sections, by their names, and the model file.
     lead : what stands above it.
+    verdict : by what it is judged first; None where nothing is large or known.
     units : that are chosen, by dimension.
     """
 
@@ -78,6 +80,7 @@ class Document:
     sections: tuple[Section, ...]
     appendix: tuple[Section, ...] = ()
     lead: str = ""
+    verdict: RunningText | None = None
     units: Units = field(default_factory=dict)
 
     def more(self, section: str) -> str:
@@ -130,9 +133,8 @@ def inlined(svg: str, name: str, title: str) -> str:
 def html_of(result: Result) -> str:
     """What a result shows as a part of a page; a notebook asks for it."""
     template = _environment().get_template("notebook.html.j2")
-    return template.render(
-        language=spoken(), title=said(result.title), blocks=tuple(result.blocks())
-    )
+    blocks = (*result.headline(), *result.blocks())
+    return template.render(language=spoken(), title=said(result.title), blocks=blocks)
 
 
 def page(document: Document) -> str:

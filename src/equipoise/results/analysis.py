@@ -56,6 +56,7 @@ class Analysis(Result):
     """
 
     shown_in: ClassVar[str] = "results.analysis_blocks"
+    headline_in: ClassVar[str] = "results.headline.analysis_headline"
 
     motion: Motion
     solved: Forces | None

@@ -339,7 +339,7 @@ def outputs_table(analysis: Analysis, names: Iterable[str]) -> Table:
     ones = analysis.outputs.chosen(names)
     theta, motion = analysis.crank_angle, analysis.motion
     apart = max(len(theta) // (TOLD_ANGLES * motion.turns), 1) if motion.whole_cycle else 1
-    columns = [Column(one.label(), one.dimension) for one in ones]
+    columns = [Column(one.label(), one.dimension, alike=False) for one in ones]
     cells = []
     for one in ones:
         sizes = np.abs(one.declared.vector(analysis, one.item))

@@ -83,6 +83,22 @@ class Result:
         with self.in_own_units():
             return tuple(_room(module).SHOWS[type(self).__name__](self, **options))
 
+    headline_in: ClassVar[str] = ""
+    """Module and function that tell what stands first of it, such as
+    ``results.headline.analysis_headline``; none where its blocks begin with it.
+    """
+
+    def headline(self, alone: bool = False) -> Sequence[Block]:
+        """What stands first of it wherever it is shown: a verdict, what is large, where.
+
+        alone : whether nothing follows, as on a terminal; else its blocks do.
+        """
+        module, _, function = self.headline_in.rpartition(".")
+        if not function:
+            return ()
+        with self.in_own_units():
+            return tuple(getattr(_room(module), function)(self, alone))
+
     @property
     def summary(self) -> Mapping[str, Any]:
         """The figures of it that matter most."""

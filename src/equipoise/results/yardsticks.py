@@ -184,8 +184,11 @@ def verdict(entries: tuple[FigureAssessment, ...]) -> FigureAssessment | None:
     return next(limits, entries[0] if entries else None)
 
 
-def sentence(entry: FigureAssessment) -> str:
-    """The figure beside its yardstick, in the language that is spoken; without a point."""
+def sentence(entry: FigureAssessment, crank_turns: bool = True) -> str:
+    """The figure beside its yardstick, in the language that is spoken; without a point.
+
+    crank_turns : of the machine; without, where it is so large is told as an angle of the cycle.
+    """
     values = {
         "what": entry.label.said(),
         "value": told(entry.value, entry.dimension, entry.shown_unit, digits=3),
@@ -193,9 +196,11 @@ def sentence(entry: FigureAssessment) -> str:
     }
     values["what"] = values["what"][:1].upper() + values["what"][1:]
     if entry.crank_angle is not None:
-        at = say("{value} at crank angle {angle}", value=values["value"],
-                 angle=angle(entry.crank_angle, 0))  # fmt: skip
-        values["value"] = at
+        of_crank = to_say("{value} at crank angle {angle}")
+        of_cycle = to_say("{value} at {angle} of the cycle")
+        at = angle(entry.crank_angle)
+        template = of_crank if crank_turns else of_cycle
+        values["value"] = say(template, value=values["value"], angle=at)
     if entry.dimension in ANGLES_AND_SPEEDS or entry.is_limit:
         limit = told(entry.yardstick, entry.dimension, entry.shown_unit, digits=3)
         return say("{what}: {value}; {against}: {limit}", limit=limit, **values)

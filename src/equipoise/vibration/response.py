@@ -232,6 +232,8 @@ class Response(Result):
         there is none.
     """
 
+    headline_in = "vibration.headline.response_headline"
+
     machine: Machine
     model: Model
     speed: float

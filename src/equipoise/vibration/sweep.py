@@ -87,6 +87,7 @@ class Sweep(Result):
     """
 
     shown_in = "vibration.sweep_blocks"
+    headline_in = "vibration.headline.sweep_headline"
 
     machine: Machine
     model: Model

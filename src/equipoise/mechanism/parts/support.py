@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import ClassVar
 
-import numpy as np
-
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of, to_say
 from equipoise.keys import (
@@ -338,16 +336,24 @@ def idle_parts(support: Support | None) -> Iterator[Note | str]:
 def _moves_along(support: Support, gauge: Gauge) -> bool:
     """Whether any way in which the support can move has a part along the direction of a gauge."""
     assert gauge.point is not None
-    axes = dict(zip(("roll", "yaw", "pitch"), np.eye(3), strict=True))
-    ways = dict(zip(("surge", "heave", "sway"), np.eye(3), strict=True))
-    center = np.zeros(3)
-    start = support.center_of_mass if support.pivot is None else support.pivot
-    center[: len(start)] = start
-    arm = np.zeros(3)
-    arm[: len(gauge.point)] = gauge.point
-    arm -= center
-    along, least = np.array(unit_vector(gauge.direction)), STILL * (1 + float(np.abs(arm).max()))
-    moved = [
-        np.cross(axes[name], arm) if name in axes else ways[name] for name in support.coordinates
-    ]
-    return any(abs(float(along @ way)) > least for way in moved)
+    center = support.center_of_mass if support.pivot is None else support.pivot
+    x, y, z = (a - b for a, b in zip(_in_space(gauge.point), _in_space(center), strict=True))
+    ways = {
+        "surge": (1.0, 0.0, 0.0),
+        "heave": (0.0, 1.0, 0.0),
+        "sway": (0.0, 0.0, 1.0),
+        "roll": (0.0, -z, y),
+        "yaw": (z, 0.0, -x),
+        "pitch": (-y, x, 0.0),
+    }
+    along, least = unit_vector(gauge.direction), STILL * (1 + max(abs(x), abs(y), abs(z)))
+    parts = (
+        sum(a * b for a, b in zip(along, ways[name], strict=True)) for name in support.coordinates
+    )
+    return any(abs(part) > least for part in parts)
+
+
+def _in_space(point: Sequence[float]) -> tuple[float, float, float]:
+    """A place in m with its third coordinate, 0 where it has none."""
+    x, y, *rest = point
+    return x, y, rest[0] if rest else 0.0

@@ -1,0 +1,133 @@
+"""What stands first of a hand-held tool: what the hands get in a day, and where it comes from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from equipoise.exposure.blocks import MEANING, VERDICTS, limit_broken
+from equipoise.handheld.blocks import rpm
+from equipoise.handheld.exposed import WORKING
+from equipoise.handheld.model import PLANES
+from equipoise.i18n import say, to_say
+from equipoise.quantities import brief
+from equipoise.results.blocks import Block, Facts, Text
+from equipoise.signals import highest_at
+
+if TYPE_CHECKING:
+    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.modes import ToolModes
+    from equipoise.handheld.sweep import ToolSweep
+
+MOST_MODES, HOUR, DAY = 4, 3600.0, 86400.0
+"""Natural frequencies that stand first; s."""
+
+
+def exposure_headline(found: ToolExposure, alone: bool = False) -> Iterator[Block]:
+    """What a day of work amounts to, and which hand gets most.
+
+    alone : whether nothing follows, as on a terminal.
+    """
+    if found.worst is not None:
+        day = found.days[found.worst]
+        above = limit_broken(day.a8)
+        verdict = say(VERDICTS[day.verdict])
+        template = to_say("A day of work: A(8) = {a8} m/s², {verdict}; {meaning}.")
+        values = {"a8": brief(day.a8), "verdict": verdict, "meaning": say(MEANING[day.verdict])}
+        yield Text(say(template, **values), above)
+        yield from _time_left(day.times.to_action, day.times.to_limit)
+    elif WORKING in found.named:
+        at_work = {name: float(grip.a_hv[0]) for name, grip in found.named[WORKING].items()}
+        hand = max(at_work, key=at_work.__getitem__)
+        template = to_say("The hand at {hand} gets most: {value} m/s² at the working speed")
+        told = say(template, hand=hand, value=brief(at_work[hand]))
+        yield Text(say("{sentence}.", sentence=told))
+    if not alone:
+        return
+    if lines := tuple(_hands(found)):
+        yield Facts(say("Vibration of the hands, total value a_hv"), lines)
+    yield Facts(
+        say("What to look at next"),
+        (
+            say("tool --exposure: the day, task by task"),
+            say("tool sensitivities: what each number of the tool does to the hands"),
+        ),
+    )
+
+
+def _time_left(to_action: float, to_limit: float) -> Iterator[Block]:
+    if to_action < DAY:
+        limit = say("{hours} h", hours=brief(to_limit / HOUR)) if to_limit < DAY else say("never")
+        yield Text(
+            say(
+                "Such work reaches the action value after {action}, the limit value: {limit}.",
+                action=say("{hours} h", hours=brief(to_action / HOUR)),
+                limit=limit,
+            )
+        )
+
+
+def _hands(found: ToolExposure) -> Iterator[str]:
+    """Each hand at the working speed, and the speed at which one gets most."""
+    for name, grip in found.named.get(WORKING, {}).items():
+        yield say(
+            "{hand}: {value} m/s² at the working speed", hand=name, value=brief(float(grip.a_hv[0]))
+        )
+    k = int(highest_at(found.a_hv, smooth=False))
+    yield say(
+        "most over these speeds: {value} m/s² at {speed} rpm",
+        value=brief(float(found.a_hv[k])),
+        speed=rpm(float(found.speed[k])),
+    )
+
+
+SIDES = {
+    "vertical": to_say("vertical: {list} Hz"),
+    "lateral": to_say("lateral: {list} Hz"),
+}
+
+
+def modes_headline(found: ToolModes, alone: bool = False) -> Iterator[Block]:
+    """The lowest natural frequencies.
+
+    alone : whether nothing follows, as on a terminal.
+    """
+    if not alone:
+        return
+    lines = []
+    for plane, side in zip(found.planes, PLANES, strict=True):
+        swinging = plane.cycles_per_second[len(plane.rigid) :][:MOST_MODES]
+        told = say(", ").join(brief(float(value)) for value in swinging)
+        if told and not (lines and found.alike):
+            lines.append(say(SIDES[side], list=told))
+    if lines:
+        yield Facts(say("Lowest natural frequencies"), tuple(lines))
+    yield Facts("", (say("tool --modes: all of them, with shapes and damping"),))
+
+
+def sweep_headline(found: ToolSweep, alone: bool = False) -> Iterator[Block]:
+    """At which speed what holds the tool gets the largest share of a force.
+
+    alone : whether nothing follows, as on a terminal.
+    """
+    if not alone:
+        return
+    if found.transmissions is not None:
+        passed = found.transmissions
+        lines = []
+        for name, one in passed.stations.items():
+            size = np.max(one.size, axis=0)
+            k = int(highest_at(size, smooth=False))
+            lines.append(
+                say(
+                    "{name}: up to {ratio} times, at {speed} rpm",
+                    name=name,
+                    ratio=brief(float(size[k])),
+                    speed=rpm(float(passed.speed[k])),
+                )
+            )
+        title = say("What passes of a force at {source}", source=passed.source)
+        yield Facts(title, tuple(lines))
+    yield Facts("", (say('tool --respond "2000 rpm : 9000 rpm": over speed'),))

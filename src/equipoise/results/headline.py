@@ -1,0 +1,123 @@
+"""What stands first of an analysis: the verdict for this machine, what else is large, what is next.
+
+What is large is told by `yardsticks`, against which every figure is measured.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from equipoise.i18n import Note, say, to_say
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.quantities import told
+from equipoise.results.blocks import Block, Facts, Notes, Text, broken_if
+from equipoise.results.drive_blocks import driven, pushed_named
+from equipoise.results.yardsticks import (
+    FigureAssessment,
+    GaugeReading,
+    assess,
+    sentence,
+    verdict,
+)
+
+if TYPE_CHECKING:
+    from equipoise.results.analysis import Analysis
+
+MOST_LARGE, MOST_SMALL = 4, 2
+"""Figures that are told beside the verdict: of those that are large, and where none is."""
+MOST_NOTES = 3
+"""Notes that stand first; the others follow with all tables."""
+TITLES = {
+    True: to_say("What else is large, each beside its own yardstick"),
+    False: to_say("Nothing else is large; what comes nearest to its yardstick"),
+}
+
+
+def analysis_headline(analysis: Analysis, alone: bool = False) -> Iterator[Block]:
+    """The verdict and what else is large; alone also what the machine is, and what to look at next.
+
+    alone : whether nothing follows, as on a terminal.
+    """
+    entries = assess(analysis)
+    first = verdict(entries)
+    yield from verdict_blocks(analysis)
+    if alone:
+        yield Text(what_it_is(analysis))
+    rest = [one for one in entries if one is not first]
+    large = [one for one in rest if one.is_large]
+    if shown := large[:MOST_LARGE] or rest[:MOST_SMALL]:
+        lines = tuple(_said(analysis, one) for one in shown)
+        yield Facts(say(TITLES[bool(large)]), lines)
+    if alone and (notes := analysis.notes):
+        yield Notes(notes[:MOST_NOTES])
+    if alone:
+        yield Facts(say("What to look at next"), tuple(_next(analysis, first)))
+
+
+def verdict_blocks(
+    analysis: Analysis, readings: Mapping[str, GaugeReading] | None = None
+) -> Iterator[Text]:
+    """The figure by which the machine is judged first; nothing where there is none.
+
+    readings : of gauges, as of `assess`.
+    """
+    first = verdict(assess(analysis, readings))
+    if first is not None:
+        words = say("{sentence}.", sentence=_said(analysis, first))
+        yield Text(words, broken_if(first.is_limit and first.is_large))
+
+
+def _said(analysis: Analysis, entry: FigureAssessment) -> str:
+    """A figure beside its yardstick, in the words of this machine: cylinders push, cranks turn."""
+    machine = analysis.machine
+    if machine.drive.pushes and entry.output == machine.drive.effort:
+        label = Note("force of the {what}, peak", what=pushed_named(machine.drive))
+        entry = replace(entry, label=label)
+    return sentence(entry, machine.crank_turns)
+
+
+def what_it_is(analysis: Analysis) -> str:
+    """How many links move, their mass where it is known, and how they are driven."""
+    machine = analysis.machine
+    values = {
+        "count": len(machine.links),
+        "driven": driven(machine, analysis.motion.speed),
+        "mass": "" if massless(machine) else told(machine.mass, "mass", "kg", digits=3),
+    }
+    without = to_say("{count} moving links; {driven}")
+    with_mass = to_say("{count} moving links of {mass} together; {driven}")
+    several = to_say("{rows} rows, in each {count} moving links of {mass} together; {driven}")
+    if massless(machine):
+        return say(without, **values)
+    if len(machine.rows) > 1:
+        return say(several, rows=len(machine.rows), **values)
+    return say(with_mass, **values)
+
+
+def _next(analysis: Analysis, first: FigureAssessment | None) -> Iterator[str]:
+    """Commands that show more of what is large, and what to do about it."""
+    machine = analysis.machine
+    shown = _output_of(analysis, first)
+    if shown:
+        name = shlex.quote(shown) if " " in shown else shown
+        of_crank = to_say("analyze --output {name}: it over crank angle")
+        of_cycle = to_say("analyze --output {name}: it over the cycle")
+        yield say(of_crank if machine.crank_turns else of_cycle, name=name)
+    if machine.planting is not None:
+        yield say("plant: the path over ground, and what the soil adds")
+    if machine.support is not None and not massless(machine):
+        yield say("respond: what this does to the support")
+    if not massless(machine):
+        yield say("balance: what to change so that it shakes less")
+
+
+def _output_of(analysis: Analysis, first: FigureAssessment | None) -> str:
+    """The output to look at: that of the verdict, of a cam its contact force."""
+    if first is None:
+        return ""
+    names = (first.output, f"{first.output}.normal")
+    contact = first.output.startswith("cams.")
+    return next((name for name in names[contact:] if name in analysis.outputs), "")

@@ -1,0 +1,141 @@
+"""What stands first of vibration: the verdict on the gauges, and the nearest loud resonance."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from equipoise.errors import EquipoiseError
+from equipoise.i18n import said, say, to_say
+from equipoise.quantities import PER_RPM, brief
+from equipoise.results.analysis import analyze
+from equipoise.results.blocks import Block, Facts, Notes, Text, broken_if
+from equipoise.results.drive_blocks import driven
+from equipoise.results.outputs import shown_in
+from equipoise.results.yardsticks import assess, sentence, verdict
+from equipoise.vibration.forced import excitation_model_of
+from equipoise.vibration.linear import Linear
+from equipoise.vibration.resonance import around, resonance_note, resonances
+from equipoise.vibration.response import MODELS
+
+if TYPE_CHECKING:
+    from equipoise.vibration.response import Response
+    from equipoise.vibration.sweep import Sweep
+
+MOST_NOTES, MOST_GAUGES, MOST_LOUD = 3, 6, 3
+"""Notes, gauges and resonances that stand first; the others follow with all tables."""
+
+
+def response_headline(response: Response, alone: bool = False) -> Iterator[Block]:
+    """Which gauge is the worst beside its limit; alone also what all read, and resonances.
+
+    alone : whether nothing follows, as on a terminal.
+    """
+    machine = response.machine
+    analysis = analyze(machine, speed=response.speed, acceleration=0.0)
+    read = [one for one in assess(analysis, response.gauges) if one.figure.startswith("gauges.")]
+    first = verdict(tuple(read))
+    if first is not None:
+        words = say("{sentence}.", sentence=sentence(first, machine.crank_turns))
+        yield Text(words, broken_if(first.is_limit and first.is_large))
+    if not alone:
+        return
+    yield Text(driven(machine, response.speed))
+    yield Text(say("Model {model}: {what}", model=response.model, what=say(MODELS[response.model])))
+    if response.gauges:
+        yield Facts(say("What the gauges read, peak to peak"), tuple(_readings(response)))
+    if lines := tuple(_resonances(response)):
+        yield Facts(say("Resonances"), lines)
+    if response.notes:
+        yield Notes(response.notes[:MOST_NOTES])
+    template = to_say('respond --speed "{low} rpm : {high} rpm": over speed')
+    low, high = sorted(abs(one) / PER_RPM for one in around(machine.drive, response.speed))
+    yield Facts(
+        say("What to look at next"),
+        (
+            say(template, low=f"{low:.3g}", high=f"{high:.3g}"),
+            say("balance: what to change so that it shakes less"),
+        ),
+    )
+
+
+def _readings(response: Response) -> Iterator[str]:
+    for name, gauge in [*response.gauges.items()][:MOST_GAUGES]:
+        size = float(gauge.displacement.peak_to_peak)
+        unit = shown_in("rad" if gauge.rotation else "m", [size])
+        yield say("{gauge}: {size}", gauge=name, size=unit.with_unit(unit.text(size, digits=3)))
+
+
+def _resonances(response: Response) -> Iterator[str]:
+    """The nearest loud resonance of small motion."""
+    try:
+        linear = Linear.of(response.machine, excitation_model_of(response.model))
+        met = resonances(linear, *around(response.machine.drive, response.speed))
+    except EquipoiseError:  # a support that small motion does not describe has none to tell
+        return
+    if met:
+        text = said(resonance_note(met, response.speed))
+        yield text[:1].upper() + text[1:]
+
+
+def sweep_headline(sweep: Sweep, alone: bool = False) -> Iterator[Block]:
+    """At which speed a gauge reads most; alone also the others, and speeds to keep away from.
+
+    alone : whether nothing follows, as on a terminal.
+    """
+    lines = tuple(_peaks(sweep))
+    if lines:
+        yield Text(say("{sentence}.", sentence=lines[0]))
+    if not alone:
+        return
+    low, high = (brief(abs(float(sweep.speed[k])) / PER_RPM) for k in (0, -1))
+    yield Text(
+        say(
+            "{link} driven at {low} to {high} rpm, {count} speeds",
+            link=sweep.machine.drive.link,
+            low=low,
+            high=high,
+            count=len(sweep.speed),
+        )
+    )
+    if lines[1:]:
+        yield Facts(say("Where the other gauges read most"), lines[1:MOST_GAUGES])
+    if met := tuple(_loud(sweep)):
+        yield Facts(say("Resonances"), met)
+    else:
+        yield Text(say("There is no resonance in this range."))
+    if sweep.notes:
+        yield Notes(sweep.notes[:MOST_NOTES])
+    yield Facts(say("What to look at next"), (say("respond --speed: at one of these speeds"),))
+
+
+def _peaks(sweep: Sweep) -> Iterator[str]:
+    """The highest peak of each gauge, the first one first."""
+    for name, tops in sweep.peaks.items():
+        if tops:
+            speed, size = tops[0]
+            unit = shown_in("rad" if sweep.gauges[name].rotation else "m", [size])
+            yield say(
+                "Gauge {gauge} moves most at {speed} rpm, by {size} peak to peak",
+                gauge=name,
+                speed=brief(abs(speed) / PER_RPM),
+                size=unit.with_unit(unit.text(size, digits=3)),
+            )
+
+
+def _loud(sweep: Sweep) -> Iterator[str]:
+    """Loud resonances, the loudest first."""
+    loud = sorted((one for one in sweep.resonances if one.is_loud), key=lambda one: -one.share)
+    for one in loud[:MOST_LOUD]:
+        values = {
+            "speed": brief(abs(one.speed) / PER_RPM),
+            "order": f"{one.order:.4g}",
+            "mode": one.mode,
+        }
+        low, high = sorted(map(abs, one.avoid or (0.0, 0.0)))
+        avoided = to_say(
+            "{speed} rpm: order {order} meets mode {mode}; keep away from {low} to {high} rpm"
+        )
+        harmless = to_say("{speed} rpm: order {order} meets mode {mode}, well damped")
+        ends = {"low": brief(low / PER_RPM), "high": brief(high / PER_RPM)}
+        yield say(harmless if one.avoid is None else avoided, **values, **ends)

@@ -1,0 +1,128 @@
+"""What stands first: the verdict for this machine, in some lines; the rest where it is wanted."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import pytest
+
+import equipoise as eq
+from equipoise.cli import run
+from equipoise.handheld.exposed import expose_tool
+from equipoise.i18n import LANGUAGES, speaking
+from equipoise.present.composition import build
+from equipoise.present.findings import find
+from equipoise.present.pages import html_of, page
+from equipoise.results.blocks import Facts, Text
+from equipoise.results.yardsticks import assess, verdict
+from support.found import found as found_of
+
+NARROW = "\N{NO-BREAK SPACE}"
+VERDICTS = {
+    "hydraulic-loader": "Force of the cylinder A to B, peak: 25.6 kN",
+    "cam-pusher": "Lift-off speed of the crank: 583 rpm",
+    "twin-engine": "Rocking moment, peak: 116 N m",
+    "quick-return": "Drive torque, peak to peak: 211 N m",
+}
+
+
+def printed(capsys: pytest.CaptureFixture[str], *words: str) -> list[str]:
+    assert run([*words]) == 0
+    return capsys.readouterr().out.splitlines()
+
+
+@pytest.mark.parametrize(("name", "first"), VERDICTS.items())
+def test_the_verdict_of_this_machine_stands_first_everywhere(
+    name: str, first: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = printed(capsys, "analyze", name)
+    assert lines[1].startswith(first)
+    assert printed(capsys, "analyze", name, "--full")[1] == lines[1]
+    analysis = eq.analyze(eq.load(name))
+    html = html_of(analysis).replace(NARROW, " ")
+    assert html.index(first) < html.index("<table")
+    report = page(build(found_of(name))).replace(NARROW, " ")
+    assert report.index(first) < report.index('class="tiles"')
+
+
+@pytest.mark.parametrize(
+    ("command", "most"),
+    [
+        (("analyze", "hydraulic-loader"), 17),
+        (("analyze", "twin-engine"), 20),
+        (("analyze", "stephenson-six-bar"), 20),
+        (("respond", "sieve"), 20),
+        (("respond", "sieve", "--speed", "100 rpm : 400 rpm"), 18),
+        (("balance", "balance-rig"), 20),
+        (("tool", "brush-cutter"), 26),
+    ],
+)
+def test_a_command_prints_a_few_lines_and_the_rest_with_full(
+    command: tuple[str, ...], most: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    brief, whole = printed(capsys, *command), printed(capsys, *command, "--full")
+    assert len(brief) <= most and len(whole) > 1.3 * len(brief)
+    assert brief[-1].startswith("--full prints all tables")
+    assert not any(line.startswith("--full prints") for line in whole)
+    assert printed(capsys, *command, "--json") == printed(capsys, *command, "--json", "--full")
+
+
+def test_the_verdict_of_a_tool_is_what_a_day_amounts_to(capsys: pytest.CaptureFixture[str]) -> None:
+    brief = printed(capsys, "tool", "brush-cutter")
+    assert brief[1].startswith("! A day of work: A(8) = 6.85 m/s^2, above the limit value")
+    assert printed(capsys, "tool", "brush-cutter", "--full")[1] == brief[1]
+    found = find("brush-cutter")
+    document = build(found)
+    assert document.verdict is not None and document.verdict.emphasis == "broken"
+    a8 = expose_tool(found.tool, found.speeds).a8  # type: ignore[union-attr]
+    assert f"A(8) = {a8:.2f} m/s²" in document.verdict.text
+
+
+def test_a_machine_without_a_crank_has_no_crank_angle(capsys: pytest.CaptureFixture[str]) -> None:
+    text = "\n".join(printed(capsys, "analyze", "hydraulic-loader"))
+    assert "crank" not in text and "rpm" not in text
+    assert "of the cycle" in text and "cycles a minute" in text
+
+
+def test_commands_that_are_named_are_there(capsys: pytest.CaptureFixture[str]) -> None:
+    """The output to look at is one that `analyze --output` takes, with names of several words."""
+    for name in ("hydraulic-loader", "cam-pusher", "quick-return", "rotary-transplanter"):
+        lines = "\n".join(printed(capsys, "analyze", name))
+        (output,) = re.findall(r"analyze --output ('[^']+'|\S+):", lines)
+        shown = printed(capsys, "analyze", name, "--output", output.strip("'"))
+        assert any("Outputs over crank angle" in line for line in shown)
+
+
+def test_what_else_is_large_is_ranked_beside_its_yardsticks() -> None:
+    analysis = eq.analyze(eq.load("twin-engine"))
+    entries = assess(analysis)
+    first = verdict(entries)
+    (large,) = (one for one in analysis.headline(alone=True)
+                if isinstance(one, Facts) and "large" in one.title)  # fmt: skip
+    rest = [one for one in entries if one is not first and one.is_large]
+    assert len(large.items) == min(4, len(rest))
+    for item, entry in zip(large.items, rest, strict=False):
+        assert item.lower().startswith(str(entry.label).lower()[:12])
+
+
+def test_a_machine_without_masses_is_judged_by_its_motion() -> None:
+    machine = eq.load("yamashita-1")
+    links = {name: link.__class__(points=link.points) for name, link in machine.links.items()}
+    analysis = eq.analyze(replace(machine, links=links, balance=None))
+    blocks = [*analysis.headline(alone=True)]
+    texts = [one.text for one in blocks if isinstance(one, Text)]
+    assert any("3 moving links; crank driven" in one for one in texts)
+    assert texts[0].startswith("Transmission angle")
+
+
+def test_what_stands_first_has_every_language() -> None:
+    for name in ("hydraulic-loader", "cam-pusher", "yamashita-rig"):
+        analysis = eq.analyze(eq.load(name), 90)
+        said = set()
+        for language in LANGUAGES:
+            with speaking(language):
+                first = next(iter(analysis.headline()))
+                assert isinstance(first, Text)
+                said.add(first.text)
+        assert len(said) == len(LANGUAGES)
