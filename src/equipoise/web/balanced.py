@@ -69,7 +69,11 @@ def balanced(base: Design, hold: bool = False) -> Balanced:
         aims = {name: (before[name], after) for name, (_, after) in found.objectives.items()}
         return replace(found, original=shown, objectives=aims)
 
-    return _advised(base) if base.plan is None else solve(base.machine, base.plan)
+    if base.plan is not None:
+        return solve(base.machine, base.plan)
+    own = base.machine.balance
+    frees = own is not None and not own.changes_nothing
+    return advise(base.machine, solve) if frees else _advised(base)
 
 
 def _advised(base: Design) -> Balanced:

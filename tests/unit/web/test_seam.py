@@ -49,11 +49,11 @@ def test_a_page_is_served_within_its_own_process(line: Line) -> None:
     hello, told = line.ask("ready")
     assert told.content == {"type": "told", "seq": 7}
     assert hello.content["machine"] is False
-    first = line.ask("open", example="yamashita-1")[0]
+    first = line.ask("open", example="balance-crank")[0]
     assert first.content["seq"] == 7
     change = {"set": "links.crank.mass", "text": "300 g"}
     changed, *more = line.ask("edit", label="mass", edits=[change])
-    machine = eq.load("yamashita-1").with_link("crank", mass=0.3)
+    machine = eq.load("balance-crank").with_link("crank", mass=0.3)
     forces = eq.analyze(machine).forces
     np.testing.assert_allclose(
         changed.vector("shaking_force"), forces.shaking_force.value, rtol=1e-5
@@ -87,7 +87,7 @@ from equipoise.web.answers import answers
 from equipoise.web.desk import begun
 desk = begun(None)()
 asked = [
-    {"type": "open", "example": "yamashita-rig"},
+    {"type": "open", "example": "balance-rig"},
     {"type": "edit", "label": "speed", "edits": [{"set": "drive.speed", "text": "150 rpm"}]},
     {"type": "balance"},
     {"type": "gallery"},

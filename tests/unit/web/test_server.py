@@ -83,7 +83,7 @@ def ask(page: ClientConnection, message: object) -> Content:
 def here() -> Iterator[Here]:
     def begin() -> Session:
         session = Session()
-        session.open(opened_example("yamashita-1"))
+        session.open(opened_example("balance-crank"))
         return session
 
     with pytest.MonkeyPatch.context() as patch:
