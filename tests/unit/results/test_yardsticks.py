@@ -160,14 +160,14 @@ def test_of_rows_all_together_count() -> None:
 def test_figures_beside_their_yardsticks_in_words() -> None:
     said = {one.figure: sentence(one) for one in assessed(eq.load("twin-engine")).values()}
     assert said["rocking_moment.peak"] == (
-        "Rocking moment, peak: 116 N m at crank angle 90°, 32 times the weight of the moving "
+        "Rocking moment, peak: 116 N m at crank angle 90.0°, 32 times the weight of the moving "
         "links at the span"
     )
     share = "16 % of the weight of the moving links at the span"
     assert said["shaking_moment.peak"].endswith(share)
     angles = assessed(eq.load("cam-pusher"))
     assert sentence(angles["transmission.C.min"]) == (
-        "Transmission angle at C, smallest: 29.7° at crank angle 270°; the usual limit: 40.0°"
+        "Transmission angle at C, smallest: 29.7° at crank angle 270.0°; the usual limit: 40.0°"
     )
     lift_off = sentence(angles["cams.crank to pusher.lift_off_speed"])
     assert lift_off.endswith("; the speed of the crank: 240 rpm")
