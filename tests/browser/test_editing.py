@@ -243,6 +243,8 @@ def test_what_was_done_outlives_a_reload(live: Live) -> None:
 
 
 def test_a_balance_outlives_a_reload(live: Live) -> None:
+    live.page.get_by_role("combobox", name="Example").select_option("balance-crank")
+    expect(live.page.get_by_role("heading", name=eq.load("balance-crank").title)).to_be_visible()
     live.button("Balance").click()
     live.page.get_by_role("button", name="Keep", exact=True).click()
     live.type(live.field("drive speed"), "150 rpm")

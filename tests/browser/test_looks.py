@@ -36,6 +36,7 @@ def brightness(seen: Page | Locator) -> float:
 
 
 def test_the_page(live: Live) -> None:
+    live.page.get_by_role("combobox", name="Example").select_option("balance-crank")
     live.button("Balance").click()
     expect(live.button("Take back")).to_be_visible()
     for width, scheme in product(WIDTHS, SCHEMES):
