@@ -96,7 +96,7 @@ def modes_headline(found: ToolModes, alone: bool = False) -> Iterator[Block]:
     """
     if not alone:
         return
-    lines = []
+    lines: list[str] = []
     for plane, side in zip(found.planes, PLANES, strict=True):
         swinging = plane.cycles_per_second[len(plane.rigid) :][:MOST_MODES]
         told = say(", ").join(brief(float(value)) for value in swinging)
