@@ -1,25 +1,23 @@
 """The loop that `equipoise.codegen` writes out, in C: the same arithmetic, compiled by gcc.
 
-``state`` and the kernels do arithmetic only, so they run on numbers that write down, as lines of C,
-what is done to them; a vector is a pair of doubles.  Around these lines stands the same loop over
-designs and crank angles, with the same sums of squares and extremes.
+The terms of a source are lines of C as well.  Around them stands the same loop over designs and
+crank angles, with the same sums of squares and extremes.
 """
 
 from __future__ import annotations
 
 import ctypes
-import inspect
 import shutil
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from equipoise.codegen.emission import C, Lines, boundary
 from equipoise.codegen.figures import KINDS
 from equipoise.codegen.source import Source
-from equipoise.mechanism.formulas import kernels
+from equipoise.codegen.terms import ANGLE, BOTH, DESIGN
 
 ALWAYS = ["-O3", "-march=native", "-ffast-math", "-shared", "-fPIC"]
 FLAGS = (
@@ -71,135 +69,33 @@ def compiled(source: Source, flags: list[str], folder: Path) -> Loop:
 
 
 def in_c(source: Source) -> str:
-    """The loop as a C program."""
-    assert not source.running, "angles that are counted on need more than arithmetic"
-    lines, results = _state(source)
-    columns = len(source.gathered.columns)
-    signals = dict(zip(source.gathered.signals, results, strict=True))
-    starts, gathered = [], []
-    for k, (signal, kind) in enumerate(source.gathered.columns):
-        starts.append(f"double g{k} = {KINDS[kind].start};")
-        gathered.append(ADD[kind].format(g=f"g{k}", x=signals[signal]))
+    """The loop as a C program, of the same terms."""
+    assert not source.running and not source.carried, "nothing but arithmetic is compared"
+    by_angle = boundary(source.outputs, ANGLE)
+    lines = Lines(source.outputs, C, {one: f"r{k}" for k, one in enumerate(by_angle)})
+    own = [one.args[0] for one in lines.terms if one.op == "argument" and one.mask == DESIGN]
+    setting = [*lines.write((DESIGN,), boundary(source.outputs, DESIGN))]
+    going = [*lines.write((BOTH,), source.outputs)]
+    signals = dict(zip(source.signals, map(lines.text, source.outputs), strict=True))
+    columns = [*enumerate(source.gathered.columns)]
+    width, count = source.width, len(columns)
     return "\n".join(
         [
             "#include <math.h>",
             "void loop(const double *restrict table, long designs,",
             "          const double *restrict grid, long angles, double *restrict out) {",
             "for (long i = 0; i < designs; i++) {",
-            *(f"double t{k} = table[i * {source.width} + {k}];" for k in range(source.width)),
-            *starts,
+            *(f"const double {name} = table[i * {width} + {name[1:]}];" for name in own),
+            *setting,
+            *(f"double g{k} = {KINDS[kind].start};" for k, (_, kind) in columns),
             "for (long k = 0; k < angles; k++) {",
-            *(f"double r{k} = grid[{k} * angles + k];" for k in range(len(source.rows))),
-            *lines,
-            *gathered,
+            *(f"const double r{k} = grid[{k} * angles + k];" for k in range(len(by_angle))),
+            *going,
+            *(ADD[kind].format(g=f"g{k}", x=signals[signal]) for k, (signal, kind) in columns),
             "}",
-            *(f"out[i * {columns} + {k}] = g{k};" for k in range(columns)),
+            *(f"out[i * {count} + {k}] = g{k};" for k in range(count)),
             "}",
             "}",
             "",
         ]
     )
-
-
-def _state(source: Source) -> tuple[list[str], list[str]]:
-    """Lines of C for one crank angle, and the names of what ``state`` returns."""
-    lines: list[str] = []
-    arguments = [Number(lines, f"r{k}") for k in range(len(source.rows))]
-    arguments += [
-        Number(lines, f"t{slot.column}", f"t{slot.column + 1}" if slot.vector else None)
-        for slot in source.slots
-    ]
-    module = {name: found for name, found in vars(kernels).items() if inspect.isfunction(found)}
-    for name, sign in (("smallest", "<"), ("greatest", ">")):
-        module[name] = lambda a, b, sign=sign: a.chosen(b, sign)
-    exec(source.text, module)
-    found = [Number.of(value, lines) for value in module["state"](*arguments)]
-    return lines, [number.x for number in found]
-
-
-class Number:
-    """A number or vector of the C program: names or constants of its parts, y None for a number."""
-
-    def __init__(self, lines: list[str], x: str, y: str | None = None) -> None:
-        self.lines, self.x, self.y = lines, x, y
-
-    @classmethod
-    def of(cls, value: Any, lines: list[str]) -> Number:
-        if isinstance(value, Number):
-            return value
-        if isinstance(value, complex):
-            return cls(lines, repr(value.real), repr(value.imag))
-        return cls(lines, repr(float(value)))
-
-    def _put(self, x: str, y: str | None = None) -> Number:
-        """Write down what is computed, and name it."""
-        names = []
-        for part in filter(None, (x, y)):
-            names.append(f"v{len(self.lines)}")
-            self.lines.append(f"double {names[-1]} = {part};")
-        return Number(self.lines, *names)
-
-    @property
-    def real(self) -> Number:
-        return Number(self.lines, self.x)
-
-    @property
-    def imag(self) -> Number:
-        return Number(self.lines, self.y or "0.0")
-
-    def conjugate(self) -> Number:
-        return self if self.y is None else Number(self.lines, self.x, f"(-{self.y})")
-
-    def chosen(self, other: Any, sign: str) -> Number:
-        """The smaller or larger of two numbers."""
-        a, b = self.x, self.of(other, self.lines).x
-        return self._put(f"{a} {sign} {b} ? {a} : {b}")
-
-    def __abs__(self) -> Number:
-        assert self.y is None, "lengths of vectors are roots"
-        return self._put(f"fabs({self.x})")
-
-    def __neg__(self) -> Number:
-        return self._put(f"-{self.x}", self.y and f"-{self.y}")
-
-    def __pow__(self, power: float) -> Number:
-        assert power == 0.5 and self.y is None
-        return self._put(f"sqrt({self.x})")
-
-    def __add__(self, other: Any) -> Number:
-        return self._added(self.of(other, self.lines), "+")
-
-    def __sub__(self, other: Any) -> Number:
-        return self._added(self.of(other, self.lines), "-")
-
-    def __radd__(self, other: Any) -> Number:
-        return self.of(other, self.lines) + self
-
-    def __rsub__(self, other: Any) -> Number:
-        return self.of(other, self.lines) - self
-
-    def _added(self, other: Number, sign: str) -> Number:
-        x = f"{self.x} {sign} {other.x}"
-        if self.y is None and other.y is None:
-            return self._put(x)
-        return self._put(x, f"{self.y or '0.0'} {sign} {other.y or '0.0'}")
-
-    def __mul__(self, other: Any) -> Number:
-        a, b = self, self.of(other, self.lines)
-        if a.y is not None and b.y is not None:
-            return self._put(f"{a.x} * {b.x} - {a.y} * {b.y}", f"{a.x} * {b.y} + {a.y} * {b.x}")
-        x = f"{a.x} * {b.x}"
-        if a.y is None and b.y is None:
-            return self._put(x)
-        return self._put(x, f"{a.y or a.x} * {b.x if b.y is None else b.y}")
-
-    def __rmul__(self, other: Any) -> Number:
-        return self.of(other, self.lines) * self
-
-    def __truediv__(self, other: Any) -> Number:
-        b = self.of(other, self.lines)
-        assert b.y is None, "a vector is divided by none"
-        return self._put(f"{self.x} / {b.x}", self.y and f"{self.y} / {b.x}")
-
-    def __rtruediv__(self, other: Any) -> Number:
-        return self.of(other, self.lines) / self

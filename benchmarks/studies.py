@@ -10,7 +10,6 @@ from __future__ import annotations
 import one_thread  # noqa: F401  has to come before NumPy
 
 # isort: split
-import inspect
 import os
 import tempfile
 from collections.abc import Callable, Mapping
@@ -31,7 +30,6 @@ from equipoise.codegen.batch import Batch, all_angles, designs_of, grid_of
 from equipoise.codegen.figures import Figure
 from equipoise.codegen.gram import MassBatch
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.mechanism.parts.laws import LengthLaw, LengthSegment
 from equipoise.mechanism.parts.machine import Machine
@@ -75,11 +73,8 @@ class Loop:
 
     def by_numpy(self) -> Array:
         """The same as where Numba is missing."""
-        module = {name: one for name, one in vars(kernels).items() if inspect.isfunction(one)}
-        module |= backends.NUMPY_FUNCTIONS
-        exec(self.source.text, module)
         out = np.empty((len(self.table), len(self.source.gathered.columns)))
-        backends.run_numpy(out, self.source, module["state"], self.table, self.grid)
+        backends.run_numpy(out, self.source, self.table, self.grid)
         return out
 
 

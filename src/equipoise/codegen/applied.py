@@ -1,60 +1,67 @@
-"""Lines for what acts on links from outside, and for springs and the tension of belts."""
+"""What acts on links from outside, springs, and the tension of belts, in terms."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
+import numpy as np
+
+from equipoise.codegen.terms import Pair
+from equipoise.codegen.trace import Array, Trace
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import planar
 from equipoise.mechanism.dynamics.loads import load_at
+from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.machine import FRAME, Load, Spring
 
-Held = tuple[str, str, str]
-"""Link, and identifiers of force and moment that hold something against it."""
+Held = tuple[str, Any, Any]
+"""Link, and force and moment that hold something against it."""
 
 
-def names(writer: Any, cause: str, link: str) -> tuple[str, str]:
-    return writer.name(f"F{cause}({link})"), writer.name(f"M{cause}({link})")
+def trace_load(trace: Trace, number: int, load: Load) -> Held:
+    """What holds the load of this number, from 1 on."""
+    parts = (
+        trace.row(f"load {number} {key}", partial(_part_of_load, load, key))
+        for key in ("x", "y", "torque")
+    )
+    x, y, torque = parts
+    return _held(trace, load.link, load.point, Pair(x, y), torque)
 
 
-def write_load(writer: Any, number: int, load: Load) -> Held:
-    values: dict[str, Callable[[Any], Any]] = {
-        "x": lambda theta: load_at(load, theta)[0].real,
-        "y": lambda theta: load_at(load, theta)[0].imag,
-        "torque": lambda theta: load_at(load, theta)[1],
-    }
-    x, y, torque = (writer.sheet.row(f"load {number} {key}", of) for key, of in values.items())
-    force = f"({x} + 1j * {y})"
-    return _write_held(writer, load.link, load.point, force, torque, f"L{number}")
+def _part_of_load(load: Load, key: str, theta: Array) -> Array:
+    force, torque = load_at(load, theta)
+    return np.asarray({"x": force.real, "y": force.imag, "torque": torque}[key] + 0.0 * theta)
 
 
-def write_spring(writer: Any, number: int, spring: Spring) -> Iterator[Held]:
-    """Write a spring's pull, and what holds it at each of its ends on a link."""
-    cause = number + 1
-    pull = writer.sheet.put(f"pull({cause})", f"spring({', '.join(stretched(writer, number))})")
-    for (link, point), force in zip(spring.ends, (pull, f"(-{pull})"), strict=False):
-        yield _write_held(writer, link, point, force, "0.0", f"S{cause}")
+def trace_spring(trace: Trace, number: int, spring: Spring) -> Iterator[Held]:
+    """What holds a spring at each of its ends on a link."""
+    pull = kernels.spring(*stretched(trace, number))
+    for (link, point), force in zip(spring.ends, (pull, -pull), strict=False):
+        yield _held(trace, link, point, force, 0.0)
 
 
-def stretched(writer: Any, number: int) -> tuple[str, str, str, str]:
-    """Identifiers of both ends of a spring, of its stiffness and its free length."""
-    sheet, cause, spring = writer.sheet, number + 1, writer.machine.springs[number]
-    place, *_ = writer.point(spring.link, spring.point)
+def stretched(trace: Trace, number: int) -> tuple[Any, Any, Any, Any]:
+    """Both ends of a spring, its stiffness and its free length."""
+    spring = trace.machine.springs[number]
+    place, *_ = trace.point(spring.link, spring.point)
     on_frame = spring.on == FRAME
-    to = writer.name(f"p({spring.to})") if on_frame else writer.point(spring.on, spring.to)[0]
-    stiffness = sheet.slot(f"stiffness({cause})", lambda one: one.machine.springs[number].stiffness)
-    free = sheet.slot(f"free({cause})", lambda one: one.machine.springs[number].free_length)
+    to = trace.state[f"p({spring.to})"] if on_frame else trace.point(spring.on, spring.to)[0]
+    stiffness = trace.slot(
+        f"stiffness({number})", lambda one: one.machine.springs[number].stiffness
+    )
+    free = trace.slot(f"free({number})", lambda one: one.machine.springs[number].free_length)
     return place, to, stiffness, free
 
 
-def write_tension(writer: Any, number: int) -> Iterator[Held]:
-    """What a belt does to its links by the tension that both strands have anyway."""
-    sheet, belt = writer.sheet, writer.machine.belts[number]
+def trace_tension(trace: Trace, number: int) -> Iterator[Held]:
+    """What holds the tension that both strands of a belt have anyway."""
+    belt = trace.machine.belts[number]
     if belt.tension is None:
         return
-    driver, driven = coupling_pins(writer.linkage.joints, belt)
+    driver, driven = coupling_pins(trace.linkage.joints, belt)
 
     def pull(found: Linkage) -> Any:
         own, points = found.machine.belts[number], found.machine.points_of(belt.carrier)
@@ -62,20 +69,16 @@ def write_tension(writer: Any, number: int) -> Iterator[Held]:
         strands = own.strands(planar(points[driven]) - planar(points[driver]))
         return own.tension * 2 * strands.cosine / strands.distance
 
-    share = sheet.slot(f"tension({number + 1})", pull)
-    ends = [writer.point(belt.carrier, pin)[0] for pin in (driver, driven)]
-    force = sheet.put(f"taut({number + 1})", f"({ends[1]} - {ends[0]}) * {share}")
-    for link, pin, sign in ((belt.driver, driver, ""), (belt.driven, driven, "-")):
+    share = trace.slot(f"tension({number})", pull)
+    ends = [trace.point(belt.carrier, pin)[0] for pin in (driver, driven)]
+    force = (ends[1] - ends[0]) * share
+    for link, pin, pulled in ((belt.driver, driver, force), (belt.driven, driven, -force)):
         if link != FRAME:
-            yield _write_held(writer, link, pin, f"({sign}{force})", "0.0", f"B{number + 1}")
+            yield _held(trace, link, pin, pulled, 0.0)
 
 
-def _write_held(
-    writer: Any, link: str, point: str | None, force: str, torque: str, cause: str
-) -> Held:
-    """Write what holds a force at a point of a link, and a torque on it."""
-    anchor = writer.body(link)[0]
-    at = anchor if point is None else writer.point(link, point)[0]
-    outputs = (f"F{cause}({link})", f"M{cause}({link})")
-    writer.sheet.call("load_demand", [anchor, at, force, torque], outputs)
-    return link, *names(writer, cause, link)
+def _held(trace: Trace, link: str, point: str | None, force: Any, torque: Any) -> Held:
+    """What holds a force at a point of a link, and a torque on it."""
+    anchor = trace.body(link)[0]
+    at = anchor if point is None else trace.point(link, point)[0]
+    return link, *kernels.load_demand(anchor, at, force, torque)

@@ -1,6 +1,6 @@
 """Loops that run: compiled by Numba and kept on disk, or done by NumPy where Numba is missing.
 
-A source is written to a file whose name tells its content and that of the kernels, because the
+A source is written to a file whose name tells its content and that of this module, because the
 cache of compiled code looks at that file alone.
 """
 
@@ -14,7 +14,7 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from threading import Lock
@@ -24,13 +24,12 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.figures import KINDS
-from equipoise.codegen.source import CALLED, KERNELS, Source
+from equipoise.codegen.source import Source
 
 Array = np.ndarray[Any, Any]
 Loop = Callable[[Array, Array, Array], None]
 """Is called with table (P, T), grid (G, N) and what it fills, (P, R); it lets other threads run."""
 
-INLINE = {"forceinline": True, "fastmath": True, "error_model": "numpy"}
 SIGNATURE = "void(float64[:, ::1], float64[:, ::1], float64[:, ::1])"
 FOLDER = "EQUIPOISE_CACHE"
 """Variable of the environment with the folder for compiled loops."""
@@ -63,54 +62,34 @@ _one_at_a_time = Lock()
 
 def run_loop(source: Source, table: Array, grid: Array) -> Array:
     """What a loop gathers (P, R) of designs (P, T) over a grid (G, N)."""
-    with _one_at_a_time:
-        loop, module = _loop_of(source.text)
     out = np.empty((len(table), len(source.gathered.columns)))
-    if loop is None:
-        run_numpy(out, source, module.state, table, grid)
-    else:
-        loop(table, grid, out)
+    if engine() == "numpy":
+        run_numpy(out, source, table, grid)
+        return out
+    with _one_at_a_time:
+        loop = _loop_of(source.text)
+    loop(table, grid, out)
     return out
 
 
 @cache
-def _loop_of(text: str) -> tuple[Loop | None, ModuleType]:
-    """The compiled loop of a source, None without Numba, and the module of the source."""
+def _loop_of(text: str) -> Loop:
+    """The compiled loop of a source."""
     path = _file_of(text)
     module = _imported(f"equipoise_{path.stem}", path)
-    if engine() == "numpy":
-        vars(module).update(CALLED, **NUMPY_FUNCTIONS)
-        return None, module
-    vars(module).update(_compiled_kernels(), **compiled_functions(), empty=np.empty)
-    return _compile(module), module
+    vars(module).update(compiled_functions())
+    return _compile(module)
 
 
 def _compile(module: ModuleType) -> Loop:
     """Compile a module's loop, or take it from the cache."""
     import numba
 
-    vars(module)["state"] = numba.njit(**INLINE)(module.state)
     options = {"nogil": True, "fastmath": True, "error_model": "numpy"}
     try:
         return numba.njit(SIGNATURE, cache=True, **options)(module.loop)  # type: ignore[no-any-return]
     except (OSError, RuntimeError):  # no place for the cache: compile for this run alone
         return numba.njit(SIGNATURE, **options)(module.loop)  # type: ignore[no-any-return]
-
-
-@cache
-def _compiled_kernels() -> dict[str, Any]:
-    """The kernels, loaded a second time and compiled to be taken into loops."""
-    import numba
-
-    found: dict[str, Any] = {}
-    for plain in KERNELS:
-        path = Path(inspect.getfile(plain))
-        module = _imported(f"equipoise_compiled_{path.stem}", path)
-        vars(module).update(found)
-        own = [name for name, kernel in CALLED.items() if kernel.__module__ == plain.__name__]
-        for name in own:
-            found[name] = vars(module)[name] = numba.njit(**INLINE)(vars(module)[name])
-    return found
 
 
 # -- files -----------------------------------------------------------------------------------------
@@ -119,7 +98,7 @@ def _compiled_kernels() -> dict[str, Any]:
 def _file_of(text: str) -> Path:
     """The file of a source, written whole or not at all."""
     here = sys.modules[__name__]
-    parts = (text, *map(inspect.getsource, (*KERNELS, here)))
+    parts = (text, inspect.getsource(here))
     key = hashlib.sha256("\0".join(parts).encode()).hexdigest()[:20]
     for folder in _folders():
         path = folder / f"loop_{key}.py"
@@ -164,78 +143,24 @@ def compiled_functions() -> dict[str, Any]:
     """Functions by name, to be called from compiled loops."""
     import numba
 
-    return {
-        "smallest": _instruction("llvm.minnum", 2, ("fast",)),
-        "greatest": _instruction("llvm.maxnum", 2, ("fast",)),
-        "angle_of": numba.njit(**INLINE)(angle_of),
-        "rotation": numba.njit(**INLINE)(_rotation(_instruction("llvm.rint", 1))),
-        "chosen": numba.njit(**INLINE)(lambda flag, yes, no: yes if flag else no),
-        "floored": _instruction("llvm.floor", 1),
-        "picked": numba.njit(**INLINE)(
-            _picked(_instruction("llvm.minnum", 2), _instruction("llvm.maxnum", 2))
-        ),
+    inline = numba.njit(forceinline=True, fastmath=True, error_model="numpy")
+    smaller, larger = (_instruction(name, 2) for name in ("llvm.minnum", "llvm.maxnum"))
+    return {name: getattr(np, name) for name in ("sqrt", "cos", "sin", "arctan2", "empty")} | {
+        "min": _instruction("llvm.minnum", 2, ("fast",)),
+        "max": _instruction("llvm.maxnum", 2, ("fast",)),
+        "rint": _instruction("llvm.rint", 1),
+        "floor": _instruction("llvm.floor", 1),
+        "where": inline(lambda flag, yes, no: yes if flag else no),
+        "pick": inline(_pick(smaller, larger)),
     }
 
 
-# The polynomials below are Chebyshev interpolations, exact to 1e-17.
+def _pick(smaller: Callable[..., Any], larger: Callable[..., Any]) -> Callable[..., Any]:
+    def pick(table: Any, place: Any) -> Any:
+        """A number of a table, by its place from 0 on; no other is read, whatever the place."""
+        return table[np.int32(smaller(larger(place, 0.0), table.shape[0] - 1.0))]
 
-
-def angle_of(u: Any) -> Any:
-    """Angle of a rotation u, of at most 2.09 rad to either side: from the tangent of its fourth."""
-    half = (0.5 + 0.5 * u.real) ** 0.5
-    quarter = 0.5 * u.imag / (half * (1.0 + half))
-    z = quarter * quarter
-    arc = -0.005280870051487617
-    arc = arc * z + 0.018095230564342743
-    arc = arc * z + -0.032661656028653945
-    arc = arc * z + 0.043802683513332864
-    arc = arc * z + -0.051663638584717154
-    arc = arc * z + 0.05864670804294048
-    arc = arc * z + -0.0666435417001706
-    arc = arc * z + 0.07692094669579978
-    arc = arc * z + -0.09090895671012374
-    arc = arc * z + 0.11111110560344459
-    arc = arc * z + -0.14285714272114403
-    arc = arc * z + 0.19999999999824117
-    arc = arc * z + -0.3333333333333243
-    arc = arc * z + 1.0
-    return 4.0 * quarter * arc
-
-
-def _rotation(nearest: Callable[[Any], Any]) -> Callable[[Any], Any]:
-    def rotation(angle: Any) -> Any:
-        """exp(i angle), as the fourth power of that of a fourth of the angle."""
-        turns = angle * 0.15915494309189535
-        quarter = (turns - nearest(turns)) * 1.5707963267948966
-        z = quarter * quarter
-        cos = -1.1353379638297575e-11
-        cos = cos * z + 2.0875582380663952e-09
-        cos = cos * z + -2.7557313097790086e-07
-        cos = cos * z + 2.4801587283881152e-05
-        cos = cos * z + -0.0013888888888861095
-        cos = cos * z + 0.04166666666666645
-        cos = cos * z + -0.5
-        cos = cos * z + 1.0
-        sin = 1.5894736651849094e-10
-        sin = sin * z + -2.5050716974102745e-08
-        sin = sin * z + 2.755731337640013e-06
-        sin = sin * z + -0.000198412698286503
-        sin = sin * z + 0.008333333333320363
-        sin = sin * z + -0.16666666666666616
-        sin = sin * z + 1.0
-        u = complex(cos, quarter * sin)
-        u = u * u
-        return u * u
-
-    return rotation
-
-
-def _picked(smaller: Callable[..., Any], larger: Callable[..., Any]) -> Callable[..., Any]:
-    def picked(values: Any, place: Any) -> Any:
-        """One of some values, by its place from 0 on; no other is read, whatever the place."""
-        return values[np.int32(smaller(larger(place, 0.0), values.shape[0] - 1.0))]
-
-    return picked
+    return pick
 
 
 def _instruction(name: str, count: int, fastmath: tuple[str, ...] = ()) -> Any:
@@ -270,26 +195,11 @@ def _instruction(name: str, count: int, fastmath: tuple[str, ...] = ()) -> Any:
     return intrinsic(of_one if count == 1 else of_two)
 
 
-NUMPY_FUNCTIONS = {
-    "smallest": np.minimum,
-    "greatest": np.maximum,
-    "angle_of": np.angle,
-    "rotation": lambda angle: np.exp(1j * angle),
-    "chosen": np.where,
-    "floored": np.floor,
-    "picked": lambda values, place: values[
-        np.clip(np.nan_to_num(place), 0, len(values) - 1).astype(int)
-    ],
-}
-
-
-def run_numpy(
-    out: Array, source: Source, state: Callable[..., Any], table: Array, grid: Array
-) -> None:
+def run_numpy(out: Array, source: Source, table: Array, grid: Array) -> None:
     """Fill what a loop would gather, some designs at a time."""
     if source.carried:
         with np.errstate(all="ignore"):
-            march_numpy(out, source, state, table, grid)
+            march_numpy(out, source, table, grid)
         return
     step, shares = max(1, AT_A_TIME // grid.shape[1]), None
     if source.has_shares:
@@ -297,47 +207,35 @@ def run_numpy(
     with np.errstate(all="ignore"):
         for begin in range(0, len(table), step):
             some = slice(begin, begin + step)
-            parts = table[some].T[:, :, None]
-            own = (
-                parts[one.column] + 1j * parts[one.column + 1] if one.vector else parts[one.column]
-                for one in source.slots
-            )
-            values = dict(zip(source.gathered.signals, state(*grid, *own), strict=True))
-            shape = (parts.shape[1], grid.shape[1])
+            columns = table[some].T[:, :, None]
+            values = dict(zip(source.signals, source.states(*columns, *grid), strict=True))
+            shape = (columns.shape[1], grid.shape[1])
             for k, (signal, kind) in enumerate(source.gathered.columns):
                 x = np.broadcast_to(values[signal], shape)
                 out[some, k] = KINDS[kind].gathered(x, shares)
 
 
-def march_numpy(
-    out: Array, source: Source, state: Callable[..., Any], table: Array, grid: Array
-) -> None:
-    """The same where crank angles follow from each other: all designs go round together."""
-    columns = table.T
-    own = [
-        columns[one.column] + 1j * columns[one.column + 1] if one.vector else columns[one.column]
-        for one in source.slots
-    ]
-    carried = [np.full(len(table), one.start) for one in source.carried]
-    last = {one.next for one in source.carried}
-    signals = [one for one in source.gathered.signals if one not in last]
-    found: dict[int, list[Array]] = {}
+def march_numpy(out: Array, source: Source, table: Array, grid: Array) -> None:
+    """Fill that where crank angles follow from each other: all designs go round together."""
+    carried: Sequence[Any] = [np.full(len(table), one.start) for one in source.carried]
+    gathered: dict[int, list[Array]] = {}
     shares: dict[int, float] = {}
     if source.has_shares:
         shares = dict(zip(grid[0].astype(int).tolist(), grid[-1].tolist(), strict=True))
         grid = grid[:-1]
     for place, *rows in grid.T:
-        values = state(*rows, *own, *carried)
-        carried = values[len(signals) :]
+        values = source.states(*table.T, *rows, *carried)
+        carried = values[len(source.signals) :]
         if place >= 0:
-            found[int(place)] = [np.broadcast_to(v, len(table)) for v in values[: len(signals)]]
-    in_order = [found[k] for k in sorted(found)]
-    share = np.array([shares[k] for k in sorted(found)]) if shares else None
+            signals = values[: len(source.signals)]
+            gathered[int(place)] = [np.broadcast_to(value, len(table)) for value in signals]
+    in_order = [gathered[k] for k in sorted(gathered)]
+    share = np.array([shares[k] for k in sorted(gathered)]) if shares else None
     stacks = [np.stack(values, axis=1) for values in zip(*in_order, strict=True)]
-    values = dict(zip(signals, stacks, strict=True))
-    ends = {one.next: value for one, value in zip(source.carried, carried, strict=True)}
+    by_name = dict(zip(source.signals, stacks, strict=True))
+    last = iter([v for one, v in zip(source.carried, carried, strict=True) if one.watch])
     for k, (signal, kind) in enumerate(source.gathered.columns):
-        if signal in values:
-            out[:, k] = KINDS[kind].gathered(values[signal], share)
+        if signal in by_name:
+            out[:, k] = KINDS[kind].gathered(by_name[signal], share)
         else:
-            out[:, k] = ends[signal]
+            out[:, k] = next(last)

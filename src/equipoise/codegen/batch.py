@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.backends import processors, run_loop
-from equipoise.codegen.coupled import told_by_crank
+from equipoise.codegen.coupled import known_by_crank
 from equipoise.codegen.emit import emit, moves_shared
 from equipoise.codegen.figures import (
     CHANGE_POINT,
@@ -31,9 +31,9 @@ from equipoise.codegen.figures import (
     Figure,
     Gathered,
 )
-from equipoise.codegen.loops import STEPS, March
+from equipoise.codegen.march import STEPS, March
 from equipoise.codegen.source import Source
-from equipoise.codegen.writer import Writer
+from equipoise.codegen.trace import Trace
 from equipoise.errors import UsageError
 from equipoise.mechanism.assembly import cycle, full_turn
 from equipoise.mechanism.assembly.family import linkage_of, with_columns
@@ -87,10 +87,10 @@ def all_angles(count: int, turns: int) -> Array:
 
 def jumps_alike(linkage: Linkage, paths: Collection[str]) -> bool:
     """Whether forces of all designs in which these numbers vary jump at the same crank angles."""
-    writer = Writer(linkage, paths)
-    told = told_by_crank(writer).keys() - writer.shifted
+    trace = Trace(linkage, paths)
+    known = known_by_crank(trace).keys() - trace.shifted
     cams = (cam for cam in linkage.machine.cams if len(cam.law.jumps(ACCELERATION)))
-    return all({cam.driver, cam.carrier} <= told for cam in cams)
+    return all({cam.driver, cam.carrier} <= known for cam in cams)
 
 
 def _grid(theta: Array, turns: int) -> JumpSampling:
@@ -103,10 +103,10 @@ def grid_of(source: Source, theta: Array, shares: Array | None = None) -> Array:
 
     shares : (N,) of each in a mean, where the source asks for them; none if None.
     """
-    rows = [row.values(theta) for row in source.rows]
-    if source.has_shares:
-        rows.append(np.zeros(len(theta)) if shares is None else shares)
-    return np.ascontiguousarray(rows, dtype=float)
+    grid = source.grid(theta)
+    if not source.has_shares:
+        return grid
+    return np.vstack([grid, np.zeros(len(theta)) if shares is None else shares])
 
 
 def sizes_of(machine: Machine, signals: Iterable[str]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""From a linkage and signals to source: every step becomes a line, every signal an expression.
+"""From a linkage and signals to source: the linkage's steps are traced, signals are read off.
 
 Signals go by their names in the output of an analysis.
 """
@@ -6,167 +6,232 @@ Signals go by their names in the output of an analysis.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Any
 
-from equipoise.codegen.across import write_bearing
+from equipoise.codegen.across import bearing_force
 from equipoise.codegen.applied import stretched
 from equipoise.codegen.figures import Figure, Gathered
-from equipoise.codegen.followers import can_write_followers
-from equipoise.codegen.lines import write_demands, write_joints, write_motion
-from equipoise.codegen.loops import can_write
+from equipoise.codegen.followers import can_trace_followers
+from equipoise.codegen.loops import can_trace
 from equipoise.codegen.source import Source, source_of
-from equipoise.codegen.writer import Writer
+from equipoise.codegen.steps import trace_demands, trace_joints, trace_motion
+from equipoise.codegen.terms import angle_of
+from equipoise.codegen.trace import Trace
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.assembly.family import can_vary
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.newton import LoopGroup
+from equipoise.mechanism.assembly.steps import Reaction
 from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.formulas.kernels import cross, length
 from equipoise.mechanism.outputs.declared import DECLARED, Declared, declared
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.sliders import JOINTS
 
-_LOOKED_UP = re.compile(r"\{([^}:]+)(:name)?\}")
-"""Values in the expression of an output: of the machine, or of the member of a family."""
 _OF_FORCES = re.compile(
     r"drive\..+|gravity\..+|springs\[\d+\]\..+|links\..+\.(mass|inertia|center_of_mass\..+)"
     r"|links\..+\.bodies\[\d+\]\..+"
 )
 """Paths of numbers on which forces depend and the motion by crank angle does not."""
-ORDERS = {"position": 0, "velocity": 1, "acceleration": 2}
-OF_CAMS = {"cam push": "T({})", "cam forth": "forth({})", "cam normal": "normal({})"}
-"""Values of a state that tell of a cam."""
-LENGTH = "length({1} - {0})"
-OF_SPRINGS = {"spring length": LENGTH, "spring pull": f"{{2}} * ({LENGTH} - {{3}})"}
-"""Of a spring, from its ends, stiffness and free length."""
-OF_BELTS = {"belt pull": 0, "belt left": 1, "belt right": -1}
-"""Strands of a belt, by their side; 0 for what they differ by."""
-TURNING = {"angular velocity": 1, "angular acceleration": 2}
-"""How often a position, or an angle, is differentiated by time."""
-
-
-def expression(writer: Writer, signal: str) -> str:
-    """A signal as an expression.
-
-    Raises
-    ------
-    UsageError : there is no such signal, or a loop cannot have it.
-    """
-    one, item = declared(signal) or (None, "")
-    if one is None or not one.loop or not _has(writer, one):
-        raise UsageError(unknown(signal, _known(writer), "signal"))
-    try:
-        whole = _LOOKED_UP.sub(lambda value: _identified(writer, value, item), one.loop)
-    except _Missing:
-        raise UsageError(unknown(signal, _known(writer), "signal")) from None
-    parts = {"": "{}", "size": "length({})", "x": "({}).real", "y": "({}).imag"}
-    return parts[one.part].format(whole)
+PARTS: dict[str, Callable[[Any], Any]] = {
+    "": lambda value: value,
+    "size": length,
+    "x": lambda value: value.real,
+    "y": lambda value: value.imag,
+}
 
 
 class _Missing(LookupError):
     """The linkage has no such member."""
 
 
-def _known(writer: Writer) -> Sequence[str]:
-    named = writer.linkage.named_reactions
-    families = {"gear": "gears", "cam": "cams", "rack": "racks", "belt": "belts"}
-    joints = [f"{families.get(r.kind, 'joints')}.{name}" for name, r in named]
-    ones = (one for one in DECLARED.values() if one.loop and not one.is_family)
-    bearings = [f"bearings.{name}" for name in writer.machine.bearings]
-    return [*(one.name for one in ones if _has(writer, one)), *joints, *bearings]
+@dataclass
+class Signals:
+    """Signals of a linkage, read off the trace of its steps, as far as these are needed."""
 
+    trace: Trace
 
-def _has(writer: Writer, one: Declared) -> bool:
-    """Whether the machine has what an output tells of, as far as that depends on no member."""
-    return one.needs != "planes" or writer.machine.has_planes
+    def __post_init__(self) -> None:
+        self.linkage, self.machine = self.trace.linkage, self.trace.machine
+        trace_motion(self.trace)
 
+    def __call__(self, signal: str) -> Any:
+        """A signal by its name.
 
-def _identified(writer: Writer, looked_up: re.Match[str], item: str) -> str:
-    """The expression of a value of the machine, or of a member of a family."""
-    value, of_member = looked_up.groups()
-    if not of_member:
-        return writer.rate(value) if value in ("speed", "acceleration") else writer.name(value)
-    if value == "bearing force":
-        if item not in writer.machine.bearings:
+        Raises
+        ------
+        UsageError : there is no such signal, or a loop cannot have it.
+        """
+        one, item = declared(signal) or (None, "")
+        if one is None or one.loop is None or not self._has(one):
+            raise UsageError(unknown(signal, self._known(), "signal"))
+        try:
+            value = one.loop(partial(self.of_member, item) if one.is_family else self.of_machine)
+        except _Missing:
+            raise UsageError(unknown(signal, self._known(), "signal")) from None
+        return PARTS[one.part](value)
+
+    def _has(self, one: Declared) -> bool:
+        """Whether the machine has what an output tells of, as far as that depends on no member."""
+        return one.needs != "planes" or self.machine.has_planes
+
+    def _known(self) -> Sequence[str]:
+        named = self.linkage.named_reactions
+        families = {"gear": "gears", "cam": "cams", "rack": "racks", "belt": "belts"}
+        joints = [f"{families.get(r.kind, 'joints')}.{name}" for name, r in named]
+        ones = (one for one in DECLARED.values() if one.loop is not None and not one.is_family)
+        bearings = [f"bearings.{name}" for name in self.machine.bearings]
+        return [*(one.name for one in ones if self._has(one)), *joints, *bearings]
+
+    # -- values ------------------------------------------------------------------------------------
+
+    @cached_property
+    def demands(self) -> dict[str, Any]:
+        """The state with what links demand of their joints, and what reaches the frame."""
+        trace_demands(self.trace)
+        return self.trace.state
+
+    @cached_property
+    def forces(self) -> dict[str, Any]:
+        """The state with the forces in joints."""
+        self.demands  # noqa: B018  they are what joints supply
+        if self.linkage.shared is not None:
+            raise UsageError("forces that joints share cannot be computed in a loop")
+        if any(isinstance(step, LoopGroup) for step in self.linkage.motion):
+            raise UsageError("joint forces of groups of loops cannot be computed in a loop")
+        trace_joints(self.trace)
+        return self.trace.state
+
+    def of_machine(self, name: str) -> Any:
+        """A value of the machine as a whole."""
+        if name == "speed":
+            return self.trace.rate(name)
+        return self.demands[name] if name in self.demands else self.forces[name]
+
+    def of_member(self, item: str, name: str) -> Any:
+        """A value of one of the members of a family."""
+        return OF_MEMBERS[name](self, item)
+
+    def position(self, item: str, order: int = 0) -> Any:
+        """A point, or its first or second derivative by time."""
+        state, links = self.trace.state, self.machine.links
+        if f"p({item})" not in state:
+            link = next((link for link, body in links.items() if item in body.points), None)
+            if link is None:
+                raise _Missing
+            self.trace.point(link, item)
+        return self._by_time([state[f"{key}({item})"] for key in ("p", "p1", "p2")], order)
+
+    def turning(self, item: str, order: int) -> Any:
+        """First or second derivative of a link's angle by time."""
+        if item not in self.machine.links:
             raise _Missing
-        force = lambda name: _reaction(writer, name, "joint force")  # noqa: E731
-        return write_bearing(writer.sheet, writer.linkage, item, force)
-    if value in ORDERS:
-        return _in_time(writer, _point(writer, item), ORDERS[value])
-    if value == "drive torque" and item in [drive.link for drive in writer.machine.driven]:
-        return writer.name(f"M({item})")
-    if value not in TURNING:
-        return (_of_spring if value in OF_SPRINGS else _reaction)(writer, item, value)
-    if item not in writer.machine.links:
-        raise _Missing
-    return _in_time(writer, writer.body(item)[3:], TURNING[value])
+        return self._by_time(self.trace.body(item)[3:], order)
+
+    def _by_time(self, values: Sequence[Any], order: int) -> Any:
+        speed, acceleration = self.trace.rate("speed"), self.trace.rate("acceleration")
+        value, first, second = values
+        if order == 2:
+            return second * (speed * speed) + first * acceleration
+        return first * speed if order else value
+
+    def drive_torque(self, item: str) -> Any:
+        if item not in [drive.link for drive in self.machine.driven]:
+            raise _Missing
+        return self.forces[f"M({item})"]
+
+    def joint_force(self, item: str) -> Any:
+        """A joint's force on the later of its bodies, a gear's on the driven one."""
+        reaction = self._reaction(item)
+        return self._sign(reaction) * self.forces[reaction.force]
+
+    def joint_moment(self, item: str) -> Any:
+        """Moment of a guide about the point of the slider."""
+        reaction = self._reaction(item)
+        if reaction.couple is None:
+            raise _Missing
+        couple = self.forces[reaction.couple]
+        slider = next(s for s in self.machine.sliders if s.name == reaction.name)
+        to, *_ = self.trace.point(slider.link, slider.point)
+        arm = self.trace.state[f"p({reaction.at})"] - to
+        return self._sign(reaction) * couple + cross(arm, self.joint_force(item))
+
+    def _reaction(self, item: str) -> Reaction:
+        reaction = dict(self.linkage.named_reactions).get(item)
+        if reaction is None:
+            raise _Missing
+        return reaction
+
+    def _sign(self, reaction: Reaction) -> float:
+        order = self.linkage.joints.bodies.index
+        later = reaction.kind not in JOINTS or order(reaction.on) > order(reaction.by)
+        return 1.0 if later else -1.0
+
+    def bearing_force(self, item: str) -> Any:
+        if item not in self.machine.bearings:
+            raise _Missing
+        self.demands  # noqa: B018
+        return bearing_force(self.trace, item, self.joint_force)
+
+    def push(self, item: str) -> Any:
+        """What a cam, or both strands of a belt, push or pull with."""
+        self._reaction(item)
+        return self.forces[f"T({item})"]
+
+    def pressure_angle(self, item: str) -> Any:
+        self._reaction(item)
+        forth, normal = (self.forces[f"{key}({item})"] for key in ("forth", "normal"))
+        return angle_of(forth.conjugate() * normal)
+
+    def strand(self, item: str, side: int) -> Any:
+        """Tension of the left (1) or right (-1) strand of a belt, as `JointReactions.belts`."""
+        belts, pull = self.machine.belts, self.push(item)
+        number = next(k for k, one in enumerate(belts) if one.name == item)
+        mean = 0.5 * self.forces[f"flank({item})"] * pull
+        if belts[number].tension is not None:
+            what = f"tension of belt {number}"
+            mean = self.trace.slot(what, lambda found: found.machine.belts[number].tension)
+        return mean + (-0.5 * side if belts[number].crossed else 0.5 * side) * pull
+
+    def spring(self, item: str) -> tuple[Any, Any, Any]:
+        """Length, stiffness and free length of a spring."""
+        number = int(item) - 1 if item.isdecimal() else -1
+        if not 0 <= number < len(self.machine.springs):
+            raise _Missing
+        place, to, stiffness, free = stretched(self.trace, number)
+        return length(to - place), stiffness, free
+
+    def spring_pull(self, item: str) -> Any:
+        extended, stiffness, free = self.spring(item)
+        return stiffness * (extended - free)
 
 
-def _of_spring(writer: Writer, item: str, value: str) -> str:
-    number = int(item) - 1 if item.isdecimal() else -1
-    if not 0 <= number < len(writer.machine.springs):
-        raise _Missing
-    return f"({OF_SPRINGS[value].format(*stretched(writer, number))})"
-
-
-def _reaction(writer: Writer, item: str, value: str) -> str:
-    """A joint's force is told on the later of its bodies, a gear's on the driven one."""
-    reaction = dict(writer.linkage.named_reactions).get(item)
-    if reaction is None:
-        raise _Missing
-    if value in OF_CAMS:
-        return writer.name(OF_CAMS[value].format(item))
-    if value in OF_BELTS:
-        return _of_belt(writer, item, OF_BELTS[value])
-    order = writer.linkage.joints.bodies.index
-    told = reaction.kind not in JOINTS or order(reaction.on) > order(reaction.by)
-    sign = 1.0 if told else -1.0
-    force = f"({sign} * {writer.name(reaction.force)})"
-    if value == "joint force":
-        return force
-    if reaction.couple is None:
-        raise _Missing
-    slider = next(s for s in writer.machine.sliders if s.name == reaction.name)
-    to, *_ = writer.point(slider.link, slider.point)
-    at = writer.name(f"p({reaction.at})")
-    return f"{sign} * {writer.name(reaction.couple)} + cross({at} - {to}, {force})"
-
-
-def _of_belt(writer: Writer, item: str, side: int) -> str:
-    """Its pull, or the tension of a strand, as `Pass.belts` has it."""
-    belts, pull = writer.machine.belts, writer.name(f"T({item})")
-    if not side:
-        return pull
-    number = next(k for k, one in enumerate(belts) if one.name == item)
-    mean = f"0.5 * {writer.name(f'flank({item})')} * {pull}"
-    if belts[number].tension is not None:
-        what = f"tension of belt {number + 1}"
-        mean = writer.sheet.slot(what, lambda found: found.machine.belts[number].tension)
-    half = -0.5 * side if belts[number].crossed else 0.5 * side
-    return f"({mean} + {half!r} * {pull})"
-
-
-def _point(writer: Writer, name: str) -> list[str]:
-    if name in writer.points:
-        return [writer.name(f"{key}({name})") for key in ("p", "p1", "p2")]
-    for link, body in writer.machine.links.items():
-        if name in body.points:
-            return writer.point(link, name)
-    raise _Missing
-
-
-def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
-    """A value, or its first or second derivative by time, from those by crank angle."""
-    speed, acceleration = writer.rate("speed"), writer.rate("acceleration")
-    value, first, second = values
-    return (
-        value,
-        f"{first} * {speed}",
-        f"{second} * {speed} * {speed} + {first} * {acceleration}",
-    )[times]
+OF_MEMBERS: dict[str, Callable[[Signals, str], Any]] = {
+    "position": Signals.position,
+    "velocity": lambda signals, item: signals.position(item, 1),
+    "acceleration": lambda signals, item: signals.position(item, 2),
+    "angular velocity": lambda signals, item: signals.turning(item, 1),
+    "angular acceleration": lambda signals, item: signals.turning(item, 2),
+    "drive torque": Signals.drive_torque,
+    "joint force": Signals.joint_force,
+    "joint moment": Signals.joint_moment,
+    "bearing force": Signals.bearing_force,
+    "cam push": Signals.push,
+    "pressure angle": Signals.pressure_angle,
+    "belt pull": Signals.push,
+    "belt left": lambda signals, item: signals.strand(item, 1),
+    "belt right": lambda signals, item: signals.strand(item, -1),
+    "spring length": lambda signals, item: signals.spring(item)[0],
+    "spring pull": Signals.spring_pull,
+}
+"""Values of members of families, by the names that `declared` looks them up by."""
 
 
 def can_emit(linkage: Linkage) -> bool:
-    """Whether the steps of a linkage can be written out: no soil, no gears beside loops, and no
+    """Whether the steps of a linkage can be traced: no soil, no gears beside loops, and no
     drive that pushes.
     """
     if linkage.machine.pushers:
@@ -175,9 +240,9 @@ def can_emit(linkage: Linkage) -> bool:
     if machine.planting is not None and machine.planting.soil is not None:
         return False
     loops = [step for step in linkage.motion if isinstance(step, LoopGroup)]
-    if not can_write_followers(linkage):
+    if not can_trace_followers(linkage):
         return False
-    return all(map(can_write, loops)) and not (loops and machine.couplings)
+    return all(map(can_trace, loops)) and not (loops and machine.couplings)
 
 
 def emit(
@@ -186,7 +251,7 @@ def emit(
     paths: Collection[str] | None = None,
     has_shares: bool = False,
 ) -> Source:
-    """Write out the steps of a linkage, with the signals that are gathered.
+    """Trace the steps of a linkage, with the signals that are gathered.
 
     paths : of the numbers in which designs differ; None of one design.
     has_shares : whether crank angles have shares of their own in means.
@@ -201,22 +266,10 @@ def emit(
             "large groups of loops, fingers in soil, drives that push, and couplings beside loops "
             "cannot be computed in a loop"
         )
-    writer = Writer(linkage, paths)
-    writer.sheet.has_shares = has_shares
-    write_motion(writer)
-    wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]
-    if any(one.is_of_row for one in wanted):
-        write_demands(writer)
-    passed = ["{joint ", "{bearing ", "{cam push", "{belt "]
-    passed += [] if linkage.machine.has_crank else ["{drive torque"]
-    if any(value in (one.loop or "") for one in wanted for value in passed):
-        if linkage.shared is not None:
-            raise UsageError("forces that joints share cannot be computed in a loop")
-        if any(isinstance(step, LoopGroup) for step in linkage.motion):
-            raise UsageError("joint forces of groups of loops cannot be computed in a loop")
-        write_joints(writer)
-    signals = [writer.sheet.put(f"signal {s}", expression(writer, s)) for s in gathered.signals]
-    return source_of(writer.sheet, signals, writer.numbers(), gathered)
+    trace = Trace(linkage, paths)
+    signals = Signals(trace)
+    values = {name: signals(name) for name in gathered.signals}
+    return source_of(trace, gathered, values, has_shares)
 
 
 def moves_shared(linkage: Linkage, paths: Sequence[str]) -> bool:

@@ -83,9 +83,9 @@ KINDS = {
         np.add,
         "{g} += share * {x} * {x}",
     ),
-    "highest": Kind("-1e300", "{g} = greatest({g}, {x})", lambda x: x.max(axis=1), np.maximum),
+    "highest": Kind("-1e300", "{g} = max({g}, {x})", lambda x: x.max(axis=1), np.maximum),
     "highest_at": Kind("0.0", "", _first_highest),
-    "lowest": Kind("1e300", "{g} = smallest({g}, {x})", lambda x: x.min(axis=1), np.minimum),
+    "lowest": Kind("1e300", "{g} = min({g}, {x})", lambda x: x.min(axis=1), np.minimum),
     "lowest_at": Kind("0.0", "", lambda x: _first_highest(-x)),
 }
 GATHERED = {

@@ -1,4 +1,4 @@
-"""Lines for followers of cams: what their laws say, and how pinned ones turn.
+"""Followers of cams in terms: what their laws say, and how pinned ones turn.
 
 Where the crank angle alone tells how far a cam has turned, it tells the displacement too.  Else the
 law is evaluated at each design's own angle: its piece is looked up in tables, without a branch.
@@ -6,7 +6,6 @@ law is evaluated at each design's own angle: its piece is looked up in tables, w
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
 from math import ceil, pi
@@ -14,11 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.coupled import Turning, told_by_crank
-from equipoise.codegen.writer import Writer
+from equipoise.codegen.coupled import Turning, known_by_crank
+from equipoise.codegen.terms import floor, least, pick, rotation, select
+from equipoise.codegen.trace import Array, Trace
 from equipoise.mechanism.assembly.cam_groups import Displacement
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import Array, Call, u
+from equipoise.mechanism.assembly.steps import Call, u
+from equipoise.mechanism.formulas import cam_kernels
+from equipoise.mechanism.formulas.curve_kernels import piece_value
 from equipoise.mechanism.formulas.curves import ROUNDING, Curve
 
 FEW = 16
@@ -33,24 +35,25 @@ NOWHERE = 1e300
 """A knot that is never reached."""
 
 
-def can_write_followers(linkage: Linkage) -> bool:
+def can_trace_followers(linkage: Linkage) -> bool:
     """Whether the pieces of all laws can be looked up."""
     return all(_bins(cam.law.curve) <= MOST_BINS for cam in linkage.machine.cams)
 
 
-def write_displacement(writer: Writer, step: Displacement) -> None:
-    """Write what a law says at the angle that a cam has turned against its carrier."""
-    told = told_by_crank(writer)
-    if {step.driver, step.carrier} <= told.keys() - writer.shifted:
-        driver, carrier = told[step.driver], told[step.carrier]
+def trace_displacement(trace: Trace, step: Displacement) -> None:
+    """What a law says at the angle that a cam has turned against its carrier."""
+    turnings = known_by_crank(trace)
+    if {step.driver, step.carrier} <= turnings.keys() - trace.shifted:
+        driver, carrier = turnings[step.driver], turnings[step.carrier]
         for place, output in enumerate(step.outputs):
             of = partial(_displaced, step, driver, carrier, place)
-            row = writer.sheet.row(f"row {output}", of)
-            writer.sheet.put(output, row)
+            trace.state[output] = trace.row(output, of)
         return
-    angles = (writer.name(f"phi({body})") for body in (step.driver, step.carrier))
-    angle = f"{' - '.join(angles)} - {step.law.origin!r}"
-    write_curve(writer, step.law.curve, angle, step.outputs)
+    driver_angle, carrier_angle = (
+        trace.state[f"phi({body})"] for body in (step.driver, step.carrier)
+    )
+    angle = driver_angle - carrier_angle - float(step.law.origin)
+    trace.put(step.outputs, curve_value(trace, step.law.curve, angle))
 
 
 def _displaced(
@@ -59,33 +62,19 @@ def _displaced(
     return np.asarray(step.law.value(driver(theta)[0] - carrier(theta)[0])[place])
 
 
-def write_curve(writer: Writer, curve: Curve, angle: str, outputs: Sequence[str]) -> None:
-    """Write a curve, and its two derivatives, at an angle that is each design's own."""
+def curve_value(trace: Trace, curve: Curve, angle: Any) -> tuple[Any, Any, Any]:
+    """A curve, and its two derivatives, at an angle that is each design's own."""
     curve, counted = _from_the_start(_rested(curve))
-    sheet, near, length = writer.sheet, ROUNDING * curve.length, curve.length
-    name = outputs[0]
-
-    def put(what: str, expression: str) -> str:
-        return sheet.put(f"{what} {name}", expression)
-
-    x = put("angle", angle)
-    rounds = put("rounds", f"floored(({x} + {near!r}) * {1 / length!r})")
-    since = put("since", f"{x} - {rounds} * {length!r}")
-    pieces = _Pieces(writer, curve, name, put("ahead", f"{since} + {near!r}"))
-    way = since if counted else put("way", f"{since} - {pieces.beginning()}")
-    powers = [pieces.value(f"c{k}", values) for k, values in enumerate(curve.powers.T)]
-    amplitude, rate, phase = (
-        pieces.value(what, values)
-        for what, values in zip(("amplitude", "rate", "phase"), _waves(curve).T, strict=True)
-    )
-    cosine, sine = "1.0", "0.0"
-    if amplitude != "0.0":
-        turned = put("wave", f"rotation({rate} * {way} + {phase})")
-        cosine, sine = f"{turned}.real", f"{turned}.imag"
-    found = (f"within {name}", *outputs[1:]) if curve.rise else outputs
-    sheet.call("piece_value", [way, *powers, amplitude, rate, cosine, sine], found)
-    if curve.rise:
-        sheet.put(name, f"{sheet.name(found[0])} + {curve.rise!r} * {rounds}")
+    near, length = ROUNDING * curve.length, curve.length
+    rounds = floor((angle + near) * (1 / length))
+    since = angle - rounds * length
+    pieces = _Pieces(trace, curve, since + near)
+    way = since if counted else since - pieces.beginning()
+    powers = [pieces.value(values) for values in curve.powers.T]
+    amplitude, rate, phase = (pieces.value(values) for values in _waves(curve).T)
+    wave = rotation(0.0 if isinstance(amplitude, float) and not amplitude else rate * way + phase)
+    value, first, second = piece_value(way, *powers, amplitude, rate, wave.real, wave.imag)  # type: ignore[call-arg,no-untyped-call]
+    return value + curve.rise * rounds, first, second
 
 
 def _rested(curve: Curve) -> Curve:
@@ -135,56 +124,45 @@ def _alike(values: list[float]) -> list[float]:
 
 
 class _Pieces:
-    """What differs from piece to piece of a curve: chosen by comparing where there are few, else
+    """Finds the piece of a curve, and its numbers: chosen by comparing where there are few, else
     picked from tables.
     """
 
-    def __init__(self, writer: Writer, curve: Curve, name: str, since: str) -> None:
-        """since : identifier of the way from the curve's beginning, rounding ahead."""
-        self.sheet, self.name, self.curve = writer.sheet, name, curve
+    def __init__(self, trace: Trace, curve: Curve, since: Any) -> None:
+        """since : way from the curve's beginning, rounding ahead."""
+        self.graph, self.curve, self.since = trace.graph, curve, since
         self.few, self.even = len(curve.powers) <= FEW, False
         if self.few:
-            self.behind = [
-                self.put(f"behind {k}", f"{since} >= {knot!r}")
-                for k, knot in enumerate(curve.knots[1:-1].tolist(), 1)
-            ]
             return
         if np.allclose(np.diff(curve.knots), curve.length / len(curve.powers), rtol=1e-12, atol=0):
             self.even = True
-            last = float(len(curve.powers) - 1)
-            whole = f"floored({since} * {len(curve.powers) / curve.length!r})"
-            self.piece = self.put("piece", f"smallest({last!r}, {whole})")
+            whole = floor(since * (len(curve.powers) / curve.length))
+            self.piece = least(float(len(curve.powers) - 1), whole)
             return
         count = _bins(curve)
-        part = self.put("part", f"{since} * {count / curve.length!r}")
-        first, knot = (self.picked(*one, part) for one in _in_bins(curve, count).items())
-        self.piece = self.put("piece", f"{first} + ({since} >= {knot}) * 1.0")
+        part = since * (count / curve.length)
+        first, knot = (pick(self.graph.table(values), part) for values in _in_bins(curve, count))
+        self.piece = first + select(since, knot, 1.0, 0.0)
 
-    def put(self, what: str, expression: str) -> str:
-        return self.sheet.put(f"{what} {self.name}", expression)
-
-    def picked(self, what: str, values: Array, place: str) -> str:
-        table = self.sheet.constant(f"each {what} {self.name}", values)
-        return self.put(what, f"picked({table}, {place})")
-
-    def beginning(self) -> str:
+    def beginning(self) -> Any:
         """Where the piece begins."""
         if self.even:
-            return self.put("beginning", f"{self.piece} * {float(self.curve.knots[1])!r}")
-        return self.value("beginning", self.curve.knots[:-1])
+            return self.piece * float(self.curve.knots[1])
+        return self.value(self.curve.knots[:-1])
 
-    def value(self, what: str, values: Array) -> str:
+    def value(self, values: Array) -> Any:
         """What the piece has of values (K,)."""
-        numbers = [repr(one) for one in _alike(values.tolist())]
+        numbers = _alike(values.tolist())
         if len({*numbers}) == 1:
             return numbers[0]
         if not self.few:
-            return self.picked(what, values, self.piece)
-        chosen = numbers[0]
-        for k, (before, after) in enumerate(pairwise(numbers)):
+            return pick(self.graph.table(numbers), self.piece)
+        chosen: Any = numbers[0]
+        knots = self.curve.knots[1:-1].tolist()
+        for knot, (before, after) in zip(knots, pairwise(numbers), strict=True):
             if before != after:
-                chosen = f"chosen({self.behind[k]}, {after}, {chosen})"
-        return self.put(what, chosen)
+                chosen = select(self.since, knot, after, chosen)
+        return chosen
 
 
 def _bins(curve: Curve) -> int:
@@ -192,28 +170,24 @@ def _bins(curve: Curve) -> int:
     return ceil(1.01 * curve.length / float(np.min(np.diff(curve.knots))))
 
 
-def _in_bins(curve: Curve, count: int) -> dict[str, Array]:
+def _in_bins(curve: Curve, count: int) -> tuple[Array, Array]:
     """Of each part the piece at its beginning, and the knot within it; one more at the end."""
     inner = curve.knots[1:-1]
     edges = np.arange(count + 1) * (curve.length / count)
     first = np.searchsorted(inner, edges, side="right")
     ahead = np.append(inner, NOWHERE)[first]
     knot = np.where(ahead < edges + curve.length / count, ahead, NOWHERE)
-    return {"first": first.astype(float), "knot": knot}
+    return first.astype(float), knot
 
 
-def write_swung(writer: Writer, step: Call, number: int) -> None:
-    """Write how a pinned follower turns whose carrier turns in proportion to the crank."""
-    sheet, (y, y1, y2, w_r, a_r, _, w, a) = writer.sheet, map(writer.name, step.inputs)
+def trace_swung(trace: Trace, step: Call, number: int) -> None:
+    """How a pinned follower turns whose carrier turns in proportion to the crank."""
+    y, y1, y2, w_r, a_r, _, w, a = (trace.state.get(name) for name in step.inputs)
     link, carrier = (name[len("phi(") : -1] for name in (step.outputs[0], step.inputs[5]))
-    sense = step.parameters[1]
-    turned = partial(_turned, number)
-    rest = sheet.slot(f"rest({link})", turned, vector=True)
-    arguments = [y, y1, y2, w_r, a_r, "0.0", w, a, "0.0", repr(float(sense))]
-    sheet.call("swung", arguments, (f"lean({link})", *step.outputs[1:]))
-    lean = writer.name(f"lean({link})")
-    base, *_ = map(writer.name, u(carrier))
-    sheet.put(f"u({link})", f"{base} * {rest} * rotation({lean})")
+    rest = trace.slot(f"rest({link})", partial(_turned, number), vector=True)
+    sense = float(step.parameters[1])
+    lean, *rates = cam_kernels.swung(y, y1, y2, w_r, a_r, 0.0, w, a, 0.0, sense)
+    trace.put(u(link), (trace.state[f"u({carrier})"] * rest * rotation(lean), *rates))
 
 
 def _turned(number: int, found: Linkage) -> Any:

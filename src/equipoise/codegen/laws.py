@@ -1,21 +1,24 @@
-"""Lines for gears whose ratio varies, at each design's own angles and with its own numbers.
+"""Gears whose ratio varies in terms, at each design's own angles and with its own numbers.
 
 Where whole turns of the gears' angles do not matter, rotations are multiplied; a running angle that
-nothing asks for falls away as the loop is compiled.
+nothing asks for falls away.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from math import prod
 from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.followers import write_curve
-from equipoise.codegen.writer import Writer, links_of
+from equipoise.codegen.followers import curve_value
+from equipoise.codegen.terms import angle_of, rotation
+from equipoise.codegen.trace import Trace, links_of
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import Call
+from equipoise.mechanism.assembly.steps import Call, u
+from equipoise.mechanism.formulas import rolling_kernels
 from equipoise.mechanism.formulas.curves import Curve
 from equipoise.mechanism.formulas.rolling import HalfAngle, PitchCurve, RatioTable, RatioWaves
 
@@ -23,117 +26,101 @@ MOST_PRODUCTS = 6
 """Power of a rotation up to which it is multiplied by itself."""
 
 
-def write_law(writer: Writer, step: Call, number: int) -> None:
-    """Write how a gear turns whose ratio varies: the step of this number of the ``motion``."""
-    _Law(writer, step, number).write()
+def trace_law(trace: Trace, step: Call, number: int) -> None:
+    """How a gear turns whose ratio varies: the step of this number of the ``motion``."""
+    _Law(trace, step, number).trace_gear()
 
 
 class _Law:
-    """A law in its place, and what of it each design has of its own."""
+    """A law in its place, and what of it each design has of its own.
 
-    def __init__(self, writer: Writer, step: Call, number: int) -> None:
-        self.writer, self.sheet, self.number = writer, writer.sheet, number
+    angle : of the driver, seen from the carrier, from the law's zero on.
+    """
+
+    def __init__(self, trace: Trace, step: Call, number: int) -> None:
+        self.trace, self.number = trace, number
         self.driver, self.carrier, self.link = links_of(step)
         self.law: Any = step.parameters[0]
+        driver, carrier = (trace.state[f"phi({one})"] for one in (self.driver, self.carrier))
+        self.angle = driver - carrier - self.own("zero")
 
-    def write(self) -> None:
-        link, sheet = self.link, self.sheet
-        x = f"phi({self.driver})", f"phi({self.carrier})"
-        ends = " - ".join(map(self.writer.name, x))
-        self.angle = sheet.put(f"seen({link})", f"{ends} - {self.own('zero')}")
+    def trace_gear(self) -> None:
+        link, state = self.link, self.trace.state
         match self.law:
             case HalfAngle():
-                y = self._half_angle(self.law)
+                y, ratio, bend = self._half_angle(self.law)
             case RatioWaves():
-                y = self._waves(self.law)
+                y, ratio, bend = self._waves(self.law)
             case _:
-                y = self._pieces()
+                curve, begin = curve_of(self.law)
+                y, ratio, bend = curve_value(self.trace, curve, self.angle - begin)
         offset = self.slot("offset", lambda found: _parameters(found, self.number)[1])
-        sheet.put(f"phi({link})", f"{self.writer.name(x[1])} + {y} + {offset}")
-        inputs = [self.writer.name(f"{key}({link})") for key in ("ratio", "bend")]
-        inputs += [
-            self.writer.name(f"{key}({one})")
-            for one in (self.driver, self.carrier)
-            for key in ("w", "a")
-        ]
-        sheet.call("followed", inputs, (f"w({link})", f"a({link})"))
+        state[f"phi({link})"] = state[f"phi({self.carrier})"] + y + offset
+        state[f"ratio({link})"], state[f"bend({link})"] = ratio, bend
+        rates = [state[name] for one in (self.driver, self.carrier) for name in u(one)[1:]]
+        self.trace.put(u(link)[1:], rolling_kernels.followed(ratio, bend, *rates))  # type: ignore[no-untyped-call]
 
-    def slot(self, what: str, read: Callable[[Linkage], Any], vector: bool = False) -> str:
-        return self.sheet.slot(f"{what} of {self.link}", read, vector)
+    def slot(self, what: str, read: Callable[[Linkage], Any], vector: bool = False) -> Any:
+        return self.trace.slot(f"{what} of {self.link}", read, vector)
 
-    def own(self, key: str) -> str:
+    def own(self, key: str) -> Any:
         """A number of the law."""
         return self.slot(key, lambda found: getattr(_parameters(found, self.number)[0], key))
 
-    def turned(self, lobes: int) -> str:
-        """exp(i lobes x), with x counted from the law's zero."""
-        writer, link = self.writer, self.link
-        if lobes > MOST_PRODUCTS:
-            return self.sheet.put(f"turned({link})", f"rotation({float(lobes)!r} * {self.angle})")
-        driver, carrier = (writer.name(f"u({one})") for one in (self.driver, self.carrier))
+    @property
+    def once(self) -> Any:
+        """exp(i x), with x counted from the law's zero."""
+        driver, carrier = (self.trace.state[f"u({one})"] for one in (self.driver, self.carrier))
         zero = self.slot(
             "turned back", lambda found: np.exp(-1j * _parameters(found, self.number)[0].zero), True
         )
-        one = self.sheet.put(f"once({link})", f"{driver} * back({carrier}) * {zero}")
-        return self.sheet.put(f"turned({link})", " * ".join([one] * lobes))
+        return driver * carrier.conjugate() * zero
 
-    def _half_angle(self, law: HalfAngle) -> str:
-        sheet, link, lobes = self.sheet, self.link, law.lobes
-        turned, whole = self.turned(lobes), f"whole({link})"
-        numbers = [repr(float(law.mean)), repr(float(law.share)), self.own("depth"), repr(lobes)]
-        outputs = (whole, f"twice({link})", f"ratio({link})", f"bend({link})")
-        sheet.call("half_angle", [turned, *numbers], outputs)
-        sheet.call("unit", [self.writer.name(whole)], (f"along({link})",))
-        along, twice = (self.writer.name(f"{key}({link})") for key in ("along", "twice"))
+    def turned(self, lobes: int) -> Any:
+        """exp(i lobes x), with x counted from the law's zero."""
+        if lobes > MOST_PRODUCTS:
+            return rotation(float(lobes) * self.angle)
+        return prod([self.once] * (lobes - 1), start=self.once)
+
+    def _half_angle(self, law: HalfAngle) -> tuple[Any, Any, Any]:
+        lobes, mean = law.lobes, float(law.mean)
+        numbers = mean, float(law.share), self.own("depth"), lobes
+        whole, twice, ratio, bend = rolling_kernels.half_angle(self.turned(lobes), *numbers)  # type: ignore[no-untyped-call]
+        (along,) = rolling_kernels.unit(whole)  # type: ignore[no-untyped-call]
         self._rotate(law, along, twice)
-        factor = 2 * law.share / lobes
-        return f"{float(law.mean)!r} * {self.angle} + {float(factor)!r} * angle_of({along})"
+        return mean * self.angle + float(2 * law.share / lobes) * angle_of(along), ratio, bend
 
-    def _rotate(self, law: HalfAngle, along: str, twice: str) -> None:
-        """Write the rotation itself, where what swings is a product of others."""
+    def _rotate(self, law: HalfAngle, along: Any, twice: Any) -> None:
+        """The rotation itself, where what swings is a product of others."""
         mean, times = float(law.mean), float(2 * law.share / law.lobes)
         if not times.is_integer() or abs(times) > MOST_PRODUCTS:
             return
-        factors = [self.writer.name(f"u({self.carrier})")]
+        factors = [self.trace.state[f"u({self.carrier})"]]
         if mean.is_integer() and abs(mean) <= MOST_PRODUCTS and law.lobes <= MOST_PRODUCTS:
-            once = self.writer.name(f"once({self.link})")
-            factors += [_power(once, mean)] * abs(round(mean))
+            factors += [_power(self.once, mean)] * abs(round(mean))
         else:
-            factors.append(f"rotation({mean!r} * {self.angle})")
+            factors.append(rotation(mean * self.angle))
         factors += [_power(twice, times)] * (abs(round(times)) // 2)
         factors += [_power(along, times)] * (round(times) % 2)
 
         def begun(found: Linkage) -> Any:
             return np.exp(1j * _parameters(found, self.number)[1])
 
-        factors.append(self.slot("begun", begun, vector=True))
-        self.sheet.put(f"u({self.link})", " * ".join(factors))
-        self.writer.rotated.add(self.link)
+        self.trace.state[f"u({self.link})"] = prod(factors, start=self.slot("begun", begun, True))
+        self.trace.rotated.add(self.link)
 
-    def _waves(self, law: RatioWaves) -> str:
-        sheet, link, waves = self.sheet, self.link, law.waves
-        turn, wave = self.turned(waves.lobes), ""
-        levels = [self.angle, "1.0", "0.0"]
-        for k, (_, _, order) in enumerate(waves.terms):
+    def _waves(self, law: RatioWaves) -> tuple[Any, Any, Any]:
+        turn, wave, mean = self.turned(law.waves.lobes), 1.0, float(law.mean)
+        levels: tuple[Any, ...] = (self.angle, 1.0, 0.0)
+        for k, (_, _, order) in enumerate(law.waves.terms):
             pair = [
                 self.slot(f"{key} {k + 1}", partial(_term, self.number, k, place))
                 for place, key in enumerate(("cosine", "sine"))
             ]
-            wave = sheet.put(f"wave {k + 1}({link})", f"{wave} * {turn}" if wave else turn)
-            names = tuple(f"{level} {k + 1}({link})" for level in ("sum", "value", "slope"))
-            sheet.call("series_term", [*levels, wave, *pair, f"{float(order)!r}"], names)
-            levels = [self.writer.name(one) for one in names]
-        mean = repr(float(law.mean))
-        for key, level in zip(("ratio", "bend"), levels[1:], strict=True):
-            sheet.put(f"{key}({link})", f"{mean} * {level}")
-        return f"{mean} * {levels[0]}"
-
-    def _pieces(self) -> str:
-        """A law without a formula: pieces that all designs share."""
-        curve, begin = curve_of(self.law)
-        names = (f"way({self.link})", f"ratio({self.link})", f"bend({self.link})")
-        write_curve(self.writer, curve, f"{self.angle} - {begin!r}", names)
-        return self.writer.name(names[0])
+            wave = wave * turn
+            levels = rolling_kernels.series_term(*levels, wave, *pair, float(order))  # type: ignore[call-arg,no-untyped-call]
+        y, ratio, bend = (mean * level for level in levels)
+        return y, ratio, bend
 
 
 def curve_of(law: RatioTable | PitchCurve) -> tuple[Curve, float]:
@@ -157,5 +144,5 @@ def _term(number: int, k: int, place: int, found: Linkage) -> Any:
     return [*_parameters(found, number)[0].waves.terms][k][place]
 
 
-def _power(factor: str, sign: float) -> str:
-    return factor if sign > 0 else f"back({factor})"
+def _power(factor: Any, sign: float) -> Any:
+    return factor if sign > 0 else factor.conjugate()

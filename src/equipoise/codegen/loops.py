@@ -1,4 +1,4 @@
-"""Lines for a group of loops: Newton's method from the crank angle before, of many designs at once.
+"""A group of loops in terms: Newton's method from the crank angle before, of many designs at once.
 
 The group's own formulas are run on terms, so that they stand nowhere else.  A design begins with
 the pose of the base, at the crank angle at which the model file tells it, and goes once round the
@@ -9,21 +9,19 @@ watched; linear equations are solved by minors, of which most factors are nothin
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass, replace
 from functools import reduce
-from math import pi, radians
 from operator import attrgetter, itemgetter
 from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.figures import NO_FULL_TURN, NOT_COMPUTED
-from equipoise.codegen.source import MARCH, Read, Sheet, Source
-from equipoise.codegen.terms import Lines, Term
+from equipoise.codegen.terms import ANGLE, Term, greatest, least
+from equipoise.codegen.trace import Read, Trace
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.loopgroup import FAR
 from equipoise.mechanism.assembly.loops import Free, Pose, Poses
-from equipoise.mechanism.assembly.newton import JUMP, SETTLED, LoopGroup, poses_in
+from equipoise.mechanism.assembly.newton import JUMP, LoopGroup, poses_in
 from equipoise.mechanism.assembly.steps import p, planar, size_of_bodies, u
 from equipoise.mechanism.parts.machine import FRAME
 
@@ -31,29 +29,34 @@ Array = np.ndarray[Any, Any]
 
 MOST_UNKNOWNS = 7
 """Beyond which minors are too many."""
+MARCH = ("step", "marked", "steady")
+"""What is given of a crank angle in a march: how far it is from the one before; 1 where the file
+tells the pose, else 0; 1 from there on, 0 before."""
+WATCHED = ("loose", "astray", "open")
+"""Values that are carried on, whose last tells of a design whether Newton's method left its branch;
+did not arrive from the base, or too far from where the file tells; came back elsewhere."""
 
 
-def can_write(group: LoopGroup) -> bool:
-    """Whether a group can be written out: it is small, and each link hangs on a pin or a guide."""
+def can_trace(group: LoopGroup) -> bool:
+    """Whether a group can be traced: it is small, and each link hangs on a pin or a guide."""
     hung = not any(isinstance(place, Free) for place in group.tree)
     square = len(group.turning) == sum(one.unknowns for one in group.equations)
     return hung and square and len(group.turning) <= MOST_UNKNOWNS
 
 
-def write_loops(sheet: Sheet, linkage: Linkage, number: int) -> None:
-    """Write a group, the step of this number of the linkage's ``motion``."""
-    group = linkage.motion[number]
+def trace_loops(trace: Trace, number: int) -> None:
+    """A group, the step of this number of the linkage's ``motion``."""
+    group = trace.linkage.motion[number]
     assert isinstance(group, LoopGroup)
-    values = _Group(sheet, linkage, group, number).values()
-    Lines(f"of {number}", sheet.put).write(values)
+    _Group(trace, group, number).go_on()
 
 
 class _Group:
     """A group whose numbers are terms."""
 
-    def __init__(self, sheet: Sheet, linkage: Linkage, group: LoopGroup, number: int) -> None:
-        self.sheet, self.linkage, self.base, self.number = sheet, linkage, group, number
-        self.machine = linkage.machine
+    def __init__(self, trace: Trace, group: LoopGroup, number: int) -> None:
+        self.trace, self.linkage, self.base, self.number = trace, trace.linkage, group, number
+        self.machine = trace.machine
 
         def parts(key: str) -> Any:
             read = attrgetter(key)
@@ -61,14 +64,11 @@ class _Group:
             return self.slotted(getattr(group, key), name, lambda found: read(found.motion[number]))
 
         self.group = replace(group, tree=parts("tree"), equations=parts("equations"))
-        self.size = self.slot("size", lambda found: size_of_bodies(found.machine))
+        self.size = trace.slot("size", lambda found: size_of_bodies(found.machine))
         self.known = {body: self.pose_of(body) for body, _ in group.known}
-        self.step, self.marked, self.steady = map(Term, MARCH)
+        self.step, self.marked, self.steady = (trace.graph.argument(one, ANGLE) for one in MARCH)
 
     # -- what is given -----------------------------------------------------------------------------
-
-    def slot(self, name: str, read: Read, vector: bool = False) -> Term:
-        return Term(lambda: self.sheet.slot(name, read, vector))
 
     def slotted(self, value: Any, name: str, read: Read) -> Any:
         """The same with terms for its numbers."""
@@ -83,26 +83,26 @@ class _Group:
         if is_dataclass(value) and not isinstance(value, type):
             keys = [field.name for field in fields(value)]
             return replace(value, **{key: part(key, attrgetter(key)) for key in keys})
-        return self.slot(name, read, isinstance(value, complex | np.complexfloating))
+        return self.trace.slot(name, read, isinstance(value, complex | np.complexfloating))
 
     def pose_of(self, body: str) -> Pose:
         """Pose of a body that is known; the frame and the crank have rates that are numbers."""
         names = (*p(self.linkage.anchors[body]), *u(body))
-        x, x1, x2, t, t1, t2 = (Term(self.sheet.name(name)) for name in names)
+        x, x1, x2, t, t1, t2 = (self.trace.state[name] for name in names)
         if body == FRAME:
             return Pose((x, 0.0, 0.0), (1.0, 0.0, 0.0))
         if body == self.machine.drive.link and self.machine.has_crank:
             return Pose((x, 0.0, 0.0), (t, 1.0, 0.0))
         return Pose((x, x1, x2), (t, t1, t2))
 
-    def carried(self, key: str, starts: Sequence[float | complex]) -> list[Term]:
+    def carried(self, starts: Sequence[float | complex], watch: str = "") -> list[Any]:
         """Values that each crank angle has from the one before, the first of all these."""
-        carry = self.sheet.carry
-        return [Term(carry(f"{key} {k} of {self.number}", one)) for k, one in enumerate(starts)]
+        return [self.trace.carry(one, watch) for one in starts]
 
-    def on(self, key: str, *values: Any) -> dict[str, Any]:
+    def carry_on(self, before: Sequence[Any], values: Sequence[Any]) -> None:
         """What the next crank angle has of these."""
-        return {f"next {key} {k} of {self.number}": value for k, value in enumerate(values)}
+        for one, value in zip(before, values, strict=True):
+            self.trace.carry_on(one, value)
 
     def told(self) -> tuple[list[float | complex], float]:
         """The base's unknowns, and the determinant of its slopes, where the file tells its pose."""
@@ -116,46 +116,48 @@ class _Group:
 
     # -- from one crank angle to the next ----------------------------------------------------------
 
-    def values(self) -> dict[str, Any]:
-        """Poses by their names in a state, and what is carried on."""
+    def go_on(self) -> None:
+        """Add poses to the state, and what is carried on."""
         start, determinant = self.told()
         nothing = [0.0] * len(start)
-        q, first = self.carried("unknown", start), self.carried("first", start)
-        w, a = self.carried("rate", nothing), self.carried("curvature", nothing)
+        before, first = self.carried(start), self.carried(start)
+        rates, bends = self.carried(nothing), self.carried(nothing)
         h = self.step
-        q = self.moved(q, [h * one + h * h * 0.5 * two for one, two in zip(w, a, strict=True)])
+        ahead = [h * one + h * h * 0.5 * two for one, two in zip(rates, bends, strict=True)]
+        q = self.moved(before, ahead)
         minors = _Minors(self.slopes(q))
-        ahead = minors.solve(self.gaps(q))
-        q = self.moved(q, [-one for one in ahead])
+        jump = minors.solve(self.gaps(q))
+        q = self.moved(q, [-one for one in jump])
         q = self.moved(q, [-one for one in minors.solve(self.gaps(q))])
         minors = _Minors(self.slopes(q))
         left = minors.solve(self.gaps(q))
         w = [-one for one in minors.solve(self.group.gaps(self.poses(self.known, q), 1))]
         a = [-one for one in minors.solve(self.group.gaps(self.poses(self.known, q, w), 2))]
-        first = [one + self.marked * (now - one) for one, now in zip(first, q, strict=True)]
         poses = self.poses(self.known, q, w, a)
-        found: dict[str, Any] = {}
         for link, anchor in zip(self.group.links, self.group.anchors, strict=True):
-            found |= zip(p(anchor), poses[link].place, strict=True)
-            found |= zip(u(link), poses[link].turn, strict=True)
-        found |= self.on("unknown", *q) | self.on("first", *first)
-        found |= self.on("rate", *w) | self.on("curvature", *a)
-        self.carried("open", [0.0])
-        found |= self.on("open", self.apart(q, first))
-        last, jump = (reduce(_greatest, map(abs, self.scaled(steps))) for steps in (left, ahead))
-        (astray,) = self.carried("astray", [0.0])
-        off = reduce(_greatest, self.misplaced(poses), last)
-        found |= self.on("astray", _greatest(astray, self.marked * off))
-        return found | self.settled(determinant, last, jump, minors.whole)
-
-    def settled(self, start: float, last: Any, jump: Any, whole: Any) -> dict[str, Any]:
-        """Whether Newton's method arrives, without a jump, where the determinant has its sign."""
-        (before,), (loose,) = self.carried("determinant", [start]), self.carried("loose", [0.0])
-        turned = -(whole * before) / (whole * whole + before * before + 1e-300)
-        unsound = _greatest(_greatest(last, jump - 10 * JUMP), turned)
-        return self.on("determinant", before + self.steady * (whole - before)) | self.on(
-            "loose", _greatest(loose, self.steady * unsound)
+            self.trace.put(p(anchor), poses[link].place)
+            self.trace.put(u(link), poses[link].turn)
+        self.carry_on(before, q)
+        marked = [one + self.marked * (now - one) for one, now in zip(first, q, strict=True)]
+        self.carry_on(first, marked)
+        self.carry_on(rates, w)
+        self.carry_on(bends, a)
+        self.carry_on(self.carried([0.0], "open"), [self.apart(q, marked)])
+        farthest, longest = (
+            reduce(greatest, map(abs, self.scaled(steps))) for steps in (left, jump)
         )
+        (astray,) = self.carried([0.0], "astray")
+        off = reduce(greatest, self.misplaced(poses), farthest)
+        self.carry_on([astray], [greatest(astray, self.marked * off)])
+        self.settle(determinant, farthest, longest, minors.whole)
+
+    def settle(self, start: float, last: Any, jump: Any, whole: Any) -> None:
+        """Whether Newton's method arrives, without a jump, where the determinant has its sign."""
+        (before,), (loose,) = self.carried([start]), self.carried([0.0], "loose")
+        turned = -(whole * before) / (whole * whole + before * before + 1e-300)
+        unsound = greatest(greatest(last, jump - 10 * JUMP), turned)
+        self.carry_on([before], [before + self.steady * (whole - before)])
+        self.carry_on([loose], [greatest(loose, self.steady * unsound)])
 
     def misplaced(self, poses: Poses) -> Iterator[Any]:
         """Of each point: above 0 where it is too far from where the file tells it to be."""
@@ -172,7 +174,7 @@ class _Group:
                     points = found.machine.links[link].points
                     return planar(points[name]) - planar(points[to])
 
-                vector = self.slot(f"arm({link}/{name})", arm, vector=True)
+                vector = self.trace.slot(f"arm({link}/{name})", arm, vector=True)
                 at = poses[link].place[0] if name == anchor else poses[link].point(vector)[0]
                 way = at - complex(*machine.position.points[name])
                 far = way.real * way.real + way.imag * way.imag
@@ -258,82 +260,4 @@ def _turned(rotation: Any, angle: Any) -> Any:
 
 
 def _bounded(value: Any) -> Any:
-    return Term("greatest(-1.0, smallest(1.0, {}))", value)
-
-
-def _greatest(one: Any, other: Any) -> Any:
-    return Term("greatest({}, {})", one, other)
-
-
-# -- once round the cycle --------------------------------------------------------------------------
-
-STEPS = (radians(4), radians(0.5), radians(1 / 12))
-"""Farthest that crank angles are apart; the next for designs that have not stayed on their branch.
-The last tells whether a design turns at all."""
-ARRIVALS = 6
-"""Rounds of Newton's method from the base's pose, before the crank turns."""
-
-
-@dataclass(frozen=True)
-class March:
-    """Once round the cycle, from the crank angle at which the file tells the pose.
-
-    source : whose loop it is.  begin : that crank angle, within the cycle of `period` (rad).
-    """
-
-    source: Source
-    begin: float
-    period: float
-
-    @classmethod
-    def of(cls, source: Source, base: Linkage) -> March | None:
-        """The march of a source; None where each crank angle stands alone."""
-        position = base.machine.position
-        if not source.carried or position is None:
-            return None
-        period = 2 * pi * base.cycle.turns
-        return cls(source, position.crank_angle % period, period)
-
-    def grid(self, theta: Array, step: float = STEPS[0], shares: Array | None = None) -> Array:
-        """Rows (G, M) for the loop, to gather at crank angles (N,) and to go no farther at once.
-
-        The first row is the number of the crank angle, -1 where nothing is gathered; the last one
-        its share in a mean, where the source asks for shares.
-        """
-        asked = np.mod(theta - self.begin, self.period)
-        order = np.argsort(asked, kind="stable")
-        ways = np.concatenate([np.zeros(ARRIVALS), asked[order], [self.period]])
-        widths = np.diff(ways)
-        counts = np.maximum(1, np.ceil(widths / step)).astype(int)
-        ends = np.cumsum(counts)
-        within = np.arange(ends[-1]) - np.repeat(ends - counts, counts) + 1
-        ways = np.append(
-            0.0, np.repeat(ways[:-1], counts) + within * np.repeat(widths / counts, counts)
-        )
-        number = np.full(len(ways), -1)
-        number[ends[ARRIVALS - 1 : -1]] = order
-        angles = np.mod(self.begin + ways, self.period)
-        angles[number >= 0] = theta[order]
-        place = np.arange(len(ways))
-        rows = [number, np.diff(ways, prepend=0.0), place == ARRIVALS - 1, place >= ARRIVALS - 1]
-        rows += [row.values(angles) for row in self.source.rows]
-        if self.source.has_shares:
-            share = np.zeros(len(ways))
-            share[number >= 0] = 0.0 if shares is None else shares[order]
-            rows.append(share)
-        return np.ascontiguousarray(rows, dtype=float)
-
-    def unsettled(self, found: Array) -> Array:
-        """Designs (K,), of those gathered (P, R), that have not stayed on their branch."""
-        return np.flatnonzero(~np.all(found[:, self.source.ends["loose"]] <= SETTLED, axis=1))
-
-    def reasons(self, reason: Array, found: Array) -> None:
-        """Fill in why designs (P,) failed of which this much was gathered (P, R).
-
-        Those that did not arrive, or came back elsewhere, may do otherwise from the position in the
-        file, or after further turns.
-        """
-        ends = {key: found[:, columns] for key, columns in self.source.ends.items()}
-        reason[~np.all(ends["open"] <= JUMP**2, axis=1)] = NOT_COMPUTED
-        reason[self.unsettled(found)] = NO_FULL_TURN
-        reason[~np.all(ends["astray"] <= SETTLED, axis=1)] = NOT_COMPUTED
+    return greatest(-1.0, least(1.0, value))

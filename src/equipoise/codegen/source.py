@@ -1,118 +1,60 @@
-"""The steps of a linkage written out as source: one crank angle of one design, and the loop.
+"""What a loop over designs and crank angles computes, and the loop as source.
 
-``state`` is the steps, one line each, calling the kernels; it holds no formula of its own.
-``loop`` calls it for every design and crank angle and gathers what the figures need.  Compiled,
-both become one loop without calls.  NumPy runs ``state`` alone, on arrays.
+`Source` holds the terms of what is gathered, and what has to be handed to a loop: columns of a
+table, one row a design, and rows of a grid, one column a crank angle.  Its loop is compiled by
+Numba; NumPy runs `states`, the same terms on arrays.
 
-Where a group of loops goes from one crank angle to the next, ``state`` takes what the angle before
-carries on, and ``loop`` does some designs side by side, so that the processor can still handle
-several at once: `codegen.loops`.
+Where a group of loops goes from one crank angle to the next, each crank angle takes what the one
+before carries on, and the loop does some designs side by side, so that the processor can still
+handle several at once: `codegen.loops`.
 """
 
 from __future__ import annotations
 
-import inspect
-import keyword
-import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache, cached_property
 from itertools import accumulate, chain, pairwise
 from typing import Any
 
 import numpy as np
 
+from equipoise.codegen.emission import PYTHON, Lines, boundary
 from equipoise.codegen.figures import KINDS, Gathered
-from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.formulas import (
-    cam_kernels,
-    curve_kernels,
-    joint_kernels,
-    kernels,
-    rolling_kernels,
-)
+from equipoise.codegen.loops import WATCHED
+from equipoise.codegen.polynomials import without_calls
+from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Term, reached
+from equipoise.codegen.trace import Array, Carried, Row, Slot, Trace
 from equipoise.signals import ROUNDING
 
-Array = np.ndarray[Any, Any]
-Read = Callable[[Linkage], Any]
 PLACE = {"highest": "{x} - {g} >", "lowest": "{g} - {x} >"}
 """An extreme has a new place where it grows by more than rounding, so that of equal ones the first
 is told; this takes a branch, which costs the loop its speed."""
-KERNELS = (kernels, joint_kernels, cam_kernels, curve_kernels, rolling_kernels)
-"""Modules whose functions the lines call, those first that others are made of."""
-CALLED = {
-    name: found for one in KERNELS for name, found in vars(one).items() if inspect.isfunction(found)
-}
-"""These functions, by name."""
-GIVEN = {"smallest", "greatest", "angle_of", "rotation", "chosen", "floored", "picked"}
-RESERVED = {*CALLED, *keyword.kwlist, *GIVEN, "complex", "range", "abs", "array"}
-RESERVED |= {"state", "loop", "table", "grid", "out", "i", "k"}
+NO_NAMES: Mapping[Any, str] = {}
 LANES = 32
 """Designs that a march does side by side: their values fit into the nearest cache."""
-MARCH = ("step", "marked", "steady")
-"""What `state` is told of a crank angle in a march: how far it is from the one before; 1 where the
-file tells the pose, else 0; 1 from there on, 0 before."""
-WATCHED = ("loose", "astray", "open")
-"""Values that are carried on, whose last tells of a design whether Newton's method left its branch;
-did not arrive from the base, or too far from where the file tells; came back elsewhere."""
-RESERVED |= {*MARCH, "share", "work", "lane", "begin", "place", "empty", "min"}
-
-
-@dataclass(frozen=True)
-class Slot:
-    """A number or vector that each design has of its own.
-
-    read : finds it in the design's linkage.
-    column : of the table; a vector takes this and the next.
-    """
-
-    name: str
-    vector: bool
-    read: Read
-    column: int
-
-
-@dataclass(frozen=True)
-class Row:
-    """Something that depends on the crank angle alone: values (N,) at crank angles (N,), rad.
-
-    formula : the same of `theta`, or of the base what is near enough to it, as other languages
-        write it too; empty where it has none.
-    """
-
-    name: str
-    values: Callable[[Array], Array]
-    formula: str = ""
-
-
-@dataclass(frozen=True)
-class Carried:
-    """A value that each crank angle has from the one before.
-
-    name, next : identifiers of what `state` takes and returns.  start : of every design.
-    """
-
-    name: str
-    next: str
-    start: float | complex
+HEAD = '"""Written by equipoise.codegen from the steps of a linkage."""'
 
 
 @dataclass(frozen=True)
 class Source:
-    """A loop as source, with what has to be handed to it.
+    """Terms of what a loop gathers, with what has to be handed to it.
 
+    values : by the names of what is gathered.
     slots : what stands in the columns of its table, of which there are `width`.
-    rows : of its grid.
+    rows : numbers that depend on the crank angle alone, of which its grid is made.
     watched : dyads that numbers tell of; the first time it is the dyad's own number.
     running : links whose angle is taken from that of the base.
     gathered : columns of what it fills: those that are wanted, then the others below.
     weakest, strongest : columns of the smallest and the largest value of each watched number.
     nearest : columns of how near the running links stay to the base's: smallest cosine between.
     carried : from crank angle to crank angle; none where each stands alone.
+    following : what these are after the crank angle.
     ends : for each of `WATCHED` the columns of its last values.
     has_shares : whether the last row of its grid has the share of each crank angle in a mean.
     """
 
-    text: str
+    values: Mapping[str, Any]
     slots: tuple[Slot, ...]
     width: int
     rows: tuple[Row, ...]
@@ -123,230 +65,226 @@ class Source:
     strongest: slice
     nearest: slice
     carried: tuple[Carried, ...]
+    following: tuple[Any, ...]
     ends: Mapping[str, list[int]]
     has_shares: bool = False
 
+    @cached_property
+    def signals(self) -> tuple[str, ...]:
+        """Names of values that are gathered at each crank angle."""
+        return tuple(name for name in self.gathered.signals if name in self.values)
 
-class Sheet:
-    """Lines of ``state`` as they are written, and the names of its values."""
+    @cached_property
+    def outputs(self) -> list[Any]:
+        """Values of signals, then what is carried on."""
+        return [*(self.values[name] for name in self.signals), *self.following]
 
-    def __init__(self) -> None:
-        self.lines: list[str] = []
-        self.slots: dict[str, Slot] = {}
-        self.width = 0
-        self.rows: dict[str, Row] = {}
-        self.running: dict[str, str] = {}
-        self.carried: dict[str, float | complex] = {}
-        self.constants: dict[str, list[float]] = {}
-        self.has_shares = False
-        self._names: dict[str, str] = {}
+    @cached_property
+    def _by_angle(self) -> list[Term]:
+        """Terms in the rows of the grid."""
+        return boundary(self.outputs, ANGLE)
 
-    def name(self, value: str) -> str:
-        """An identifier for a value of a state, such as ``p_B`` for ``p(B)``."""
-        if value not in self._names:
-            plain = re.sub(r"\W", "_", value.rstrip(")"), flags=re.ASCII) or "_"
-            taken = RESERVED.union(self._names.values())
-            number = 2
-            found = plain
-            while found in taken:
-                found, number = f"{plain}_{number}", number + 1
-            self._names[value] = found
-        return self._names[value]
+    def grid(self, theta: Array, given: Mapping[str, Array] | None = None) -> Array:
+        """Rows (G, N) for the loop of crank angles (N,), rad.
 
-    def slot(self, name: str, read: Read, vector: bool = False) -> str:
-        """A number or vector that each design has of its own."""
-        found = self.name(name)
-        if found not in self.slots:
-            self.slots[found] = Slot(found, vector, read, self.width)
-            self.width += 1 + vector
-        return found
+        given : rows of a march, by name.
+        """
+        names = {one.args[0] for one in reached(self._by_angle) if one.op == "argument"}
+        known = {row.name: row.values(theta) for row in self.rows if row.name in names}
+        values = on_arrays(self._by_angle)(**known, **(given or {}))
+        grid = [np.broadcast_to(value, np.shape(theta)) for value in values]
+        return np.array(grid, dtype=float).reshape(len(grid), len(theta))
 
-    def row(self, name: str, values: Callable[[Array], Array], formula: str = "") -> str:
-        """A number that depends on the crank angle alone."""
-        found = self.name(name)
-        self.rows.setdefault(found, Row(found, values, formula))
-        return found
+    @cached_property
+    def text(self) -> str:
+        """The loop, for Numba."""
+        outputs = without_calls(self.outputs)
+        lines = Lines(outputs, PYTHON, {one: f"r{k}" for k, one in enumerate(self._by_angle)})
+        loop = _march(self, lines) if self.carried else _loop(self, lines)
+        head = ["from numpy import array", "", *lines.tables, ""] if lines.tables else [""]
+        return "\n".join([HEAD, "", *head, *loop, ""])
 
-    def constant(self, name: str, values: Array) -> str:
-        """Numbers that all designs share, of which one is picked at a time."""
-        self.constants[self.name(name)] = values.tolist()
-        return self.name(name)
+    @cached_property
+    def states(self) -> Callable[..., tuple[Any, ...]]:
+        """Outputs as a function of arrays: columns of the table, rows of the grid, and what is
+        carried.
+        """
+        names = {one: f"r{k}" for k, one in enumerate(self._by_angle)}
+        columns = [f"d{k}" for k in range(self.width)]
+        arguments = [*columns, *names.values(), *(one.before.args[0] for one in self.carried)]
+        return _function(flat(self.outputs, arguments, names))
 
-    def carry(self, value: str, start: float | complex) -> str:
-        """A value of the crank angle before; that of this one is put as ``next`` of it."""
-        self.carried[value] = start
-        return self.name(value)
 
-    def put(self, value: str, expression: str) -> str:
-        """Write a line that gives a value of the state."""
-        found = self.name(value)
-        self.lines.append(f"{found} = {expression}")
-        return found
+def on_arrays(outputs: Sequence[Any]) -> Callable[..., tuple[Any, ...]]:
+    """Outputs as a function of NumPy's arrays, by the names of arguments."""
+    arguments = [one.args[0] for one in reached(outputs) if one.op == "argument"]
+    return _function(flat(outputs, arguments))
 
-    def call(self, kernel: str, arguments: Iterable[str], outputs: Sequence[str]) -> None:
-        """Write a line that calls a kernel."""
-        names = ", ".join(self.name(output) for output in outputs)
-        comma = "," if len(outputs) == 1 else ""
-        self.lines.append(f"{names}{comma} = {kernel}({', '.join(arguments)})")
+
+def flat(
+    outputs: Sequence[Any], arguments: Iterable[str], names: Mapping[Any, str] = NO_NAMES
+) -> str:
+    """Source of a function ``states`` of arrays that returns outputs."""
+    lines = Lines(outputs, PYTHON, dict(names))
+    body = [*lines.write((DESIGN, ANGLE, BOTH), outputs)]
+    results = "".join(f"{lines.text(one)}, " for one in outputs)
+    head = f"def states({', '.join(arguments)}):"
+    return "\n".join(
+        [*lines.tables, head, *(f"    {one}" for one in body), f"    return ({results})"]
+    )
+
+
+def pick_from(table: Array, place: Any) -> Any:
+    """Numbers of a table by their places; the first or last where there is no such."""
+    return table[np.clip(np.nan_to_num(place), 0, len(table) - 1).astype(int)]
+
+
+NUMPY = {
+    name: getattr(np, name)
+    for name in ("sqrt", "abs", "floor", "rint", "cos", "sin", "arctan2", "where", "array")
+} | {"min": np.minimum, "max": np.maximum, "pick": pick_from}
+"""Functions that lines for arrays call."""
+
+
+@cache
+def _function(text: str) -> Callable[..., tuple[Any, ...]]:
+    space = dict(NUMPY)
+    exec(text, space)
+    return space["states"]  # type: ignore[no-any-return]
 
 
 def source_of(
-    sheet: Sheet, signals: Sequence[str], numbers: Mapping[str, int], wanted: Gathered
+    trace: Trace, wanted: Gathered, signals: Mapping[str, Any], has_shares: bool = False
 ) -> Source:
-    """Put ``state`` and ``loop`` around the lines.
-
-    signals : identifiers of the signals, in the order of `wanted`.
-    numbers : identifiers of those that are watched, each with the dyad that it tells of.
-    """
-    watched = [f"number {k}" for k in range(len(numbers))]
-    cosines = [f"cosine {k}" for k in range(len(sheet.running))]
-    carried = tuple(
-        Carried(sheet.name(value), sheet.name(f"next {value}"), start)
-        for value, start in sheet.carried.items()
-    )
-    last = {key: [v for v in sheet.carried if v.startswith(f"{key} ")] for key in WATCHED}
+    """The source of what is wanted of a trace; signals : their values by name."""
+    numbers = trace.numbers()
+    margins = {f"margin {k}": number for k, (number, _) in enumerate(numbers)}
+    cosines = {f"cosine {k}": cosine for k, cosine in enumerate(trace.running.values())}
+    ends = {f"carried {k}": one.watch for k, one in enumerate(trace.carried) if one.watch}
     columns = [
         wanted.columns,
-        [(number, "lowest") for number in watched],
-        [(number, "highest") for number in watched],
-        [(cosine, "lowest") for cosine in cosines],
-        [(sheet.name(f"next {value}"), "highest") for value in chain(*last.values())],
+        [(name, "lowest") for name in margins],
+        [(name, "highest") for name in margins],
+        [(name, "lowest") for name in cosines],
+        [(name, "highest") for name in ends],
     ]
-    gathered = Gathered(tuple(chain(*columns)))
-    ends = pairwise(accumulate(map(len, columns), initial=0))
-    _, weakest, strongest, nearest, _ = (slice(*both) for both in ends)
-    march = MARCH if carried else ()
-    arguments = ", ".join([*march, *sheet.rows, *sheet.slots, *(one.name for one in carried)])
-    results = [*signals, *numbers, *sheet.running.values(), *(one.next for one in carried)]
-    loop = _march(sheet, gathered, arguments, carried) if carried else None
-    lines = [
-        '"""Written out by equipoise.codegen from the steps of a linkage."""',
-        *(["", "from numpy import array", ""] if sheet.constants else []),
-        *(f"{name} = array({values!r})" for name, values in sheet.constants.items()),
-        "",
-        "",
-        f"def state({arguments}):",
-        *(f"    {line}" for line in sheet.lines),
-        f"    return {', '.join(results)},",
-        "",
-        "",
-        *(loop or _loop(sheet, gathered, arguments)),
-        "",
-    ]
+    places = pairwise(accumulate(map(len, columns), initial=0))
+    _, weakest, strongest, nearest, last = (slice(*both) for both in places)
+    watches = [*enumerate(ends.values(), last.start)]
     return Source(
-        "\n".join(lines),
-        tuple(sheet.slots.values()),
-        sheet.width,
-        tuple(sheet.rows.values()),
-        tuple(numbers.values()),
-        tuple(sheet.running),
-        gathered,
+        {**signals, **margins, **cosines},
+        tuple(trace.slots.values()),
+        trace.width,
+        tuple(trace.rows.values()),
+        tuple(dyad for _, dyad in numbers),
+        tuple(trace.running),
+        Gathered(tuple(chain(*columns))),
         weakest,
         strongest,
         nearest,
-        carried,
-        {
-            key: [gathered.columns.index((sheet.name(f"next {v}"), "highest")) for v in values]
-            for key, values in last.items()
-        },
-        sheet.has_shares,
+        tuple(trace.carried),
+        tuple(trace.following[one.before] for one in trace.carried),
+        {watch: [k for k, one in watches if one == watch] for watch in WATCHED},
+        has_shares,
     )
 
 
-def _loop(sheet: Sheet, gathered: Gathered, arguments: str) -> list[str]:
-    signals = {signal: f"x{k}" for k, signal in enumerate(gathered.signals)}
-    columns = {column: f"g{k}" for k, column in enumerate(gathered.columns)}
-    return [
-        "def loop(table, grid, out):",
-        "    for i in range(table.shape[0]):",
-        *(f"        {slot.name} = {_read(slot)}" for slot in sheet.slots.values()),
-        *(f"        {name} = {KINDS[kind].start}" for (_, kind), name in columns.items()),
-        "        for k in range(grid.shape[1]):",
-        *(f"            {name} = grid[{k}, k]" for k, name in enumerate(_rows(sheet))),
-        f"            {', '.join(signals.values())}, = state({arguments})",
-        *(f"            {line}" for line in _gathering(columns, signals, sheet)),
-        *(f"        out[i, {k}] = {name}" for k, name in enumerate(columns.values())),
-    ]
+# -- the loop --------------------------------------------------------------------------------------
 
 
-def _rows(sheet: Sheet, first: Iterable[str] = ()) -> list[str]:
-    """Identifiers of the rows of the grid that tell of the crank angle, after the first ones."""
-    return [*first, *sheet.rows, *(["share"] if sheet.has_shares else [])]
+def _loop(source: Source, lines: Lines) -> Iterator[str]:
+    columns = {column: f"g{k}" for k, column in enumerate(source.gathered.columns)}
+    own = boundary(lines.outputs, DESIGN)
+    yield "def loop(table, grid, out):"
+    yield "    for i in range(table.shape[0]):"
+    yield from _indented(2, _of_design(lines, own))
+    yield from _indented(
+        2, (f"{name} = {KINDS[kind].start}" for (_, kind), name in columns.items())
+    )
+    yield "        for k in range(grid.shape[1]):"
+    yield from _indented(3, _of_angle(source))
+    yield from _indented(3, lines.write((BOTH,), lines.outputs))
+    signals = dict(zip(source.signals, map(lines.text, lines.outputs), strict=True))
+    yield from _indented(3, _gathering(source, columns, signals))
+    yield from _indented(2, (f"out[i, {k}] = {name}" for k, name in enumerate(columns.values())))
 
 
-def _read(slot: Slot) -> str:
-    """A design's number or vector out of its row of the table."""
-    first = f"table[i, {slot.column}]"
-    return f"complex({first}, table[i, {slot.column + 1}])" if slot.vector else first
+def _indented(depth: int, lines: Iterable[str]) -> Iterator[str]:
+    return (f"{'    ' * depth}{line}" for line in lines)
 
 
-def _march(
-    sheet: Sheet, gathered: Gathered, arguments: str, carried: Sequence[Carried]
-) -> list[str]:
+def _of_design(lines: Lines, own: Sequence[Term]) -> Iterator[str]:
+    """Lines for what one design has of its own, the row i of the table."""
+    for term in lines.terms:
+        if term.op == "argument" and term.mask == DESIGN:
+            yield f"{term.args[0]} = table[i, {term.args[0][1:]}]"
+    yield from lines.write((DESIGN,), own)
+
+
+def _of_angle(source: Source, first: int = 0) -> Iterator[str]:
+    """Lines for the grid's rows from this one on."""
+    rows = [f"r{k}" for k in range(len(source._by_angle))]
+    rows += ["share"] * source.has_shares
+    return (f"{name} = grid[{k}, k]" for k, name in enumerate(rows, first))
+
+
+def _march(source: Source, lines: Lines) -> Iterator[str]:
     """The loop where crank angles follow from each other: some designs go round side by side.
 
     What they have of their own lies in `work`, each value of all of them in a row.
     """
-    ends = {one.next: one.name for one in carried}
-    signals = {s: f"x{k}" for k, s in enumerate(gathered.signals) if s not in ends}
-    columns = {c: f"g{k}" for k, c in enumerate(gathered.columns) if c[0] in signals}
-    vectors = {slot.name: slot.vector for slot in sheet.slots.values()}
-    vectors |= {one.name: isinstance(one.start, complex) for one in carried}
-    vectors |= dict.fromkeys([*signals.values(), *columns.values()], False)
-    offsets = dict(zip(vectors, accumulate(1 + v for v in vectors.values()), strict=True))
-    width = max(offsets.values())
-    at = {name: f"work[{(end - 1) * LANES} + lane]" for name, end in offsets.items()}
-    before = {name: f"work[{(end - 2) * LANES} + lane]" for name, end in offsets.items()}
+    own = boundary(lines.outputs, DESIGN)
+    signals = {signal: f"x{k}" for k, signal in enumerate(source.signals)}
+    columns = {c: f"g{k}" for k, c in enumerate(source.gathered.columns) if c[0] in signals}
+    before = [one.before.args[0] for one in source.carried]
+    setting = [*_of_design(lines, own)]
+    going = [*lines.write((BOTH,), lines.outputs)]
+    given = [*map(lines.text, own), *before]
+    results = [*map(lines.text, lines.outputs)]
+    at = {
+        name: f"work[{k * LANES} + lane]"
+        for k, name in enumerate([*given, *signals.values(), *columns.values()])
+    }
+    last = iter([one.before.args[0] for one in source.carried if one.watch])
+    filled = [at[columns.get(c) or next(last)] for c in source.gathered.columns]
 
-    def get(name: str) -> str:
-        return f"{name} = " + (
-            f"complex({before[name]}, {at[name]})" if vectors[name] else at[name]
-        )
+    def get(names: Iterable[str]) -> Iterator[str]:
+        return (f"{name} = {at[name]}" for name in names)
 
-    def keep(name: str, value: str) -> list[str]:
-        if vectors[name]:
-            return [f"{before[name]} = {value}.real", f"{at[name]} = {value}.imag"]
-        return [f"{at[name]} = {value}"]
-
-    starts = [line for one in carried for line in keep(one.name, repr(one.start))]
-    starts += [f"{at[name]} = {KINDS[kind].start}" for (_, kind), name in columns.items()]
-    taken = [
-        name for name, v in vectors.items() if name not in {*signals.values(), *columns.values()}
-    ]
-    found = [*signals.values(), *ends]
-    kept = [line for x in signals.values() for line in keep(x, x)]
-    kept += [line for key, name in ends.items() for line in keep(name, key)]
-    results = [columns[c] if c in columns else ends[c[0]] for c in gathered.columns]
-    return [
-        "def loop(table, grid, out):",
-        f"    work = empty({width * LANES})",
-        f"    for begin in range(0, table.shape[0], {LANES}):",
-        f"        for lane in range({LANES}):",
-        "            i = min(begin + lane, table.shape[0] - 1)",
-        f"            for k in range({sheet.width}):",
-        f"                work[k * {LANES} + lane] = table[i, k]",
-        *(f"            {line}" for line in starts),
-        "        for k in range(grid.shape[1]):",
-        "            place = grid[0, k]",
-        *(f"            {name} = grid[{r}, k]" for r, name in enumerate(_rows(sheet, MARCH), 1)),
-        f"            for lane in range({LANES}):",
-        *(f"                {get(name)}" for name in taken),
-        f"                {', '.join(found)}, = state({arguments})",
-        *(f"                {line}" for line in kept),
-        "            if place >= 0.0:",
-        f"                for lane in range({LANES}):",
-        *(f"                    {get(name)}" for name in [*signals.values(), *columns.values()]),
-        *(f"                    {line}" for line in _gathering(columns, signals, sheet, "place")),
-        *(f"                    {at[name]} = {name}" for name in columns.values()),
-        f"        for lane in range(min({LANES}, table.shape[0] - begin)):",
-        *(f"            out[begin + lane, {k}] = {at[name]}" for k, name in enumerate(results)),
-    ]
+    yield "def loop(table, grid, out):"
+    yield f"    work = empty({len(at) * LANES})"
+    yield f"    for begin in range(0, table.shape[0], {LANES}):"
+    yield "        left = table.shape[0] - begin"
+    yield f"        lanes = left if left < {LANES} else {LANES}"
+    yield f"        for lane in range({LANES}):"
+    yield "            i = begin + lane if lane < lanes else begin"
+    yield from _indented(3, setting)
+    yield from _indented(3, (f"{at[name]} = {name}" for name in given[: len(own)]))
+    yield from _indented(3, (f"{at[one.before.args[0]]} = {one.start!r}" for one in source.carried))
+    yield from _indented(
+        3, (f"{at[name]} = {KINDS[kind].start}" for (_, kind), name in columns.items())
+    )
+    yield "        for k in range(grid.shape[1]):"
+    yield "            place = grid[0, k]"
+    yield from _indented(3, _of_angle(source, 1))
+    yield f"            for lane in range({LANES}):"
+    yield from _indented(4, get(given))
+    yield from _indented(4, going)
+    kept = zip([*signals.values(), *before], results, strict=True)
+    yield from _indented(4, (f"{at[name]} = {value}" for name, value in kept))
+    yield "            if place >= 0.0:"
+    yield f"                for lane in range({LANES}):"
+    yield from _indented(5, get([*signals.values(), *columns.values()]))
+    yield from _indented(5, _gathering(source, columns, signals, "place"))
+    yield from _indented(5, (f"{at[name]} = {name}" for name in columns.values()))
+    yield "        for lane in range(lanes):"
+    yield from _indented(3, (f"out[begin + lane, {k}] = {x}" for k, x in enumerate(filled)))
 
 
 def _gathering(
+    source: Source,
     columns: Mapping[tuple[str, str], str],
     signals: Mapping[str, str],
-    sheet: Sheet,
     number: str = "k",
 ) -> Iterator[str]:
     """Lines that take in the signals' values at the crank angle of this number."""
@@ -356,5 +294,5 @@ def _gathering(
         if place is not None:
             yield f"if {PLACE[kind].format(g=name, x=x)} {ROUNDING!r} * abs({x}):"
             yield f"    {place} = {number}"
-        if line := (sheet.has_shares and KINDS[kind].shared) or KINDS[kind].add:
+        if line := (source.has_shares and KINDS[kind].shared) or KINDS[kind].add:
             yield line.format(g=name, x=x)

@@ -89,12 +89,11 @@ def _code(machine: Machine, names: Sequence[str], crank_angle: float) -> str:
     """The linkage, and what FMI calls."""
     linkage = assemble(machine)
     source = emit(linkage, Gathered(tuple((name, "squares") for name in names)))
-    filled = len(source.gathered.signals)
-    numbers = {"COUNT": len(names), "ROOM": filled, "SPEED": machine.drive.speed}
+    numbers = {"COUNT": len(names), "SPEED": machine.drive.speed}
     numbers["START"] = crank_angle
     defined = "".join(f"#define {name} {value!r}\n" for name, value in numbers.items())
     model = files("equipoise.exchange").joinpath("fmu_model.c").read_text("utf-8")
-    return f"{defined}{in_c(source, linkage)}\n{model}"
+    return f"{defined}{in_c(source, linkage, names)}\n{model}"
 
 
 def _description(job: Job, outputs: Sequence[Output], guid: str) -> str:

@@ -23,7 +23,7 @@ typedef struct {
 } callbacks;
 typedef struct {
     double angle, speed, acceleration, start;
-    complex_t found[ROOM];
+    double found[COUNT];
     int stale;
 } machine;
 
@@ -96,7 +96,7 @@ EXPORT status fmi2GetReal(component c, const unsigned numbers[], size_t count, d
     for (k = 0; k < count; k++) {
         double *at = place(m, numbers[k]);
         if (!at && numbers[k] >= COUNT) return FAILED;
-        values[k] = at ? *at : creal(m->found[numbers[k]]);
+        values[k] = at ? *at : m->found[numbers[k]];
     }
     return OK;
 }

@@ -22,9 +22,10 @@ from equipoise.codegen.backends import NOTICE, engine, run_loop
 from equipoise.codegen.batch import Batch, all_angles, designs_of, grid_of
 from equipoise.codegen.emit import emit
 from equipoise.codegen.figures import Gathered
-from equipoise.codegen.source import Source
+from equipoise.codegen.polynomials import without_calls
+from equipoise.codegen.source import Source, on_arrays, pick_from
+from equipoise.codegen.terms import BOTH, Graph, Pair, angle_of, reached, rotation
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.machine import Machine
 from support.batches import by_numpy, every_dyad, wanted_of
 from support.designs import Array, drawn, numbers_of, paths_of
@@ -91,33 +92,40 @@ def test_numpy_takes_designs_in_pieces(tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_angles_and_rotations_without_calls() -> None:
     """The polynomials are exact as far as a link may be from where that of the base is."""
+    rng, graph = np.random.default_rng(1), Graph()
+    x, y, angle = (graph.argument(name, BOTH) for name in ("x", "y", "angle"))
+    outputs = without_calls([angle_of(Pair(x, y)), *parts_of(rotation(angle))])
+    assert not {"angle", "cos", "sin"} & {term.op for term in reached(outputs)}
+    near, any_angle = rng.uniform(-2 * pi / 3, 2 * pi / 3, 5000), rng.uniform(-100, 100, 5000)
+    given = {"x": np.cos(near), "y": np.sin(near), "angle": any_angle}
+    angles, *turned = on_arrays(outputs)(**given)
+    assert np.max(np.abs(angles - near)) < 2e-15
+    # of the angle's own digits
+    assert np.max(np.abs(turned[0] + 1j * turned[1] - np.exp(1j * any_angle))) < 3e-14
+
+
+def parts_of(vector: Pair) -> tuple[Any, Any]:
+    return vector.real, vector.imag
+
+
+def test_functions_of_loops() -> None:
+    """Numbers of a table are picked, and chosen, compiled as by NumPy, whatever the place."""
     import numba
 
     known = backends.compiled_functions()
-    angle_of, rotation = known["angle_of"], known["rotation"]
-
-    picked, floored, chosen = (known[name] for name in ("picked", "floored", "chosen"))
+    pick, floor, where = (known[name] for name in ("pick", "floor", "where"))
     table = np.arange(7.0) ** 2
 
     @numba.njit
-    def both(u: Array, angles: Array, turned: Array, parts: Array) -> None:
-        for k in range(len(u)):
-            turned[k] = rotation(angles[k])
-            parts[k] = picked(table, chosen(angles[k] >= 5.0, floored(angles[k]), angles[k]))
-            angles[k] = angle_of(u[k])
+    def each(places: Array, parts: Array) -> None:
+        for k in range(len(places)):
+            parts[k] = pick(table, where(places[k] >= 5.0, floor(places[k]), places[k]))
 
-    rng = np.random.default_rng(1)
-    near, any_angle = rng.uniform(-2 * pi / 3, 2 * pi / 3, 5000), rng.uniform(-100, 100, 5000)
-    angles, turned = any_angle.copy(), np.empty(5000, complex)
-    any_angle[:4], parts = (np.nan, np.inf, -np.inf, 6.999), np.empty(5000)
-    angles = any_angle.copy()
-    both(np.exp(1j * near), angles, turned, parts)
+    places, parts = np.random.default_rng(1).uniform(-100, 100, 500), np.empty(500)
+    places[:4] = np.nan, np.inf, -np.inf, 6.999
+    each(places, parts)
     with np.errstate(invalid="ignore"):
-        told = backends.NUMPY_FUNCTIONS["picked"](table, any_angle)
-    assert np.array_equal(parts, told)
-    any_angle, turned = any_angle[4:], turned[4:]
-    assert np.max(np.abs(angles - near)) < 2e-15
-    assert np.max(np.abs(turned - np.exp(1j * any_angle))) < 3e-14  # of the angle's own digits
+        assert np.array_equal(parts, pick_from(table, places))
 
 
 @pytest.fixture
@@ -192,7 +200,7 @@ def test_file_is_written_once(fresh: Path, monkeypatch: pytest.MonkeyPatch) -> N
     assert written(fresh) == [path.name]
 
 
-def test_names_tell_content_and_kernels(fresh: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_names_tell_content_and_backend(fresh: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     one = backends._file_of("a = 1\n")
     other = backends._file_of("a = 2\n")
     assert one != other
@@ -200,7 +208,7 @@ def test_names_tell_content_and_kernels(fresh: Path, monkeypatch: pytest.MonkeyP
 
     def changed(what: Any) -> str:
         text: str = told(what)
-        return text.replace("0.5", "0.25") if what is kernels else text
+        return text.replace("0.0", "0.25") if what is backends else text
 
     monkeypatch.setattr(backends.inspect, "getsource", changed)
     assert backends._file_of("a = 1\n") not in (one, other)

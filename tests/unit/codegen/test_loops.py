@@ -19,7 +19,6 @@ import equipoise as eq
 from equipoise.codegen.batch import Batch
 from equipoise.codegen.emit import can_emit
 from equipoise.codegen.figures import COMPUTED, NO_FULL_TURN, NOT_COMPUTED, Figure
-from equipoise.codegen.terms import Lines, Term
 from equipoise.errors import ModelError, MotionError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
@@ -157,29 +156,10 @@ def test_a_march_comes_to_every_crank_angle_once() -> None:
     march = compiled()[0].march
     assert march is not None
     theta = np.array([0.5, 0.1, 6.0, 2 * pi])
-    number, step, marked, steady, *_ = march.grid(theta)
+    number, _, given = march.way(theta)
+    step, marked, steady = given.values()
     assert sorted(number[number >= 0]) == [0, 1, 2, 3]
     assert step.max() <= np.radians(4) + 1e-12
     assert step.sum() == pytest.approx(2 * pi)
     assert marked.sum() == 1
     assert steady[np.argmax(marked) :].all() and not steady[: np.argmax(marked)].any()
-
-
-# -- terms -----------------------------------------------------------------------------------------
-
-
-def test_terms_are_written_once_and_nothing_falls_away() -> None:
-    lines: list[str] = []
-
-    def put(name: str, text: str) -> str:
-        lines.append(f"{name.replace(' ', '_')} = {text}")
-        return name.replace(" ", "_")
-
-    a, b = Term("a"), Term("b")
-    both = (a * 1.0 + 0.0) * b + np.float64(0.0) * a
-    Lines("here", put).write({"x": both + both * both, "y": 2.0 * (a * b)})
-    space = {"a": 3.0, "b": 5.0}
-    exec("\n".join(lines), space)
-    assert (space["x"], space["y"]) == (15.0 + 225.0, 30.0)
-    assert sum(line.count("(a)") for line in lines) == 1
-    assert 0j * a == 0.0 and a - 0.0 is a

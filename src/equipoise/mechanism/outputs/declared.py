@@ -20,6 +20,7 @@ from equipoise.mechanism.outputs.declaring import (
     alike,
     declared,
     declaring,
+    looked_up,
     matches,
     output,
 )
@@ -70,7 +71,12 @@ of_point = alike(
     summed=False,
 )
 of_point(
-    "place", "length", to_say("position of {name}"), ("x", "y"), sized=False, loop="{position:name}"
+    "place",
+    "length",
+    to_say("position of {name}"),
+    ("x", "y"),
+    sized=False,
+    loop=looked_up("position"),
 )
 of_point("velocity", "speed", to_say("velocity of {name}"), ("vx", "vy"), loop=True)
 of_point(
@@ -200,7 +206,7 @@ of_drive(
     "torque",
     "torque",
     to_say("drive torque of {name}"),
-    loop="{drive torque:name}",
+    loop=looked_up("drive torque"),
     members=lambda machine: _told(machine, "torque"),
     yardstick="effort",
 )
@@ -215,7 +221,7 @@ of_drive(
     "power",
     "power",
     to_say("drive power of {name}"),
-    loop="{drive torque:name} * {angular velocity:name}",
+    loop=lambda value: value("drive torque") * value("angular velocity"),
     members=lambda machine: machine.told_drives,
 )
 
@@ -247,7 +253,7 @@ of_joint(
     FORCES,
     members=joint_names,
     items=lambda found: found.forces.joints,
-    loop="{joint force:name}",
+    loop=looked_up("joint force"),
     summed=(True, False),
     compared=FORCE,
     yardstick="acting",
@@ -258,7 +264,9 @@ RAILS: dict[str, Any] = {
     "reason": "{what} is only read; take the whole force in the joint instead",
 }
 of_joint(".normal", "force", to_say("normal force in joint {name}"), summed=False, **RAILS)
-of_joint(".moment", "torque", to_say("moment in joint {name}"), loop="{joint moment:name}", **RAILS)
+of_joint(
+    ".moment", "torque", to_say("moment in joint {name}"), loop=looked_up("joint moment"), **RAILS
+)
 
 of_joint(
     ".tilting_moment",
@@ -285,7 +293,7 @@ of_bearing(
     "force",
     to_say("force of bearing {name}"),
     FORCES,
-    loop="{bearing force:name}",
+    loop=looked_up("bearing force"),
     summed=(True, False),
     compared=FORCE,
     yardstick="acting",
@@ -301,8 +309,8 @@ def _coupled(table: str) -> Callable[..., None]:
     return alike(table + ".{}", read, **shared)
 
 
-TOOTH: dict[str, Any] = {"loop": "{joint force:name}", "summed": (True, False), "compared": FORCE,
-                         "yardstick": "acting"}  # fmt: skip
+TOOTH: dict[str, Any] = {"loop": looked_up("joint force"), "summed": (True, False),
+                         "compared": FORCE, "yardstick": "acting"}  # fmt: skip
 PART_OF_TOOTH = {"summed": False, "reason": "{what} is only read; take the whole force instead"}
 for of_teeth in (_coupled("gears"), _coupled("racks")):
     of_teeth("", "force", to_say("tooth force {name}"), FORCES, **TOOTH)
@@ -310,11 +318,11 @@ for of_teeth in (_coupled("gears"), _coupled("racks")):
     of_teeth(".radial", "force", to_say("radial tooth force {name}"), **PART_OF_TOOTH)
 of_belt = _coupled("belts")
 of_belt(".pull", "force", to_say("effective pull {name}"), compared=FORCE,
-        loop="{belt pull:name}", yardstick="acting")  # fmt: skip
+        loop=looked_up("belt pull"), yardstick="acting")  # fmt: skip
 of_belt(".left", "force", to_say("tension of the left strand {name}"), compared=FORCE,
-        loop="{belt left:name}")  # fmt: skip
+        loop=looked_up("belt left"))  # fmt: skip
 of_belt(".right", "force", to_say("tension of the right strand {name}"), compared=FORCE,
-        loop="{belt right:name}")  # fmt: skip
+        loop=looked_up("belt right"))  # fmt: skip
 
 CAMMED: dict[str, Any] = {
     "members": lambda machine: [cam.name for cam in machine.cams],
@@ -323,23 +331,23 @@ CAMMED: dict[str, Any] = {
 of_cam = alike("cams.{}", lambda name, found, cam: _members(found.forces.cams, name, cam),
                linear=True, internal=True, **CAMMED)  # fmt: skip
 of_cam("", "force", to_say("contact force {name}"), FORCES,
-       loop="{joint force:name}", summed=(True, False), compared=FORCE,
+       loop=looked_up("joint force"), summed=(True, False), compared=FORCE,
        yardstick="acting")  # fmt: skip
 READ = "{what} is only read; take the whole contact force instead"
 of_cam(".normal", "force", to_say("contact force along the normal {name}"), reason=READ,
-       loop="{cam push:name}")  # fmt: skip
+       loop=looked_up("cam push"))  # fmt: skip
 of_shape = alike("cams.{}.", lambda name, found, cam: getattr(found.motion, name + "s")[cam],
                  needs="motion", **CAMMED)  # fmt: skip
 of_shape("pressure_angle", "angle", to_say("pressure angle {name}"),
-         loop="angle_of({cam forth:name}.conjugate() * {cam normal:name})",
+         loop=True,
          yardstick="pressure")  # fmt: skip
 of_shape("curvature", "per length", to_say("curvature of the cam {name}"))
 of_spring = alike(
     "springs.{}.", lambda name, found, number: getattr(found.motion.springs[number], name),
     members=lambda machine: [str(k + 1) for k in range(len(machine.springs))], needs="motion",
 )  # fmt: skip
-of_spring("pull", "force", to_say("pull of spring {name}"), loop="{spring pull:name}")
-of_spring("length", "length", to_say("length of spring {name}"), loop="{spring length:name}")
+of_spring("pull", "force", to_say("pull of spring {name}"), loop=looked_up("spring pull"))
+of_spring("length", "length", to_say("length of spring {name}"), loop=looked_up("spring length"))
 
 # -- rows and support ------------------------------------------------------------------------------
 

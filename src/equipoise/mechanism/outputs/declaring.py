@@ -3,7 +3,7 @@
 `outputs.declared` has the declarations.  `{}` in the name of a family stands for its members:
 ``links.{}.angle`` is declared once for all links.
 
-    @output("drive_power", "power", "drive power", linear=True, loop="{drive torque} * {speed}")
+    @output("drive_power", "power", "drive power", linear=True, loop=power)
     def drive_power(found):
         return found.forces.drive_torque * found.motion.speed
 """
@@ -89,7 +89,8 @@ class Declared:
     reason : why balancing cannot take it; empty where it can.
     internal : whether it is a force between bodies of one linkage, in which it counts which flank
         of teeth or strand of a chain bears.
-    loop : expression by which a compiled loop has it; ``{joint force:name}`` is looked up there.
+    loop : has it in compiled loops, from a function that looks values up there by name: for a
+        family those of its member.
     about : whether it depends on the point about which moments are taken.
     array : whether it stands among the arrays.  summed : whether it stands in the summary.
     ordered : whether it is told by orders.
@@ -111,7 +112,7 @@ class Declared:
     linear: bool = False
     reason: str = ""
     internal: bool = False
-    loop: str | None = None
+    loop: Callable[[Callable[[str], Any]], Any] | None = None
     about: bool = False
     array: bool = True
     summed: bool = True
@@ -329,6 +330,11 @@ def _said(one: Declared, item: str, of_one: bool, language: str) -> str:
         return say("one row: {what}", what=said) if of_one else said
 
 
+def looked_up(name: str) -> Callable[[Callable[[str], Any]], Any]:
+    """What a compiled loop has by this name."""
+    return lambda value: value(name)
+
+
 def alike(where: str, read: Callable[..., Any], **shared: Any) -> Callable[..., None]:
     """A way to declare outputs whose names begin alike, and that are read alike.
 
@@ -353,8 +359,7 @@ def alike(where: str, read: Callable[..., Any], **shared: Any) -> Callable[..., 
             stem = {part: where + name if part[0] == "." else where for part in parts}
             more["parts"] = tuple(stem[part] + part for part in parts)
         if more.get("loop") is True:
-            known = name.replace("_", " ") + (":name" if "{}" in where else "")
-            more["loop"] = f"{{{known}}}"
+            more["loop"] = looked_up(name.replace("_", " "))
         output(where + name, dimension, label, **more)(lambda *found: of(read(had or name, *found)))
 
     return declare

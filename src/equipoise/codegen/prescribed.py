@@ -1,4 +1,4 @@
-"""Lines for a motion that no design changes: that of the base, as rows over the crank angle.
+"""A motion that no design changes: that of the base, as rows over the crank angle.
 
 Where joints hold more than a motion needs, lengths have to agree, and designs of a loop differ in
 masses, speed and what acts only.
@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.writer import Writer
+from equipoise.codegen.terms import Pair
+from equipoise.codegen.trace import Trace
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array, State, p, size_of_bodies, u
 from equipoise.mechanism.parts.machine import FRAME
@@ -22,7 +23,7 @@ PROBED = 0.1 + np.arange(90) * 0.31
 """Crank angles (K,), rad, at which it is seen whether something moves."""
 
 
-class Course:
+class PrescribedMotion:
     """The motion of a linkage: its state at crank angles, kept while they stay the same."""
 
     def __init__(self, linkage: Linkage) -> None:
@@ -41,32 +42,31 @@ def _part(state: State, name: str, part: str, theta: Array) -> Array:
     return np.asarray(getattr(np.asarray(state[name]), part) + 0.0 * theta)
 
 
-def write_course(writer: Writer) -> None:
-    """Write where each link is, and the numbers of dyads."""
-    course, linkage = Course(writer.linkage), writer.linkage
+def trace_prescribed(trace: Trace) -> None:
+    """Add where each link is, and the numbers of dyads."""
+    motion, linkage = PrescribedMotion(trace.linkage), trace.linkage
     size = float(size_of_bodies(linkage.machine))
     for link in (FRAME, *linkage.machine.links):
         anchor = linkage.anchors[link]
-        lengths = () if anchor in writer.points else p(anchor)
-        writer.points.add(anchor)
-        for name in lengths:
-            _write(writer, course, name, size, vector=True)
-        for place, name in enumerate(u(link)):
-            _write(writer, course, name, 1.0, vector=place == 0)
+        for name in () if f"p({anchor})" in trace.state else p(anchor):
+            trace.state[name] = _vector(trace, motion, name, size)
+        turn, *rates = u(link)
+        trace.state[turn] = _vector(trace, motion, turn, 1.0)
+        for name in rates:
+            trace.state[name] = _number(trace, motion, name, "real", 1.0)
     for group in linkage.groups:
         if group.margin is not None and not group.through:
-            _write(writer, course, group.margin, 1.0, vector=False)
+            trace.state[group.margin] = _number(trace, motion, group.margin, "real", 1.0)
 
 
-def _write(writer: Writer, course: Course, name: str, size: float, vector: bool) -> None:
-    parts = [_told(writer, course, name, part, size) for part in ("real", "imag")[: 1 + vector]]
-    writer.sheet.put(name, f"({parts[0]} + 1j * {parts[1]})" if vector else parts[0])
+def _vector(trace: Trace, motion: PrescribedMotion, name: str, size: float) -> Pair:
+    return Pair(*(_number(trace, motion, name, part, size) for part in ("real", "imag")))
 
 
-def _told(writer: Writer, course: Course, name: str, part: str, size: float) -> str:
+def _number(trace: Trace, motion: PrescribedMotion, name: str, part: str, size: float) -> Any:
     """A number where it stands still, else a row."""
-    values: Any = _part(course.probed, name, part, PROBED)
+    values: Any = _part(motion.probed, name, part, PROBED)
     middle = float(np.max(values) + np.min(values)) / 2
     if np.ptp(values) <= STANDING * size:
-        return repr(0.0 if abs(middle) <= STANDING * size else middle)
-    return writer.sheet.row(f"{part} {name}", partial(course.part, name, part))
+        return 0.0 if abs(middle) <= STANDING * size else middle
+    return trace.row(f"{part} {name}", partial(motion.part, name, part))
