@@ -104,7 +104,7 @@ def test_where_nothing_large_shakes_the_masses_are_left_as_they_are(name: str) -
 def test_all_that_is_large_is_named_first() -> None:
     first, *_ = helps_told(advise(bare("hydraulic-loader")))
     assert first == (
-        "Large here: Drive force, peak: 25.6 kN at crank angle 17°, 6.4 times the largest load."
+        "Large here: Drive force, peak: 25.6 kN at 17.0° of the cycle, 6.4 times the largest load."
     )
 
 
