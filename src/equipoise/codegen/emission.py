@@ -71,6 +71,7 @@ class Lines:
     """Lines of a language for outputs, each term that is used more than once in one of its own.
 
     names : of terms that are known, or have been written.  tables : lines for tables.
+    used : terms by whose names lines were written, since this was last cleared.
     """
 
     outputs: Sequence[Any]
@@ -84,6 +85,7 @@ class Lines:
             if type(one) is Term
         )  # fmt: skip
         self._depths: dict[Term, int] = {}
+        self.used: set[Term] = set()
         self.tables: list[str] = []
         for term in self.terms:
             if term.op == "table":
@@ -112,6 +114,7 @@ class Lines:
             number = repr(float(value))
             return f"({number})" if number.startswith("-") else number
         if value in self.names:
+            self.used.add(value)
             return self.names[value]
         return self.language.operation(value.op, [self.text(one) for one in value.args])
 

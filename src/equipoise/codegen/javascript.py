@@ -1,0 +1,180 @@
+"""The steps of a linkage in JavaScript: signals of one design over crank angles.
+
+Engines stop optimising functions beyond some size, so that the lines stand in several, each of
+which goes over all crank angles; what one hands to another lies in arrays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from equipoise.codegen.emission import JAVASCRIPT, Lines, boundary
+from equipoise.codegen.emit import emit
+from equipoise.codegen.figures import Gathered
+from equipoise.codegen.source import Source
+from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Term
+from equipoise.codegen.trace import Array
+from equipoise.errors import UsageError
+from equipoise.mechanism.assembly.linkage import Linkage
+
+MOST_LINES = 150
+"""Of a function: longer ones are interpreted, which takes a hundred times as long."""
+PICK = """\
+function pick(table, place) {
+    return table[Math.min(Math.max(place, 0), table.length - 1) | 0];
+}"""
+
+
+@dataclass(frozen=True)
+class Script:
+    """Source of ``states(design, grid, angles, out)``, with what has to be handed to it.
+
+    All are typed arrays, by rows: `grid` has a row for each number that depends on the crank angle
+    alone, and `out` one for each signal; `angles` is their number of columns.
+
+    names : of the signals, in the order of the rows of `out`.
+    source : terms of these.  Its `slots` say what stands in `design`.
+    """
+
+    text: str
+    names: tuple[str, ...]
+    source: Source
+
+    def design(self, linkage: Linkage) -> Array:
+        """Numbers (T,) of a linkage of the same build."""
+        row = np.empty(self.source.width)
+        for slot in self.source.slots:
+            value = complex(slot.read(linkage))
+            row[slot.column : slot.column + 1 + slot.vector] = (value.real, value.imag)[
+                : 1 + slot.vector
+            ]
+        return row
+
+    def grid(self, theta: Array) -> Array:
+        """Rows (G, N) of the grid at crank angles (N,), rad."""
+        return self.source.grid(theta)
+
+
+def javascript(
+    linkage: Linkage, names: Sequence[str], paths: Collection[str] | None = None
+) -> Script:
+    """Signals of a linkage, by their names in the output of an analysis.
+
+    paths : of the numbers in which designs differ; None of one design.
+
+    Raises
+    ------
+    UsageError : there is no such signal, or the linkage has a group of loops, or cannot be had in
+        compiled loops.
+    MassError : a signal needs masses, and the machine lacks some.
+    """
+    source = emit(linkage, Gathered(tuple((name, "squares") for name in names)), paths)
+    if source.carried:
+        raise UsageError("loops that no dyads solve cannot be written in JavaScript")
+    return Script("\n".join(_Writer(source, names).lines()) + "\n", tuple(names), source)
+
+
+class _Writer:
+    """Lines of a script.
+
+    own, by_angle : what the design, and the crank angle alone, decide, of which others are made.
+    """
+
+    def __init__(self, source: Source, names: Sequence[str]) -> None:
+        self.outputs = [source.values[name] for name in names]
+        self.by_angle = boundary(source.outputs, ANGLE)
+        self.own = boundary(self.outputs, DESIGN)
+        known = {one: f"r{k}" for k, one in enumerate(self.by_angle)}
+        self.script = Lines(self.outputs, JAVASCRIPT, known)
+
+    def lines(self) -> list[str]:
+        script = self.script
+        given = [
+            f"const {one.args[0]} = design[{one.args[0][1:]}];"
+            for one in script.terms
+            if one.op == "argument" and one.mask == DESIGN
+        ]
+        setting = [*given, *script.write((DESIGN,), self.own)]
+        parts = self._parts()
+        makers = {one: k for k, (_, _, made) in enumerate(parts) for one in made}
+        crossing = {
+            one: row
+            for row, one in enumerate(
+                dict.fromkeys(
+                    one for k, (_, used, _) in enumerate(parts) for one in used
+                    if makers.get(one, k) < k
+                )
+            )
+        }  # fmt: skip
+        functions = [
+            line for k, part in enumerate(parts) for line in self._function(k, *part, crossing)
+        ]
+        own = ", ".join(map(script.text, self.own))
+        return [
+            *script.tables,
+            PICK,
+            *functions,
+            "function states(design, grid, angles, out) {",
+            *(f"    {line}" for line in setting),
+            f"    const own = [{own}];",
+            f"    const work = new Float64Array({len(crossing)} * angles);",
+            *(f"    part{k}(own, grid, work, angles, out);" for k in range(len(parts))),
+            "}",
+        ]
+
+    def _parts(self) -> list[tuple[list[str], list[Term], list[Term]]]:
+        """Lines of each function, with the terms that they use, and those that they name."""
+        script = self.script
+        parts: list[tuple[list[str], list[Term], list[Term]]] = [([], [], [])]
+
+        def put(line: str, made: Sequence[Term]) -> None:
+            if len(parts[-1][0]) == MOST_LINES:
+                parts.append(([], [], []))
+            part, used, named = parts[-1]
+            part.append(line)
+            used += sorted(script.used, key=lambda one: one.order)
+            named += made
+            script.used.clear()
+
+        script.used.clear()
+        before = len(script.names)
+        for line in script.write((BOTH,)):
+            put(line, [*script.names][before:])
+            before = len(script.names)
+        for k, one in enumerate(self.outputs):
+            put(f"out[{k} * angles + k] = {script.text(one)};", ())
+        return parts
+
+    def _function(
+        self,
+        number: int,
+        lines: list[str],
+        used: list[Term],
+        made: list[Term],
+        crossing: dict[Term, int],
+    ) -> list[str]:
+        script, needed = self.script, dict.fromkeys(used)
+        own = [k for k, one in enumerate(self.own) if one in needed]
+        rows = [k for k, one in enumerate(self.by_angle) if one in needed]
+        taken = [one for one in crossing if one in needed and one not in made]
+        return [
+            f"function part{number}(own, grid, work, angles, out) {{",
+            *(f"    const {script.names[self.own[k]]} = own[{k}];" for k in own),
+            "    for (let k = 0; k < angles; k++) {",
+            *(f"        const r{row} = grid[{row} * angles + k];" for row in rows),
+            *(
+                f"        const {script.names[one]} = work[{crossing[one]} * angles + k];"
+                for one in taken
+            ),
+            *(f"        {line}" for line in lines),
+            *(
+                f"        work[{row} * angles + k] = {script.names[one]};"
+                for one, row in crossing.items()
+                if one in made
+            ),
+            "    }",
+            "}",
+        ]

@@ -1,0 +1,100 @@
+"""Scripts run by Node, against the same signals of an analysis, and of the same terms by NumPy."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.codegen.emit import can_emit
+from equipoise.codegen.javascript import MOST_LINES, Script, javascript
+from equipoise.errors import UsageError
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.newton import LoopGroup
+from support.batches import signals_of
+
+NODE = shutil.which("node")
+ANGLES = 24
+node = pytest.mark.skipif(NODE is None, reason="needs Node to run JavaScript: install nodejs")
+
+RUN = """
+const {{ design, grid, angles, count }} = {given};
+const out = new Float64Array(count * angles);
+states(Float64Array.from(design), Float64Array.from(grid), angles, out);
+process.stdout.write(Buffer.from(out.buffer));
+"""
+
+
+def written() -> list[str]:
+    """Examples that a script can be written of."""
+    names = []
+    for name in eq.examples("linkage"):
+        linkage = assemble(eq.load(name))
+        if can_emit(linkage) and not any(isinstance(one, LoopGroup) for one in linkage.motion):
+            names.append(name)
+    return names
+
+
+def run(script: Script, machine: eq.Machine, theta: Any, folder: Path) -> Any:
+    """Signals (S, N) at crank angles (N,), by Node."""
+    given: dict[str, Any] = {"angles": len(theta), "count": len(script.names)}
+    given["design"] = script.design(assemble(machine)).tolist()
+    given["grid"] = script.grid(theta).ravel().tolist()
+    path = folder / "states.js"
+    path.write_text(script.text + RUN.format(given=json.dumps(given)), encoding="utf-8")
+    assert NODE is not None
+    told = subprocess.run([NODE, str(path)], check=True, capture_output=True, timeout=60)
+    return np.frombuffer(told.stdout).reshape(len(script.names), len(theta))
+
+
+def size(values: Any) -> Any:
+    """Largest value of each signal, and of the signals of rounding alone a thousandth of others."""
+    largest = np.max(np.abs(values), axis=1, keepdims=True)
+    return np.maximum(largest, 1e-3 * np.median(largest))
+
+
+@node
+@pytest.mark.parametrize("name", written())
+def test_example(name: str, tmp_path: Path) -> None:
+    """1e-13 of the same terms by NumPy; further from an analysis only where dyads are weak."""
+    machine = eq.load(name)
+    linkage = assemble(machine)
+    names = [one for one in signals_of(machine) if "." in one or one != "shaking_force"]
+    if linkage.shared is not None:
+        names = [one for one in names if not one.startswith("joints.")]
+    script = javascript(linkage, names)
+    analysis = eq.analyze(machine, ANGLES)
+    theta = analysis.crank_angle
+    got = run(script, machine, theta, tmp_path)
+    columns = script.design(linkage)[:, None, None]
+    by_name = dict(zip(
+        script.source.signals, script.source.states(*columns, *script.grid(theta)), strict=True
+    ))  # fmt: skip
+    same = np.array([np.broadcast_to(by_name[one], (1, len(theta)))[0] for one in names])
+    assert np.all(np.abs(got - same) <= 1e-13 * size(same))
+    arrays = {one.name: one.values for one in analysis.outputs}
+    known = np.array([arrays[one] for one in names])
+    assert np.all(np.abs(got - known) <= 1e-9 * size(known))
+
+
+def test_long_functions_are_split() -> None:
+    """Engines do not optimise long ones; what runs is compared in `test_example`."""
+    machine = eq.load("knife-drive")
+    script = javascript(assemble(machine), signals_of(machine))
+    parts = [part for part in script.text.split("function ") if part.startswith("part")]
+    assert len(parts) > 1
+    for part in parts:
+        given = sum(" = own[" in line or " = grid[" in line or "work[" in line
+                    for line in part.splitlines())  # fmt: skip
+        assert len(part.splitlines()) - given <= MOST_LINES + 6
+
+
+def test_loops_that_no_dyads_solve_are_refused() -> None:
+    with pytest.raises(UsageError, match="cannot be written in JavaScript"):
+        javascript(assemble(eq.load("class-three")), ["shaking_force.x"])
