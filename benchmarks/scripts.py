@@ -47,7 +47,7 @@ def nanoseconds(machine: eq.Machine, folder: Path) -> tuple[int, float]:
     script = javascript(linkage, signals(machine))
     theta = np.arange(ANGLES) * (2 * np.pi / ANGLES)
     given = {"angles": ANGLES, "count": len(script.names)}
-    given["design"] = script.design(linkage).tolist()
+    given["design"] = script.numbers(linkage).tolist()
     given["grid"] = script.grid(theta).ravel().tolist()
     path = folder / "states.js"
     path.write_text(script.text + RUN.format(given=json.dumps(given), rounds=ROUNDS))

@@ -18,6 +18,7 @@ from equipoise.errors import UsageError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.newton import LoopGroup
 from support.batches import signals_of
+from support.designs import design, drawn, numbers_of
 
 NODE = shutil.which("node")
 ANGLES = 24
@@ -41,10 +42,10 @@ def written() -> list[str]:
     return names
 
 
-def run(script: Script, machine: eq.Machine, theta: Any, folder: Path) -> Any:
+def run(script: Script, numbers: Any, theta: Any, folder: Path) -> Any:
     """Signals (S, N) at crank angles (N,), by Node."""
     given: dict[str, Any] = {"angles": len(theta), "count": len(script.names)}
-    given["design"] = script.design(assemble(machine)).tolist()
+    given["design"] = numbers.tolist()
     given["grid"] = script.grid(theta).ravel().tolist()
     path = folder / "states.js"
     path.write_text(script.text + RUN.format(given=json.dumps(given)), encoding="utf-8")
@@ -71,8 +72,8 @@ def test_example(name: str, tmp_path: Path) -> None:
     script = javascript(linkage, names)
     analysis = eq.analyze(machine, ANGLES)
     theta = analysis.crank_angle
-    got = run(script, machine, theta, tmp_path)
-    columns = script.design(linkage)[:, None, None]
+    got = run(script, script.numbers(linkage), theta, tmp_path)
+    columns = script.numbers(linkage)[:, None, None]
     by_name = dict(zip(
         script.source.signals, script.source.states(*columns, *script.grid(theta)), strict=True
     ))  # fmt: skip
@@ -81,6 +82,31 @@ def test_example(name: str, tmp_path: Path) -> None:
     arrays = {one.name: one.values for one in analysis.outputs}
     known = np.array([arrays[one] for one in names])
     assert np.all(np.abs(got - known) <= 1e-9 * size(known))
+
+
+NUMBERED = [
+    "yamashita-1", "slider-crank-engine", "quick-return", "watt-six-bar", "stephenson-six-bar",
+    "spring-balanced-crank", "scotch-yoke", "lee-kim-a",
+]  # fmt: skip
+
+
+@node
+@pytest.mark.parametrize("name", NUMBERED)
+def test_numbers_that_are_changed(name: str, tmp_path: Path) -> None:
+    """Lengths, masses and speed that are handed over, against a machine with these numbers."""
+    base = eq.load(name)
+    numbers = numbers_of(base, 1e-3)
+    signals = ["shaking_force.x", "shaking_force.y", "shaking_moment", "drive_torque"]
+    script = javascript(assemble(base), signals, {one.path: one.value for one in numbers})
+    row = drawn(numbers, 1, 3)[0]
+    changed = design(base, numbers, row)
+    analysis = eq.analyze(changed, ANGLES)
+    got = run(script, row, analysis.crank_angle, tmp_path)
+    arrays = {one.name: one.values for one in analysis.outputs}
+    known = np.array([arrays[one] for one in signals])
+    assert np.all(np.abs(got - known) <= 1e-9 * size(known))
+    own = {one.name: one.values for one in eq.analyze(base, ANGLES).outputs}
+    assert not np.allclose(known, [own[one] for one in signals])
 
 
 def test_long_functions_are_split() -> None:
@@ -93,6 +119,14 @@ def test_long_functions_are_split() -> None:
         given = sum(" = own[" in line or " = grid[" in line or "work[" in line
                     for line in part.splitlines())  # fmt: skip
         assert len(part.splitlines()) - given <= MOST_LINES + 6
+
+
+def test_numbers_behind_running_angles_are_refused() -> None:
+    """Turns of a gear that follows a swinging link are counted from arrays."""
+    base = eq.load("geared-counterweight")
+    numbers = {one.path: one.value for one in numbers_of(base, 1e-3)}
+    with pytest.raises(UsageError, match="what follows from these numbers cannot be written"):
+        javascript(assemble(base), ["drive_torque"], numbers)
 
 
 def test_loops_that_no_dyads_solve_are_refused() -> None:

@@ -6,8 +6,9 @@ which goes over all crank angles; what one hands to another lies in arrays.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -15,11 +16,22 @@ from equipoise.codegen.emission import JAVASCRIPT, Lines, boundary
 from equipoise.codegen.emit import emit
 from equipoise.codegen.figures import Gathered
 from equipoise.codegen.source import Source
-from equipoise.codegen.terms import ANGLE, BOTH, DESIGN, Term
+from equipoise.codegen.terms import (
+    ANGLE,
+    BOTH,
+    DESIGN,
+    Graph,
+    Term,
+    as_value,
+    reached,
+    substituted,
+)
 from equipoise.codegen.trace import Array
 from equipoise.errors import UsageError
+from equipoise.mechanism.assembly.family import linkage_of, with_columns
 from equipoise.mechanism.assembly.linkage import Linkage
 
+NO_NUMBERS: Mapping[str, float] = {}
 MOST_LINES = 150
 """Of a function: longer ones are interpreted, which takes a hundred times as long."""
 PICK = """\
@@ -36,15 +48,18 @@ class Script:
     alone, and `out` one for each signal; `angles` is their number of columns.
 
     names : of the signals, in the order of the rows of `out`.
-    source : terms of these.  Its `slots` say what stands in `design`.
+    paths : of the numbers of the model file that stand in `design`, SI units; where there are none
+        it has those that `numbers` finds.
+    source : terms of the signals.
     """
 
     text: str
     names: tuple[str, ...]
+    paths: tuple[str, ...]
     source: Source
 
-    def design(self, linkage: Linkage) -> Array:
-        """Numbers (T,) of a linkage of the same build."""
+    def numbers(self, linkage: Linkage) -> Array:
+        """Numbers (T,) of a linkage of the same build, for a script without paths."""
         row = np.empty(self.source.width)
         for slot in self.source.slots:
             value = complex(slot.read(linkage))
@@ -59,22 +74,47 @@ class Script:
 
 
 def javascript(
-    linkage: Linkage, names: Sequence[str], paths: Collection[str] | None = None
+    linkage: Linkage, names: Sequence[str], numbers: Mapping[str, float] = NO_NUMBERS
 ) -> Script:
     """Signals of a linkage, by their names in the output of an analysis.
 
-    paths : of the numbers in which designs differ; None of one design.
+    numbers : that are handed to the script, in this order, by their paths, such as
+        ``links.crank.points.B.x``, with what they are here; the others are those of the machine.
 
     Raises
     ------
     UsageError : there is no such signal, or the linkage has a group of loops, or cannot be had in
-        compiled loops.
+        compiled loops; there is no such number, or what follows from it cannot be written.
     MassError : a signal needs masses, and the machine lacks some.
     """
-    source = emit(linkage, Gathered(tuple((name, "squares") for name in names)), paths)
+    source = emit(linkage, Gathered(tuple((name, "squares") for name in names)), numbers or None)
     if source.carried:
         raise UsageError("loops that no dyads solve cannot be written in JavaScript")
-    return Script("\n".join(_Writer(source, names).lines()) + "\n", tuple(names), source)
+    outputs = [source.values[name] for name in names]
+    if numbers:
+        outputs = _of_numbers(source, linkage, outputs, numbers)
+    text = "\n".join(_Writer(source, outputs).lines()) + "\n"
+    return Script(text, tuple(names), tuple(numbers), source)
+
+
+def _of_numbers(
+    source: Source, linkage: Linkage, outputs: list[Any], numbers: Mapping[str, float]
+) -> list[Any]:
+    """Outputs with what follows from these numbers in the place of slots."""
+    graph = next((one.graph for one in reached(outputs)), Graph())
+    columns: dict[str, Any]
+    columns = {path: graph.argument(f"n{k}", DESIGN) for k, path in enumerate(numbers)}
+    graph.base |= {f"n{k}": number for k, number in enumerate(numbers.values())}
+    try:
+        found = linkage_of(with_columns(linkage.machine, columns), linkage)
+        values: dict[Term, Any] = {}
+        for slot in source.slots:
+            value = slot.read(found)
+            for k, part in enumerate((value.real, value.imag)[: 1 + slot.vector], slot.column):
+                values[graph.argument(f"d{k}", DESIGN)] = as_value(part)
+    except (TypeError, AttributeError) as error:
+        raise UsageError(f"what follows from these numbers cannot be written: {error}") from None
+    return substituted(outputs, values)
 
 
 class _Writer:
@@ -83,8 +123,8 @@ class _Writer:
     own, by_angle : what the design, and the crank angle alone, decide, of which others are made.
     """
 
-    def __init__(self, source: Source, names: Sequence[str]) -> None:
-        self.outputs = [source.values[name] for name in names]
+    def __init__(self, source: Source, outputs: list[Any]) -> None:
+        self.outputs = outputs
         self.by_angle = boundary(source.outputs, ANGLE)
         self.own = boundary(self.outputs, DESIGN)
         known = {one: f"r{k}" for k, one in enumerate(self.by_angle)}

@@ -49,10 +49,15 @@ FOLDED: dict[str, Callable[..., float]] = {
 
 
 class Graph:
-    """Terms by what they are made of."""
+    """Terms by what they are made of.
+
+    base : numbers of arguments, by which comparisons of terms are decided, so that code that looks
+        at numbers to tell cases apart takes the case of the base.
+    """
 
     def __init__(self) -> None:
         self._terms: dict[tuple[Any, ...], Term] = {}
+        self.base: dict[str, float] = {}
 
     def argument(self, name: str, mask: int) -> Term:
         """A number that is given by its name; mask : what it depends on."""
@@ -134,6 +139,18 @@ class Term(Number):
             raise TypeError(f"got the exponent {exponent}; terms have roots and whole powers")
         return self if exponent == 1 else self * self ** (exponent - 1)
 
+    def __lt__(self, other: Any) -> bool:
+        return at_base(self) < at_base(other)
+
+    def __le__(self, other: Any) -> bool:
+        return at_base(self) <= at_base(other)
+
+    def __gt__(self, other: Any) -> bool:
+        return at_base(self) > at_base(other)
+
+    def __ge__(self, other: Any) -> bool:
+        return at_base(self) >= at_base(other)
+
     def conjugate(self) -> Term:
         return self
 
@@ -167,12 +184,32 @@ class Pair(Number):
         return Pair(self.real, negative(self.imag))
 
 
+def at_base(value: Any) -> float:
+    """A real number at the base of its graph.
+
+    Raises
+    ------
+    TypeError : an argument has no number there.
+    """
+    if type(value) is not Term:
+        return float(value)
+
+    def number(term: Term, _: Any) -> Any:
+        if term.op != "argument":
+            return None
+        if term.args[0] not in term.graph.base:
+            raise TypeError(f"{term.args[0]} has no number by which terms can be compared")
+        return term.graph.base[term.args[0]]
+
+    return float(replaced([value], number)[0])
+
+
 def as_value(value: Any) -> Any:
     """A number as terms compute with it: a term, a pair or a float; None for anything else."""
     if type(value) in (Term, Pair, float):
         return value
-    if isinstance(value, np.ndarray) and value.ndim == 0:
-        value = value[()]
+    if isinstance(value, np.ndarray) and value.size == 1:
+        return as_value(value.item())
     if isinstance(value, int | float | np.integer | np.floating):
         return float(value)
     if isinstance(value, complex | np.complexfloating):

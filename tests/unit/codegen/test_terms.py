@@ -133,3 +133,12 @@ def test_long_expressions_are_cut() -> None:
     assert max(line.count("(") for line in lines) < 30
     got = on_arrays([total])(**{f"x{k}": 1.0 for k in range(500)})
     assert got[0] == 500 * 501 / 2
+
+
+def test_comparisons_are_those_of_the_base() -> None:
+    graph = Graph()
+    a, b = graph.argument("a", DESIGN), graph.argument("b", DESIGN)
+    with pytest.raises(TypeError, match="no number"):
+        assert a < b
+    graph.base |= {"a": 3.0, "b": 4.0}
+    assert a < b and not a * a >= b * b and (a * a + b * b) ** 0.5 <= 5.0 and b - a > 0.5
