@@ -228,9 +228,10 @@ def _in_plane(root: ET.Element, tree: Tree, body: str, point: str, plane: float)
     other = f"{name} at {plane!r}"
     if not beyond:
         return name
-    if root.find(f".//site[@name={other!r}]") is None:
-        holder = next(one for one in root.iter() if one.find(f"site[@name={name!r}]") is not None)
-        x, y, z = map(float, holder.find(f"site[@name={name!r}]").get("pos", "").split())  # type: ignore[union-attr]
+    sites = {s.get("name"): (part, s) for part in root.iter() for s in part.findall("site")}
+    if other not in sites:
+        holder, site = sites[name]
+        x, y, z = map(float, site.get("pos", "").split())
         _site(holder, other, (x, y, z + beyond))
     return other
 

@@ -81,7 +81,7 @@ def _end(root: ET.Element, tree: Tree, body: str, pin: str) -> str:
         parent, across = f"{body}{tree.suffix}", 0.0
         place -= complex(*tree.hung[body].at)
     name = f"{body}{tree.suffix} {pin}"
-    if root.find(f"link[@name={name!r}]") is None:  # else another loop ends there too
+    if all(link.get("name") != name for link in root.iter("link")):  # else a loop ends there too
         ET.SubElement(root, "link", name=name)
         joint = ET.SubElement(root, "joint", name=name, type="fixed")
         ET.SubElement(joint, "origin", xyz=_row(place.real, place.imag, across), rpy="0 0 0")

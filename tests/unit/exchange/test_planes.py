@@ -42,6 +42,21 @@ def test_places_across(suffix: str, tmp_path: Path) -> None:
         assert found[name] == pytest.approx(link.plane)
 
 
+@pytest.mark.parametrize("suffix", [".xml", ".urdf"])
+def test_names_with_quotes_of_both_kinds(suffix: str, tmp_path: Path) -> None:
+    """But for the name, the file of a machine whose loop is cut, across planes where it can."""
+    text = (Path(eq.__file__).parent / "examples" / "yamashita-1.toml").read_text(encoding="utf-8")
+    text = text.replace("[links.coupler]", '[links.coupler]\nplane = "5 mm"')
+    odd, file, parts = "'\"", tmp_path / f"model{suffix}", {}
+    for name, key in (("C", "C"), (odd, '"\'\\""')):
+        eq.export(eq.loads(text.replace("C = ", f"{key} = ")), file)
+        parts[name] = [
+            {key: value.replace(odd, "C") for key, value in part.attrib.items()}
+            for part in ET.parse(file).getroot().iter()
+        ]
+    assert parts[odd] == parts["C"]
+
+
 @pytest.mark.parametrize("suffix", [".py", ".mo"])
 def test_planar_formats_tell(suffix: str, tmp_path: Path) -> None:
     left_out = eq.export(machine().with_springs(()), tmp_path / f"model{suffix}")
