@@ -671,6 +671,13 @@ def test_help_in_a_narrow_terminal(columns: int, monkeypatch: pytest.MonkeyPatch
     assert max(map(len, lines)) <= 40
 
 
+@pytest.mark.parametrize("columns", ["0", "00", "\u00b2"])
+def test_help_where_the_width_of_the_terminal_is_no_width(columns: str) -> None:
+    without = {name: value for name, value in os.environ.items() if name != "COLUMNS"}
+    usual = succeeded(process("--help", env=without))
+    assert succeeded(process("--help", env={**without, "COLUMNS": columns})) == usual
+
+
 def test_names_of_files_are_printed_in_plain_signs() -> None:
     name = "a\x1b[31mb"
     result = equipoise("plot", "yamashita-1", "-o", name, "--only", "linkage")

@@ -72,8 +72,8 @@ def run(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns the exit status."""
     given = sys.argv[1:] if arguments is None else arguments
     columns = shutil.get_terminal_size().columns
-    if columns > MOST:  # for every library that asks
-        os.environ["COLUMNS"] = str(MOST)
+    if columns > MOST or "COLUMNS" in os.environ:  # for every library that asks, and may take a 0
+        os.environ["COLUMNS"] = str(min(columns, MOST))
     app.console = _console(LEAST) if columns < LEAST else None
     if not given or given[0].startswith("-"):  # the help has a line of each command
         for name in COMMANDS:
