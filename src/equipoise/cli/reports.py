@@ -287,6 +287,8 @@ def _paths(file: str, out: str | None, pdf: bool) -> list[str]:
 
 def _command(file: str, language: str, speed: str | None) -> str:
     """The command as it can be given again, wherever the report goes."""
-    words = ["equipoise", "report", os.path.basename(file)]
+    from equipoise.schema.files import printable
+
+    words = ["equipoise", "report", printable(os.path.basename(file))]
     words += [] if language == "en" else ["--language", language]
     return shlex.join([*words, *([] if speed is None else ["--speed", speed])])

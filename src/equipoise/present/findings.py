@@ -237,11 +237,12 @@ def find(
     UsageError : the tool has no speed that could be another.
     """
     from equipoise.mechanism.kinematics.swings import swing
+    from equipoise.schema.files import printable
     from equipoise.schema.models import loads_linkage, loads_tool
     from equipoise.schema.opening import kind_of_text, opened
 
     file = opened(path_or_name)
-    name = os.path.basename(os.fspath(path_or_name))
+    name = printable(os.path.basename(path_or_name))
     if kind_of_text(file.text) == "tool":
         tool = loads_tool(file.text, file.source, file.folder)
         return ToolFindings(_at_speed(tool, speed), file.text, name)
