@@ -148,5 +148,8 @@ def _compiled(code: str) -> bytes | None:
         source, library = Path(folder) / SOURCE, Path(folder) / "library"
         source.write_text(code, encoding="utf-8")
         words = [compiler, "-shared", "-fPIC", "-O2", "-o", str(library), str(source), "-lm"]
-        done = subprocess.run(words, capture_output=True, check=False)
-        return library.read_bytes() if done.returncode == 0 else None
+        try:
+            subprocess.run(words, capture_output=True, check=True)
+            return library.read_bytes() or None
+        except (OSError, subprocess.CalledProcessError):  # also one that ends well without a file
+            return None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import zipfile
 from pathlib import Path
@@ -93,10 +94,19 @@ def test_speed_and_acceleration_are_inputs(tmp_path: Path) -> None:
     assert found["drive_torque"][-1] == pytest.approx(last.forces.drive_torque[0], rel=1e-9)
 
 
-def test_without_a_compiler_it_has_its_sources(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.skipif(os.name != "posix", reason="needs programs that are scripts")
+@pytest.mark.parametrize(
+    "compiler",
+    [None, "#!/bin/sh\nexit 1\n", "#!/bin/sh\n", '#!/bin/sh\n: > "$5"\n', "#!/no/shell\n"],
+    ids=["none", "fails", "writes nothing", "writes an empty file", "cannot be run"],
+)
+def test_without_what_a_compiler_makes_it_has_its_sources(
+    compiler: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(shutil, "which", lambda _: None)
+    if compiler is not None:
+        (tmp_path / "cc").write_text(compiler, encoding="utf-8")
+        (tmp_path / "cc").chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
     (told,) = eq.export(eq.load("yamashita-1"), tmp_path / "x.fmu")
     assert "fmpy compile" in told
     names = zipfile.ZipFile(tmp_path / "x.fmu").namelist()
