@@ -663,6 +663,28 @@ def test_output_onto_a_full_disk() -> None:
     assert result.err == "equipoise: the output cannot be written (No space left on device)\n"
 
 
+@pytest.mark.skipif(os.name != "posix", reason="a folder in use cannot be deleted elsewhere")
+@pytest.mark.parametrize("line", ["report yamashita-1", "export yamashita-1 -o x.urdf", "mcp"])
+def test_a_current_folder_that_was_deleted(
+    line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "gone"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    folder.rmdir()
+    said = refused(process(*line.split()))
+    assert said.startswith("the current folder does not exist any more; go to another")
+
+
+def test_other_mishaps_with_files_name_the_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those of which no command says itself what they are; standard output has no name."""
+    gone = Path("gone") / "x"
+    monkeypatch.setattr("equipoise.cli._drop_output", lambda: None)  # a terminal's only
+    monkeypatch.setattr("equipoise.present.checks.machine_blocks", lambda _: gone.read_bytes())
+    said = refused(equipoise("check", "yamashita-1"))
+    assert said == f"{str(gone)!r} cannot be used (No such file or directory)"
+
+
 @pytest.mark.parametrize("columns", [1, 2, 20])
 def test_help_in_a_narrow_terminal(columns: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", str(columns))

@@ -104,8 +104,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
         _drop_output()
     except OSError as error:  # everything else that can fail says so itself
         _drop_output()
-        print(f"equipoise: the output cannot be written ({error.strerror})", file=sys.stderr)
-        return 2
+        return _refuse(UsageError(_mishap(error)))
     return 0
 
 
@@ -127,6 +126,23 @@ def check_repeated(words: Sequence[str]) -> None:
                 f"{name}: given {count} times; give it {MOST_REPEATED} times at most, and run the "
                 "command again for the others"
             )
+
+
+def _mishap(error: OSError) -> str:
+    """What the system has refused, where nobody nearer to it says so."""
+    if isinstance(error, FileNotFoundError) and not _is_somewhere():
+        return "the current folder does not exist any more; go to another, and run it again there"
+    if error.filename is not None:
+        return f"{error.filename!r} cannot be used ({error.strerror})"
+    return f"the output cannot be written ({error.strerror})"
+
+
+def _is_somewhere() -> bool:
+    try:
+        os.getcwd()
+    except OSError:
+        return False
+    return True
 
 
 def _refuse(error: Exception) -> int:
