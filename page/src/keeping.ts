@@ -130,9 +130,14 @@ export class Keeping {
 
   /** Open what the address holds, which from then on is a machine like others. */
   private async shared(): Promise<boolean> {
-    if (!this.page.full || !location.hash.includes("model=")) return false;
     const { hash, pathname, search } = location;
+    const example = new URLSearchParams(hash.slice(1)).get("example");
+    if (!this.page.full || !(example || hash.includes("model="))) return false;
     history.replaceState(null, "", pathname + search);
+    if (example) {
+      this.page.open({ type: "open", example }, example);
+      return true;
+    }
     try {
       const found = await read(hash, this.largest);
       this.page.open({ type: "open", ...found }, found.name);

@@ -658,6 +658,8 @@ export interface Wire {
   send(content: object): void;
   on(event: "msg:custom", heard: Heard): void;
   off(event: "msg:custom", heard: Heard): void;
+  /** Give up what takes long; only where that can be done. */
+  cancel?(): void;
 }
 
 export type Heard = (content: Told, buffers: DataView[]) => void;

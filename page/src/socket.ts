@@ -1,15 +1,15 @@
 /** anywidget's `send` and `on`, spoken over a WebSocket. */
 
-import type { Heard, Told, Wire } from "./protocol";
+import { Bytes } from "./bytes";
+import type { Told, Wire } from "./protocol";
 
 const FIRST_WAIT = 250;
 const LONGEST_WAIT = 4000;
 /** The server closes so where it has said why, and where it may be tried again. */
 const TRY_LATER = 1013;
 
-/** Text goes out; binary comes in: length of the header, header (JSON), padding to four, numbers. */
-export class Socket implements Wire {
-  private readonly listeners = new Set<Heard>();
+/** Text goes out; bytes come in. */
+export class Socket extends Bytes implements Wire {
   private socket: WebSocket | null = null;
   private unsent: string[] = [];
   private wait = FIRST_WAIT;
@@ -17,6 +17,7 @@ export class Socket implements Wire {
   private opened = 0;
 
   constructor(private readonly address: string) {
+    super();
     this.open();
   }
 
@@ -24,14 +25,6 @@ export class Socket implements Wire {
     const text = JSON.stringify(content);
     if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(text);
     else this.unsent.push(text);
-  }
-
-  on(_event: "msg:custom", heard: Heard): void {
-    this.listeners.add(heard);
-  }
-
-  off(_event: "msg:custom", heard: Heard): void {
-    this.listeners.delete(heard);
   }
 
   close(): void {
@@ -44,7 +37,7 @@ export class Socket implements Wire {
     socket.binaryType = "arraybuffer";
     socket.onopen = () => this.begin(socket);
     socket.onclose = (event) => this.end(event.code === TRY_LATER);
-    socket.onmessage = (event: MessageEvent<ArrayBuffer | string>) => this.hear(event.data);
+    socket.onmessage = (event: MessageEvent<ArrayBuffer | string>) => this.receive(event.data);
     this.socket = socket;
   }
 
@@ -65,18 +58,8 @@ export class Socket implements Wire {
     this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
   }
 
-  private hear(data: ArrayBuffer | string): void {
-    if (typeof data === "string") return this.tell(JSON.parse(data) as Told, []);
-    const length = new DataView(data).getUint32(0, true);
-    const header = new TextDecoder().decode(new Uint8Array(data, 4, length));
-    const start = Math.ceil((4 + length) / 4) * 4;
-    this.tell(
-      JSON.parse(header) as Told,
-      start < data.byteLength ? [new DataView(data, start)] : [],
-    );
-  }
-
-  private tell(content: Told, buffers: DataView[]): void {
-    for (const heard of [...this.listeners]) heard(content, buffers);
+  private receive(data: ArrayBuffer | string): void {
+    if (typeof data === "string") this.tell(JSON.parse(data) as Told, []);
+    else this.hear(data);
   }
 }

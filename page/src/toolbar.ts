@@ -41,6 +41,7 @@ export class Toolbar {
   private readonly redo: HTMLButtonElement;
   private readonly balance: HTMLButtonElement;
   private readonly save: HTMLButtonElement;
+  private readonly cancel = h("button", { type: "button", hidden: true }, say("Cancel"));
   private readonly own = h("option", { value: "" }, "");
   private readonly menu: HTMLDetailsElement;
 
@@ -72,6 +73,7 @@ export class Toolbar {
       h("span", { class: "gap" }),
       h("span", { class: "together" }, this.undo, this.redo, this.save),
       this.balance,
+      this.cancel,
       this.menu,
       choiceOfLanguage(commands),
       help,
@@ -112,9 +114,12 @@ export class Toolbar {
     this.examples.after(element);
   }
 
-  busy(what: string | null): void {
+  /** What takes long is computed, and can be given up by `cancel`, if that is possible. */
+  busy(what: string | null, cancel?: () => void): void {
     set(this.root, { "data-busy": what });
     this.balance.classList.toggle("working", what !== null);
+    this.cancel.hidden = what === null || !cancel;
+    this.cancel.onclick = () => cancel?.();
   }
 }
 

@@ -40,6 +40,9 @@ SHARE, GAIN, GROWTH, TRIFLE = 1 / 3, 0.15, 1.0101, 0.1
 """Most mass over that of the moving links; least gain; most growth of a headline figure, rounding
 included; share of its yardstick up to which a figure may grow."""
 SIZES = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8)
+SIZES = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8)
+SIZES = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8)
+SIZES = (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8)
 STOCK = {size * unit for unit in (1e-5, 1e-4, 1e-3, 1e-2) for size in SIZES}
 """Thicknesses of plate, m."""
 

@@ -53,7 +53,8 @@ ROOT = Path(__file__).parents[2]
 COMMANDS = (
     *["analyze", "animate", "balance", "best", "check", "completion", "decay", "examples"],
     *["export", "exposure", "import", "mcp", "modes", "new", "plant", "plot", "report", "respond"],
-    *["resume", "schema", "search", "serve", "simulate", "sweep", "tolerance", "tool"],
+    *["resume", "schema", "search", "serve", "simulate", "site", "sweep", "tolerance"],
+    "tool",
 )
 LINK_KEYS = ["angle", "angular_velocity", "angular_acceleration"]
 POINT_KEYS = ["x", "y", "vx", "vy", "ax", "ay"]
@@ -183,6 +184,7 @@ OPTIONS = {
     ],
     "serve": ["FILE", "--port", "--no-browser"],
     "simulate": ["FILE", "DURATION", "--speed", "--drive", *OUTPUTS],
+    "site": ["--out", "--runtime", "--wheels", "--docs"],
     "sweep": ["STUDY", "--out", "--workers", "--cluster", *DRAWN],
     "tolerance": ["STUDY", "--designs", *DRAWN],
     "tool": [

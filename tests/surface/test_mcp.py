@@ -112,7 +112,7 @@ def values(answer: CallToolResult) -> dict[str, Any]:
 def test_tools_are_the_commands_with_their_options(session: Session) -> None:
     assert session.tools.keys() == tools().keys()
     assert {"analyze", "balance_trade_off", "tool_design"} <= session.tools.keys()
-    assert not {"mcp", "serve", "completion"} & session.tools.keys()
+    assert not {"mcp", "serve", "site", "completion"} & session.tools.keys()
     analyze = session.tools["analyze"]
     assert analyze.description and analyze.description.startswith("Motion, shaking force")
     given = analyze.input_schema["properties"]

@@ -103,6 +103,7 @@ SILENT = {
     "report",
     "schema",
     "serve",
+    "site",
     "plot",
     "plot map",
 }

@@ -1,4 +1,4 @@
-"""Cone programs: a linear cost over second-order cones, solved by Clarabel.
+"""Cone programs: a linear cost over second-order cones.
 
     minimise c'x  so that  factors x + constant  lies in a cone, block by block
 
@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from equipoise.balancing.cone_solver import usual_solver
 from equipoise.errors import EquipoiseError
 from equipoise.signals import Array
 
@@ -252,27 +253,22 @@ class Program:
                 yield block.of(broken)
 
     def _solve(self) -> Solved:
-        import clarabel
-        from scipy import sparse
-
         matrix, right, cones = self._assembled()
         cost = np.zeros(self.count)
         for place, factor in self.cost.items():
             cost[place] += factor
-        nothing = sparse.csc_matrix((self.count, self.count))
+        solver = usual_solver()
         for tolerance in self.tolerances:
-            settings = clarabel.DefaultSettings()
-            settings.verbose, settings.max_threads = False, 1
-            settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = tolerance
-            found = clarabel.DefaultSolver(nothing, cost, matrix, right, cones, settings).solve()
-            if str(found.status) == "Solved":
+            solution = solver(cost, matrix, right, cones, tolerance)
+            if solution.status == "solved":
                 break
-            if "Infeasible" in str(found.status):
-                raise NoSolutionError(f"the cone program is {found.status}")
-        if str(found.status) not in {"Solved", "AlmostSolved"}:
-            raise StalledError(f"the solver ended with {found.status}")
-        x, bound = np.array(found.x), min(found.obj_val, found.obj_val_dual)
-        return Solved(x, found.obj_val, bound, self._prices(x, np.array(found.z)))
+            if solution.status == "infeasible":
+                raise NoSolutionError(f"the cone program is {solution.reason}")
+        if solution.status == "stalled":
+            raise StalledError(f"the solver ended with {solution.reason}")
+        bound = min(solution.value, solution.dual_value)
+        prices = self._prices(solution.x, solution.z)
+        return Solved(solution.x, solution.value, bound, prices)
 
     def feasible(self, stalled: bool = True) -> bool:
         """Whether any numbers meet the constraints.
@@ -287,12 +283,12 @@ class Program:
             return False
         return True
 
-    def _assembled(self) -> tuple[Any, Array, list[Any]]:
+    def _assembled(self) -> tuple[Any, Array, list[tuple[Cone, int]]]:
         """Matrix, right-hand side and cones in the solver's form A x + s = b."""
-        import clarabel
         from scipy import sparse
 
-        values, rows, columns, right, cones = [], [], [], [], []
+        values, rows, columns, right = [], [], [], []
+        cones: list[tuple[Cone, int]] = []
         start = 0
         for block in self.blocks:
             row, column, value = block.rows.entries
@@ -303,10 +299,9 @@ class Program:
             right.append(block.rows.constant)
             start += count
             if block.cone == "second-order":
-                cones += [clarabel.SecondOrderConeT(block.size)] * (count // block.size)
+                cones += [(block.cone, block.size)] * (count // block.size)
             else:
-                kind = clarabel.ZeroConeT if block.cone == "zero" else clarabel.NonnegativeConeT
-                cones.append(kind(count))
+                cones.append((block.cone, count))
         places = (np.concatenate(rows), np.concatenate(columns))
         shape = (start, self.count)
         matrix = sparse.csc_matrix((np.concatenate(values), places), shape=shape)

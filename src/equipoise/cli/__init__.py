@@ -52,6 +52,7 @@ MODULES = {
     "pictures:app": ["plot"],
     "protocol": ["mcp"],
     "reports": ["animate", "report"],
+    "site": ["site"],
     "sweep": ["resume", "sweep", "tolerance"],
 }
 """Module here, and what a command is called there if not like itself -> its commands."""

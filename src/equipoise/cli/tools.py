@@ -30,7 +30,7 @@ from equipoise.quantities import SI
 if TYPE_CHECKING:
     from cyclopts import Argument, ArgumentCollection
 
-LEFT_OUT = {"completion", "mcp", "serve"}
+LEFT_OUT = {"completion", "mcp", "serve", "site"}
 """Commands for a person at a terminal."""
 LONG = {
     *("animate", "balance", "plant fit", "report", "respond", "resume", "search", "simulate"),

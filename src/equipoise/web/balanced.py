@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from math import dist, isclose, sqrt
 from threading import Lock
 from types import MappingProxyType
@@ -294,21 +294,52 @@ class Session(Protocol):
         """Tell of what is shown."""
 
 
-def _balance(session: Session, message: Message) -> Iterator[Reply]:
-    base = session.current()
+@dataclass(frozen=True)
+class Balancing:
+    """What came of balancing a design.
+
+    nothing : why it stays as it is; None where it changes.
+    design : the balanced one.  content : what to change, figures and proof, as a page shows them.
+    """
+
+    nothing: str | None = None
+    design: Design | None = None
+    content: Values = field(default_factory=dict)
+
+
+def begun(session: Session, message: Message) -> Reply:
+    """The reply that says that balancing has begun."""
     with session.telling():
-        what = say("balancing")
-    yield Reply({"type": "busy", "seq": message.seq, "what": what})
+        return Reply({"type": "busy", "seq": message.seq, "what": say("balancing")})
+
+
+def computed(session: Session, base: Solved, message: Message) -> Balancing:
+    """Balance a design; errors as of `balance`."""
     moved = base.moved
     found = balanced(moved, message.flag("hold", False))
     with session.telling():
         nothing = nothing_gained(found)
     if nothing is not None:
-        yield from session.told(message.seq, nothing)
-        return
-    after = solved(balanced_design(moved, found))
+        return Balancing(nothing)
+    design = balanced_design(moved, found)
+    after = solved(design)
     with session.telling():
-        content = balanced_told(base, after, found)
+        return Balancing(design=design, content=balanced_told(base, after, found))
+
+
+def adopted(
+    session: Session, base: Solved, balancing: Balancing, message: Message
+) -> Iterator[Reply]:
+    """Show a balanced design as the next step.
+
+    Raises
+    ------
+    UsageError : the machine is no longer `base`.
+    """
+    if balancing.design is None:
+        yield from session.told(message.seq, *filter(None, [balancing.nothing]))
+        return
+    after = solved(balancing.design)
     with session.lock:
         if session.found is not base:
             raise UsageError(
@@ -316,8 +347,14 @@ def _balance(session: Session, message: Message) -> Iterator[Reply]:
             )
         session.go_to(after, "balance")
         session.before = base
-    yield Reply({"type": "balanced", "seq": message.seq, **content})
+    yield Reply({"type": "balanced", "seq": message.seq, **balancing.content})
     yield from session.told(message.seq)
+
+
+def _balance(session: Session, message: Message) -> Iterator[Reply]:
+    base = session.current()
+    yield begun(session, message)
+    yield from adopted(session, base, computed(session, base, message), message)
 
 
 ASKED: dict[str, Callable[[Session, Message], Iterator[Reply]]] = {"balance": _balance}

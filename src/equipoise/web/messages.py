@@ -257,6 +257,13 @@ def _is_plain(value: object, deep: int) -> bool:
     return isinstance(value, str | int | float)
 
 
+def makes_way(older: Message | UsageError, newer: Message | UsageError) -> bool:
+    """Whether an edit that waits was only tried, and another comes."""
+    if isinstance(older, UsageError) or isinstance(newer, UsageError):
+        return False
+    return older.preview and newer.kind == "edit"
+
+
 def _change(edit: object) -> Change:
     if not isinstance(edit, dict):
         _wrong("an edit", edit, 'an object such as {"set": "drive.speed", "text": "193 rpm"}')

@@ -17,7 +17,7 @@ from starlette.websockets import WebSocketDisconnect
 from equipoise.errors import UsageError
 from equipoise.web.desk import Desk
 from equipoise.web.lanes import MOMENT, Lanes, Work, give_back
-from equipoise.web.messages import SLOW, Message, read
+from equipoise.web.messages import SLOW, Message, makes_way, read
 from equipoise.web.replies import Reply, packed, refused, told
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ class Page:
             if event["type"] != "websocket.receive":
                 break
             message = _message(event.get("text"))
-            if self.waiting and _makes_way(self.waiting[-1], message):
+            if self.waiting and makes_way(self.waiting[-1], message):
                 self.waiting.pop()
             self.waiting.append(message)
             self.come.set()
@@ -196,13 +196,6 @@ def _message(text: str | None) -> Message | UsageError:
         return read(text)
     except UsageError as error:
         return error
-
-
-def _makes_way(older: Message | UsageError, newer: Message | UsageError) -> bool:
-    """Whether an edit that waits was only tried, and another comes."""
-    if isinstance(older, UsageError) or isinstance(newer, UsageError):
-        return False
-    return older.preview and newer.kind == "edit"
 
 
 def _done(task: asyncio.Task[None] | None) -> bool:

@@ -229,11 +229,10 @@ class Session:
 
     def tell_more(self) -> Iterator[Reply]:
         """What takes too long to be told at every move of a drag; ends when the design changes."""
-        found = self.view
-        if not isinstance(found, Solved):  # what was asked for before it became unfinished
+        wanted = self.more_wanted()
+        if wanted is None:
             return
-        sweep, against = self.more_told[0] is not found, self._against
-        self.more_told = found, against
+        found, against, sweep = wanted
         told = more(found, against, sweep, lambda: self.view is not found)
         while True:
             with self.telling():  # left where this waits: whoever goes on may be another thread
@@ -242,6 +241,21 @@ class Session:
                 return
             content, data = one
             yield Reply({"seq": None, **content}, data)
+
+    def more_wanted(self) -> tuple[Solved, Solved | None, bool] | None:
+        """What `tell_more` is about to compute, from then on known as computed.
+
+        Returns
+        -------
+        The design, the one that figures are compared with, and whether the response over speed is
+        wanted; None where the design is unfinished by now.
+        """
+        found = self.view
+        if not isinstance(found, Solved):
+            return None
+        sweep, against = self.more_told[0] is not found, self._against
+        self.more_told = found, against
+        return found, against, sweep
 
     @contextmanager
     def telling(self) -> Iterator[None]:

@@ -1,0 +1,226 @@
+/**
+ * A worker that computes with Python in WebAssembly, for a page without a server.
+ *
+ * The first one answers the page.  It starts another of the same script, which computes what takes
+ * long; see `equipoise/web/worker.py` for what each of them does.
+ */
+
+/** What `site.json` tells: where the runtime is, and what Python packages there are. */
+interface Site {
+  runtime: string;
+  /** Wheels of this package and of pure Python. */
+  own: string[];
+  /** Packages of the runtime that are needed from the beginning. */
+  first: string[];
+  /** Names, hashes and files of packages: of those that are part of the site by their path in it. */
+  lock: { packages: Record<string, Package> };
+}
+interface Package {
+  file_name: string;
+  imports: string[];
+}
+
+interface Bytes {
+  toJs(): Uint8Array;
+  destroy(): void;
+}
+interface Pair {
+  get(index: 0): string;
+  get(index: 1): Bytes;
+  destroy(): void;
+}
+interface Foreground {
+  take(text: string): void;
+  step(): Bytes | undefined;
+  missing: string | undefined;
+  lacks(name: string): void;
+  rest(): void;
+  tasks: { length: number; popleft(): Bytes };
+  wants_reply(): boolean;
+  result_of_task(data: unknown): void;
+  cancel(): Bytes | undefined;
+}
+interface Background {
+  begin(data: unknown): void;
+  step(): Pair | undefined;
+  missing: string | undefined;
+  lacks(name: string): void;
+}
+interface Pyodide {
+  loadPackage(names: string[], options?: object): Promise<unknown>;
+  unpackArchive(data: Uint8Array, format: string): void;
+  runPython(code: string): unknown;
+  /** A typed array as a view of memory. */
+  toPy(data: Uint8Array): unknown;
+  lockfile: { packages: Record<string, Package> };
+  _api: { config: { cdnUrl: string } };
+}
+
+/** What the other worker is sent and sends; what the page is sent. */
+type Sent = { task: Uint8Array } | { kind: string; bytes: Uint8Array };
+
+/** Without a message for so long, what follows from the last one is computed, ms. */
+const PAUSE = 200;
+/** What makes balancing faster is loaded after what it cannot do without. */
+const SOLVER = { name: "clarabel", after: "scipy" };
+
+const base = new URL(".", self.location.href);
+const post = (content: unknown, bytes?: Uint8Array): void =>
+  (self as unknown as Worker).postMessage(content, bytes ? [bytes.buffer] : []);
+
+/** A copy of Python's bytes; what held them is given back. */
+function own(bytes: Bytes): Uint8Array {
+  const copy = bytes.toJs().slice();
+  bytes.destroy();
+  return copy;
+}
+
+/** Let messages in between two steps. */
+const channel = new MessageChannel();
+let turn: (() => void) | null = null;
+channel.port1.onmessage = () => turn?.();
+const others = (): Promise<void> =>
+  new Promise((done) => {
+    turn = done;
+    channel.port2.postMessage(0);
+  });
+
+async function start(kind: "Foreground" | "Background"): Promise<[Pyodide, unknown]> {
+  const site = (await (await fetch(new URL("site.json", base))).json()) as Site;
+  const runtime = new URL(site.runtime, base);
+  const { loadPyodide } = (await import(new URL("pyodide.mjs", runtime).href)) as {
+    loadPyodide(options: object): Promise<Pyodide>;
+  };
+  const fetched = site.own.map(async (path) => {
+    const reply = await fetch(new URL(path, base));
+    if (!reply.ok) throw new Error(`${path}: ${reply.status}`);
+    return new Uint8Array(await reply.arrayBuffer());
+  });
+  const { lock, first } = site;
+  const here = ({ file_name }: Package): boolean => file_name.includes("/");
+  for (const one of Object.values(lock.packages)) if (here(one)) one.file_name = new URL(one.file_name, base).href;
+  const python = await loadPyodide({
+    indexURL: runtime.href,
+    lockFileContents: lock,
+    packages: first.filter((name) => here(lock.packages[name]!)), // while the runtime starts
+    stdout: () => undefined,
+  });
+  // The others come from where the runtime's own packages are published, and are checked as well.
+  const published = python._api.config.cdnUrl;
+  for (const one of Object.values(python.lockfile.packages))
+    if (!here(one)) one.file_name = published + one.file_name;
+  await python.loadPackage(first, { messageCallback: () => undefined });
+  for (const data of await Promise.all(fetched)) python.unpackArchive(data, "wheel");
+  const code = `from equipoise.web.worker import ${kind}; ${kind}()`;
+  return [python, python.runPython(code)];
+}
+
+/** Load the package that has a module; tells whether it could be. */
+async function load(python: Pyodide, module: string): Promise<boolean> {
+  const packages = Object.entries(python.lockfile.packages);
+  const name = packages.find(([name, { imports }]) => name === module || imports.includes(module))?.[0];
+  if (!name) return false;
+  post({ type: "loading", what: name });
+  try {
+    await python.loadPackage([name], { messageCallback: () => undefined });
+    python.runPython(`import importlib; importlib.invalidate_caches(); import ${module}`);
+    return true;
+  } catch {
+    return false;
+  } finally {
+    post({ type: "loading", what: null });
+  }
+}
+
+async function foreground(): Promise<void> {
+  const early: string[] = [];
+  self.onmessage = ({ data }: MessageEvent<string>) => early.push(data);
+  const [python, page] = (await start("Foreground")) as [Pyodide, Foreground];
+  let other = begin();
+  let [busy, timer] = [false, 0];
+
+  function begin(): Worker {
+    const worker = new Worker(self.location.href, { type: "module", name: "background" });
+    worker.onmessage = ({ data }: MessageEvent<Sent | { type: string }>) => {
+      if ("type" in data) return post(data);
+      if (!("kind" in data)) return;
+      if (data.kind === "result") page.result_of_task(python.toPy(data.bytes));
+      else if (page.wants_reply()) post(data.bytes, data.bytes);
+      void work();
+    };
+    return worker;
+  }
+
+  function answer(reply: Bytes): void {
+    const bytes = own(reply);
+    post(bytes, bytes);
+  }
+
+  async function work(): Promise<void> {
+    if (busy) return;
+    busy = true;
+    clearTimeout(timer);
+    for (;;) {
+      const reply = page.step();
+      while (page.tasks.length) other.postMessage({ task: own(page.tasks.popleft()) });
+      if (reply) answer(reply);
+      else if (page.missing) {
+        const module = page.missing;
+        if (!(await load(python, module))) page.lacks(module);
+      } else break;
+      await others();
+    }
+    busy = false;
+    timer = self.setTimeout(() => {
+      page.rest();
+      while (page.tasks.length) other.postMessage({ task: own(page.tasks.popleft()) });
+    }, PAUSE);
+  }
+
+  self.onmessage = ({ data }: MessageEvent<string>) => {
+    if (data === "cancel") {
+      other.terminate();
+      other = begin();
+      post({ type: "loading", what: null });
+      const refusal = page.cancel();
+      if (refusal) answer(refusal);
+    } else page.take(data);
+    void work();
+  };
+  early.forEach((text) => page.take(text));
+  void work();
+}
+
+async function background(): Promise<void> {
+  const waiting: Uint8Array[] = [];
+  let wake: (() => void) | null = null;
+  self.onmessage = ({ data }: MessageEvent<{ task: Uint8Array }>) => {
+    waiting.push(data.task);
+    wake?.();
+  };
+  const [python, tasks] = (await start("Background")) as [Pyodide, Background];
+  for (;;) {
+    if (!waiting.length) await new Promise<void>((done) => (wake = done));
+    const task = waiting.shift();
+    if (!task) continue;
+    tasks.begin(python.toPy(task));
+    for (let done = false; !done; ) {
+      const step = tasks.step();
+      if (step) {
+        const bytes = own(step.get(1));
+        const kind = step.get(0);
+        step.destroy();
+        post({ kind, bytes }, bytes);
+        done = kind === "result";
+      } else if (tasks.missing) {
+        const module = tasks.missing;
+        if (!(await load(python, module))) tasks.lacks(module);
+        else if (SOLVER.after === module) await load(python, SOLVER.name);
+        tasks.begin(python.toPy(task));
+      }
+    }
+  }
+}
+
+const failed = (error: unknown): void => post({ type: "failed", what: String(error) });
+(self.name === "background" ? background() : foreground()).catch(failed);

@@ -1,0 +1,49 @@
+"""The command `site`: the live page as a folder for any web host."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from equipoise.cli.options import NewFolder, wants
+from equipoise.cli.outputs import wrote
+from equipoise.errors import UsageError
+
+InFolder = Annotated[str | None, wants("FOLDER")]
+
+
+def site(
+    *,
+    out: Annotated[NewFolder, Parameter(name=["--out", "-o"])] = None,
+    runtime: InFolder = None,
+    wheels: InFolder = None,
+    docs: InFolder = None,
+) -> None:
+    """Write the live page as a folder that any web host can serve; it computes in the browser.
+
+    To try it: python -m http.server --directory FOLDER
+
+    Parameters
+    ----------
+    out
+        Folder to write; an earlier site in it is replaced.  Default: site in the current folder.
+    runtime
+        Folder of the npm package pyodide.  Default: node_modules/pyodide.
+    wheels
+        Folder with wheels of the runtime's packages, such as NumPy and SciPy.  Those that are not
+        in it are loaded by the page from where the runtime's packages are published.
+    docs
+        Folder of the documentation as HTML, to become docs in the site.
+    """
+    from equipoise.web.site import write_site
+
+    folder = out or "site"
+    try:
+        written = write_site(folder, runtime or "node_modules/pyodide", wheels, docs)
+    except OSError as error:
+        raise UsageError(f"{folder}: the site cannot be written ({error.strerror})") from error
+    wrote(f"{folder}/index.html")
+    print(f"first load: {written.first / 1e6:.1f} MB, compressed")
+    if written.missing:
+        print("loaded from elsewhere when needed:", ", ".join(written.missing))

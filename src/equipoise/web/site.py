@@ -1,0 +1,249 @@
+"""The live page as a folder for any web host: it computes in the reader's browser.
+
+index.html equipoise.js equipoise.css    the page
+worker.js service.js site.json           Python in a worker; what is kept for use offline
+runtime/                                 Python in WebAssembly (Pyodide)
+wheels/                                  this package, and those that it needs
+docs/                                    the documentation, where it is given
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+import zipfile
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from importlib.metadata import Distribution, distribution
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+from equipoise import __version__
+from equipoise.errors import UsageError
+from equipoise.i18n import Note
+from equipoise.web.assets import MAKE
+
+RUNTIME = "314.0.3"
+"""Version of the npm package `pyodide` that the page was tried with."""
+RUNTIME_FILES = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip")
+LOCK = "pyodide-lock.json"
+FIRST = ("numpy",)
+"""Packages of the runtime without which no machine can be opened."""
+LATER = ("scipy", "clarabel", "matplotlib", "jinja2")
+"""Those that are loaded when something needs them: balances and modes, pictures, reports."""
+PURE = ("lazy-loader", "tomli-w")
+"""Packages of pure Python that are imported from the beginning, besides this one."""
+PAGE = ("equipoise.js", "equipoise.css", "worker.js", "service.js", "THIRD-PARTY.txt")
+EPOCH = (1980, 1, 1, 0, 0, 0)
+"""Of files in wheels, so that the same sources give the same bytes."""
+POLICY = (
+    "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; "
+    "img-src 'self' data: blob:; connect-src 'self' https:; worker-src 'self'; base-uri 'none'"
+)
+HTML = """<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta http-equiv="content-security-policy" content="{policy}">
+<meta name="description" content="Draw a linkage, and see how it moves and shakes.">
+<title>Equipoise</title>
+<link rel="icon" href="data:,">
+<link rel="stylesheet" href="equipoise.css">
+</head>
+<body>
+<p id="equipoise-status" role="status">Loading {size:.0f} MB, which are kept for the next time.</p>
+<main id="equipoise-live" data-worker="worker.js" data-service="service.js?build={build}"></main>
+<noscript>This page needs JavaScript.</noscript>
+<script type="module" src="equipoise.js"></script>
+</body>
+</html>
+"""
+
+
+@dataclass(frozen=True)
+class Site:
+    """What has been written.
+
+    folder : where it stands.  first : bytes of the first load, compressed as web hosts do.
+    missing : packages that come from where the runtime's packages are published when they are
+        needed, since no wheel of them was given.
+    """
+
+    folder: Path
+    first: int
+    missing: tuple[str, ...]
+
+
+def write_site(
+    folder: str | os.PathLike[str],
+    runtime: str | os.PathLike[str],
+    wheels: str | os.PathLike[str] | None = None,
+    docs: str | os.PathLike[str] | None = None,
+) -> Site:
+    """Write the page as a folder that a web host can serve.
+
+    Parameters
+    ----------
+    folder : that is written; it must not exist, be empty, or hold an earlier site.
+    runtime : the folder of the npm package `pyodide`.
+    wheels : folder with wheels of the runtime's packages; each is checked against the hash in the
+        runtime's lock file.
+    docs : the documentation as HTML, which becomes the site's `docs`.
+
+    Raises
+    ------
+    UsageError : the runtime is of another version, a wheel is damaged, the folder holds something
+        else, or the page has not been built.
+    """
+    target, source = Path(os.path.abspath(folder)), Path(runtime)
+    lock = _lock_of(source)
+    packages, local = _packages(lock, None if wheels is None else Path(wheels))
+    own = {name: _wheel(distribution(name)) for name in ("equipoise", *PURE)}
+    static = Path(__file__).parent / "static"
+    if not all((static / name).is_file() for name in PAGE):
+        raise UsageError(MAKE)
+    if docs is not None and not (Path(docs) / "index.html").is_file():
+        raise UsageError(Note("{docs} has no index.html; build the documentation first", docs=docs))
+    _check_free(target, folder)
+    fresh = target.with_name(f".{target.name}.new")
+    shutil.rmtree(fresh, ignore_errors=True)
+    try:
+        (fresh / "runtime").mkdir(parents=True)
+        (fresh / "wheels").mkdir()
+        for name in PAGE:
+            shutil.copyfile(static / name, fresh / name)
+        for name in RUNTIME_FILES:
+            shutil.copyfile(source / name, fresh / "runtime" / name)
+        for name, data in (*own.values(), *local.items()):
+            (fresh / "wheels" / name).write_bytes(data)
+        if docs is not None:
+            shutil.copytree(docs, fresh / "docs")
+        about = {
+            "runtime": "runtime/",
+            "own": [f"wheels/{name}" for name, _ in own.values()],
+            "first": FIRST,
+            "lock": {**lock, "packages": packages},
+        }
+        (fresh / "site.json").write_text(json.dumps(about), encoding="utf-8")
+        first = _first_load(fresh, about)
+        html = HTML.format(policy=POLICY, size=first / 1e6, build=_build_of(fresh))
+        (fresh / "index.html").write_text(html, encoding="utf-8")
+        shutil.rmtree(target, ignore_errors=True)
+        fresh.rename(target)
+    finally:
+        shutil.rmtree(fresh, ignore_errors=True)
+    missing = [name for name, one in packages.items() if "/" not in one["file_name"]]
+    return Site(target, first, tuple(sorted(missing)))
+
+
+def _check_free(target: Path, folder: object) -> None:
+    """Refuse to write over anything but an earlier site."""
+    if target.is_symlink() or (target.exists() and not target.is_dir()):
+        raise UsageError(Note("{folder} is no folder; give another by -o", folder=folder))
+    if target.is_dir() and any(target.iterdir()) and not (target / "site.json").is_file():
+        raise UsageError(
+            Note("{folder} holds something else than a site; give another by -o", folder=folder)
+        )
+
+
+def _lock_of(runtime: Path) -> dict[str, Any]:
+    """The runtime's lock file: names, files and hashes of its packages."""
+    how = Note(
+        "{runtime} is not the npm package pyodide {version}; get it by `npm install "
+        "pyodide@{version}`, and give --runtime node_modules/pyodide",
+        runtime=runtime,
+        version=RUNTIME,
+    )
+    try:
+        about = json.loads((runtime / "package.json").read_text(encoding="utf-8"))
+        lock: dict[str, Any] = json.loads((runtime / LOCK).read_text(encoding="utf-8"))
+        known = about["version"] == RUNTIME and "packages" in lock
+    except (OSError, ValueError, KeyError, TypeError):
+        known = False
+    if not known or not all((runtime / name).is_file() for name in RUNTIME_FILES):
+        raise UsageError(how)
+    return lock
+
+
+def _packages(
+    lock: Mapping[str, Any], wheels: Path | None
+) -> tuple[dict[str, Any], dict[str, bytes]]:
+    """Entries of the lock file that the page may need, and the wheels that are given for them."""
+    entries: dict[str, Any] = {}
+    wanted = [*FIRST, *LATER]
+    while wanted:
+        name = wanted.pop()
+        if name not in entries:
+            entries[name] = dict(lock["packages"][name])
+            wanted += entries[name]["depends"]
+    local = {}
+    for one in entries.values():
+        file = one["file_name"]
+        if wheels is None or not (wheels / file).is_file():
+            continue
+        data = (wheels / file).read_bytes()
+        if hashlib.sha256(data).hexdigest() != one["sha256"]:
+            raise UsageError(
+                Note("{file} is damaged: its hash is not that of the lock file", file=wheels / file)
+            )
+        local[file] = data
+        one["file_name"] = f"wheels/{file}"
+    return entries, local
+
+
+def _wheel(dist: Distribution) -> tuple[str, bytes]:
+    """An installed package of pure Python as a wheel: its name and bytes."""
+    name = dist.metadata["Name"].replace("-", "_").lower()
+    stem = f"{name}-{dist.version}"
+    info = f"{stem}.dist-info"
+    out = BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
+        for path, data in _files_of(name, dist):
+            wheel.writestr(zipfile.ZipInfo(path, EPOCH), data, zipfile.ZIP_DEFLATED, 9)
+        metadata = f"Metadata-Version: 2.1\nName: {name}\nVersion: {dist.version}\n"
+        about = "Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
+        for file, text in (("METADATA", metadata), ("WHEEL", about), ("RECORD", "")):
+            wheel.writestr(zipfile.ZipInfo(f"{info}/{file}", EPOCH), text)
+    return f"{stem}-py3-none-any.whl", out.getvalue()
+
+
+def _files_of(name: str, dist: Distribution) -> Iterable[tuple[str, bytes]]:
+    """Files of an installed package, without bytecode and without the page's own script."""
+    if name == "equipoise":  # which may be installed in place
+        root = Path(__file__).parents[1]
+        files = {f"equipoise/{p.relative_to(root).as_posix()}": p for p in root.rglob("*")}
+    else:
+        files = {f.as_posix(): Path(str(dist.locate_file(f))) for f in dist.files or ()}
+    for place, path in sorted(files.items()):
+        left_out = "__pycache__" in place or place.startswith("equipoise/web/static/")
+        words = place == "equipoise/web/static/words.json"  # which the page's language needs
+        if path.is_file() and ".dist-info/" not in place and (words or not left_out):
+            yield place, path.read_bytes()
+
+
+def _first_load(folder: Path, about: Mapping[str, Any]) -> int:
+    """Bytes that a reader loads before the first machine moves, compressed as web hosts do."""
+    import gzip
+
+    first = {about["lock"]["packages"][name]["file_name"] for name in about["first"]}
+    names = [*PAGE[:3], "site.json", *(f"runtime/{name}" for name in RUNTIME_FILES)]
+    names += [*about["own"], *(name for name in first if "/" in name)]
+    sizes = 0
+    for name in names:
+        data = (folder / name).read_bytes()
+        sizes += min(len(data), len(gzip.compress(data, 6, mtime=0)))
+    return sizes
+
+
+def _build_of(folder: Path) -> str:
+    """A sign of everything in a site that the page loads."""
+    total = hashlib.sha256(__version__.encode())
+    for path in sorted(folder.rglob("*")):
+        if path.is_file() and "docs" not in path.relative_to(folder).parts[:1]:
+            total.update(path.read_bytes())
+    return total.hexdigest()[:16]

@@ -1,0 +1,301 @@
+"""The page's calculation in a browser: Python in WebAssembly, in two workers of one thread each.
+
+`Foreground` answers what takes a moment, one reply a step, so that a newer edit of a drag can take
+the place of an older one.  What takes longer is a `Task`: `Background` computes it in the other
+worker, from the design alone, and its replies come back as they are.  Neither knows what a worker
+is: `page/src/site/worker.ts` carries bytes between them and the page.
+"""
+
+from __future__ import annotations
+
+import copyreg
+import pickle
+import time
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+from equipoise.errors import EquipoiseError, UsageError
+from equipoise.i18n import Note, to_say
+from equipoise.web import balanced
+from equipoise.web.balanced import Balancing
+from equipoise.web.design import Design
+from equipoise.web.desk import Desk
+from equipoise.web.edits import Solved, solved
+from equipoise.web.messages import SLOW, Message, makes_way, read
+from equipoise.web.replies import Reply, packed, refused, told
+from equipoise.web.session import Session
+from equipoise.web.shaken import more
+
+OF_MACHINE = ("balance", "download")
+"""Of the questions that take long, those about the machine that is open."""
+SELDOM = 0.2
+"""s after which all that follows from an edit is computed in a drag that never pauses."""
+MISTAKE = "this went wrong inside the program, and nothing was changed; please report it"
+CANCELLED = Note("cancelled; nothing was changed")
+LACKING = to_say("this needs {package}, which this site does not have and could not load")
+
+Buffer = bytes | memoryview
+
+
+def _read_only(values: dict[Any, Any]) -> MappingProxyType[Any, Any]:
+    return MappingProxyType(values)
+
+
+# Designs hold read-only mappings, which pickle does not know; their class has no importable name.
+copyreg.pickle(MappingProxyType, lambda proxy: (_read_only, (dict(proxy),)))
+
+
+@dataclass(frozen=True)
+class Task:
+    """What takes long, with all that it needs of the session.
+
+    design : the machine, if the task is about one.
+    against : the one that figures are compared with, if any.
+    message : the question; None for what follows from a design without being asked for.
+    sweep : whether the response over speed is wanted.
+    wanted : outputs that the page draws.  language : that its reader speaks.
+    """
+
+    design: Design | None
+    against: Design | None
+    message: Message | None
+    sweep: bool
+    wanted: tuple[str, ...]
+    language: str
+
+
+class Foreground:
+    """One page: messages in, one reply a step out."""
+
+    def __init__(self) -> None:
+        self.desk = Desk()
+        self.waiting: deque[Message | UsageError] = deque()
+        self.tasks: deque[bytes] = deque()
+        self.missing: str | None = None
+        """A package that has to be loaded before the next step."""
+        self._running: deque[tuple[Task, Solved | None]] = deque()
+        self._message: Message | None = None
+        self._replies: Iterator[Reply] | None = None
+        self._refused_packages: set[str] = set()
+        self._answered = self._reported = 0
+        self._whole = 0.0
+
+    def take(self, text: str) -> None:
+        """Take a message in; an edit that was only tried makes way for a newer one."""
+        try:
+            message: Message | UsageError = read(text)
+        except UsageError as error:
+            message = error
+        if self.waiting and makes_way(self.waiting[-1], message):
+            self.waiting.pop()
+        self.waiting.append(message)
+
+    def step(self) -> bytes | None:
+        """Compute the next reply; None where there is none at present.
+
+        Where a package is missing, `missing` names it, and the message is begun again.
+        """
+        self.missing = None
+        try:
+            reply = self._next()
+        except ModuleNotFoundError as error:
+            reply = self._without(error.name or str(error))
+        except EquipoiseError as error:
+            reply = self._refuse(error)
+        except Exception as error:  # whatever it is, the last good state is still there
+            reply = self._refuse(UsageError(f"{MISTAKE} ({type(error).__name__}: {error})"))
+        return None if reply is None else packed(reply)
+
+    def lacks(self, package: str) -> None:
+        """Note that a package cannot be loaded."""
+        self._refused_packages.add(package)
+
+    def rest(self) -> None:
+        """Begin what follows from the design that is shown; to be called when a hand rests."""
+        session = self.desk.session
+        if self.waiting or self._replies is not None or not self.desk.has_more:
+            return
+        if any(task.message is None for task, _ in self._running):
+            return
+        wanted = session.more_wanted()
+        if wanted is not None:
+            found, against, sweep = wanted
+            self._begin(None, found, against, sweep)
+
+    def wants_reply(self) -> bool:
+        """Whether a reply of the task that runs is about the design that is shown."""
+        task, found = self._running[0]
+        return task.message is not None or self.desk.session.view is found
+
+    def result_of_task(self, data: Buffer) -> None:
+        """Take the end of a task: of a balance, the design that came of it."""
+        task, found = self._running.popleft()
+        balancing = pickle.loads(data) if memoryview(data) else None
+        if isinstance(balancing, Balancing):
+            assert task.message is not None and found is not None
+            message = task.message
+            self._replies = balanced.adopted(self.desk.session, found, balancing, message)
+            self._message = message
+        elif task.message is not None:
+            self._answer(task.message)
+
+    def cancel(self) -> bytes | None:
+        """Give up what is computed in the background, which has been ended from outside."""
+        running, self._running = self._running, deque()
+        self.tasks.clear()
+        questions = [task.message for task, _ in running if task.message is not None]
+        for message in questions:
+            self._answer(message)
+        seq = questions[0].seq if questions else None
+        language = self.desk.session.language
+        return packed(refused(seq, UsageError(CANCELLED), language)) if questions else None
+
+    # -- one step ----------------------------------------------------------------------------------
+
+    def _next(self) -> Reply | None:
+        while True:
+            if self._replies is not None:
+                if self._overtaken():
+                    self._end()
+                    continue
+                reply = next(self._replies, None)
+                if reply is not None:
+                    return reply
+                self._whole = time.monotonic()
+                self._end()
+            elif self.waiting:
+                self._start(self.waiting.popleft())
+            elif self._running or self.desk.has_more or self._reported >= self._answered:
+                return None
+            else:
+                self._reported = self._answered
+                return told(self._reported)
+
+    def _start(self, message: Message | UsageError) -> None:
+        if isinstance(message, UsageError):
+            self._replies = iter([refused(None, message)])
+        elif message.kind in SLOW and self._is_for_background(message):
+            session = self.desk.session
+            if message.kind == "balance":
+                self._replies = iter([balanced.begun(session, message)])
+            found = session.current() if message.kind in OF_MACHINE else None
+            self._begin(message, found, None, sweep=False)
+        else:
+            self._message, self._replies = message, self.desk.receive(message)
+
+    def _is_for_background(self, message: Message) -> bool:
+        """Whether a question is about a finished machine, or about nothing that is open."""
+        desk = self.desk
+        of_machine = desk.tool is None and isinstance(desk.session.found, Solved)
+        return of_machine or message.kind not in OF_MACHINE
+
+    def _begin(
+        self, message: Message | None, found: Solved | None, against: Solved | None, sweep: bool
+    ) -> None:
+        session = self.desk.session
+        design, other = (None if one is None else one.design for one in (found, against))
+        task = Task(design, other, message, sweep, session.wanted, session.language)
+        self._running.append((task, found))
+        self.tasks.append(pickle.dumps(task))
+
+    def _overtaken(self) -> bool:
+        """Whether a drag goes on, so that what else follows from this move is left out."""
+        message = self._message
+        late = time.monotonic() - self._whole > SELDOM
+        return message is not None and message.preview and bool(self.waiting) and not late
+
+    def _end(self) -> None:
+        message, self._message, self._replies = self._message, None, None
+        if message is not None:
+            self._answer(message)
+
+    def _answer(self, message: Message) -> None:
+        self._answered = max(self._answered, message.seq or 0)
+
+    def _without(self, package: str) -> Reply | None:
+        """Ask for a package, and begin the message again; refuse where it cannot be had."""
+        package = package.partition(".")[0]
+        message, self._message, self._replies = self._message, None, None
+        if package in self._refused_packages:
+            self._message = message
+            return self._refuse(UsageError(Note(LACKING, package=package)))
+        if message is not None:
+            self.waiting.appendleft(message)
+        self.missing = package
+        return None
+
+    def _refuse(self, error: EquipoiseError) -> Reply:
+        seq = None if self._message is None else self._message.seq
+        self._end()
+        return refused(seq, error, self.desk.session.language)
+
+
+class Background:
+    """Computes tasks, each from nothing but itself."""
+
+    def __init__(self) -> None:
+        self.missing: str | None = None
+        """A package that has to be loaded before the task is begun again."""
+        self._refused_packages: set[str] = set()
+        self._task: Task | None = None
+        self._steps: Iterator[tuple[str, bytes]] | None = None
+
+    def begin(self, data: Buffer) -> None:
+        """Begin a task."""
+        self._task = pickle.loads(data)
+        self._steps = self._run(self._task)
+
+    def lacks(self, package: str) -> None:
+        """Note that a package cannot be loaded."""
+        self._refused_packages.add(package)
+
+    def step(self) -> tuple[str, bytes] | None:
+        """("reply", bytes), and last ("result", bytes); None where a package is missing."""
+        assert self._steps is not None
+        self.missing = None
+        try:
+            return next(self._steps)
+        except ModuleNotFoundError as error:
+            name = (error.name or str(error)).partition(".")[0]
+            if name not in self._refused_packages:
+                self.missing = name
+                return None
+            return self._fail(UsageError(Note(LACKING, package=name)))
+        except Exception as error:  # the next task is another one
+            return self._fail(UsageError(f"{MISTAKE} ({type(error).__name__}: {error})"))
+
+    def _fail(self, error: UsageError) -> tuple[str, bytes]:
+        """Refuse what the task was asked for; it ends after that."""
+        assert self._task is not None
+        message = self._task.message
+        seq = None if message is None else message.seq
+        self._steps = iter([("result", b"")])
+        return "reply", packed(refused(seq, error, self._task.language))
+
+    def _run(self, task: Task) -> Iterator[tuple[str, bytes]]:
+        session = Session(language=task.language)
+        result = b""
+        try:
+            found = None if task.design is None else solved(task.design)
+            if found is not None:
+                session.open(found.design, found)
+                session.wanted = task.wanted
+            if task.message is None:
+                assert found is not None
+                against = None if task.against is None else solved(task.against)
+                with session.telling():
+                    for content, data in more(found, against, task.sweep, lambda: False):
+                        yield "reply", packed(Reply({"seq": None, **content}, data))
+            elif task.message.kind == "balance":
+                assert found is not None
+                result = pickle.dumps(balanced.computed(session, found, task.message))
+            else:
+                for reply in session.receive(task.message):
+                    yield "reply", packed(reply)
+        except EquipoiseError as error:
+            seq = None if task.message is None else task.message.seq
+            yield "reply", packed(refused(seq, error, task.language))
+        yield "result", result

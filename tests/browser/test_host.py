@@ -1,0 +1,115 @@
+"""The page on a web host: it computes in the browser, beside no server, and offline too."""
+
+from __future__ import annotations
+
+import re
+import threading
+from collections.abc import Iterator
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page, expect
+
+from browser.live import LONGEST, ROOT, Live
+from equipoise.web.site import Site, write_site
+
+WHEELS, RUNTIME = ROOT / "build" / "wheels", ROOT / "page" / "node_modules" / "pyodide"
+MOST = 12e6
+"""Bytes of the first load, compressed."""
+
+
+class Quiet(SimpleHTTPRequestHandler):
+    def log_message(self, *_: object) -> None:
+        """Say nothing."""
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Site:
+    if not RUNTIME.is_dir() or not any(WHEELS.glob("numpy-*.whl")):
+        pytest.skip("the runtime and its wheels could not be fetched: make test fetches them")
+    return write_site(tmp_path_factory.mktemp("host") / "site", RUNTIME, WHEELS)
+
+
+@pytest.fixture(scope="module")
+def host(site: Site) -> Iterator[str]:
+    """The address of a web host that knows nothing but files."""
+    handler = partial(Quiet, directory=str(site.folder))
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}/"
+        server.shutdown()
+
+
+@pytest.fixture(scope="module")
+def context(browser: Browser) -> Iterator[BrowserContext]:
+    """One reader, whose browser keeps what it has loaded."""
+    context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
+    context.set_default_timeout(LONGEST * 1000)
+    yield context
+    context.close()
+
+
+def opened(page: Page, address: str, name: str) -> Live:
+    page.goto(f"{address}#example={name}")
+    chosen = page.locator("select").first
+    expect(chosen).to_have_value(name, timeout=LONGEST * 1000)
+    live = Live(page)
+    live.settled()
+    return live
+
+
+def test_the_first_load_is_small(site: Site) -> None:
+    assert site.first <= MOST
+
+
+def test_a_machine_is_changed_and_balanced_without_a_server(
+    context: BrowserContext, host: str
+) -> None:
+    page = context.new_page()
+    wrong: list[str] = []
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    live = opened(page, host, "balance-crank")
+    readings = page.get_by_text("Shaking force", exact=True).first
+    expect(readings).to_be_visible()
+    live.type(live.field("drive speed"), "150 rpm")
+    live.settled()
+    live.button("Undo").click()
+    live.settled()
+    page.get_by_role("button", name="Balance", exact=True).click()
+    keep = page.get_by_role("button", name="Keep", exact=True)
+    expect(keep).to_be_visible(timeout=LONGEST * 1000)
+    assert not wrong
+    page.close()
+
+
+def test_what_was_loaded_is_used_offline(context: BrowserContext, host: str) -> None:
+    page = context.new_page()
+    opened(page, host, "yamashita-1")
+    page.wait_for_function("() => navigator.serviceWorker.controller !== null")
+    page.close()
+    again = context.new_page()
+    opened(again, host, "yamashita-1")  # everything goes by the worker that keeps it
+    context.set_offline(True)
+    try:
+        again.goto("about:blank")
+        live = opened(again, host, "watt-six-bar")
+        joint = again.locator("[data-kind=point]").first
+        expect(joint).to_have_attribute("aria-valuetext", re.compile("mm"))
+        live.settled()
+    finally:
+        context.set_offline(False)
+    again.close()
+
+
+def test_a_damaged_wheel_is_refused(tmp_path: Path) -> None:
+    from equipoise.errors import UsageError
+
+    if not RUNTIME.is_dir() or not any(WHEELS.glob("numpy-*.whl")):
+        pytest.skip("the runtime and its wheels could not be fetched: make test fetches them")
+    (wheel,) = WHEELS.glob("numpy-*.whl")
+    (tmp_path / wheel.name).write_bytes(wheel.read_bytes()[:-1] + b"x")
+    with pytest.raises(UsageError, match="is damaged"):
+        write_site(tmp_path / "site", RUNTIME, tmp_path)
+    assert not (tmp_path / "site").exists()

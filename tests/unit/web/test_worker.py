@@ -1,0 +1,153 @@
+"""The page in a browser's workers: one reply a step, long work apart, and packages when needed."""
+
+from __future__ import annotations
+
+import json
+from itertools import count
+from typing import Any
+
+import pytest
+
+from equipoise.balancing import program
+from equipoise.balancing.cone_solver import interior_point_solver
+from equipoise.web.worker import Background, Foreground
+from unit.web.pages import unpacked
+
+
+def texts(page: Foreground) -> list[dict[str, Any]]:
+    """All that the first worker says until it rests."""
+    heard = []
+    while (reply := page.step()) is not None:
+        heard.append(unpacked(reply)[0])
+    return heard
+
+
+SEQ = count(7)
+
+
+def asked(page: Foreground, what: str, **values: Any) -> list[dict[str, Any]]:
+    page.take(json.dumps({"type": what, "seq": next(SEQ), **values}))
+    return texts(page)
+
+
+def kinds(replies: list[dict[str, Any]]) -> list[str]:
+    return [reply["type"] for reply in replies]
+
+
+def done_beside(page: Foreground) -> list[dict[str, Any]]:
+    """Compute the tasks as the second worker does; all that the page is told of them."""
+    heard = []
+    while page.tasks:
+        beside = Background()
+        beside.begin(memoryview(page.tasks.popleft()))
+        while (step := beside.step()) is not None:
+            kind, data = step
+            if kind == "result":
+                page.result_of_task(memoryview(data))
+                break
+            if page.wants_reply():
+                heard.append(unpacked(data)[0])
+        heard += texts(page)
+    return heard
+
+
+MASS = {"set": "links.crank.mass", "text": "300 g"}
+
+
+@pytest.fixture
+def page() -> Foreground:
+    page = Foreground()
+    asked(page, "open", example="balance-rig")
+    page.rest()
+    done_beside(page)
+    return page
+
+
+def test_a_page_is_answered_and_what_follows_is_computed_beside() -> None:
+    page = Foreground()
+    assert kinds(asked(page, "ready")) == ["hello", "told"]
+    assert kinds(asked(page, "open", example="transplanter")) == ["state"]
+    page.rest()
+    assert kinds(done_beside(page)) == ["strokes", "planting", "told"]
+    page.rest()
+    assert not page.tasks
+
+
+def test_an_edit_that_was_only_tried_makes_way(page: Foreground) -> None:
+    for mass in ("300 g", "310 g", "320 g"):
+        edit = {"set": "links.crank.mass", "text": mass}
+        page.take(json.dumps({"type": "edit", "seq": next(SEQ), "commit": False, "edits": [edit]}))
+    assert kinds(texts(page)).count("state") == 1
+    assert page.desk.session.shown.design.machine.links["crank"].mass == pytest.approx(0.32)
+
+
+def test_a_balance_is_computed_beside_while_the_page_answers(page: Foreground) -> None:
+    assert kinds(asked(page, "balance")) == ["busy"]
+    assert "state" in kinds(asked(page, "outputs", names=["drive_torque"]))
+    told = kinds(done_beside(page))
+    assert told[:2] == ["balanced", "state"]
+    assert page.desk.session.history is not None
+    assert page.desk.session.history.undo == "balance"
+
+
+def test_a_balance_of_a_machine_that_was_changed_is_refused(page: Foreground) -> None:
+    asked(page, "balance")
+    asked(page, "edit", label="mass", edits=[MASS])
+    (refusal,) = [one for one in done_beside(page) if one["type"] == "refused"]
+    assert "was changed while it was balanced" in refusal["message"]
+
+
+def test_what_takes_long_can_be_cancelled(page: Foreground) -> None:
+    asked(page, "balance")
+    refusal = page.cancel()
+    assert refusal is not None
+    assert unpacked(refusal)[0]["message"] == "cancelled; nothing was changed"
+    assert not page.tasks
+    assert kinds(asked(page, "edit", label="mass", edits=[MASS]))[0] == "state"
+
+
+def test_downloads_come_from_beside(page: Foreground) -> None:
+    assert asked(page, "download", kind="csv") == []
+    (file, *_) = [one for one in done_beside(page) if one["type"] == "file"]
+    assert file["name"].endswith(".csv")
+
+
+def test_nonsense_and_mistakes_leave_the_page_alive(page: Foreground) -> None:
+    page.take("[]")
+    assert kinds(texts(page)) == ["refused"]
+    assert kinds(asked(page, "study", store="x"))[0] == "refused"
+    assert kinds(asked(page, "edit", label="mass", edits=[MASS]))[0] == "state"
+
+
+def test_a_package_is_asked_for_and_the_message_begun_again(
+    page: Foreground, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    receive = page.desk.receive
+
+    def lacking(message: Any) -> Any:
+        raise ModuleNotFoundError("no module", name="scipy.sparse")
+        yield
+
+    monkeypatch.setattr(page.desk, "receive", lacking)
+    page.take(json.dumps({"type": "edit", "seq": next(SEQ), "label": "mass", "edits": [MASS]}))
+    assert page.step() is None
+    assert page.missing == "scipy"
+    monkeypatch.setattr(page.desk, "receive", receive)
+    assert kinds(texts(page))[0] == "state"
+    monkeypatch.setattr(page.desk, "receive", lacking)
+    page.lacks("scipy")
+    (refusal,) = [one for one in asked(page, "undo") if one["type"] == "refused"]
+    assert "this needs scipy" in refusal["message"]
+
+
+def test_a_balance_without_clarabel_comes_to_the_same(
+    page: Foreground, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked(page, "balance")
+    (first,) = [one for one in done_beside(page) if one["type"] == "balanced"]
+    asked(page, "undo")
+    monkeypatch.setattr(program, "usual_solver", lambda: interior_point_solver)
+    asked(page, "balance")
+    (other,) = [one for one in done_beside(page) if one["type"] == "balanced"]
+    for one, two in zip(first["aims"], other["aims"], strict=True):
+        assert two["after"] == pytest.approx(one["after"], rel=1e-6)
