@@ -193,6 +193,8 @@ def served(
     """
     import uvicorn
 
+    from equipoise.web.incoming import Incoming
+
     token = token_urlsafe(24)
     with (
         _listening(port) as listener,
@@ -201,6 +203,7 @@ def served(
         port = listener.getsockname()[1]
         config = uvicorn.Config(
             application(port, token, begin, lanes),
+            http=Incoming,
             ws="websockets-sansio",
             ws_max_size=LARGEST_MESSAGE,
             ws_per_message_deflate=False,

@@ -12,19 +12,24 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from typing import Any
+from unittest import mock
 
 import pytest
+import uvicorn
+from uvicorn.server import ServerState
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from equipoise.balancing.balanced import Balanced
 from equipoise.errors import UsageError
 from equipoise.web import balanced as balanced_module
+from equipoise.web import incoming as incoming_module
 from equipoise.web import page as page_module
 from equipoise.web import server as served_module
 from equipoise.web import session as session_module
 from equipoise.web.balanced import balanced
 from equipoise.web.design import Design
+from equipoise.web.incoming import LONGEST, Incoming
 from equipoise.web.lanes import MOMENT, Lanes, Work
 from equipoise.web.openings import opened_example
 from equipoise.web.page import MOST_WAITING
@@ -371,6 +376,58 @@ def test_there_is_an_end_to_pages_and_messages(here: Here) -> None:
             page.send('{"type":"ready"}')
         while True:
             hear(page)
+
+
+def test_requests_that_do_not_come_to_their_end_are_dropped(
+    here: Here, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever of them has come, and however much trickles in; the connection of a page stays."""
+    monkeypatch.setattr(incoming_module, "LONGEST", 0.5)
+    whole = f"GET /equipoise.css?{here.query} HTTP/1.1\r\nHost: {here.host}\r\n".encode()
+    posted = b"POST" + whole.removeprefix(b"GET") + b"Content-Length: 99\r\n\r\nhalf"
+    port = int(here.host.rpartition(":")[2])
+    with ExitStack() as stack:
+        page = stack.enter_context(here.page())
+        opened = [
+            stack.enter_context(socket.create_connection(("127.0.0.1", port), timeout=10))
+            for _ in range(6)
+        ]
+        for connection, sent in zip(
+            opened, (b"", b"GE", whole, posted, whole + b"\r\n" + whole, whole), strict=True
+        ):
+            connection.sendall(sent)
+        with pytest.raises(OSError, match=r"reset|pipe|abort"):
+            trickle(opened[-1])
+        for connection in opened[:-1]:
+            while connection.recv(65536):  # a wait too long is an error
+                pass
+        assert ask(page, {"kind": "ready"})
+    assert here.get(f"/?{here.query}")[0] == 200
+
+
+def trickle(connection: socket.socket) -> None:
+    for _ in range(400):
+        connection.sendall(b"x: y\r\n")
+        time.sleep(0.05)
+
+
+def test_time_to_send_is_counted_of_each_request() -> None:
+    """From the opening or the first byte on, once however many parts, and not while answered."""
+    loop = mock.Mock()
+    loop.create_task = lambda answer, **_: answer.close() or mock.Mock()
+    config = uvicorn.Config(lambda *_: None, http=Incoming, log_config=None)
+    connection, transport = Incoming(config, ServerState(), {}, loop), mock.Mock()
+    transport.get_protocol.return_value = connection
+    transport.get_extra_info.return_value = None
+    connection.connection_made(transport)
+    loop.call_later.assert_called_once_with(LONGEST, transport.close)
+    timer = connection.limit
+    for part in (b"GET / HT", b"TP/1.1\r\n", b"Host: x\r\n"):
+        connection.data_received(part)
+        assert connection.limit is timer
+    connection.data_received(b"\r\n")
+    assert connection.limit is None
+    loop.call_later.return_value.cancel.assert_called_once()
 
 
 def test_a_port_that_is_taken_is_told() -> None:
