@@ -64,19 +64,30 @@ class Session:
         return [pid for pid, before in ticks.items() if _ticks(pid) > before + 10]
 
 
-def _below(pid: int) -> list[int]:
-    """Processes that a process has started, and those that these have."""
+def _parents() -> dict[int, int]:
+    """Every process, and the one that has started it."""
     parents = {}
     for status in Path("/proc").glob("[0-9]*/stat"):
         try:
             parents[int(status.parent.name)] = int(status.read_text().rpartition(")")[2].split()[1])
         except (OSError, IndexError):
             continue
+    return parents
+
+
+def _below(pid: int) -> list[int]:
+    """Processes that a process has started, and those that these have."""
+    parents = _parents()
     found, new = list[int](), [pid]
     while new:
         new = [one for one, parent in parents.items() if parent in new]
         found += new
     return found
+
+
+def _children(pid: int) -> list[int]:
+    """Processes that a process has started itself."""
+    return [one for one, parent in _parents().items() if parent == pid]
 
 
 def _ticks(pid: int) -> int:
@@ -141,7 +152,7 @@ def test_the_end_of_the_input_ends_everything(session: Session, folder: Path) ->
 def test_a_worker_that_dies_is_told(session: Session, folder: Path) -> None:
     session.call(1, "sweep", study="slow.toml", out="1.zarr")
     until((folder / "1.zarr").exists, 60)
-    for pid in session.computing() or _below(session.process.pid):
+    for pid in _children(session.process.pid):  # those below it are only started again
         subprocess.run(["kill", "-9", str(pid)], check=False)
     answer = session.wait(1)["result"]
     assert answer["isError"]
