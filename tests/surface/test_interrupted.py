@@ -136,7 +136,7 @@ main()
 
 
 @pytest.mark.parametrize(
-    "module", ["cyclopts", "equipoise.cli.linkage", "numpy.fft", "equipoise.signals"]
+    "module", ["cyclopts", "equipoise.cli.linkage", "numpy.linalg", "equipoise.signals"]
 )
 def test_an_interrupt_while_modules_are_imported(module: str, folder: Path) -> None:
     words = [sys.executable, "-c", IMPORTING.format(name=module), "analyze", "yamashita-1"]

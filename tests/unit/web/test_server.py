@@ -164,6 +164,9 @@ def test_strange_pages_get_no_socket(here: Here, query: str, options: Any) -> No
     assert caught.value.response.body.startswith(b"equipoise: ")
 
 
+# The error that ends the work of a page that is closed can meet a callback of the interpreter,
+# which reports it and goes on; the next step of the work meets it no more, and ends by itself.
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 def test_nonsense_is_answered_with_a_sentence(here: Here) -> None:
     with here.page() as page:
         assert hear(page)["type"] == "hello"
