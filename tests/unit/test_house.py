@@ -102,3 +102,8 @@ def test_files_that_the_documentation_names_are_there(page: Path) -> None:
     names = {file.name for file in found}
     for name in named:
         assert name in names or (TOP / name).exists() or (ROOT / name).exists(), name
+
+
+def test_least_squares_are_asked_for_in_one_place() -> None:
+    """Which keeps numbers from LAPACK of which it writes to standard output."""
+    assert {file.name for file in FILES if "linalg.lstsq(" in text_of(file)} == {"signals.py"}

@@ -20,7 +20,7 @@ from equipoise.mechanism.dynamics.parameters import parameter_values
 from equipoise.mechanism.parts.machine import Machine, Vector, unknown
 from equipoise.results.blocks import Block, Cell, Column, Table, Value
 from equipoise.results.result import Result
-from equipoise.signals import Array
+from equipoise.signals import Array, lstsq
 
 MET = 1e-9
 """Share of a condition's largest term that may be left of it."""
@@ -114,8 +114,8 @@ def least_moments(machine: Machine, links: Sequence[str], free: Sequence[str] = 
 def _least(costed: Array, free: Array, right: Array) -> Array:
     """Solution of costed x + free z = right with the least |x|; of least squares where none is."""
     blind = _blind_to(free)
-    x = np.linalg.lstsq(blind @ costed, blind @ right, rcond=RANK)[0]
-    z = np.linalg.lstsq(free, right - costed @ x, rcond=RANK)[0]
+    x = lstsq(blind @ costed, blind @ right, rcond=RANK)[0]
+    z = lstsq(free, right - costed @ x, rcond=RANK)[0]
     return np.concatenate([x, z])
 
 

@@ -32,7 +32,7 @@ from equipoise.quantities import Dimension, display
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value
 from equipoise.results.outputs import output_named
 from equipoise.results.result import Result
-from equipoise.signals import Array, harmonics
+from equipoise.signals import Array, harmonics, lstsq
 
 Kind = Literal["zero", "sine"]
 
@@ -222,7 +222,7 @@ def _without_noise(kept: Array, grouping: Array, columns: Array) -> Array:
     found = grouping.copy()
     for k, column in enumerate(columns.T):
         used = np.abs(grouping[:, k]) > noise
-        fitted = np.linalg.lstsq(kept[:, used], column, rcond=None)[0] if np.any(used) else []
+        fitted: Any = lstsq(kept[:, used], column, rcond=None)[0] if np.any(used) else []
         if np.linalg.norm(kept[:, used] @ fitted - column) <= ROUNDING:
             found[:, k] = 0.0
             found[used, k] = fitted

@@ -24,7 +24,7 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.parts.balance import Limit
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.signals import Array
+from equipoise.signals import Array, lstsq
 
 Progress = Callable[[int, int], None]
 
@@ -215,7 +215,7 @@ def _least_squares(problem: Problem, free: Array, given: Array) -> Array | None:
         matrices.append(factor * matrix[:, free])
         vectors.append(factor * (vector + matrix @ given))
     found = given.copy()
-    found[free] = np.linalg.lstsq(np.concatenate(matrices), -np.concatenate(vectors), rcond=None)[0]
+    found[free] = lstsq(np.concatenate(matrices), -np.concatenate(vectors), rcond=None)[0]
     return found
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.measured.record import Record
 from equipoise.measured.smoothing import Local, Samples, fitted, means, steepest_time, top, zigzag
-from equipoise.signals import Array
+from equipoise.signals import Array, lstsq
 
 ROUGH = 0.3
 """Of the whole range: swings above it show at once."""
@@ -132,7 +132,7 @@ def _first(times: Array, size: Array) -> float:
     """
     if len(times) > 3 and np.max(size) > 2 * np.min(size):
         design = np.column_stack([size, np.ones(len(size))])
-        return float(np.linalg.lstsq(design, size * times, rcond=None)[0][0])
+        return float(lstsq(design, size * times, rcond=None)[0][0])
     return float(np.average(times, weights=size**2))
 
 

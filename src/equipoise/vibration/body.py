@@ -20,7 +20,7 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, Gauge, Mount, Support, unit_vector
-from equipoise.signals import Array, Periodic
+from equipoise.signals import Array, Periodic, lstsq
 
 MISSING = Note(
     "the machine stands on solid ground; add a table [support] with its mass, mounts and gauges"
@@ -193,7 +193,7 @@ def _shared(body: Body, load: Array) -> dict[str, float]:
         stiffness = np.zeros((len(body.free),) * 2)
         for n, k in touching.items():
             stiffness += k * np.outer(rows[n], rows[n])
-        settled = np.linalg.lstsq(stiffness, left, rcond=1e-12)[0]
+        settled = lstsq(stiffness, left, rcond=1e-12)[0]
         found = {n: float(-k * (rows[n] @ settled)) for n, k in rates.items()}
         kept = {n: k for n, k in rates.items() if not (mounts[n].one_sided and found[n] < 0)}
         if kept.keys() == touching.keys():

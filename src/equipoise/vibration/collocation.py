@@ -15,7 +15,7 @@ from typing import Protocol
 
 import numpy as np
 
-from equipoise.signals import Array
+from equipoise.signals import Array, lstsq
 
 Rates = Callable[[Array], Array]
 
@@ -239,7 +239,7 @@ def _newton(rates: Rates, orbit: Orbit, states: Array, conditions: Conditions) -
         - conditions.end @ orbit.starts[:, -1]
     )
     closing = conditions.begin + conditions.end @ monodromy
-    first = np.linalg.lstsq(closing, open_by - conditions.end @ offset, rcond=None)[0]
+    first = lstsq(closing, open_by - conditions.end @ offset, rcond=None)[0]
     starts = np.empty((count, intervals + 1))
     starts[:, 0] = first
     for k in range(intervals):

@@ -28,7 +28,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.planes import moments_across
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, Gauge, Row
 from equipoise.quantities import Dimension, told
-from equipoise.signals import Array, Periodic
+from equipoise.signals import Array, Periodic, lstsq
 from equipoise.vibration.body import (
     Body,
     Rest,
@@ -352,7 +352,7 @@ class Linear:
 
     def _mean(self, load: Array) -> Array:
         scale = float(np.linalg.norm(self.excitation.weights[0][0])) + float(np.linalg.norm(load))
-        mean = np.linalg.lstsq(self.stiffness, load, rcond=1e-12)[0]
+        mean = lstsq(self.stiffness, load, rcond=1e-12)[0]
         over = np.abs(self.stiffness @ mean - load) > 1e-9 * scale
         if np.any(over):
             raise ModelError("support.mounts", driven_away(self.body, over))

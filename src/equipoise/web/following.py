@@ -20,6 +20,7 @@ from equipoise.mechanism.assembly.steps import Array, planar
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import clean_place
+from equipoise.signals import lstsq
 from equipoise.web.design import DRAGGED
 
 TOGETHER = 1e-9
@@ -84,7 +85,7 @@ def following(motion: Motion, machine: Machine, goals: Goals) -> Following | Non
     if led is not None:  # where it was put, in digits that a file is to have
         places[led] = complex(*clean_place(was[led] + moved.pop(led), size, DRAGGED))
     matrix, sums = _system(rings, places, [*moved])
-    change = np.linalg.lstsq(matrix, -sums, rcond=None)[0]
+    change = lstsq(matrix, -sums, rcond=None)[0]
     if np.max(np.abs(matrix @ change + sums)) > FITS * size:
         return None
     for spot, by in zip(moved, change, strict=True):
@@ -219,7 +220,7 @@ def _fewest(matrix: Array, wanted: Array, cost: Array) -> Array:
     for _ in range(ROUNDS):
         least = LEAST * np.max(np.abs(change), initial=0.0)
         scale = (np.abs(change) + least) / cost
-        old, change = change, scale * np.linalg.lstsq(matrix * scale, wanted, rcond=SAME)[0]
+        old, change = change, scale * lstsq(matrix * scale, wanted, rcond=SAME)[0]
         if np.max(np.abs(change - old), initial=0.0) <= least:
             break
     helps = np.abs(change) > THERE * np.max(np.abs(change), initial=0.0)

@@ -11,6 +11,7 @@ from equipoise.errors import ModelError
 from equipoise.exchange.reading.spatial import Array, Space
 from equipoise.mechanism.kinematics.outline import Outline
 from equipoise.mechanism.parts.machine import FRAME, Gear
+from equipoise.signals import lstsq
 
 EXACT = 1e-9
 """Share of a factor by which another may differ from it: rounding."""
@@ -91,7 +92,7 @@ def _ratio(
     own, geared, carried = told.astype(float)
     sides = np.column_stack([own - carried, carried - geared])
     right = np.array([wanted.get(joint, 0.0) for joint in joints])
-    (scale, scaled), _, rank, _ = np.linalg.lstsq(sides, right)
+    (scale, scaled), _, rank, _ = lstsq(sides, right)
     left = np.abs(sides @ (scale, scaled) - right).max()
     if rank < 2 or left > EXACT * np.abs(right).max() or abs(scale) < EXACT:
         return None

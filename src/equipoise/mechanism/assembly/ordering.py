@@ -17,6 +17,7 @@ from equipoise.mechanism.assembly.joints import Structure, held_fast, subsets
 from equipoise.mechanism.assembly.newton import LoopGroup, poses_in
 from equipoise.mechanism.assembly.parallels import pointed
 from equipoise.mechanism.parts.machine import Position
+from equipoise.signals import lstsq
 
 
 def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group:
@@ -118,7 +119,7 @@ def _guided(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Posi
         for line in (along, 1j * along) if one.guide is None else (along,):
             rows.append([-line.imag, line.real])
             ways.append((line.conjugate() * at).imag)
-    place = np.linalg.lstsq(np.array(rows), np.array(ways))[0]
+    place = lstsq(np.array(rows), np.array(ways))[0]
     return Position(0.0, {label: (place[0], place[1])}, {link: float(np.angle(turn))})
 
 

@@ -36,6 +36,7 @@ from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.machine import Link, Machine, Vector, unknown
 from equipoise.mechanism.parts.places import in_frame
 from equipoise.mechanism.parts.planes import moments_across
+from equipoise.signals import lstsq
 
 QUANTITIES = ("mass", "moment_x", "moment_y", "inertia")
 """Inertial parameters of a link: kg, kg m, kg m, kg m2; moments and inertia about its origin."""
@@ -271,7 +272,7 @@ def independent_columns(matrix: Array, tolerance: float = 1e-9) -> tuple[list[in
         if norm > limit:
             kept.append(k)
             basis = np.column_stack([basis, rest / norm])
-    factors = np.linalg.lstsq(matrix[:, kept], matrix, rcond=None)[0]
+    factors = lstsq(matrix[:, kept], matrix, rcond=None)[0]
     factors[np.abs(factors) < tolerance] = 0.0
     return kept, factors
 
