@@ -80,8 +80,13 @@ def forces(machine: eq.Machine, angles: Any = ANGLES, **how: Any) -> eq.mechanis
 
 
 def kinetic_power(found: eq.mechanism.Forces) -> Array:
-    """Rate of change of kinetic energy, from velocities and accelerations, one row a link."""
-    rows = []
+    """Rate of change of kinetic energy, from velocities and accelerations.
+
+    Two rows a link, and one of the flywheel, which turns with the drive's link.
+    """
+    drive = found.motion.machine.drive
+    crank = found.motion.links[drive.link]
+    rows = [drive.flywheel * crank.angular_velocity * crank.angular_acceleration]
     for name, link in found.motion.machine.links.items():
         center, turning = found.motion.mass_centers[name], found.motion.links[name]
         assert link.mass is not None
