@@ -32,6 +32,9 @@ rad: longer ones miss a quick return's work by 1e-6 of it where the grid is coar
 BESIDE = 2e-8
 """rad in a cycle of one turn: how far before and behind a jump its sides are taken.  Loads and
 motion laws count up to 1e-9 of a cycle before a jump as behind it."""
+STEPS_BETWEEN_BENDS = 4
+"""Of the grid: rows of a table that lie closer, on the average, bend too little to be seen, and
+each would cost 16 crank angles."""
 MOST_ORDERS, ORDERS_AT_ONCE = 5000, 64
 """Of a signal that jumps; each takes a product with all samples."""
 
@@ -148,13 +151,17 @@ class JumpSampling:
     orders: int
 
     @classmethod
-    def of(cls, grid: Array, turns: int, jumps: Array) -> JumpSampling:
-        """For a grid (N,) of equally spaced crank angles from 0 over a cycle, and jumps (J,) in it,
-        rad.
+    def of(
+        cls, grid: Array, turns: int, jumps: Array, bends: Array | tuple[()] = ()
+    ) -> JumpSampling:
+        """For a grid (N,) of equally spaced crank angles from 0 over a cycle, jumps (J,) in it, and
+        angles (B,) at which only slopes jump, rad; so many of these as the grid can tell apart.
         """
         period, beside = 2 * pi * turns, BESIDE * turns
-        ends = np.unique(np.concatenate([[0.0], within_period(jumps, period), [period]]))
-        ends = np.delete(ends, 1 + np.flatnonzero(np.diff(ends[:-1]) < 4 * beside))
+        if len(bends) * STEPS_BETWEEN_BENDS > len(grid):
+            bends = ()
+        jump_ends = _ends_of_pieces(jumps, period, 4 * beside)
+        ends = _ends_of_pieces(np.concatenate([jumps, bends]), period, 4 * beside)
         longest = min(GAUSS_POINTS * period / len(grid), LONGEST_PANEL)
         counts = np.ceil(np.diff(ends) / longest * (1 - ROUNDING))
         panels = [
@@ -166,7 +173,8 @@ class JumpSampling:
         nodes, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
         inside = (begins[:, None] + widths[:, None] * (1 + nodes) / 2).ravel()
         shares = (widths[:, None] * weights / (2 * period)).ravel()
-        sudden = ends[:-1] if np.any(within_period(jumps, period) < beside) else ends[1:-1]
+        at_zero = np.any(within_period(jumps, period) < beside)
+        sudden = jump_ends[:-1] if at_zero else jump_ends[1:-1]
         before = sudden - beside + period * (sudden < beside)
         theta = np.concatenate([grid, before, sudden + beside, inside])
         at = np.concatenate([grid, sudden, sudden, inside])
@@ -199,6 +207,14 @@ class JumpSampling:
             found[..., some] = weighted @ waves
         found[..., 1:] *= 2
         return Periodic(found, self.turns)
+
+
+def _ends_of_pieces(angles: Array, period: float, least: float) -> Array:
+    """0, angles and the period, rising, without those that come closer behind another than the
+    least distance.
+    """
+    ends = np.unique(np.concatenate([[0.0], within_period(angles, period), [period]]))
+    return np.delete(ends, 1 + np.flatnonzero(np.diff(ends[:-1]) < least))
 
 
 def harmonics(samples: Array, orders: int | None = None) -> Array:

@@ -32,9 +32,11 @@ from support.balancing_reference import (
     Problem,
     convex_optimum,
     evolved,
+    loads_jump,
     made,
     mass_range,
     measured,
+    measured_exactly,
     piece_inertia,
     plate,
     signals_of,
@@ -300,13 +302,16 @@ def balanced(name: str) -> eq.balancing.Balanced:
 def test_no_other_is_better(name: str) -> None:
     machine, plan = case_of(name)
     found, problem = balanced(name), Problem(machine, plan)
-    cost, at = evolved(problem, seed=1)
+    sampled, at = evolved(problem, seed=1)
     whole = sum(problem.weights)
     rebuilt = problem.rebuilt(at)
     values = [measured(rebuilt, one) for one in plan.objectives]
     before = [goal.before for goal in problem.goals]
     real = problem.combined([np.array(v / b) for v, b in zip(values, before, strict=True)])
-    assert float(real) == pytest.approx(cost, abs=1e-9 * whole)
+    assert float(real) == pytest.approx(sampled, abs=1e-9 * whole)
+    wishes = plan.objectives
+    shares = [measured_exactly(rebuilt, w) / measured_exactly(machine, w) for w in wishes]
+    cost = float(problem.combined([np.array(share) for share in shares]))
     assert cost >= found.cost - BEATEN * whole
     assert cost >= found.bound - BEATEN * whole
     assert cost <= found.cost + 1e-5 * whole
@@ -319,9 +324,13 @@ def test_values_before_and_after(name: str) -> None:
     values = []
     for one, goal in zip(plan.objectives, problem.goals, strict=True):
         before, after = found.objectives[one.name]
-        assert before == pytest.approx(measured(machine, one), rel=1e-12)
-        assert before == pytest.approx(goal.before, rel=1e-12)
-        assert after == pytest.approx(measured(found.machine, one), abs=1e-9 * before)
+        jumps = loads_jump(machine)
+        # the reference's samples miss a little of an area where the signal jumps
+        near = 1e-4 if jumps and one.measure == "area" else 1e-12
+        assert before == pytest.approx(measured_exactly(machine, one), rel=near)
+        assert before == pytest.approx(goal.before, rel=1e-3 if jumps else 1e-12)
+        exact = measured_exactly(found.machine, one)
+        assert after == pytest.approx(exact, abs=max(near, 1e-9) * before)
         values.append(np.array(after / before))
     assert found.cost == pytest.approx(float(problem.combined(values)), rel=1e-9)
     assert found.bound <= found.cost + GAP * sum(problem.weights)

@@ -43,6 +43,7 @@ from equipoise.mechanism.assembly.refusing import wrong
 from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.kinematics.jumps import (
     ACCELERATION,
+    bends_of_rows,
     declared_jumps,
     jumps_of_rows,
     may_jump,
@@ -279,7 +280,8 @@ class Batch:
         """So many crank angles in a turn, and those that resolve jumps."""
         theta = all_angles(count, self.turns)
         if self.source.has_shares:
-            return JumpSampling.of(theta, self.turns, self.jumps)
+            bends = bends_of_rows(self.base.machine, self.turns)
+            return JumpSampling.of(theta, self.turns, self.jumps, bends)
         return _grid(theta, self.turns)
 
     def _at(self, table: Array, sampling: JumpSampling) -> Array:

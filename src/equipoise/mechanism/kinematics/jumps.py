@@ -60,6 +60,17 @@ def of_rows(machine: Machine, jumps: Array, turns: int) -> Array:
     return _within([np.subtract.outer(jumps, phases).ravel()], turns)
 
 
+def bends_of_rows(machine: Machine, turns: int) -> Array:
+    """Crank angles of the first row, rising, rad, at which the slope of a load's table in any row
+    may jump (B,).
+    """
+    every = [np.empty(0)]
+    for table in (load.table for load in machine.loads if load.table is not None):
+        again = 2 * pi * np.arange(0, turns, table.turns)
+        every.append(np.add.outer(again, table.crank_angle).ravel())
+    return of_rows(machine, np.concatenate(every), turns)
+
+
 def may_jump(machine: Machine) -> bool:
     """Whether there is anything that jumps, as far as is known without motion."""
     laws = [*machine.laws.values(), *(cam.law for cam in machine.cams)]
@@ -95,7 +106,8 @@ def resolved(motion: Motion) -> Motion:
     jumps = jumps_of_rows(motion.linkage)
     if not len(jumps):
         return motion
-    sampling = JumpSampling.of(motion.crank_angle, motion.turns, jumps)
+    bends = bends_of_rows(motion.machine, motion.turns)
+    sampling = JumpSampling.of(motion.crank_angle, motion.turns, jumps, bends)
     moved = move(motion.machine, sampling.crank_angle, motion.speed, motion.acceleration)
     return replace(moved, whole_cycle=True, sampling=sampling)
 
