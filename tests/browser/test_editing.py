@@ -208,7 +208,7 @@ def test_a_phase_of_a_row_changes_the_forces_of_all_rows(live: Live) -> None:
     machine = live.machine()
     forces = eq.analyze(machine).forces
     force, torque = forces.shaking_force, forces.drive_torque
-    ahead = [round(np.degrees(row.phase) * 2) for row in machine.rows]  # samples
+    ahead = [round(np.degrees(row.phase)) for row in machine.rows]  # samples
     every = sum(np.roll(force.x + 1j * force.y, -samples) for samples in ahead)
     row = live.page.get_by_role("row").filter(has_text="All rows: shaking force")
     shown = [float(text) for text in row.locator(".value").all_inner_texts()[:2]]

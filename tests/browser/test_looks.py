@@ -64,7 +64,7 @@ def test_a_side_view_is_as_dark_as_the_page(live: Live) -> None:
 
 def test_a_report(new_page: Callable[..., Page], tmp_path: Path) -> None:
     path = tmp_path / "report.html"
-    succeeded(equipoise("report", "yamashita-1", "-o", path))
+    succeeded(equipoise("report", "kim-chung-c", "-o", path))
     page = new_page()
     page.set_content(path.read_text(encoding="utf-8"))
     for width, scheme in zip(WIDTHS, SCHEMES, strict=True):

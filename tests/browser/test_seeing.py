@@ -94,7 +94,7 @@ def test_a_support_moves_at_work_and_in_its_modes(live: Live) -> None:
     ).to_be_visible()
     spring = page.locator(".linkage .far .piece").nth(2)
     crank, places = page.get_by_role("slider", name="Crank angle"), []
-    for sample in (0, 180, 360):
+    for sample in (0, 90, 180):
         crank.fill(str(sample))
         page.wait_for_timeout(60)
         places.append(live.spot(live.joint("L")))
@@ -105,10 +105,10 @@ def test_a_support_moves_at_work_and_in_its_modes(live: Live) -> None:
     expect(spring).not_to_have_attribute("transform", stretched or "")
     support.select_option(index=2)
     expect(page.get_by_text("the crank stands still")).to_be_visible()
-    crank.fill("90")
+    crank.fill("45")
     page.wait_for_timeout(60)
     one = live.spot(live.joint("L"))
-    crank.fill("450")  # half a swing later
+    crank.fill("225")  # half a swing later
     page.wait_for_timeout(60)
     other = live.spot(live.joint("L"))
     assert np.hypot(one[0] - other[0], one[1] - other[1]) > 2
@@ -119,7 +119,7 @@ def test_a_support_moves_at_work_and_in_its_modes(live: Live) -> None:
 def test_a_record_is_drawn_beside_the_model(live: Live) -> None:
     angle = np.arange(0.0, 360.0, 5.0)
     whole = eq.analyze(eq.load("yamashita-1"))
-    torque = 1.2 * whole.forces.drive_torque[::10]
+    torque = 1.2 * whole.forces.drive_torque[::5]
     rows = [f"{a},{t:.6f}" for a, t in zip(angle, torque, strict=True)]
     live.drop("run.csv", "\n".join(["crank_angle [deg],drive torque [N m]", *rows]))
     page = live.page

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import acos, asin, degrees, isclose, pi, sqrt
 
+from equipoise.errors import ChangePointError, MotionError, RangeError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.steps import Call
@@ -198,12 +199,19 @@ def remarks(linkage: Linkage) -> Iterator[Note | str]:
 
 
 def questions(linkage: Linkage) -> Iterator[Note | str]:
-    """What may not be meant as it is given, such as a number in another unit: a sentence each."""
+    """What may not be meant as it is given, such as a number in another unit: a sentence each.
+
+    None where the crank cannot turn fully: only at single crank angles is such a machine analysed.
+    """
     machine = linkage.machine
+    try:
+        weakest = linkage.cycle.weakest
+    except (RangeError, ChangePointError, MotionError):
+        return
     yield from crossings(linkage)
     yield from _jerks(machine)
     through = {group.joint for group in linkage.groups if group.through}
-    for joint, (number, angle) in linkage.cycle.weakest.items():
+    for joint, (number, angle) in weakest.items():
         if joint in through:
             continue
         transmission = degrees(asin(sqrt(min(number, 1.0))))
