@@ -51,6 +51,9 @@ LOAD_SHARE = 0.25
 """Of the largest load: a force that shakes the frame is felt beside the loads from there on."""
 SHAKING = ("weight", "span", "bearings", "vibration")
 """Yardsticks of what counterweights and phases are for."""
+LEAST_MEAN = 0.01
+"""Of the RMS of a torque: less is what samples of narrow peaks leave of a mean that is 0, as of a
+machine that swings near a dead position and does no work."""
 MEAN = to_say("its mean")
 VIBRATION = 4.5e-3
 """RMS of a velocity, m/s, beyond which a machine should not run for long."""
@@ -399,8 +402,9 @@ def _effort(scales: _Scales, output: Output) -> FigureAssessment | None:
     if output.dimension == "force":
         force, what = scales.lifting
         return _entry(output, "peak", rows * force, what)
-    mean = abs(output.analysis.summary[output.name].mean)
-    if mean >= rows * scales.links_weight * scales.throw:
+    torque = output.analysis.summary[output.name]
+    mean = abs(torque.mean)
+    if mean >= max(rows * scales.links_weight * scales.throw, LEAST_MEAN * torque.rms):
         return _entry(output, "peak_to_peak", mean, Note(MEAN))
     force, what = scales.undriven
     against = Note("{force} at the throw of the crank", force=what)

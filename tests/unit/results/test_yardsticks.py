@@ -111,6 +111,43 @@ def test_a_torque_is_measured_by_its_mean_where_there_is_work_to_do() -> None:
     assert idle.yardstick > 0 and str(idle.against) != "its mean"
 
 
+NEAR_A_DEAD_POSITION = """schema = 1
+title = "Swings near its dead positions"
+[drive]
+link = "crank"
+speed = "200 rpm"
+motion = { between = ["-181.9 deg", "21.9 deg"] }
+[frame.points]
+A = ["0 mm", "0 mm"]
+D = { distance = "90 mm", direction = "-80 deg" }
+[links.crank]
+points = { A = ["0 mm", "0 mm"], B = ["100 mm", "0 mm"] }
+mass = "200 g"
+center_of_mass = ["12 mm", "0 mm"]
+inertia = "30 kg mm^2"
+[links.coupler]
+points = { B = ["0 mm", "0 mm"], C = ["72 mm", "0 mm"] }
+mass = "690 g"
+center_of_mass = ["-50 mm", "-20 mm"]
+inertia = "1500 kg mm^2"
+[links.rocker]
+points = { D = ["0 mm", "0 mm"], C = ["80 mm", "0 mm"] }
+mass = "260 g"
+center_of_mass = ["32 mm", "0 mm"]
+inertia = "300 kg mm^2"
+[assembly]
+C = "left"
+"""
+
+
+def test_what_samples_leave_of_a_mean_of_nothing_is_no_yardstick() -> None:
+    analysis = eq.analyze(eq.loads(NEAR_A_DEAD_POSITION))
+    torque = analysis.summary["drives.crank.torque"]
+    assert 0 < abs(torque.mean) < 0.01 * torque.rms  # no load does work: the true mean is 0
+    found = {one.figure: one for one in assess(analysis)}["drives.crank.torque.peak_to_peak"]
+    assert str(found.against) != "its mean"
+
+
 def test_limits_of_gauges_are_their_yardsticks() -> None:
     """Those that the file gives; the velocity without one."""
     machine = eq.load("sieve")
