@@ -13,6 +13,7 @@ import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, expect
 
 from browser.live import LONGEST, ROOT, Live
+from equipoise.errors import UsageError
 from equipoise.web.site import Site, write_site
 
 WHEELS, RUNTIME = ROOT / "build" / "wheels", ROOT / "page" / "node_modules" / "pyodide"
@@ -104,8 +105,6 @@ def test_what_was_loaded_is_used_offline(context: BrowserContext, host: str) -> 
 
 
 def test_a_damaged_wheel_is_refused(tmp_path: Path) -> None:
-    from equipoise.errors import UsageError
-
     if not RUNTIME.is_dir() or not any(WHEELS.glob("numpy-*.whl")):
         pytest.skip("the runtime and its wheels could not be fetched: make test fetches them")
     (wheel,) = WHEELS.glob("numpy-*.whl")
@@ -113,3 +112,17 @@ def test_a_damaged_wheel_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="is damaged"):
         write_site(tmp_path / "site", RUNTIME, tmp_path)
     assert not (tmp_path / "site").exists()
+
+
+def test_nothing_is_written_through_a_link(tmp_path: Path) -> None:
+    if not RUNTIME.is_dir():
+        pytest.skip("the runtime could not be fetched: make test fetches it")
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    for name in (".site.new", "link"):
+        (tmp_path / name).symlink_to(outside)
+    write_site(tmp_path / "site", RUNTIME)
+    with pytest.raises(UsageError, match="is no folder"):
+        write_site(tmp_path / "link", RUNTIME)
+    assert not any(outside.iterdir())
+    assert {path.name for path in tmp_path.iterdir()} == {".site.new", "link", "outside", "site"}

@@ -13,6 +13,7 @@ import hashlib
 import json
 import os
 import shutil
+import tempfile
 import zipfile
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -110,10 +111,12 @@ def write_site(
     if docs is not None and not (Path(docs) / "index.html").is_file():
         raise UsageError(Note("{docs} has no index.html; build the documentation first", docs=docs))
     _check_free(target, folder)
-    fresh = target.with_name(f".{target.name}.new")
-    shutil.rmtree(fresh, ignore_errors=True)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    # A new folder of a name that nobody knows: no link can have been put in its place.
+    fresh = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
     try:
-        (fresh / "runtime").mkdir(parents=True)
+        fresh.chmod(0o755)
+        (fresh / "runtime").mkdir()
         (fresh / "wheels").mkdir()
         for name in PAGE:
             shutil.copyfile(static / name, fresh / name)
