@@ -54,7 +54,9 @@ def test_balancing_and_taking_it_back(live: Live) -> None:
     live.button("Balance").click()
     panel.get_by_role("button", name="Keep", exact=True).click()
     expect(panel).to_be_hidden()
-    assert live.machine() != eq.load("balance-crank")
+    kept = live.machine()
+    assert kept != eq.load("balance-crank")
+    assert kept.balance == eq.load("balance-crank").balance
 
 
 def test_name_title_and_drawing_are_of_one_machine(live: Live) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from math import dist, isclose, sqrt
+from re import sub
 from threading import Lock
 from types import MappingProxyType
 from typing import Any, Protocol
@@ -49,31 +50,43 @@ GAIN = 1e-3
 
 
 def balanced(base: Design, hold: bool = False) -> Balanced:
-    """By the plan that was used last, or as `advise` does it; with the errors of `balance`.
+    """By the plan of the file, or as `advise` does it; with the errors of `balance`.
 
     hold : whether no gauge may read more than it does, whatever the plan says; advice makes none
         read more anyway.
 
-    A counterweight of which a plan is free to choose another is replaced: the plan begins without
-    it, and what was before is nevertheless the machine as it is shown.
+    A counterweight of which a plan is free to choose another is replaced, and so is a shaft that a
+    plan has added: the plan begins without it, and what was before is nevertheless the machine as
+    it is shown.
     """
 
     def solve(_: Machine, plan: Balance) -> Balanced:
         plan = _held(base.machine, plan) if hold else plan
         free = _replaced(base, plan)
-        found = balance(base.without(free).machine, plan)
-        if not free:
+        found = balance(_without_shafts(base.without(free)).machine, plan)
+        if not (free or base.shafts):
             return found
         shown = base.machine.with_balance(None)
         before = _aims_of(shown, plan)
         aims = {name: (before[name], after) for name, (_, after) in found.objectives.items()}
         return replace(found, original=shown, objectives=aims)
 
-    if base.plan is not None:
-        return solve(base.machine, base.plan)
     own = base.machine.balance
     frees = own is not None and not own.changes_nothing
     return advise(base.machine, solve) if frees else _advised(base)
+
+
+def _without_shafts(base: Design) -> Design:
+    """The design without links that an earlier balance has added, their gears and pins."""
+    own, gone = base.own, base.shafts & base.own.links.keys()
+    links = {name: link for name, link in own.links.items() if name not in gone}
+    gears = tuple(one for one in own.gears if not gone & {one.driver, one.driven})
+    held = {point for link in links.values() for point in link.points}
+    pins = {point for name in gone for point in own.links[name].points} - held
+    frame = {point: place for point, place in own.frame.items() if point not in pins}
+    if not gone:
+        return base
+    return base.with_machine(replace(own, links=links, gears=gears, frame=frame))
 
 
 def _advised(base: Design) -> Balanced:
@@ -107,6 +120,11 @@ def _taken_away(base: Design, found: Balanced) -> list[str]:
     return _weighted(base) if found.advice is not None else _replaced(base, found.plan)
 
 
+def _replaced_shafts(base: Design, found: Balanced) -> list[str]:
+    """Shafts of an earlier balance that a result replaces."""
+    return [] if found.advice is not None else sorted(base.shafts & base.own.links.keys())
+
+
 def _aims_of(machine: Machine, plan: Balance) -> dict[str, float]:
     """Value of each objective, SI units, as `balance` tells it."""
     if plan.phases is None:
@@ -135,7 +153,7 @@ def balanced_design(base: Design, found: Balanced) -> Design:
     base : what was balanced.
     """
     weights = {**base.without(_taken_away(base, found)).counterweights, **_weights(base, found)}
-    links, whole = {}, True
+    links = {}
     for name, link in found.machine.links.items():
         own, weight = base.own.links.get(name), weights.get(name)
         if own is not None and weight is not None:
@@ -144,12 +162,39 @@ def balanced_design(base: Design, found: Balanced) -> Design:
             links[name] = base.own.links[name]
             continue
         links[name] = link if own is None else _clean(own, link)  # with its counterweight in it
-        whole = whole and name not in {one.link for one in found.plan.masses}
         if weight is not None:
             weights[name] = replace(weight, mass=0.0)
-    own_machine = replace(found.machine, links=links)
-    plan = found.plan if whole and _can_be_asked_again(base, found.plan) else None
-    return Design(base.name, own_machine, MappingProxyType(weights), plan)
+    machine = replace(found.machine, links=links)
+    machine = machine.with_balance(_plan_after(base.own.balance, machine))
+    shafts = base.shafts & machine.links.keys() | machine.links.keys() - base.own.links.keys()
+    return Design(base.name, machine, MappingProxyType(weights), frozenset(shafts))
+
+
+def _plan_after(plan: Balance | None, machine: Machine) -> Balance | None:
+    """The plan of the file in the machine that it has changed, whose new links have its names."""
+    if plan is None:
+        return None
+    taken = {*machine.bodies}  # by the shafts that have been added
+    geared = []
+    for weight in plan.geared:
+        name = _free_name(weight.name, taken, "{}")
+        geared.append(replace(weight, name=name))
+    shafts = []
+    for pair in plan.shafts:
+        name = _free_name(pair.name, taken, "{}-1", "{}-2")
+        shafts.append(replace(pair, name=name))
+    return replace(plan, geared=tuple(geared), shafts=tuple(shafts))
+
+
+def _free_name(name: str, taken: set[str], *links: str) -> str:
+    """The name, or with a number behind it, of which all links are free; these become taken."""
+    plain = sub(r" \d+$", "", name)
+    for candidate in (name, plain, *(f"{plain} {number}" for number in range(2, len(taken) + 3))):
+        called = {link.format(candidate) for link in links}
+        if not called & taken:
+            taken |= called
+            return candidate
+    raise AssertionError  # there are more candidates than names
 
 
 def _clean(own: Link, link: Link) -> Link:
@@ -185,12 +230,6 @@ def _weights(base: Design, found: Balanced) -> dict[str, Counterweight]:
     return weights
 
 
-def _can_be_asked_again(base: Design, plan: Balance) -> bool:
-    """Whether a plan was given, and adds nothing that would be added once more."""
-    given = plan in (base.plan, base.own.balance)
-    return given and not (plan.geared or plan.shafts or plan.springs)
-
-
 def _same(one: Link, other: Link) -> bool:
     """Whether two links are the same but for rounding in their masses."""
     size = max(abs(complex(*place)) for place in (*other.points.values(), _center(other)))
@@ -212,13 +251,14 @@ def balanced_told(base: Solved, after: Solved, found: Balanced) -> Values:
     base, after : the design before and after, computed; what the page reads of these beside it is
         told as it is read there.
     """
-    replaced = _taken_away(base.design, found)
+    replaced, shafts = _taken_away(base.design, found), _replaced_shafts(base.design, found)
     old, new = found.before, found.after
     names = [name for name in old if name in new and not name.startswith("planting.")]
     figures = {name: (old[name], new[name]) for name in names} | _read(base, after)
     return {
         "changes": [
             *(_taken_off(name, base.design.counterweights[name]) for name in replaced),
+            *(say("{link}: take off this shaft", link=name) for name in shafts),
             *(line for change in found.changes for line in sentences(change)),
         ],
         "aims": [_aim(found, one, figures) for one in found.aims],
@@ -231,7 +271,8 @@ def balanced_told(base: Solved, after: Solved, found: Balanced) -> Values:
 
 
 def _taken_off(link: str, weight: Counterweight) -> str:
-    return f"{link}: take off the counterweight of {told(weight.mass, 'mass')}"
+    mass = told(weight.mass, "mass")
+    return say("{link}: take off the counterweight of {mass}", link=link, mass=mass)
 
 
 def _read(base: Solved, after: Solved) -> dict[str, tuple[float, float]]:

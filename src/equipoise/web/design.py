@@ -13,7 +13,6 @@ from typing import Any
 from equipoise.balancing.room import reach_of
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.parts.balance import Balance
 from equipoise.mechanism.parts.links import MASS_FIELDS
 from equipoise.mechanism.parts.machine import Link, Machine
 from equipoise.mechanism.parts.shown_units import ShownUnits
@@ -49,13 +48,13 @@ class Design:
 
     name : of the file or example.  own : the machine without the counterweights.
     counterweights : by link; those of mass 0 do nothing, and keep their place.
-    plan : of a machine that has been balanced, by which it is balanced again.
+    shafts : links that balancing has added, which balancing again replaces.
     """
 
     name: str
     own: Machine
     counterweights: Mapping[str, Counterweight] = field(default_factory=dict)
-    plan: Balance | None = None
+    shafts: frozenset[str] = frozenset()
 
     @property
     def units(self) -> ShownUnits | None:

@@ -44,8 +44,7 @@ def entered(design: Design, entry: Entry) -> Design:
     else:
         document = document.put(entry.place, dict(entry.values), entry.name)
     own = completed(document, entry, design.own).machine(entry.files)
-    plan = design.plan if own.balance == design.own.balance else None
-    return replace(design, own=own, plan=plan, counterweights=_that_fit(design, own))
+    return replace(design, own=own, counterweights=_that_fit(design, own))
 
 
 def _that_fit(design: Design, own: Machine) -> Mapping[str, Any]:

@@ -6,14 +6,17 @@ import csv
 import gc
 import weakref
 from math import pi
+from pathlib import Path
 
 import pytest
 
 import equipoise as eq
 from equipoise.web.design import Design
+from equipoise.web.desk import begun
 from equipoise.web.edits import Solved
 from equipoise.web.messages import message_of
 from equipoise.web.session import Session
+from equipoise.web.tables import tables_of
 from unit.web.pages import ask, counterweight, edit, move, opened, refusal, state
 
 MASS = {"set": "links.crank.mass", "text": "250 g"}
@@ -185,6 +188,56 @@ def test_what_is_balanced_has_nothing_to_gain(name: str) -> None:
     assert again.content["notes"][0].startswith("nothing to gain: balancing would not make ")
     assert session.shown is before
     assert state(ask(session, "undo")[0]).content["redo"] == "balance"
+
+
+def test_the_plan_of_a_file_outlives_balancing(tmp_path: Path) -> None:
+    """In the model that is shown, downloaded and saved; and it is what a second balance goes by."""
+    path = tmp_path / "crank.toml"
+    eq.save(eq.load("balance-crank"), path)
+    desk = begun(str(path))()
+    plan = eq.load("balance-crank").balance
+    for message in ({"type": "balance"}, {"type": "compare", "on": False}, {"type": "save"}):
+        [*desk.receive(message_of({"seq": 1, **message}))]
+    own = desk.session.shown.design.own
+    assert own.links == eq.load("balance-crank").links  # the counterweight stands beside it
+    assert own.balance == eq.load(path).balance == plan
+    text = ask(desk.session, "download", kind="model")[0].buffer.decode()
+    assert eq.loads(text).balance == plan
+    listed = tables_of(own)["groups"]
+    assert next(one for one in listed if one["where"] == "balance.masses")["entries"]
+    entry = {"place": ["balance", "objectives", 0], "label": "", "name": ""}
+    ask(desk.session, "entry", **entry, values={"output": "shaking_force.x", "measure": "rms"})
+    _, told, _ = ask(desk.session, "balance")
+    assert [one["label"] for one in told.content["aims"]] == ["shaking force x, RMS"]
+
+
+@pytest.mark.parametrize("name", ["balance-geared-b", "balance-shafts"])
+def test_shafts_of_a_plan_are_replaced_by_balancing_again(name: str) -> None:
+    """Whose names are taken by the first ones, so that the plan has others."""
+    session, _ = opened(name)
+    plan = session.shown.design.own.balance
+    assert plan is not None
+    ask(session, "balance")
+    first = session.shown.design.machine
+    kept = first.balance
+    assert kept is not None and kept.objectives == plan.objectives
+    renamed = [f"{one.name} 2" for one in (*plan.geared, *plan.shafts)]
+    assert [one.name for one in (*kept.geared, *kept.shafts)] == renamed
+    _, again = ask(session, "balance")
+    assert again.content["notes"][0].startswith("nothing to gain")
+    lighter = {"set": f"links.{'coupler' if 'geared' in name else 'rod'}.mass", "text": "20 g"}
+    edit(session, lighter)
+    _, told, _ = ask(session, "balance")
+    second = session.shown.design.machine
+    assert len(second.links) == len(first.links) and len(second.gears) == len(first.gears)
+    assert second.balance == plan
+    taken = [line for line in told.content["changes"] if line.endswith("take off this shaft")]
+    assert len(taken) == len(first.links) - len(eq.load(name).links)
+    once, _ = opened(name)
+    edit(once, lighter)
+    _, alone, _ = ask(once, "balance")
+    after = [one.content["aims"][0]["after"] for one in (told, alone)]
+    assert after[0] == pytest.approx(after[1], rel=1e-3)
 
 
 def test_rows_have_the_same_figures_in_the_panel_and_the_table() -> None:
