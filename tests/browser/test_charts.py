@@ -54,6 +54,25 @@ def test_every_axis_has_three_numbers(live: Live) -> None:
             assert live.page.evaluate(CLIPPED) == [], width
 
 
+def test_the_chart_against_speed_stays(live: Live) -> None:
+    """Whatever else is shown of the same machine."""
+    page = live.page
+    page.get_by_role("combobox", name="Example").select_option("yamashita-rig")
+    chart = page.get_by_role("figure", name=re.compile("^Gauge against speed"))
+    expect(chart).to_be_visible()
+    page.get_by_role("combobox", name="Arrows at").select_option("C")
+    expect(page.locator(".scales li")).to_have_count(3)
+    live.settled()
+    expect(chart).to_be_visible()
+    live.button("Keep as variant").click()
+    expect(page.get_by_role("region", name="Variants")).to_be_visible()
+    live.settled()
+    expect(chart).to_be_visible()
+    page.get_by_role("combobox", name="Compare with").select_option("as it was opened")
+    live.settled()
+    expect(chart).to_be_visible()
+
+
 def test_numbers_of_the_scale_lie_over_the_soil(live: Live) -> None:
     later = "document.querySelector('.linkage').compareDocumentPosition"
     assert live.page.evaluate(f"{later}(document.querySelector('.numbered'))") == 4

@@ -37,6 +37,7 @@ from equipoise.web.history import History, Step
 from equipoise.web.making import lost, made
 from equipoise.web.messages import MOST_LANGUAGES, Message
 from equipoise.web.openings import opened_example, opened_text, titles, tool_titles
+from equipoise.web.recorded import Record
 from equipoise.web.replies import Reply, refused
 from equipoise.web.seen import ASKED, Seen
 from equipoise.web.shaken import more, response_of
@@ -54,6 +55,7 @@ class Session:
     before : with which it is compared, if with any.
     scale : of the sliders.
     more_told : the design of which `tell_more` has told, and that which it was told against.
+    response_told : the design whose response the page has, and the record drawn beside it.
     wanted : outputs that the page draws besides those that it always does.
     language : that its reader speaks.  disk : the file that is open, if it can be saved.
     seen : what else the page shows.
@@ -66,6 +68,7 @@ class Session:
     before: Solved | None = None
     scale: Scale | None = None
     more_told: tuple[Solved | Drawn | None, Solved | None] = (None, None)
+    response_told: tuple[Solved | Drawn | None, Record | None] = (None, None)
     wanted: tuple[str, ...] = ()
     language: str = "en"
     disk: Disk | None = None
@@ -92,6 +95,7 @@ class Session:
 
     def _ready(self, message: Message) -> Iterator[Reply]:
         yield self.hello()
+        self.response_told = None, None  # a page that begins has nothing
         if self.found is not None:
             yield from self.told(message.seq)
 
@@ -313,8 +317,20 @@ class Session:
         with self.telling():
             compared = [*self.seen.compared(None if self.preview else self.current())]
         yield from compared
+        yield from self._response(seq)
+
+    def _response(self, seq: int | None) -> Iterator[Reply]:
+        """How the support is shaken, where the page has that of another design.
+
+        It has no response over speed, which takes longer; the page loses the one that it has, so
+        that `tell_more` has to tell it again.
+        """
+        now, before = (self.shown, self.seen.record), self.response_told
+        if now[0] is before[0] and now[1] is before[1]:
+            return
         with self.telling():
             shaken = response_of(self.shown)
+        self.response_told, self.more_told = now, (None, None)
         if shaken is not None:
             content, data = shaken
             yield Reply({"type": "response", "seq": seq, **content}, data)

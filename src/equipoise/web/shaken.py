@@ -29,7 +29,7 @@ from equipoise.vibration.forced import respond
 from equipoise.vibration.resonance import around
 from equipoise.vibration.response import Response
 from equipoise.vibration.sampling import COARSE
-from equipoise.vibration.sweep import sweep_speed
+from equipoise.vibration.sweep import Sweep, sweep_speed
 from equipoise.web.block import Block
 from equipoise.web.edits import Solved
 from equipoise.web.figures import chart, gauge_choice, text_of, was_of
@@ -74,15 +74,18 @@ def response_of(shown: Solved) -> tuple[Values, bytes] | None:
 
 
 def swept(shown: Solved, progress: Callable[[int, int], None]) -> tuple[Values, bytes] | None:
-    """The same with the response over speeds around the machine's own.
+    """The same with the response over speeds around the machine's own, which is kept with it.
 
     progress : as of `sweep_speed`; what it raises ends the work.
     """
     machine = shown.analysis.machine
     try:
         found = responded(shown)
-        ends = around(machine.drive, found.speed)
-        curves = sweep_speed(machine, *ends, speeds=COARSE, progress=progress)
+        curves: Sweep | None = shown.__dict__.get("_sweep")
+        if curves is None:
+            ends = around(machine.drive, found.speed)
+            curves = sweep_speed(machine, *ends, speeds=COARSE, progress=progress)
+            shown.__dict__["_sweep"] = curves
     except EquipoiseError:  # of which `response_of` has told
         return None
     block = Block()

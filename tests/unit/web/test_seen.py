@@ -2,17 +2,58 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import Any
+
 import numpy as np
 import pytest
 
 import equipoise as eq
 from equipoise.figures.swing import SEEN
+from equipoise.web.messages import message_of
+from equipoise.web.replies import Reply
 from unit.web.pages import ask, edit, opened, refusal, state
 
 
 def told(replies, kind):
     """The contents of one kind among replies."""
     return [one.content for one in replies if one.content["type"] == kind]
+
+
+ROWS = (f"{45 * k},{k % 3}" for k in range(8))
+RECORD = "\n".join(["crank_angle [deg],gauges.gauge [mm]", *ROWS, ""])
+
+
+@pytest.mark.parametrize("asked", [
+    ("arrows", {"point": "C"}),
+    ("variant", {"do": "pin"}),
+    ("variant", {"do": "against", "to": "opened"}),
+    ("record", {"name": "run.csv", "text": RECORD}),
+])  # fmt: skip
+def test_a_page_keeps_the_response_over_speed(asked: tuple[str, dict[str, Any]]) -> None:
+    """Whatever else is told of the same design."""
+    session, _ = opened("yamashita-rig")
+    shown: list[str] = []
+
+    def hear(replies: Iterable[Reply]) -> None:
+        """Whatever is told of the response takes the place of all that was."""
+        for reply in replies:
+            if reply.content["type"] == "response":
+                shown[:] = [one["name"] for one in reply.content["charts"]]
+
+    hear(session.tell_more())
+    assert shown == ["response", "sweep"]
+    kind, values = asked
+    replies = [*session.receive(message_of({"type": kind, "seq": 1, **values}))]
+    assert not told(replies, "refused")
+    hear(replies)
+    hear(session.tell_more())
+    assert shown == ["response", "sweep"]
+    moved = [{"set": "links.crank.mass", "value": 0.2}]
+    ask(session, "edit", commit=False, edits=moved)  # before the rest of the answer is computed
+    hear(session.receive(message_of({"type": "compare", "seq": 2, "on": False})))
+    hear(session.tell_more())
+    assert shown == ["response", "sweep"]
 
 
 def test_arrows_are_the_vectors_at_a_point() -> None:
