@@ -15,7 +15,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, Self
@@ -139,12 +139,38 @@ class MobilityError(EquipoiseError):
 class MotionError(EquipoiseError):
     """The linkage cannot be closed, or not at the crank angles asked for.
 
-    reason : the sentence without what could be done about it.
+    explain : a function that gives a fuller error of the same type, called when the sentence is
+        read, since most errors of a study are only counted.
     """
+
+    explain: Callable[[], MotionError] | None = None
 
     def __init__(self, message: Note | str, *, reason: Note | str = "") -> None:
         super().__init__(message)
-        self.reason = reason or message
+        self._reason = reason or message
+
+    def __str__(self) -> str:
+        return str(self._explained().args[0])
+
+    def __reduce__(self) -> str | tuple[Any, ...]:
+        self._explained()  # the machine does not go to another process
+        return super().__reduce__()
+
+    @property
+    def note(self) -> Note:
+        return noted(self._explained().args[0])
+
+    @property
+    def reason(self) -> Note | str:
+        """The sentence without what could be done about it."""
+        return self._explained()._reason
+
+    def _explained(self) -> Self:
+        if self.explain is not None:
+            explain, self.explain = self.explain, None
+            fuller = explain()
+            self.args, self._reason = fuller.args, fuller._reason
+        return self
 
 
 class RangeError(MotionError):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import re
 from dataclasses import replace
 from math import acos, asin, degrees, pi
@@ -11,6 +12,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ChangePointError, EquipoiseError, MotionError, RangeError, UsageError
+from equipoise.mechanism.assembly import stuck
 from equipoise.mechanism.parts.machine import FRAME
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
 
@@ -375,3 +377,26 @@ def test_a_narrow_gap_ends_the_range_on_both_sides() -> None:
     low, high = (float(part) for part in re.findall(r"at (-?[0-9.]+) deg", words))
     assert 359 < high - low < 360
     assert "other such ranges" not in words
+
+
+def test_where_a_crank_stops_is_computed_for_who_reads_the_sentence(monkeypatch):
+    """Studies count thousands of such errors, and read none."""
+    calls = []
+
+    def counted(*given):
+        calls.append(given)
+        return range_of(*given)
+
+    range_of = stuck.range_of
+    monkeypatch.setattr(stuck, "range_of", counted)
+    with pytest.raises(RangeError) as caught:
+        eq.move(four_bar(1.0, 0.8, 0.5, 0.6))
+    error = caught.value
+    assert error.ranges
+    assert not calls
+    sentence = str(error)
+    again = pickle.loads(pickle.dumps(error))
+    assert "motion = { between = [" in sentence
+    assert sentence == str(error) == str(again) == error.told("en")
+    assert (again.ranges, str(again.reason)) == (error.ranges, str(error.reason))
+    assert len(calls) == 1

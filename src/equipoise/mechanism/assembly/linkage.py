@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -119,7 +120,8 @@ class Linkage:
         try:
             return self.close()
         except (RangeError, ChangePointError, BranchError) as error:
-            raise with_cures(self, error) from None
+            error.explain = partial(with_cures, self, copy(error))
+            raise
 
     def close(self) -> Cycle:
         """The closed motion, which is kept; its errors say only where the turn ends."""
