@@ -28,8 +28,8 @@ from equipoise.symbols.wheels import wheels_of
 ANGLES, EDGE_SAMPLES, CIRCLE_SAMPLES = 120, 9, 24
 """Crank angles in a turn at which bodies are looked at; places on an edge, and on a circle."""
 CLEARANCE, LEAST_CLEARANCE = 0.02, 2e-3
-"""Over the size of the largest link, and m: both together keep a counterweight from the middle of a
-pin, whose size no model tells, and from the edge of a body."""
+"""Over the size of the largest link, and m: both together keep a counterweight from the edge of a
+body, and from the middle of a pin whose radius is not given; the second alone from a pin's edge."""
 SIZE, LARGER = 0.25, 2.0
 """Over the size of the largest link, and over the reach of its own link, up to twice that share of
 the largest link: how far a counterweight reaches at most, where its link does not reach farther."""
@@ -45,7 +45,8 @@ class Room:
         the link's own.
     reach : (360,) m, how far out a weight may lie, by direction in the link's axes in degrees.
     own_pins : (K,) complex, m, further pins of the link itself, seen from the pivot.
-    most_thick : m, of a plate.  clearance : m, from the middle of pins.
+    own_clearances : (K,) m, from the middle of each of these.
+    most_thick : m, of a plate.  clearance : m, from the edges of bodies.
     """
 
     link: str
@@ -53,6 +54,7 @@ class Room:
     plane: float | None
     reach: Array
     own_pins: Array
+    own_clearances: Array
     most_thick: float
     clearance: float
 
@@ -66,8 +68,7 @@ class Room:
         in degrees, in the link's axes.
         """
         reach = self.reach.copy()
-        for pin in self.own_pins:
-            clearance = min(self.clearance, abs(pin) / 2)
+        for pin, clearance in zip(self.own_pins, self.own_clearances, strict=True):
             if inner - clearance < abs(pin) < outer + clearance:
                 _keep_clear(reach, np.array([pin]), clearance)
         blocked = np.append(0, np.cumsum(np.tile(reach < outer, 3)))
@@ -104,14 +105,18 @@ def room_about(machine: Machine, link: str, plane: float | None = None) -> Room:
     own_wheels, wheels = _wheels(motion, link, at)
     free = np.minimum(free, min(own_wheels, default=np.inf))
     bodies = _bodies(motion, link, plane, thick)
-    for places in (*_pins(motion, link), *bodies, *wheels):
+    apart = _from_pins(motion)
+    pins = ((motion.points[pin].place, apart.get(pin, clearance)) for pin in _pins(motion, link))
+    for places, clear in (*pins, *((track, clearance) for track in (*bodies, *wheels))):
         seen = (np.broadcast_to(places, turn.shape) - pivot) * turn
-        _keep_clear(free, seen, clearance)
+        _keep_clear(free, seen, clear)
     # A weight in a plane of its own lies beyond the webs between which the link's pins are.
-    pins = _joined(machine) & own.points.keys() - {at} if plane is None else set()
+    names = sorted(_joined(machine) & own.points.keys() - {at}) if plane is None else []
     center = complex(*own.points[at])
-    own_pins = np.array([complex(*own.points[pin]) - center for pin in sorted(pins)], complex)
-    return Room(link, at, plane, np.maximum(free, 0.0), own_pins, thick, clearance)
+    own_pins = np.array([complex(*own.points[pin]) - center for pin in names], complex)
+    assumed = np.minimum(clearance, np.abs(own_pins) / 2)
+    own_clear = np.array([apart.get(pin, assumed[k]) for k, pin in enumerate(names)])
+    return Room(link, at, plane, np.maximum(free, 0.0), own_pins, own_clear, thick, clearance)
 
 
 def rooms_of_planes(machine: Machine) -> Iterator[tuple[Room, Room]]:
@@ -163,14 +168,20 @@ def _joined(machine: Machine) -> set[str]:
     return {name for name, bodies in bodies_at(machine.bodies).items() if len(bodies) > 1}
 
 
-def _pins(motion: Motion, link: str) -> Iterator[Array]:
-    """Places of pins and shafts that are none of the link's own."""
+def _from_pins(motion: Motion) -> dict[str, float]:
+    """Clearance of a counterweight from the middle of each pin whose radius is given, m."""
+    radii = motion.linkage.pin_radii
+    return {point: radius + LEAST_CLEARANCE for point, radius in radii.items()}
+
+
+def _pins(motion: Motion, link: str) -> Iterator[str]:
+    """Pins and shafts that are none of the link's own."""
     machine = motion.machine
     own = machine.links[link].points
     here = [machine.frame[name] for name in own if name in machine.frame]
     for name in sorted(_joined(machine) - own.keys()):
         if machine.frame.get(name) not in here:
-            yield motion.points[name].place
+            yield name
 
 
 def _bodies(motion: Motion, link: str, plane: float | None, thick: float) -> Iterator[Array]:

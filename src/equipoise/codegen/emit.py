@@ -28,8 +28,8 @@ from equipoise.mechanism.assembly.steps import Reaction
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.formulas.kernels import cross, length
 from equipoise.mechanism.outputs.declared import DECLARED, Declared, declared
+from equipoise.mechanism.parts.joint_properties import JOINTS
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.sliders import JOINTS
 
 _OF_FORCES = re.compile(
     r"drive\..+|gravity\..+|springs\[\d+\]\..+|links\..+\.(mass|inertia|center_of_mass\..+)"

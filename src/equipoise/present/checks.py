@@ -56,6 +56,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     yield Text(f"{fully}the {repeats} after {after}")
     yield from bodies_tables(machine)
     parts = (
+        *_joints(machine),
         *_springs(machine),
         *cams_told(machine, linkage.joints),
         *_drive_train(machine),
@@ -125,6 +126,13 @@ def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
         shown = [Value(end, after=1) for end in ends if end is not None]
         where: tuple[Cell, ...] = (*shown, beyond) if shown else ("always", None, None)
         yield place, what, *where, Value(work.largest, dimension=kind), Value(work.net, work.both)
+
+
+def _joints(machine: Machine) -> Iterator[str]:
+    for one in machine.joints:
+        radius = "" if one.radius is None else f", radius {_length(one.radius)}"
+        stiff = "" if one.stiffness is None else f", {told(one.stiffness, 'stiffness', 'N/m')}"
+        yield f"{one.joint}{radius}{stiff}"
 
 
 def _springs(machine: Machine) -> Iterator[str]:

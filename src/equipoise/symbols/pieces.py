@@ -273,8 +273,14 @@ def _springs(scene: Scene) -> Iterator[Piece]:
 
 def _pivots(scene: Scene) -> Iterator[Shape]:
     for name in scene.frame:
-        role, grown = ("pin", PIN) if name in scene.standing else ("dot", 2.0)
-        yield circle(role, complex(scene.places[name][0]), grown=grown)
+        place = complex(scene.places[name][0])
+        yield _pin(scene, name, place) if name in scene.standing else circle("dot", place, grown=2)
+
+
+def _pin(scene: Scene, point: str, place: complex) -> Shape:
+    """A pin, to scale where its radius is given."""
+    radius = scene.pin_radii.get(point, 0.0)
+    return circle("pin", place, radius, 0.0 if radius else PIN)
 
 
 def _marks(scene: Scene, body: Body, traced: Collection[str]) -> Iterator[Shape]:
@@ -286,10 +292,13 @@ def _marks(scene: Scene, body: Body, traced: Collection[str]) -> Iterator[Shape]
     for point in body.points:
         if point in drawn:
             continue
-        role, grown = ("pin", PIN) if point in scene.pins or point in hung else ("dot", 2.0)
+        place = scene.local(body, scene.places[point])
         if point in traced:
-            role, grown = "tip", 4.6
-        yield circle(role, scene.local(body, scene.places[point]), grown=grown)
+            yield circle("tip", place, grown=4.6)
+        elif point in scene.pins or point in hung:
+            yield _pin(scene, point, place)
+        else:
+            yield circle("dot", place, grown=2.0)
     center = scene.mass_centers.get(body.name)
     if center is not None:
         place = scene.local(body, center)

@@ -97,6 +97,7 @@ class Scene:
     crank_angle : (N,) rad.
     places : every point by name, those of the frame first; (N,) complex, m.
     pins : points that bodies share.
+    pin_radii : of pins that are drawn to scale, m.
     mass_centers : of links whose mass is known; (N,) complex, m.
     springs : ends of each, on its link and on the frame, as names of points.
     angles : of each link, counted on through the turns; (N,) rad.
@@ -112,6 +113,7 @@ class Scene:
     bodies: tuple[Body, ...]
     places: Mapping[str, Array]
     pins: frozenset[str]
+    pin_radii: Mapping[str, float]
     mass_centers: Mapping[str, Array]
     wheels: tuple[Wheel, ...]
     guides: tuple[Guide, ...]
@@ -139,6 +141,7 @@ class Scene:
             tuple(bodies_of(machine.links)),
             places,
             frozenset(joints.pins),
+            motion.linkage.pin_radii,
             {name: center.place for name, center in motion.mass_centers.items()},
             tuple(wheels_of(joints, machine.bodies, angles)),
             tuple(_guides(motion)),
@@ -204,6 +207,8 @@ class Scene:
         for wheel in self.wheels:
             reach = wheel.radius * (1 + 1j)
             every += [self.places[wheel.center] + way for way in (reach, -reach)]
+        for point, radius in self.pin_radii.items():
+            every += [self.places[point] + way * radius for way in (1 + 1j, -1 - 1j)]
         every += [corner for mark in self.marks for corner in self.spots(mark, outermost=True)]
         for body in self.bodies:
             turned = np.exp(1j * self.angles[body.name])

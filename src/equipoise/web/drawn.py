@@ -10,6 +10,7 @@ import numpy as np
 
 from equipoise.errors import EquipoiseError, MobilityError, UsageError, to_paste
 from equipoise.i18n import Note, say
+from equipoise.mechanism.assembly.named_joints import pin_radii
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import DIGITS, display
@@ -252,6 +253,7 @@ def scene_of(sketch: Sketch) -> Scene:
         tuple(bodies_of(sketch.links)),
         {name: place * one for name, place in sketch.places.items()},
         frozenset(joints.pins),
+        pin_radii(joints, sketch.rest.get("joints", ())),
         centers,
         tuple(_wheels(sketch)),
         guides,

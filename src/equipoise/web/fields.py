@@ -145,6 +145,7 @@ SECTIONS = {
     "gears": to_say("gears"),
     "cams": to_say("cams"),
     "springs": to_say("springs"),
+    "joints": to_say("joints"),
     "rows": to_say("rows"),
     "planting": to_say("planting"),
     "support": to_say("support"),
@@ -181,7 +182,7 @@ def _shown(value: float, unit: Display) -> str:
 
 def fields_of(design: Design) -> dict[str, Field]:
     """Every number by its path, in the order in which a page shows them."""
-    parts = (_drive, _links, _frame, _gears, _cams, _springs, _rows, _planting, _mounts)
+    parts = (_drive, _links, _frame, _gears, _cams, _springs, _joints, _rows, _planting, _mounts)
     found = [field for part in parts for field in part(design.own)]
     return {field.path: field for field in (*found, *_weights(design))}
 
@@ -285,6 +286,11 @@ def _springs(machine: Machine) -> Iterator[Field]:
     for number, spring in enumerate(machine.springs, 1):
         of = say("{point} to {other}", point=spring.point, other=spring.to) + ", "
         yield from _numbers(("springs", str(number)), "springs", of, spring)
+
+
+def _joints(machine: Machine) -> Iterator[Field]:
+    for number, joint in enumerate(machine.joints, 1):
+        yield from _numbers(("joints", str(number)), "joints", f"{joint.joint}, ", joint)
 
 
 def _rows(machine: Machine) -> Iterator[Field]:

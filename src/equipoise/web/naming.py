@@ -22,6 +22,8 @@ COUPLED = tuple(f"{kind.table}." for kind in (Gear, Belt, Rack, Cam))
 """How outputs of couplings begin, which are called after both their links."""
 SLIDING = " on "
 """In the name of a sliding joint."""
+COMPONENTS = (".x", ".y")
+"""Of the force in a joint, behind its name."""
 MESHING = ("driver", "driven")
 """Of gears and of a belt, whose file has both in one list."""
 
@@ -43,9 +45,10 @@ def _names(value: Any, kind: Kind | None, what: What) -> Iterator[tuple[str, str
             yield from _names(one, kind, what)
     elif isinstance(value, str) and _is_name(kind, what):
         yield what, value
-    elif isinstance(value, str) and value.startswith(JOINTS) and what == "point":
-        name = value.removeprefix(JOINTS).partition("/")[0]
-        yield from [] if SLIDING in name else [(what, name)]
+    elif isinstance(value, str) and value.startswith(JOINTS):
+        point, links, _ = _joint(value)
+        named = links if what == "link" else (point,) if point else ()
+        yield from ((what, name) for name in named)
     elif isinstance(value, str) and value.startswith(COUPLED) and what == "link":
         yield from ((what, name) for name in _ends(value)[1:3])
 
@@ -64,14 +67,40 @@ def _renamed(value: Any, kind: Kind | None, what: What, names: tuple[str, str]) 
         return tuple(_renamed(one, kind, what, names) for one in value)
     if isinstance(value, Mapping):
         return {key: _renamed(one, kind, what, names) for key, one in value.items()}
-    if isinstance(value, str) and value.startswith(JOINTS) and what == "point":
-        point, bar, link = value.removeprefix(JOINTS).partition("/")
-        return f"{JOINTS}{names[1]}{bar}{link}" if point == names[0] else value
+    if isinstance(value, str) and value.startswith(JOINTS):
+        return _joint_renamed(value, what, *names)
     if isinstance(value, str) and value.startswith(COUPLED) and what == "link":
         table, *ends, part = _ends(value)
         driver, driven = (names[1] if end == names[0] else end for end in ends)
         return f"{table}.{name_of(driver, driven)}{part}"
     return names[1] if value == names[0] and _is_name(kind, what) else value
+
+
+def _joint(force: str) -> tuple[str, tuple[str, ...], str]:
+    """The name of a joint's force without its component: a point, links with what joins them to
+    that, and the component with its dot.  Of a slide there is no point.
+    """
+    name, component = force.removeprefix(JOINTS), ""
+    if name.endswith(COMPONENTS):
+        name, component = name[:-2], name[-2:]
+    link, _, guide = name.partition(SLIDING)
+    if guide:
+        return "", (link, guide), component
+    point, _, held = name.partition("/")
+    return point, (held,) if held else (), component
+
+
+def _joint_renamed(force: str, what: What, old: str, new: str) -> str:
+    """The name of a joint's force with a point or a link by another name."""
+    point, links, component = _joint(force)
+    if what == "point" and point == old:
+        point = new
+    elif what == "link" and old in links:
+        links = tuple(new if link == old else link for link in links)
+    else:
+        return force
+    name = "/".join((point, *links)) if point else SLIDING.join(links)
+    return f"{JOINTS}{name}{component}"
 
 
 def _ends(output: str) -> tuple[str, str, str, str]:

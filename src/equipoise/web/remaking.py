@@ -10,6 +10,7 @@ from typing import Any
 
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, to_say
+from equipoise.mechanism.assembly.named_joints import joint_names
 from equipoise.mechanism.checks import Bodies, unknown
 from equipoise.mechanism.parts.balance import Balance
 from equipoise.mechanism.parts.machine import FRAME
@@ -149,8 +150,13 @@ def without_coupling(table: str, sketch: Sketch, name: str) -> Sketch:
 
 
 def _tidied(sketch: Sketch) -> Sketch:
-    """Without what names points or links that are gone."""
-    kept = [(key, one) for key, one in sketch.entries() if _held(key, one, sketch.bodies)]
+    """Without what names points, links or joints that are gone."""
+    named = joint_names(sketch.joints)
+    kept = [
+        (key, one)
+        for key, one in sketch.entries()
+        if (one.joint in named if key == "joints" else _held(key, one, sketch.bodies))
+    ]
     if sketch.drive is not None and not _there(sketch, sketch.drive):
         sketch = replace(sketch, drive=None)
     drives = tuple(one for one in sketch.rest.get("drives", ()) if _there(sketch, one))

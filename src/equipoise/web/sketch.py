@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from equipoise.mechanism.kinematics.outline import COUPLED, STILL, Outline, Pose
@@ -14,10 +14,13 @@ from equipoise.web.design import Counterweight, Design
 from equipoise.web.edits import Solved, solved
 
 UNTITLED = "untitled"
-REST = ("title", "description", "gravity", "drives", "belts", "racks", "cams", "loads",
-        "springs", "planting", "support", "rows", "balance", "bearings", "units")  # fmt: skip
-"""Fields of a machine that a sketch hands on as they are."""
-LISTS = (*COUPLED, "loads", "springs")
+REST = tuple(
+    {one.name for one in fields(Machine)}.difference(
+        (one.name for one in fields(Outline)), ("assembly", "position")
+    )
+)
+"""Fields of a machine that a sketch hands on as they are; sides and places follow from it."""
+LISTS = (*COUPLED, "loads", "springs", "joints")
 """Those of them that have names of links and points in them."""
 
 

@@ -16,8 +16,8 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.shared import IDLE
 from equipoise.mechanism.dynamics.across import exerted_in
 from equipoise.mechanism.dynamics.undecided import idle_told, undecided
+from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Link, Slider, Vector
-from equipoise.mechanism.parts.sliders import JointStiffness
 from support.machines import make
 from support.machines_redundant import REDUNDANT
 from unit.mechanism.build import ORIGIN, four_bar, heavy, machine
@@ -338,7 +338,10 @@ def test_what_statics_decides_does_not_depend_on_the_rule() -> None:
     found = eq.analyze(given)
     assert set(undecided(found.motion.linkage).open) == {f"{p}{k}" for p in "AB" for k in range(3)}
     assert found.to_dict()["open"]["rule"] == "least squares"
-    stiff = (JointStiffness("joints.B0", 1e6), JointStiffness("joints.A2", 3e5))
+    stiff = (
+        JointProperties("joints.B0", stiffness=1e6),
+        JointProperties("joints.A2", stiffness=3e5),
+    )
     other = eq.analyze(replace(given, joints=stiff))
     assert other.to_dict()["open"]["rule"] == "stiffness"
     one, two = found.forces, other.forces
@@ -355,7 +358,7 @@ def test_of_all_kinds_both_rules_tell_alike_what_statics_decides(kind: str) -> N
     given = make(kind, 1).machine
     linkage = eq.mechanism.assemble(given)
     rng, names = np.random.default_rng(1), linkage.shared.names
-    stiff = tuple(JointStiffness(name, float(rng.uniform(1e5, 1e6))) for name in names)
+    stiff = tuple(JointProperties(name, stiffness=float(rng.uniform(1e5, 1e6))) for name in names)
     one, two = (eq.analyze(each, 24).forces for each in (given, replace(given, joints=stiff)))
     told, scale = undecided(linkage).open, max(np.max(joint.size) for joint in one.joints.values())
     assert told
@@ -429,7 +432,7 @@ def test_stiff_supports_share_a_weight_as_springs_do() -> None:
     given = cranks(LINE)
     links = {name: replace(link, mass=0.0, inertia=0.0) for name, link in given.links.items()}
     beam = replace(given.links["body"], mass=3.0, center_of_mass=(1.2, 0.0), inertia=0.0)
-    soft = tuple(JointStiffness(f"joints.B{k}", 1e6) for k in range(3))
+    soft = tuple(JointProperties(f"joints.B{k}", stiffness=1e6) for k in range(3))
     still = replace(given, links={**links, "body": beam}, joints=soft, gravity=(0.0, -10.0))
     found = eq.analyze(still, [np.pi / 2], speed=0.0).forces
     got = [found.joints[f"B{k}"].y[0] for k in range(3)]
@@ -437,7 +440,7 @@ def test_stiff_supports_share_a_weight_as_springs_do() -> None:
 
 
 def test_stiffness_that_leaves_forces_open() -> None:
-    stiff = (JointStiffness("joints.C", 1e6),)
+    stiff = (JointProperties("joints.C", stiffness=1e6),)
     sentence = told(replace(guided(), joints=stiff))
     assert sentence.startswith(
         "joints: the stiffness given leaves forces in joints.block on frame and joints.upper open"
@@ -449,9 +452,9 @@ def test_teeth_share_by_their_stiffness() -> None:
     given = planets()
     still = {name: replace(link, center_of_mass=ORIGIN, inertia=0.0 if name == "arm" else 2e-3)
              for name, link in given.links.items()}  # fmt: skip
-    springs = tuple(JointStiffness(f"gears.planet{k} to sun", 1e6 * (k + 1)) for k in range(3))
-    springs += tuple(JointStiffness(f"joints.P{k}", 1e12) for k in range(3))
-    springs += (JointStiffness("joints.A/sun", 1e12),)
+    sizes = {f"gears.planet{k} to sun": 1e6 * (k + 1) for k in range(3)}
+    sizes |= {f"joints.P{k}": 1e12 for k in range(3)} | {"joints.A/sun": 1e12}
+    springs = tuple(JointProperties(name, stiffness=k) for name, k in sizes.items())
     flat = {"links": still, "gravity": ORIGIN, "joints": springs}
     forces = eq.analyze(replace(given, **flat)).forces.at(acceleration=50.0)
     push = [forces.gears[f"planet{k} to sun"].tangential[0] for k in range(3)]
@@ -464,12 +467,12 @@ def test_teeth_share_by_their_stiffness() -> None:
         ("joints.Q", guided(), "joints[1].joint: no joint is called 'joints.Q'"),
         ("B", guided(), "joints[1].joint: got 'B'; give a joint as joints.B"),
         ("gears.B", guided(), "joints[1].joint: no joint is called 'gears.B'"),
-        ("joints.B1", parallel(), "joints: statics decides all joint forces"),
+        ("joints.B1", parallel(), "joints[1].stiffness: statics decides all joint forces"),
     ],
 )
 def test_stiffness_of_no_use(joint: str, given: eq.Machine, words: str) -> None:
     with pytest.raises(ModelError) as caught:
-        eq.analyze(replace(given, joints=(JointStiffness(joint, 1e6),)))
+        eq.analyze(replace(given, joints=(JointProperties(joint, stiffness=1e6),)))
     assert str(caught.value).startswith(words)
 
 

@@ -24,6 +24,7 @@ from equipoise.mechanism.assembly.builder import Builder, Group
 from equipoise.mechanism.assembly.cycle import Cycle, close
 from equipoise.mechanism.assembly.groups import hung
 from equipoise.mechanism.assembly.joints import Structure, drive_pivot, name_in_outputs, structure
+from equipoise.mechanism.assembly.named_joints import given_properties, pin_radii
 from equipoise.mechanism.assembly.newton import BranchError
 from equipoise.mechanism.assembly.ordering import held, next_group
 from equipoise.mechanism.assembly.parallels import surplus_cranks
@@ -49,6 +50,7 @@ TWICE = Note(
     "the inner joints of two dyads are both called {name!r}, so that one entry would be of both; "
     "rename the point, or give the guide another label"
 )
+DECIDED = Note("statics decides all joint forces of this linkage; leave the stiffness out")
 NOTHING: Mapping[str, Any] = {}
 
 
@@ -109,6 +111,11 @@ class Linkage:
         return tuple((name_in_outputs(self.joints, one), one) for one in self.reactions)
 
     @cached_property
+    def pin_radii(self) -> Mapping[str, float]:
+        """Radii of pins that the file gives, by point, m."""
+        return pin_radii(self.joints, self.machine.joints)
+
+    @cached_property
     def cycle(self) -> Cycle:
         """The closed motion.
 
@@ -158,7 +165,8 @@ def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
     Raises
     ------
     MobilityError : the free motions are none, or two and more.
-    ModelError : an assembly side is missing or idle, two pins coincide.
+    ModelError : an assembly side is missing or idle, two pins coincide, a property is given of
+        what is no such joint.
     """
     kept = machine.__dict__.get("_linkage")
     if kept is None:
@@ -171,6 +179,10 @@ def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
                     f"two joints would be called {name!r} in the output; rename one, or give a "
                     "second guide a label",
                 )
+        decided = not (kept.shared and kept.shared.count)
+        for where, _, one in given_properties(machine, kept.joints, kept.reactions):
+            if decided and one.stiffness is not None:
+                raise ModelError(f"{where}.stiffness", DECIDED)
         machine.__dict__["_linkage"] = kept
     return kept
 

@@ -11,7 +11,7 @@ Drive torque, and force and moment on the frame as a whole, follow from the dema
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,12 +27,12 @@ from equipoise.mechanism.assembly.loop_forces import LoopForces
 from equipoise.mechanism.assembly.loopgroup import Maker
 from equipoise.mechanism.assembly.loops import CouplingLoop, Poses, SlideLoop
 from equipoise.mechanism.assembly.misfits import AGREES, Fit
+from equipoise.mechanism.assembly.named_joints import given_properties
 from equipoise.mechanism.assembly.newton import LoopGroup, poses_in
 from equipoise.mechanism.assembly.steps import Array, Reaction, State, planar
-from equipoise.mechanism.checks import numbered, unknown
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.joint_properties import OF_FORCES
 from equipoise.mechanism.parts.machine import FRAME, Machine
-from equipoise.mechanism.parts.sliders import OF_FORCES
 
 OPEN = 1e-9
 """Share of a joint in forces that hold each other, up to which it has none."""
@@ -301,10 +301,6 @@ def shared(
 ) -> Shared | None:
     """The free bodies of a machine whose groups cannot tell the forces one after the other."""
     count = no_motion(joints) if joints.surplus else ""
-    if not count and builder.machine.joints:
-        raise ModelError(
-            "joints", "statics decides all joint forces of this linkage; leave their stiffness out"
-        )
     if not count and not any(group.through for group in groups):
         return None
     if builder.machine.drives and not count:
@@ -324,7 +320,10 @@ def shared(
     reactions = tuple(map(maker.reaction, loops))
     every = (*reactions, *(one for group in decided for one in group.reactions))
     named = {OF_FORCES[one.kind] + name_in_outputs(joints, one): one.force for one in every}
-    compliance = dict(_compliances(builder.machine, named))
+    given = given_properties(builder.machine, joints, every)
+    compliance = {
+        joint.force: 1 / one.stiffness for _, joint, one in given if one.stiffness is not None
+    }
     starts = {one.name: one.start for one in joints.couplings}
     fit = Fit(whole.equations, groups, size, starts)
     drives = tuple(drive.link for drive in builder.machine.driven if drive.link in links)
@@ -343,16 +342,3 @@ def _decided(builder: Builder, joints: Structure, groups: tuple[Group, ...]) -> 
             found.append(group)
             left = others
     return tuple(found)
-
-
-def _compliances(machine: Machine, named: Mapping[str, str]) -> Iterator[tuple[str, float]]:
-    """Of joints by the name of their force, m/N."""
-    given: set[str] = set()
-    for where, one in numbered("joints", machine.joints):
-        if one.joint not in named:
-            raise ModelError(f"{where}.joint", unknown(one.joint, named, "joint"))
-        if one.joint in given:
-            told = Note("{joint!r} has its stiffness already; leave one out", joint=one.joint)
-            raise ModelError(f"{where}.joint", told)
-        given.add(one.joint)
-        yield named[one.joint], 1 / one.stiffness

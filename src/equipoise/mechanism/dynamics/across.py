@@ -28,8 +28,8 @@ from equipoise.mechanism.dynamics.statics import Statics, statics
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.pushing import pushes
+from equipoise.mechanism.parts.joint_properties import JOINTS
 from equipoise.mechanism.parts.planes import moments_across
-from equipoise.mechanism.parts.sliders import JOINTS
 
 Needed = Mapping[str, Any]
 """Link -> sum of planes times the forces that it needs, N m, complex (..., N)."""

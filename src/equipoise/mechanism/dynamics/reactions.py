@@ -21,9 +21,9 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.pushing import pushes
 from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.joint_properties import JOINTS
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.mechanism.parts.racks import Rack
-from equipoise.mechanism.parts.sliders import JOINTS
 
 PUSH, TORQUE = "push({})", "M({})"  # what drives exert on their links
 """Name of the force of a drive that pushes, among the values of a pass."""

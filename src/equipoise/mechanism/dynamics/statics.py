@@ -23,8 +23,9 @@ from equipoise.i18n import Note, all_of
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.dynamics.reactions import PUSH
 from equipoise.mechanism.kinematics.pushing import ends_of
+from equipoise.mechanism.parts.joint_properties import JOINTS
 from equipoise.mechanism.parts.planes import masses_of
-from equipoise.mechanism.parts.sliders import JOINTS, Mechanism
+from equipoise.mechanism.parts.sliders import Mechanism
 
 Array = np.ndarray[Any, Any]
 

@@ -50,6 +50,7 @@ from equipoise.mechanism.parts.force_elements import (
     LoadTable,
 )
 from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.links import (
     MASS_FIELDS,
     Link,
@@ -58,7 +59,7 @@ from equipoise.mechanism.parts.links import (
 from equipoise.mechanism.parts.places import Frame, Position
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.mechanism.parts.shown_units import ShownUnits
-from equipoise.mechanism.parts.sliders import Bearing, JointStiffness, Slider
+from equipoise.mechanism.parts.sliders import Bearing, Slider
 from equipoise.mechanism.parts.springs import Spring
 from equipoise.mechanism.parts.support import Row, Support
 from equipoise.mechanism.parts.whole import problems_of
@@ -151,11 +152,8 @@ class Machine(Driven, Frozen):
         Tables(Table(FurtherDrive)), "links that are driven besides", default=()
     )
 
-    joints: tuple[JointStiffness, ...] = key(
-        Tables(Table(JointStiffness)),
-        "stiffness of joints, by which they share forces that statics leaves open; those left out "
-        "are rigid",
-        default=(),
+    joints: tuple[JointProperties, ...] = key(
+        Tables(Table(JointProperties)), "properties of single joints", default=()
     )
     bearings: Mapping[str, Bearing] = key(
         Named(Table(Bearing)),

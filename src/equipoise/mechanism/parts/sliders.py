@@ -21,9 +21,6 @@ from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.links import Link
 from equipoise.mechanism.parts.support import Row, Support
 
-JOINTS = ("pin", "slider")
-"""Kinds of what holds bodies together, which is no push of a coupling."""
-
 
 @declared
 class Slider(Frozen):
@@ -54,21 +51,6 @@ class Slider(Frozen):
     @property
     def name(self) -> str:
         return self.label or f"{self.link} on {self.on}"
-
-
-OF_FORCES = {"pin": "joints.", "slider": "joints.", "gear": "gears.", "rack": "racks.",
-             "belt": "belts.", "cam": "cams."}  # fmt: skip
-"""How names of outputs begin that tell of a force, by the kind of what exerts it."""
-
-
-@declared
-class JointStiffness(Frozen):
-    """How stiff a joint is, where joints share a force that statics leaves open."""
-
-    called = to_say("{what} of stiff joint {number}")
-
-    joint: str = key(Text(), "its force, as outputs call it", example="joints.B")
-    stiffness: float = key("stiffness", "more than 0", example="20000 kN/m", above=0)
 
 
 @declared
@@ -126,11 +108,3 @@ def wrong_slider(where: str, slider: Slider, bodies: Bodies) -> Iterator[ModelEr
     if slider.on in bodies:
         yield from unknown_point(f"{where}.through", slider.through, slider.on, bodies)
     yield from unknown_point(f"{where}.point", slider.point, slider.link, bodies)
-
-
-def wrong_joint(where: str, one: JointStiffness, bodies: Bodies) -> Iterator[ModelError]:
-    """Complain of what is no joint's force; which joints there are, assembling tells."""
-    if not one.joint.startswith((*OF_FORCES.values(),)):
-        yield ModelError(
-            f"{where}.joint", Note("got {joint!r}; give a joint as joints.B", joint=one.joint)
-        )

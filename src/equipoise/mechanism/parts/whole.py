@@ -14,11 +14,12 @@ from equipoise.mechanism.parts.drive_checks import wrong_drive, wrong_further, w
 from equipoise.mechanism.parts.field import wrong_planting
 from equipoise.mechanism.parts.force_elements import wrong_load
 from equipoise.mechanism.parts.gears import wrong_gear
+from equipoise.mechanism.parts.joint_properties import wrong_joint
 from equipoise.mechanism.parts.links import wrong_link, wrong_points
 from equipoise.mechanism.parts.places import wrong_position
 from equipoise.mechanism.parts.planes import wrong_planes
 from equipoise.mechanism.parts.racks import wrong_rack
-from equipoise.mechanism.parts.sliders import wrong_joint, wrong_slider
+from equipoise.mechanism.parts.sliders import wrong_slider
 from equipoise.mechanism.parts.springs import wrong_ends
 from equipoise.mechanism.parts.support import wrong_support
 

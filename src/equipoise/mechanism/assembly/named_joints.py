@@ -1,0 +1,77 @@
+"""Joints by the names of their forces, and the properties that the model file gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note
+from equipoise.mechanism.assembly.joints import Structure, name_in_outputs
+from equipoise.mechanism.assembly.steps import Reaction
+from equipoise.mechanism.checks import numbered, unknown
+from equipoise.mechanism.parts.joint_properties import OF_FORCES, JointProperties
+from equipoise.mechanism.parts.machine import Machine
+
+Named = dict[str, list[Reaction]]
+
+
+def named_joints(joints: Structure, reactions: Sequence[Reaction]) -> Named:
+    """Joints by the names of their forces in outputs; a pin of several links by its point too,
+    which stands for all of its forces.
+    """
+    named: Named = {}
+    for one in reactions:
+        family = OF_FORCES[one.kind]
+        for name in dict.fromkeys((name_in_outputs(joints, one), one.name)):
+            named.setdefault(family + name, []).append(one)
+    return named
+
+
+def joint_names(joints: Structure) -> set[str]:
+    """Names that forces of joints may have in outputs, in whatever order links are solved."""
+    names = {name for point in joints.pins for name in _pin_names(joints, point)}
+    names |= {OF_FORCES["slider"] + one.name for one in joints.sliders}
+    return names | {f"{one.table}.{one.name}" for one in joints.couplings}
+
+
+def pin_radii(joints: Structure, given: Iterable[JointProperties]) -> dict[str, float]:
+    """Radii of pins by point, m; of a pin of several links the largest that is given."""
+    radii: dict[str, float] = {}
+    by_name = {name: point for point in joints.pins for name in _pin_names(joints, point)}
+    for one in given:
+        if one.radius is not None and (point := by_name.get(one.joint)) is not None:
+            radii[point] = max(one.radius, radii.get(point, 0.0))
+    return radii
+
+
+def _pin_names(joints: Structure, point: str) -> set[str]:
+    """Names of a pin's forces in outputs, and of the whole pin."""
+    whole, bodies = OF_FORCES["pin"] + point, joints.pins[point]
+    return {whole, *(f"{whole}/{body}" for body in bodies if len(bodies) > 2)}
+
+
+def given_properties(
+    machine: Machine, joints: Structure, reactions: Sequence[Reaction]
+) -> Iterator[tuple[str, Reaction, JointProperties]]:
+    """Joints of which the model file gives properties, with the place of these in the file.
+
+    Raises
+    ------
+    ModelError : there is no such joint, it is named twice, or it has no such property.
+    """
+    named, seen = named_joints(joints, reactions), dict[str, str]()
+    for where, one in numbered("joints", machine.joints):
+        if one.joint not in named:
+            raise ModelError(f"{where}.joint", unknown(one.joint, named, "joint"))
+        for joint in named[one.joint]:
+            if (before := seen.setdefault(joint.force, where)) != where:
+                told = Note(
+                    "{joint!r} has its properties in {before}; give them in one table",
+                    joint=one.joint,
+                    before=before,
+                )
+                raise ModelError(f"{where}.joint", told)
+            if one.radius is not None and joint.kind != "pin":
+                told = Note("{joint!r} is no pin and has no radius; leave it out", joint=one.joint)
+                raise ModelError(f"{where}.radius", told)
+            yield where, joint, one
