@@ -33,10 +33,24 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from support.conformance import Printed, equation, published
+from literature.lee_kim import (
+    LINKS,
+    RPM,
+    TABLE_2,
+    TABLE_4,
+    Array,
+    Body,
+    by_gears,
+    by_table_2,
+    geared,
+    mechanism,
+    peak,
+    shaking_energy,
+    steel_gears,
+    with_gears,
+)
+from support.conformance import Cause, Printed, equation, published
 from support.sources import LEE_KIM
-
-Array = np.ndarray[Any, Any]
 
 EXACT = 1e-10
 COUNT = 720
@@ -46,108 +60,8 @@ DIRECTIONS = pytest.mark.parametrize("phi", [0.0, 35.0, -110.0])
 MECHANISMS = pytest.mark.parametrize("name", ["a", "b", "c"])
 
 
-@dataclass(frozen=True)
-class Body:
-    """A row of Table 2: length, distance and direction of the centre of mass, mass, inertia."""
-
-    length: float
-    arm: float
-    beta: float
-    mass: float
-    inertia: float
-
-
-TABLE_2 = {
-    "a": (
-        0.066,
-        Body(0.032, 0.019, 0, 0.139, 3.12e-5),
-        Body(0.060, 0.043, 163, 0.673, 4.82e-3),
-        Body(0.065, 0.045, 0, 0.437, 6.89e-4),
-    ),
-    "b": (
-        0.074,
-        Body(0.035, 0.015, 0, 0.184, 6.24e-5),
-        Body(0.075, 0.022, 160, 0.788, 5.05e-3),
-        Body(0.077, 0.053, 0, 0.165, 1.60e-4),
-    ),
-    "c": (
-        0.130,
-        Body(0.042, 0.014, 0, 0.806, 9.32e-4),
-        Body(0.092, 0.022, 152, 0.850, 8.50e-3),
-        Body(0.095, 0.048, 0, 0.085, 7.80e-5),
-    ),
-}
-"""R_1, then links 2, 3 and 4; m, deg, kg, kg m2."""
-
-RPM = {"a": 300, "b": 270, "c": 310}
-LINKS = ("crank", "coupler", "rocker")
-
-
-@dataclass(frozen=True)
-class Weight:
-    """A row of Table 4 with what is not printed: r_g4 = 50 mm and I_e = 0.133 m_e R_e^2."""
-
-    ratio: float
-    mass: float
-    arm: float
-    start: float
-    pitch: float = 0.050
-
-    @property
-    def inertia(self) -> float:
-        return 0.133 * self.mass * (self.arm / 0.606) ** 2
-
-    @property
-    def axes(self) -> float:
-        """From O4 to E: r_g4 + r_g5, m."""
-        return self.pitch * (1 + 1 / self.ratio)
-
-
-TABLE_4 = {
-    "a": Weight(0.57, 0.625, 0.055, 360),
-    "b": Weight(0.47, 0.416, 0.045, 350),
-    "c": Weight(0.57, 0.625, 0.055, 280),
-}
-
-
-# -- machines --------------------------------------------------------------------------------------
-
-
-def mechanism(name: str, phi: float = 0.0) -> eq.Machine:
-    """An example with its line of pivots turned by phi, deg, and without weight."""
-    machine = eq.load(f"lee-kim-{name}")
-    place = TABLE_2[name][0] * np.exp(1j * radians(phi))
-    frame = {**machine.frame, "O4": (float(place.real), float(place.imag))}
-    return replace(machine, frame=frame, gravity=(0.0, 0.0))
-
-
-def geared(name: str, phi: float = 0.0, start: float | None = None) -> eq.Machine:
-    """A mechanism with its counterweight of Table 4; start is theta_e0, deg from the line."""
-    machine, weight = mechanism(name, phi), TABLE_4[name]
-    axis = (TABLE_2[name][0] + weight.axes) * np.exp(1j * radians(phi))
-    start = weight.start if start is None else start
-    counterweight = eq.Link({"E": (0.0, 0.0)}, weight.mass, (weight.arm, 0.0), weight.inertia)
-    gear = eq.Gear("rocker", "counterweight", ratio=-weight.ratio, start=radians(start + phi))
-    return replace(
-        machine,
-        frame={**machine.frame, "E": (float(axis.real), float(axis.imag))},
-        links={**machine.links, "counterweight": counterweight},
-        gears=(gear,),
-    )
-
-
 def solved(machine: eq.Machine, acceleration: float = ACCELERATION) -> eq.mechanism.Forces:
     return eq.forces(eq.move(machine, COUNT, acceleration=acceleration))
-
-
-def shaking_energy(machine: eq.Machine, count: int = 7200) -> float:
-    """Area under the absolute shaking moment over one turn, J."""
-    moment = eq.forces(eq.move(machine, count)).shaking_moment
-    return float(2 * pi * np.mean(np.abs(moment)))
-
-
-def peak(machine: eq.Machine) -> float:
-    return float(np.max(np.abs(eq.forces(eq.move(machine, 7200)).shaking_moment)))
 
 
 def close(found: Any, wanted: Any) -> None:
@@ -345,91 +259,130 @@ def test_shaking_moment_from_forces_by_equation_23(name: str, phi: float) -> Non
     close(found.frame_moment, across - found.drive_torque)
 
 
-def percent_less(name: str) -> float:
-    return 100 * (1 - shaking_energy(geared(name)) / shaking_energy(mechanism(name)))
-
-
-def equivalent_speed(name: str, measure: Callable[[eq.Machine], float]) -> float:
-    """The speed at which a measure is that at 300 rpm without counterweight, rpm."""
-    return 300 * (measure(mechanism(name)) / measure(geared(name))) ** 0.5
-
-
-def best_start(name: str) -> float:
-    """theta_e0 in 5 deg steps, deg; theirs is at most 2 % worse."""
+def best_start(built: Callable[[float], eq.Machine], count: int = 720) -> float:
+    """theta_e0 in steps of 5 deg, deg."""
     starts = np.arange(0.0, 360.0, 5.0)
-    energies = [shaking_energy(geared(name, start=start), 720) for start in starts]
-    theirs = energies[int(TABLE_4[name].start % 360) // 5]
-    assert theirs <= 1.02 * min(energies)
-    return float(starts[np.argmin(energies)])
+    return float(starts[np.argmin([shaking_energy(built(start), count) for start in starts])])
+
+
+def started(machine: eq.Machine, start: float) -> eq.Machine:
+    """Another theta_e0, deg, with the line of pivots level."""
+    return replace(machine, gears=(replace(machine.gears[0], start=radians(start)),))
 
 
 FREE, GEARED = "without counterweight", "with their counterweight"
-DATA = "unexplained: their own data give this"
-GEARS = "the gears' inertia, part of (26), is not printed"
-FLAT = "the minimum is flat: theirs is at most 2 % worse"
-TO_TEN = "rounded to 10 rpm"
-
-
 CASES = {name: f"lee-kim-{name}" for name in TABLE_2}
+Given = Callable[[eq.Machine], eq.Machine]
+
+
+def as_it_is(machine: eq.Machine) -> eq.Machine:
+    return machine
+
+
+def energy_of(built: Callable[[str], eq.Machine], name: str, given: Given = as_it_is) -> float:
+    return shaking_energy(given(built(name)))
+
+
+def percent_less(name: str, given: Given = as_it_is) -> float:
+    return 100 * (1 - energy_of(geared, name, given) / energy_of(mechanism, name, given))
+
+
+def equivalent(before: float, after: float) -> float:
+    """The speed at which a measure is that at 300 rpm without counterweight, rpm."""
+    return 300 * (before / after) ** 0.5
+
+
+def equivalent_speed(name: str, measure: Callable[[eq.Machine], float]) -> float:
+    return equivalent(measure(mechanism(name)), measure(geared(name)))
 
 
 def rows_of_table_3() -> Iterator[Printed]:
-    energies: list[tuple[str, Callable[[str], eq.Machine], str, str, str, float, str]] = [
-        ("a", mechanism, FREE, "22.53", "23.20", 0.7, DATA),
-        ("b", mechanism, FREE, "14.35", "14.31", 0.05, DATA),
-        ("c", mechanism, FREE, "22.04", "21.98", 0.07, DATA),
-        ("b", geared, GEARED, "11.05", "", 0.0, ""),
-        ("c", geared, GEARED, "20.14", "20.64", 0.6, DATA),
-    ]
-    for name, built, which, printed, computed, within, why in energies:
-        of = partial(lambda built, name: shaking_energy(built(name)), built, name)
-        what = f"shaking energy {which}"
-        yield Printed(CASES[name], what, "Table 3", printed, computed, "J", within, why, of=of)
+    for name, built, which, printed, computed in (
+        ("a", mechanism, FREE, "22.53", "23.20"),
+        ("b", mechanism, FREE, "14.35", "14.31"),
+        ("c", mechanism, FREE, "22.04", "21.98"),
+        ("b", geared, GEARED, "11.05", "11.05"),
+        ("c", geared, GEARED, "20.14", "20.64"),
+    ):
+        of = partial(energy_of, built, name)
+        yield Printed(
+            CASES[name], f"shaking energy {which}", "Table 3", printed, computed, "J",
+            why=by_table_2(name, of), of=of,
+        )  # fmt: skip
     yield Printed(
         CASES["a"], f"shaking energy {GEARED}", "Table 3", "15.41", "16.42", "J", slip=True,
-        why="the printed 26.4 % would be 16.58 J", of=lambda: shaking_energy(geared("a")),
+        why="the printed 26.4 % would be 16.58 J", of=partial(energy_of, geared, "a"),
     )  # fmt: skip
-    own = "by the printed energies it is 8.6 %"
-    for name, printed, computed, within, why in (
-        ("a", "26.4", "29.2", 3.0, DATA), ("b", "22.6", "22.7", 0.2, DATA),
-        ("c", "9.0", "6.1", 3.0, own),
-    ):  # fmt: skip
-        of = partial(percent_less, name)
-        what = "shaking energy less by"
-        yield Printed(CASES[name], what, "Table 3", printed, computed, "%", within, why, of=of)
+    over_theirs = by_gears("a", 40, 10, lambda machine: 100 * (1 - shaking_energy(machine) / 22.53),
+                           ", over their 22.53 J")  # fmt: skip
+    whole = Cause(
+        "by their energies 8.6 %, 9 in the text", lambda: round(100 * (1 - 20.14 / 22.04))
+    )
+    for name, printed, computed, why in (
+        ("a", "26.4", "29.2", over_theirs),
+        ("b", "22.6", "22.7", by_table_2("b", partial(percent_less, "b"))),
+        ("c", "9.0", "6.1", whole),
+    ):
+        yield Printed(
+            CASES[name], "shaking energy less by", "Table 3", printed, computed, "%", why=why,
+            of=partial(percent_less, name),
+        )  # fmt: skip
 
 
 def rows_of_the_text() -> Iterator[Printed]:
-    peaks: list[tuple[str, Callable[[str], eq.Machine], str, str, str, float, str]] = [
-        ("a", mechanism, FREE, "12", "12.22", 0.0, ""),
-        ("b", mechanism, FREE, "7", "7.26", 0.0, ""),
-        ("c", mechanism, FREE, "8", "7.94", 0.0, ""),
-        ("a", geared, GEARED, "7", "7.52", 0.6, GEARS),
-        ("b", geared, GEARED, "4", "5.48", 1.5, GEARS),
-        ("c", geared, GEARED, "6", "6.81", 0.9, GEARS),
+    place, unit = "section 5, Fig. 13", "N m"
+    for name, built, which, printed, computed, gears in (
+        ("a", mechanism, FREE, "12", "12.22", None),
+        ("b", mechanism, FREE, "7", "7.26", None),
+        ("c", mechanism, FREE, "8", "7.94", None),
+        ("a", geared, GEARED, "7", "7.52", (40, 10)),
+        ("b", geared, GEARED, "4", "5.48", (40, 10)),
+        ("c", geared, GEARED, "6", "6.81", (50, 8)),
+    ):
+        yield Printed(
+            CASES[name], f"largest shaking moment {which}", place, printed, computed, unit,
+            why=by_gears(name, *gears, peak) if gears else "",
+            of=partial(lambda built, name: peak(built(name)), built, name),
+        )  # fmt: skip
+    starts: list[tuple[str, str, str, Cause | str]] = [
+        ("a", "360", "335", "the minimum is flat: theirs costs 0.5 % more"),
+        ("b", "350", "355", Cause("gears of steel, r_g4 = 40 mm and 5 mm wide", lambda: best_start(
+            partial(started, steel_gears("b", 40, 5))))),
+        ("c", "280", "285", by_table_2("c", lambda given: best_start(
+            lambda start: given(geared("c", start=start)), 180))),
+    ]  # fmt: skip
+    for name, printed, computed, why in starts:
+        yield Printed(
+            CASES[name], "best start angle of the counterweight", "Table 4", printed, computed,
+            "deg", why=why, of=lambda name=name: best_start(lambda at: geared(name, start=at)),
+        )  # fmt: skip
+    yield from rows_of_equivalent_speeds()
+
+
+def rows_of_equivalent_speeds() -> Iterator[Printed]:
+    """To ten rpm, all of them."""
+    energies: list[tuple[str, str, str, Cause | str]] = [
+        ("a", "350", "356.7", Cause("by their 26.4 %", lambda: equivalent(1, 1 - 0.264))),
+        ("b", "350", "341.3", "their own energies, and their 22.6 %, give 341 to 342"),
+        ("c", "310", "309.6", ""),
     ]
-    for name, built, which, printed, computed, within, why in peaks:
-        of = partial(lambda built, name: peak(built(name)), built, name)
-        what = f"largest shaking moment {which}"
-        yield Printed(
-            name, what, "section 5, Fig. 13", printed, computed, "N m", within, why, of=of
-        )
-    for name, printed, computed in (("a", "360", "335"), ("b", "350", "355"), ("c", "280", "285")):
-        of, what = partial(best_start, name), "best start angle of the counterweight"
-        yield Printed(CASES[name], what, "Table 4", printed, computed, "deg", 25, FLAT, of=of)
-    for name, printed, computed, by_peak, peaks_told in (
-        ("a", "350", "356.7", "380", "382.3"), ("b", "350", "341.3", "400", "345.5"),
-        ("c", "310", "309.6", "340", "323.9"),
+    to_ten = "to ten rpm"
+    peaks = [
+        ("a", "380", "382.3",
+         Cause(to_ten, lambda: round(equivalent_speed("a", peak), -1))),
+        ("b", "400", "345.5",
+         Cause(f"by their 7 and 4 N m, {to_ten}", lambda: round(equivalent(7, 4), -1))),
+        ("c", "340", "323.9", by_gears("c", 50, 8, lambda machine: round(
+            equivalent(peak(mechanism("c")), peak(machine)), -1), f", {to_ten}")),
+    ]  # fmt: skip
+    for what, measure, rows in (
+        ("energy", shaking_energy, energies), ("largest moment", peak, peaks)
     ):  # fmt: skip
-        of, what = partial(equivalent_speed, name), "speed of equal"
-        yield Printed(
-            CASES[name], f"{what} energy", "conclusions", printed, computed, "rpm", 10, TO_TEN,
-            of=partial(of, shaking_energy),
-        )  # fmt: skip
-        yield Printed(
-            CASES[name], f"{what} largest moment", "conclusions", by_peak, peaks_told, "rpm", 55,
-            GEARS, of=partial(of, peak),
-        )  # fmt: skip
+        for name, printed, computed, why in rows:
+            yield Printed(
+                CASES[name], f"speed of equal {what}", "conclusions", printed, computed, "rpm",
+                why=why, of=partial(equivalent_speed, name, measure),
+            )  # fmt: skip
 
 
 @published(LEE_KIM, *rows_of_table_3(), *rows_of_the_text())
@@ -466,18 +419,31 @@ def test_geared_example_is_mechanism_b_with_table_4() -> None:
     assert example.frame["E"] == pytest.approx(built.frame["E"], abs=1e-6)
 
 
-@published(
-    LEE_KIM,
-    Printed("geared-counterweight", f"shaking energy {GEARED}", "Table 3", "11.05", unit="J"),
-)
-def test_shaking_energy_of_the_geared_example() -> float:
-    return shaking_energy(eq.load("geared-counterweight"))
+def test_shaking_energy_of_the_geared_example() -> None:
+    assert shaking_energy(eq.load("geared-counterweight")) == pytest.approx(11.05, abs=0.005)
+
+
+@pytest.mark.parametrize("name", TABLE_4)
+def test_their_start_angle_costs_little(name: str) -> None:
+    """The minimum is flat: 0.52, 0.05 and 0.02 % more than the best step of 5 deg."""
+    best, theirs = (
+        shaking_energy(geared(name, start=start), 720)
+        for start in (best_start(lambda at: geared(name, start=at)), TABLE_4[name].start)
+    )
+    assert 1 <= theirs / best < 1.006
+
+
+def test_what_their_reductions_make_of_their_numbers() -> None:
+    """A: 26.4 % of 22.53 J leave 16.58 J.  B: energies and 22.6 % agree on 341 to 342 rpm."""
+    assert pytest.approx(16.58, abs=0.005) == 22.53 * (1 - 0.264)
+    for after in (11.05, 14.35 * (1 - 0.226)):
+        assert 340.9 < equivalent(14.35, after) < 342
 
 
 def test_inertia_of_the_gears_brings_the_peak_of_b_nearer(monkeypatch: pytest.MonkeyPatch) -> None:
     """Heavy gears, I_g4 = 477 kg mm2 at r_g4 = 52.5 mm: the same 11.05 J, and 4.7 N m."""
     monkeypatch.setitem(TABLE_4, "b", replace(TABLE_4["b"], pitch=0.0525))
-    machine = with_gears("b", 0.0, 4.77e-4)
+    machine = with_gears(geared("b"), "b", 4.77e-4)
     assert shaking_energy(machine) == pytest.approx(11.05, abs=0.02)
     assert peak(machine) == pytest.approx(4.70, abs=0.02)
 
@@ -512,14 +478,6 @@ def theta_e(found: eq.mechanism.Forces, name: str, phi: float) -> Array:
     return np.asarray(radians(weight.start) - weight.ratio * turned)
 
 
-def with_gears(name: str, phi: float, gear_inertia: float) -> eq.Machine:
-    """Gears of the same width and material: I_g5 = I_g4 / n^4; their masses turn in place."""
-    machine, n = geared(name, phi), TABLE_4[name].ratio
-    for link, extra in (("rocker", gear_inertia), ("counterweight", gear_inertia / n**4)):
-        machine = machine.with_link(link, inertia=(machine.links[link].inertia or 0) + extra)
-    return machine
-
-
 @equation(
     LEE_KIM,
     "(26)",
@@ -530,7 +488,7 @@ def with_gears(name: str, phi: float, gear_inertia: float) -> eq.Machine:
 @MECHANISMS
 def test_inertia_of_the_gears_in_equation_26(name: str) -> None:
     gear_inertia, phi = 3e-4, 35.0
-    found = solved(with_gears(name, phi, gear_inertia))
+    found = solved(with_gears(geared(name, phi), name, gear_inertia))
     wanted = shaking_moment_17(found.motion, name, phi)
     close(found.shaking_moment, wanted + added_26(found, name, phi, gear_inertia))
 
@@ -584,7 +542,7 @@ def test_teeth_follow_equation_31(name: str, phi: float, gear_inertia: float) ->
     The paper keeps one line of action, so that a negative F_45 would pull the gears together.
     Equipoise lets the other flank touch, which turns the radial part over.
     """
-    machine = with_gears(name, phi, gear_inertia)
+    machine = with_gears(geared(name, phi), name, gear_inertia)
     found = solved(machine)
     pressure = machine.gears[0].pressure_angle
     wanted = device(found, name, phi, pressure, gear_inertia)
@@ -616,7 +574,7 @@ def test_bearings_follow_equations_28_to_40(name: str, phi: float, gear_inertia:
 
     The teeth are taken from Equipoise, since its line of action changes with the sign.
     """
-    machine = with_gears(name, phi, gear_inertia)
+    machine = with_gears(geared(name, phi), name, gear_inertia)
     found = solved(machine)
     pressure = machine.gears[0].pressure_angle
     wanted = device(found, name, phi, pressure, gear_inertia)

@@ -19,19 +19,28 @@ Tolerances.  Equations are met to 1e-9 of the largest value: both sides are exac
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import pi, radians
-from typing import Any
 
 import numpy as np
 import pytest
 
 import equipoise as eq
-from literature.yamashita import EXACT, FINGERS, TYPE_1, TYPE_2, Finger, close
+from literature.yamashita import (
+    EXACT,
+    FINGERS,
+    TYPE_1,
+    TYPE_2,
+    Angles,
+    Array,
+    Finger,
+    angles,
+    close,
+    e_c,
+    mass_acceleration,
+    vector,
+)
 from support.conformance import equation
 from support.sources import YAMASHITA
-
-Array = np.ndarray[Any, Any]
 
 G = 9.80665
 
@@ -45,73 +54,8 @@ ACCELERATION = 60.0
 # -- the paper's equations -------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Angles:
-    """theta_B, theta_C, theta_A from the x axis with first and second derivatives by time."""
-
-    b: Array
-    c: Array
-    a: Array
-    b1: float
-    c1: Array
-    a1: Array
-    b2: float
-    c2: Array
-    a2: Array
-
-
-def e_c(finger: Finger, theta_b: Array) -> Array:
-    """E_c below (4)."""
-    a, b, c, d = finger.lengths
-    return np.asarray(a * a + b * b + c * c - d * d - 2 * a * b * np.cos(theta_b))
-
-
-def angles(finger: Finger, theta_b: Array, speed: float, acceleration: float) -> Angles:
-    """(3), (4) with Table 1 for a > b and L = 1, then (10) to (13)."""
-    a, b, c, d = finger.lengths
-    first = e_c(finger, theta_b)
-    r_c = 2 * c * np.sqrt(a * a + b * b - 2 * a * b * np.cos(theta_b))
-    phi = np.arctan(b * np.sin(theta_b) / (a - b * np.cos(theta_b)))
-    t_c = np.arccos(first / r_c) - phi
-    t_a = np.arccos((2 * c * c - 2 * d * d - first) / (r_c * d / c)) - phi
-    sine, cosine = np.sin(t_a - t_c), np.cos(t_a - t_c)
-    c1 = -b * speed * np.sin(t_a - theta_b) / (c * sine)
-    a1 = -b * speed * np.sin(t_c - theta_b) / (d * sine)
-    c2 = (
-        -b * acceleration * np.sin(t_a - theta_b)
-        + b * speed**2 * np.cos(t_a - theta_b)
-        + c * c1**2 * cosine
-        - d * a1**2
-    ) / (c * sine)
-    a2 = (
-        -b * acceleration * np.sin(t_c - theta_b)
-        + b * speed**2 * np.cos(t_c - theta_b)
-        + c * c1**2
-        - d * a1**2 * cosine
-    ) / (d * sine)
-    psi = radians(finger.psi)
-    return Angles(theta_b - psi, t_c - psi, t_a - psi, speed, c1, a1, acceleration, c2, a2)
-
-
-def vector(arm: complex, angle: Array, w: Any, w1: Any) -> Array:
-    """Second derivative by time of a vector fixed in a link."""
-    return np.asarray(arm * np.exp(1j * angle) * (1j * w1 - w * w))
-
-
 def cross(arm: Array, force: Array) -> Array:
     return np.asarray((arm.conjugate() * force).imag)
-
-
-def mass_acceleration(finger: Finger, s: Angles) -> tuple[Array, Array, Array]:
-    """Mass times acceleration of G_b, G_c, G_d (N), the terms of (17) and (18)."""
-    b = finger.lengths[1] / 1e3
-    g_b, g_c, g_d = (g / 1e3 for g in finger.centers)
-    m_b, m_c, m_d = (m / 1e3 for m in finger.masses)
-    return (
-        m_b * vector(g_b, s.b, s.b1, s.b2),
-        m_c * (vector(b, s.b, s.b1, s.b2) + vector(g_c, s.c, s.c1, s.c2)),
-        m_d * vector(g_d, s.a, s.a1, s.a2),
-    )
 
 
 def joint_forces(finger: Finger, s: Angles) -> dict[str, Array]:

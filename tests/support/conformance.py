@@ -23,6 +23,8 @@ import pytest
 TESTS = Path(__file__).parents[1]
 HALF = 0.501
 """Of a digit: what rounding as printed leaves, and rounding of processors on top."""
+KINDS = ("met", "explained", "open", "slip", "drawn")
+"""Of printed numbers."""
 
 
 @dataclass(frozen=True)
@@ -35,14 +37,30 @@ class Source:
 
 
 @dataclass(frozen=True)
+class Cause:
+    """What makes a printed number another one than the computed one.
+
+    text : in words, for the page.
+    gives : computes the number that the cause makes of it, or the least and the largest one that it
+        allows.
+    """
+
+    text: str
+    gives: Callable[[], Any] = field(compare=False)
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True)
 class Printed:
     """A published number.
 
     printed : as printed; "over 90" and "under 1.0" are bounds; none where it is drawn only.
     computed : what comes out here, each digit of it held; none where it is what is printed.
-    within : by how much the two may differ; none where they differ by rounding alone.  Without a
-        computed number it is how exactly the printed one is met, if not to its last digit.
-    why : they differ.  slip : of the print, which cannot be met.
+    within : how exactly a number that is met is met, if not to its last digit.
+    why : the two differ: a cause that is computed, or what is known of an open difference.
+    slip : of the print, which cannot be met.
     of : what the test needs to compute it.
     """
 
@@ -53,18 +71,15 @@ class Printed:
     computed: str = ""
     unit: str = ""
     within: float = 0.0
-    why: str = ""
+    why: Cause | str = ""
     slip: bool = False
     of: Any = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         """Refuse a difference that is not accounted for."""
-        accounted = bool(self.why) or not self.differs
+        accounted = bool(str(self.why)) or not self.differs
         if self.bound:
             accounted &= (self.off > 0) == (self.bound == "over")
-        elif self.printed and not self.slip:
-            rounded = HALF * (digit(self.printed) + digit(self.told))
-            accounted &= abs(float(self.off)) <= max(self.within, rounded)
         if not accounted:
             raise ValueError(f"{self}: {self.told} is not {self.printed}, and nothing says why")
 
@@ -92,6 +107,17 @@ class Printed:
         return not self.bound and abs(float(self.off)) > HALF * digit(self.printed or self.told)
 
     @property
+    def kind(self) -> str:
+        """How print and computation stand to each other, as `KINDS` has it."""
+        if not self.printed:
+            return "drawn"
+        if self.slip:
+            return "slip"
+        if not self.differs:
+            return "met"
+        return "explained" if isinstance(self.why, Cause) else "open"
+
+    @property
     def allowed(self) -> float:
         """How exactly a printed number is met that nothing else is told of."""
         return self.within or HALF * digit(self.printed)
@@ -100,6 +126,18 @@ class Printed:
         """One number less the other; angles are alike after a turn."""
         off = one - other
         return off - 360 * round(off / 360) if self.unit == "deg" else off
+
+    def check_cause(self) -> None:
+        """Hold what a cause gives to the printed digits, where one is needed."""
+        if not isinstance(self.why, Cause) or self.kind not in ("explained", "slip"):
+            return
+        printed = number(self.printed)
+        given = np.ravel(self.why.gives()).tolist()
+        off = [float(self.apart(Decimal(one), printed)) for one in given]
+        allowed = HALF * digit(self.printed)
+        assert min(off) <= allowed and max(off) >= -allowed, (
+            f"{self}: {self.why} gives {given}, not {self.printed}"
+        )
 
     def hold(self, found: Any) -> None:
         """Hold one or more values, each by a way of its own, to the digits told."""
@@ -139,7 +177,10 @@ def _declare(source: Source, test: Test, rows: Iterable[Printed | Agreement]) ->
 
 
 def published(source: Source, *rows: Printed) -> Callable[[Test], Test]:
-    """Make a test of a function that computes the value of a row, or more than one of it."""
+    """Make a test of a function that computes the value of a row, or more than one of it.
+
+    The test holds what the row's cause gives, too.
+    """
 
     def made(compute: Test) -> Test:
         _declare(source, compute, rows)
@@ -149,6 +190,7 @@ def published(source: Source, *rows: Printed) -> Callable[[Test], Test]:
         @wraps(compute)
         def test(row: Printed, **others: Any) -> None:
             row.hold(compute(**others, **({"row": row} if takes_row else {})))
+            row.check_cause()
 
         if not takes_row:
             row = inspect.Parameter("row", inspect.Parameter.KEYWORD_ONLY)

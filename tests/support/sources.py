@@ -10,26 +10,28 @@ from support.conformance import Source
 KIM_CHUNG = Source(
     "Kim and Chung",
     """K. U. Kim, C. J. Chung, "An analytical method for kinematic analysis of the planting
-    mechanism of a rice transplanter", Seoul National University, about 1977. They read angles
-    with a protractor, every 10 deg, so that lengths carry up to 4 %, speeds and accelerations 5
-    %. Crank angles are their theta2.""",
+    mechanism of a rice transplanter", Seoul National University, about 1977. They read
+    the angles of joints off a protractor at every tenth degree of the crank. *Their readings* is
+    what their own equations give with these angles up to half a degree off and the lengths of
+    links up to half a millimetre. Crank angles are their theta2.""",
     ('Table 2 calls both soil crossings "entry position"',
      "Table 2 has largest acceleration in degrees; it is in m/s2"),
 )  # fmt: skip
 YAMASHITA = Source(
     "Yamashita, Ichikawa and Mori",
     """M. Yamashita, M. Ichikawa, K. Mori, "Studies on control of vibrations originating in
-    rice transplanting mechanism consisting of the four bar linkage" (in Japanese), about 1982. A
-    few of the samples behind their harmonics are wrong, near 47 deg; what they balanced comes
-    from searches on grids.""",
-    ("the sentence before (60) to (62) calls the line theta_(i+1) = m theta_i + n; in the equations"
+    rice transplanting mechanism consisting of the four bar linkage" (in Japanese), about 1982.""",
+    ("section 5-2 has three crank angles at which coupler.center_y is without effect; the fourth,"
+     " 330.6 deg, is missed",
+     "the sentence before (60) to (62) calls the line theta_(i+1) = m theta_i + n; in the equations"
      " n is the slope and m the intercept",),
 )  # fmt: skip
 LEE_KIM = Source(
     "Lee and Kim",
     """J. K. Lee, K. U. Kim, "Dynamic balancing of crank-type transplanting mechanism of rice
-    transplanter" (in Korean), Seoul National University, about 1990. The pitch radius of the gear
-    on the rocker is not printed; 50 mm gives the energy of mechanism B.""",
+    transplanter" (in Korean), Seoul National University, about 1990. The pitch radius r_g4 of
+    the gear on the rocker and the gears' moments of inertia, part of (26), are not printed. Here
+    the radius is 50 mm, which gives the energy of mechanism B, and the gears are without mass.""",
     ("the summary has the counterweight faster than the rocker; by Table 4 it is slower, n < 1",),
 )
 NAGAMINE_IRIE = Source(

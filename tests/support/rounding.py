@@ -1,0 +1,26 @@
+"""What the digits that print leaves out can do to a number that is computed from printed ones."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import floor, log10
+
+import numpy as np
+
+
+def half_digits(numbers: Sequence[float], significant: int) -> list[float]:
+    """Half of the last digit of numbers that are printed with so many significant ones."""
+    return [0.5 * 10.0 ** (floor(log10(abs(one))) - significant + 1) for one in numbers]
+
+
+def reach(
+    value: Callable[[np.ndarray], float], data: Sequence[float], halves: Sequence[float]
+) -> list[float]:
+    """A number as its data have it, least and largest where each datum is half a digit off.
+
+    Each is taken off to the side to which the number falls, or rises, by central differences.
+    """
+    at, by = np.array(data, float), np.array(halves, float)
+    slopes = [value(at + by * one) - value(at - by * one) for one in np.eye(len(at))]
+    off = by * np.sign(slopes)
+    return [value(at - off), value(at + off)]
