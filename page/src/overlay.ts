@@ -1,13 +1,13 @@
 /** What is drawn over or under the linkage besides itself, and how its support swings. */
 
-import type { Pair, State } from "./protocol";
+import type { Drawable, Pair, State } from "./protocol";
 import type { View } from "./view";
 
 /** A layer of its own on the drawing. */
-export interface Overlay {
+export interface Overlay<S extends Drawable = State> {
   readonly element: SVGGElement;
   /** Another machine, or the same with other numbers. */
-  show(state: State): void;
+  show(state: S): void;
   /** Draw it where everything is at sample k. */
   pose(view: View, k: number): void;
 }

@@ -19,7 +19,7 @@ export class Player {
   private last: number | null = null;
 
   /** Take the machine's samples and speed; the crank stays where it is. */
-  take(state: State): void {
+  take(state: Pick<State, "angles" | "turns" | "speed">): void {
     [this.count, this.turns, this.speed] = [state.angles, state.turns, state.speed];
   }
 

@@ -614,8 +614,14 @@ export type Told =
   /** Said by the page's own transport, never by a server. */
   | { type: "lost" | "back" };
 
+/** Numbers over the samples, by name. */
+export interface Rows {
+  get(name: string): Float32Array | undefined;
+  names(prefix: string): string[];
+}
+
 /** Numbers of a message, by name. */
-export class Numbers {
+export class Numbers implements Rows {
   private readonly floats: Float32Array;
 
   constructor(
@@ -643,6 +649,9 @@ export class Numbers {
 export interface State extends StateMessage {
   numbers: Numbers;
 }
+
+/** What a drawing of a machine needs of its state. */
+export type Drawable = Pick<State, "scene" | "angles" | "status"> & { numbers: Rows };
 
 /** Notebooks may hand over bytes that start anywhere; arrays of floats need multiples of four. */
 function floats(view: DataView): Float32Array {

@@ -1,14 +1,14 @@
 /** The crank, turned by hand: its body is its rim, and only its handle changes its length. */
 
-import type { State } from "./protocol";
+import type { Drawable, State } from "./protocol";
 import type { Stage } from "./stage";
 
 /** Pixels from which on a press is a drag. */
 const FAR = 3;
 
-export interface Turning {
-  stage: Stage;
-  state(): State | null;
+export interface Turning<S extends Drawable = State> {
+  stage: Stage<S>;
+  state(): S | null;
   angle(): number;
   /** Put the crank at an angle, degrees. */
   turn(degrees: number): void;
@@ -16,7 +16,7 @@ export interface Turning {
 }
 
 /** Let the crank of a stage be turned by mouse and finger. */
-export function turnable(page: Turning): void {
+export function turnable<S extends Drawable>(page: Turning<S>): void {
   const { svg } = page.stage;
   const held = (event: Event): string | null => {
     const target = event.target as Element;
@@ -41,7 +41,7 @@ export function turnable(page: Turning): void {
   });
 }
 
-function follow(page: Turning, event: PointerEvent, link: string): void {
+function follow<S extends Drawable>(page: Turning<S>, event: PointerEvent, link: string): void {
   const { stage } = page;
   const { frame = [], bodies = [] } = page.state()?.scene ?? {};
   const points = bodies.find(({ name }) => name === link)?.points ?? [];

@@ -2,7 +2,7 @@
 
 import { s, set } from "./dom";
 import type { Swung } from "./overlay";
-import type { Numbers, Pair, Scene, Shape, Sign } from "./protocol";
+import type { Pair, Rows, Scene, Shape, Sign } from "./protocol";
 import type { View } from "./view";
 
 /** Shades of links, one after the other. */
@@ -61,7 +61,7 @@ export class Piece {
   }
 
   /** Move it to where it is at sample k, as the support swings. */
-  pose(numbers: Numbers, view: View, k: number, swung: Swung | null): void {
+  pose(numbers: Rows, view: View, k: number, swung: Swung | null): void {
     const { hold, still } = this.sign;
     this.before = still ? "" : (swung?.transform ?? "");
     if (!hold) return this.place(view.px(0, 0), "");
@@ -142,7 +142,7 @@ function corner(corners: number[], i: number, scale: number): Pair {
   return [x * scale + dx, -y * scale - dy];
 }
 
-function pairAt(numbers: Numbers, name: string, k: number): Pair {
+function pairAt(numbers: Rows, name: string, k: number): Pair {
   const row = numbers.get(name);
   return row ? [row[2 * k] as number, row[2 * k + 1] as number] : [0, 0];
 }

@@ -3,7 +3,7 @@
 import { Dimensions } from "./dims";
 import { s, set } from "./dom";
 import { type Overlay, type Swing, swung } from "./overlay";
-import type { BaseCircle, Pair, Scene, State } from "./protocol";
+import type { BaseCircle, Drawable, Pair, Scene, State } from "./protocol";
 import { at, curve, outside, quarters } from "./shapes";
 import { ruled } from "./sheet";
 import { build, Piece } from "./signs";
@@ -40,7 +40,7 @@ export interface Grip {
   name: string;
 }
 
-export class Stage {
+export class Stage<S extends Drawable = State> {
   readonly svg = s("svg", { class: "linkage", role: "group", "aria-label": say("Linkage") });
   /** Fine lines and scales, apart, so that they are not painted with every frame. */
   readonly lines = s("svg", { class: "sheet-lines", "aria-hidden": "true" });
@@ -53,7 +53,7 @@ export class Stage {
   /** Called when another part of the plane is shown. */
   readonly watchers: (() => void)[] = [];
   private readonly layer: Record<string, SVGGElement> = {};
-  private state: State | null = null;
+  private state: S | null = null;
   /** All is shown, and nobody has moved the sheet since. */
   private fitted = true;
   private k = 0;
@@ -63,7 +63,7 @@ export class Stage {
   private pieces: Piece[] = [];
   private paths: Named[] = [];
   private labels: Label[] = [];
-  private readonly overlays: Overlay[] = [];
+  private readonly overlays: Overlay<S>[] = [];
   /** Places of what lies below the linkage, m, which are in sight where all is. */
   beneath: () => Pair[] = () => [];
   /** How what the support carries moves; null where it is at rest. */
@@ -80,7 +80,7 @@ export class Stage {
   }
 
   /** Take a state, before it is posed; `other` is of another machine, another build is drawn from scratch. */
-  show(state: State, other: boolean): void {
+  show(state: S, other: boolean): void {
     const { frame, bodies, movable, mass_centers, cams } = state.scene;
     // While a point is dragged signs may change their order, but what is held must stay the same.
     const names = JSON.stringify([frame, bodies, movable, mass_centers, cams.map(({ name }) => name)]);
@@ -98,7 +98,7 @@ export class Stage {
   }
 
   /** Draw something more, below one of the layers. */
-  overlay(overlay: Overlay, below: (typeof LAYERS)[number]): void {
+  overlay(overlay: Overlay<S>, below: (typeof LAYERS)[number]): void {
     this.overlays.push(overlay);
     this.svg.insertBefore(overlay.element, this.layer[below] ?? null);
   }
@@ -287,7 +287,7 @@ export class Stage {
   }
 
   /** The way of the crank's end, by which it is turned. */
-  private drawRim({ status, scene }: State): void {
+  private drawRim({ status, scene }: S): void {
     const points = scene.bodies.find(({ name }) => name === status.drive)?.points ?? [];
     const places = points.map((name) => this.place({ kind: "point", name }) as Pair);
     const pivot = places[points.findIndex((name) => scene.frame.includes(name))];

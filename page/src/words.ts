@@ -58,6 +58,11 @@ export function wished(): string[] {
   return [...(chosen ? [chosen] : []), ...navigator.languages];
 }
 
+/** Speak a language whose texts are at hand, without a server. */
+export function speak(language: string, words: Record<string, string>): void {
+  told = { ...told, language, words };
+}
+
 /** Agree with the server on a language, by a wire that nobody else hears yet. */
 export function agree(wire: Wire, wishes: string[]): Promise<void> {
   return new Promise((done) => {

@@ -6,7 +6,8 @@ Signals go by their names in the output of an analysis.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any
@@ -21,10 +22,11 @@ from equipoise.codegen.steps import trace_demands, trace_joints, trace_motion
 from equipoise.codegen.terms import angle_of
 from equipoise.codegen.trace import Trace
 from equipoise.errors import MassError, UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.family import can_vary
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.newton import LoopGroup
-from equipoise.mechanism.assembly.steps import Reaction
+from equipoise.mechanism.assembly.steps import Reaction, planar
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.formulas.kernels import cross, length
 from equipoise.mechanism.outputs.declared import DECLARED, Declared, declared
@@ -65,6 +67,8 @@ class Signals:
         ------
         UsageError : there is no such signal, or a loop cannot have it.
         """
+        if signal in self.poses:
+            return self.poses[signal]
         one, item = declared(signal) or (None, "")
         if one is None or one.loop is None or not self._has(one):
             raise UsageError(unknown(signal, self._known(), "signal"))
@@ -87,6 +91,26 @@ class Signals:
         return [*(one.name for one in ones if self._has(one)), *joints, *bearings]
 
     # -- values ------------------------------------------------------------------------------------
+
+    @cached_property
+    def poses(self) -> dict[str, Any]:
+        """Signals that are no outputs but tell where each link is, and how far each dyad is from
+        its dead positions: ``rotation(crank).x`` of exp(i angle), ``center(crank).x`` of its centre
+        of mass (m), ``margin 0`` of the first dyad, and ``cosine 0`` of the first link whose angle
+        is taken from that of the base.
+        """
+        trace = self.trace
+        found: dict[str, Any] = {}
+        for link, body in self.machine.links.items():
+            anchor, *_, turn, _, _ = trace.body(link)
+            vectors = {"rotation": turn}
+            if body.has_mass:
+                arm = trace.slot(f"center({link})", partial(_arm_of_center, link), vector=True)
+                vectors["center"] = anchor + turn * arm
+            for what, vector in vectors.items():
+                found |= {f"{what}({link}).x": vector.real, f"{what}({link}).y": vector.imag}
+        found |= {f"margin {k}": number for k, (number, _) in enumerate(trace.numbers())}
+        return found | {f"cosine {k}": one for k, one in enumerate(trace.running.values())}
 
     @cached_property
     def demands(self) -> dict[str, Any]:
@@ -230,6 +254,13 @@ OF_MEMBERS: dict[str, Callable[[Signals, str], Any]] = {
 """Values of members of families, by the names that `declared` looks them up by."""
 
 
+def _arm_of_center(link: str, found: Linkage) -> Any:
+    """From a link's anchor to its centre of mass, in its axes, m."""
+    points = found.machine.points_of(link)
+    center = found.machine.links[link].center_of_mass or (0.0, 0.0)
+    return planar(center) - planar(points[found.anchors[link]])
+
+
 def can_emit(linkage: Linkage) -> bool:
     """Whether the steps of a linkage can be traced: no soil, no gears beside loops, and no
     drive that pushes.
@@ -243,6 +274,39 @@ def can_emit(linkage: Linkage) -> bool:
     if not can_trace_followers(linkage):
         return False
     return all(map(can_trace, loops)) and not (loops and machine.couplings)
+
+
+def signals_in_loops(linkage: Linkage, names: Iterable[str]) -> list[str]:
+    """Those of some outputs of a linkage that a loop can have.
+
+    Raises
+    ------
+    UsageError : a loop cannot have this linkage.
+    MassError : an output needs masses, and the machine lacks some.
+    """
+    signals, found = _traced(linkage), []
+    for name in names:
+        with suppress(UsageError):
+            signals(name)
+            found.append(name)
+    return found
+
+
+def pose_signals(linkage: Linkage) -> list[str]:
+    """Names of the signals in `Signals.poses` of a linkage; errors as `signals_in_loops`."""
+    return [*_traced(linkage).poses]
+
+
+def _traced(linkage: Linkage, paths: Collection[str] | None = None) -> Signals:
+    """Signals of a linkage whose steps can be traced."""
+    if not can_emit(linkage):
+        raise UsageError(
+            Note(
+                "large groups of loops, fingers in soil, drives that push, and couplings beside "
+                "loops cannot be computed in a loop"
+            )
+        )
+    return Signals(Trace(linkage, paths))
 
 
 def emit(
@@ -261,15 +325,9 @@ def emit(
     UsageError : there is no such signal, or a loop cannot have it or this linkage.
     MassError : it needs masses, and the machine lacks some.
     """
-    if not can_emit(linkage):
-        raise UsageError(
-            "large groups of loops, fingers in soil, drives that push, and couplings beside loops "
-            "cannot be computed in a loop"
-        )
-    trace = Trace(linkage, paths)
-    signals = Signals(trace)
+    signals = _traced(linkage, paths)
     values = {name: signals(name) for name in gathered.signals}
-    return source_of(trace, gathered, values, has_shares)
+    return source_of(signals.trace, gathered, values, has_shares)
 
 
 def moves_shared(linkage: Linkage, paths: Sequence[str]) -> bool:

@@ -28,6 +28,7 @@ from equipoise.codegen.terms import (
 )
 from equipoise.codegen.trace import Array
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.family import linkage_of, with_columns
 from equipoise.mechanism.assembly.linkage import Linkage
 
@@ -89,7 +90,7 @@ def javascript(
     """
     source = emit(linkage, Gathered(tuple((name, "squares") for name in names)), numbers or None)
     if source.carried:
-        raise UsageError("loops that no dyads solve cannot be written in JavaScript")
+        raise UsageError(Note("loops that no dyads solve cannot be written in JavaScript"))
     outputs = [source.values[name] for name in names]
     if numbers:
         outputs = _of_numbers(source, linkage, outputs, numbers)

@@ -81,7 +81,7 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
                 job.leave_out(f"the tension of the belt {belt.name}, which its pins bear")
     if machine.pushers:
         job.leave_out("what pushes the machine, and its stroke")
-    data: str | bytes = import_module(f"equipoise.exchange.{one.name}").made(job)
+    data: str | bytes = import_module(one.maker).made(job)
     return job, data
 
 

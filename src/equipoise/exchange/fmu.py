@@ -22,10 +22,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from xml.etree import ElementTree as ET
 
-from equipoise.codegen.emit import emit
+from equipoise.codegen.emit import emit, signals_in_loops
 from equipoise.codegen.figures import Gathered
 from equipoise.codegen.in_c import in_c
-from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
 from equipoise.exchange.tree import constant_loads
 from equipoise.mechanism.assembly.linkage import assemble
@@ -74,15 +73,9 @@ def made(job: Job) -> bytes:
 
 def _outputs(analysis: Analysis) -> list[Output]:
     """Those that a compiled loop can have too."""
-    linkage = assemble(analysis.machine)
-    found = []
-    for one in analysis.outputs.arrays:
-        try:
-            emit(linkage, Gathered(((one.name, "squares"),)))
-        except UsageError:
-            continue
-        found.append(one)
-    return found
+    arrays = {one.name: one for one in analysis.outputs.arrays}
+    names = signals_in_loops(assemble(analysis.machine), arrays)
+    return [arrays[name] for name in names]
 
 
 def _code(machine: Machine, names: Sequence[str], crank_angle: float) -> str:

@@ -23,7 +23,8 @@ CAM, RACK, VARYING = "cam", "rack", "gears of varying ratio"
 class Format:
     """One kind of file.
 
-    name : as `format` takes it; its module here has that name too, but for tables of stores.
+    name : as `format` takes it.  module : that makes it, in this package; the one of its name here
+    if not given.
     ending : of its files, with the dot.  holds : what is in it.  needs : a library of the extra
     `exchange`.  of_store : whether it is of the designs of a study, not of a machine.
     posed : whether it shows the machine at a crank angle, or begins there.
@@ -40,6 +41,12 @@ class Format:
     posed: bool = True
     turns: bool = False
     lacks: tuple[str, ...] = ()
+    module: str = ""
+
+    @property
+    def maker(self) -> str:
+        """Name of the module that makes it, which may stand in a room above this one."""
+        return f"equipoise.{self.module or f'exchange.{self.name}'}"
 
 
 FORMATS: Mapping[str, Format] = {
@@ -121,6 +128,14 @@ FORMATS: Mapping[str, Format] = {
             "MATLAB",
             "a struct of links and points, figures of every output, and all signals with units",
             posed=False,
+        ),
+        Format(
+            "html",
+            ".html",
+            "interactive page (HTML)",
+            "one file that computes in a browser, without server or network: joints to drag, "
+            "numbers to change, forces, torque and charts that follow at once",
+            module="web.interactive",
         ),
         Format("csv", ".csv", "CSV", "all designs of a store", of_store=True),
         Format("parquet", ".parquet", "Parquet", "all designs of a store", of_store=True),

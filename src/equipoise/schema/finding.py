@@ -50,7 +50,7 @@ def find(content: Content, kind: Kind, path: str) -> Found:
     ------
     ModelError : there is none; `where` is the path.
     """
-    steps = _steps(path)
+    steps = steps_of(path)
     place: Place = ()
     here: Any = content
     for count, step in enumerate(steps):
@@ -101,8 +101,13 @@ def _group(here: Any, step: str | int, kind: Kind) -> Vector | Planes | None:
 # -- paths -----------------------------------------------------------------------------------------
 
 
-def _steps(path: str) -> tuple[str | int, ...]:
-    """Keys, and numbers in lists from 0."""
+def steps_of(path: str) -> tuple[str | int, ...]:
+    """Keys on the way to a number, and numbers in lists from 0.
+
+    Raises
+    ------
+    ModelError : it is no path.
+    """
     steps: list[str | int] = []
     end = 0
     while match := _STEP.match(path, end):
@@ -132,7 +137,7 @@ def _unquoted(text: str) -> str:
 # -- what the file can have at a place -------------------------------------------------------------
 
 
-def _key_at(kind: Kind, place: Place) -> Key | None:
+def key_at(kind: Kind, place: Place) -> Key | None:
     """The key at the end of a place; None where it is a name of the user's, or unknown."""
     above = _kind_at(kind, place[:-1])
     return all_keys(above.type).get(str(place[-1])) if isinstance(above, Table) else None
@@ -168,7 +173,7 @@ def _below(content: Content, kind: Kind, path: str, place: Place, here: Any) -> 
     if isinstance(here, dict):
         if step in here:
             return here[step]
-        one = _key_at(kind, place)
+        one = key_at(kind, place)
         default = None if one is None else plain_default(one)
         if default is not None:
             return default

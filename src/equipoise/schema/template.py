@@ -17,9 +17,18 @@ from typing import Any
 from equipoise.errors import ModelError
 from equipoise.handheld.model import Tool
 from equipoise.i18n import Note
+from equipoise.keys import Key
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.schema.finding import Found, all_numbers, find, replaced, unit_in, with_changes
+from equipoise.schema.finding import (
+    Found,
+    all_numbers,
+    find,
+    key_at,
+    replaced,
+    unit_in,
+    with_changes,
+)
 from equipoise.schema.models import Beside, Held, machine_of, parts_of, text_of, tool_of
 from equipoise.schema.numbers import Number
 from equipoise.schema.opening import Kind, Opened, in_file, kind_of, model_content, opened
@@ -130,6 +139,15 @@ class Template:
         if found.rest:
             return self._linkage(found.place).words(found.rest)
         return words_of(self._content, self.kind, found, others) or path
+
+    def key(self, path: str) -> Key | None:
+        """The declared key of a number of a machine, with its limits; None where it has none.
+
+        Raises
+        ------
+        ModelError : there is no such number.
+        """
+        return key_at(self.kind, self._find(path).place)
 
     def numbers(self) -> dict[str, Number]:
         """Every number that the file has, by its path."""

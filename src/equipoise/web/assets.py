@@ -21,8 +21,17 @@ def assets() -> dict[str, bytes]:
     ------
     UsageError : they have not been built.
     """
-    folder = files("equipoise.web") / "static"
+    return {name: asset(name).encode() for name in TYPES}
+
+
+def asset(name: str) -> str:
+    """One of the files that have been built.
+
+    Raises
+    ------
+    UsageError : it has not been built.
+    """
     try:
-        return {name: (folder / name).read_bytes() for name in TYPES}
+        return (files("equipoise.web") / "static" / name).read_text(encoding="utf-8")
     except OSError:
         raise UsageError(MAKE) from None

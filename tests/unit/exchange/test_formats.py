@@ -56,7 +56,7 @@ def test_a_library_that_is_not_installed(
 
 @pytest.mark.parametrize("name", [one.name for one in OWN])
 def test_each_has_its_module(name: str) -> None:
-    assert callable(import_module(f"equipoise.exchange.{name}").made)
+    assert callable(import_module(FORMATS[name].maker).made)
 
 
 @pytest.mark.parametrize("name", [one.name for one in OWN if one.lacks])

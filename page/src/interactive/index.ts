@@ -1,0 +1,369 @@
+/** An interactive file: a machine that is dragged and changed, and computes itself. */
+
+import { h, icon, s, set, write } from "../dom";
+import { follow, measure } from "../format";
+import type { Attempts } from "../gesture";
+import { Hands } from "../hands";
+import type { Overlay } from "../overlay";
+import { Player } from "../player";
+import type { Drawable, Edit } from "../protocol";
+import { turnable } from "../rim";
+import { type Grip, Stage } from "../stage";
+import { TransportBar } from "../transport";
+import { type View } from "../view";
+import { say, speak } from "../words";
+import { changed, toml } from "./changes";
+import { Drawing } from "./drawing";
+import { massMoved, moved, reaches } from "./edits";
+import { Machine, type Solution } from "./machine";
+import { Inputs, Readout } from "./numbers";
+import { Plots } from "./plot";
+import type { States, Told } from "./told";
+
+export { changed, toml } from "./changes";
+export { massMoved, moved, outside, typed, withLength } from "./edits";
+export { Machine } from "./machine";
+
+/** The longest arrow of the shaking force, over the size of the drawing. */
+const LONGEST = 0.28;
+
+/** The shaking force, at the pivot of the crank. */
+class Shaking implements Overlay<Drawable> {
+  readonly element = s("g", { class: "arrows", "aria-hidden": "true" });
+  private readonly shaft = s("path", { class: "shaft" });
+  private readonly head = s("path", { class: "head" });
+  private found: Solution | null = null;
+  private largest = 0;
+
+  constructor(private readonly at: string) {
+    this.element.append(s("g", { class: "force" }, this.shaft, this.head));
+  }
+
+  /** The scale is that of the original, so that a smaller force is a shorter arrow. */
+  measure(original: Solution): void {
+    this.largest = original.figures("shaking_force")?.peak ?? 0;
+  }
+
+  take(found: Solution): void {
+    this.found = found;
+  }
+
+  show(): void {
+    // what is drawn is taken before
+  }
+
+  pose(view: View, k: number): void {
+    const at = this.found?.machine.frames[k];
+    if (!this.found || at === undefined || !this.largest) return;
+    const [fx, fy] = this.found.vector("shaking_force", at);
+    const [x, y] = view.px(...this.found.point(this.at, at));
+    const scale = (LONGEST * Math.min(view.width, view.height)) / this.largest;
+    const [dx, dy] = [fx * scale, -fy * scale];
+    const long = Math.hypot(dx, dy);
+    const [ux, uy] = [dx / (long || 1), dy / (long || 1)];
+    const tip = (back: number, side: number) => `${(x + dx - back * ux - side * uy).toFixed(1)} ${(y + dy - back * uy + side * ux).toFixed(1)}`;
+    set(this.shaft, { d: long > 2 ? `M${x.toFixed(1)} ${y.toFixed(1)}L${tip(Math.min(8, long), 0)}` : "" });
+    set(this.head, { d: long > 2 ? `M${tip(0, 0)}L${tip(9, 3.6)}L${tip(9, -3.6)}Z` : "" });
+  }
+}
+
+class Page implements Attempts {
+  readonly open: Attempts["open"] = new Set();
+  private readonly original: Solution;
+  private readonly drawing: Drawing;
+  private readonly player = new Player();
+  private readonly hands: Hands<Drawable>;
+  private readonly stage: Stage<Drawable>;
+  private readonly transport: TransportBar;
+  private readonly plots: Plots;
+  private readonly inputs: Inputs;
+  private readonly readout: Readout;
+  private readonly shaking: Shaking | null;
+  private readonly said = h("p", { class: "said", role: "status" });
+  private readonly hint = h("p", { class: "hint", "aria-hidden": "true" });
+  private readonly lines = h("textarea", { readonly: true, rows: 6, "aria-label": say("Changed numbers as lines of the model file") });
+  private readonly undoButton: HTMLButtonElement;
+  private readonly resetButton: HTMLButtonElement;
+  private readonly copies: HTMLElement;
+  private readonly past: Float64Array[] = [];
+  private shown: Drawable;
+  private found: Solution;
+  /** What was last committed, and from which a drag begins. */
+  private settled: Solution;
+
+  constructor(
+    root: HTMLElement,
+    private readonly machine: Machine,
+  ) {
+    this.original = this.found = this.settled = machine.solve(machine.base);
+    this.drawing = new Drawing(machine);
+    this.shown = this.drawing.of(this.found);
+    this.hands = new Hands<Drawable>(
+      {
+        talk: this,
+        state: () => this.shown,
+        sample: () => this.player.sample,
+        chosen: (grip) => this.stage.select(new Set([grip.name]), null, grip),
+        holding: (on) => this.hold(on),
+        hint: (text) => write(this.hint, text),
+        kept: () => [],
+      },
+      (dress) => new Stage<Drawable>(dress),
+    );
+    this.stage = this.hands.made;
+    this.shaking = machine.place.has("shaking_force.x") ? this.arrow() : null;
+    this.transport = new TransportBar(this.player, () => this.toggle(), () => this.point());
+    this.plots = new Plots(machine, (degrees) => this.turn(degrees));
+    const attempt = (design: Float64Array) => this.commit(design);
+    this.inputs = new Inputs(machine, this.original, attempt, (sentence) => this.tell(sentence, !!sentence));
+    this.readout = new Readout(machine);
+    this.undoButton = h("button", { type: "button", disabled: true, onclick: () => this.undo() }, say("Undo"));
+    this.resetButton = h("button", { type: "button", disabled: true, onclick: () => this.reset() }, say("Reset all"));
+    this.copies = h(
+      "details",
+      { class: "copies", hidden: true },
+      h("summary", {}, say("Changed numbers")),
+      h("p", { class: "quiet" }, say("Put these lines in the place of those in the model file, or copy them to whoever keeps it.")),
+      this.lines,
+      h("button", { type: "button", onclick: () => void this.copy() }, say("Copy")),
+    );
+    this.lay(root);
+    this.begin();
+  }
+
+  private arrow(): Shaking {
+    const { crank, links, scene } = this.machine.told;
+    const points = crank ? (links[crank]?.points ?? []) : [];
+    const shaking = new Shaking(points.find((name) => scene.frame.includes(name)) ?? (scene.frame[0] as string));
+    shaking.measure(this.original);
+    this.stage.overlay(shaking, "grips");
+    return shaking;
+  }
+
+  private lay(root: HTMLElement): void {
+    const { told } = this.machine;
+    root.className = "equipoise equipoise-page interactive";
+    root.dataset.settled = ""; // nothing is waited for: all is computed at once
+    const fit = h("button", { type: "button", class: "fit", title: say("Show all"), "aria-label": say("Show all"), onclick: () => this.stage.fit() }, icon("M2.500 6v-3.500h3.500M10 2.500h3.500v3.500M13.500 10v3.500h-3.500M6 13.500h-3.500v-3.500"));
+    const sheet = h("div", { class: "sheet" });
+    sheet.append(this.stage.lines, this.stage.svg, this.stage.numbers, this.hint, this.said, fit);
+    root.replaceChildren(
+      h("header", {}, h("h1", {}, told.title), h("p", { class: "quiet" }, told.description)),
+      h(
+        "section",
+        { class: "motion", "aria-label": say("Linkage") },
+        sheet,
+        this.transport.root,
+        h("details", { class: "about" }, h("summary", {}, say("What a drag changes")), h("p", {}, say("A joint that is dragged gets new coordinates in each link that has it, or new lengths to the other joints of the link. At the crank angle shown, all other joints stay where they are. On a guide it moves along the guide. Masses and moments of inertia stay as they are."))),
+      ),
+      h(
+        "div",
+        { class: "beside" },
+        h("section", { class: "figures", "aria-label": say("Figures") }, h("h2", {}, say("Figures")), this.readout.root),
+        h(
+          "section",
+          { class: "values", "aria-label": say("Numbers") },
+          h("h2", {}, say("Numbers"), this.undoButton, this.resetButton),
+          this.copies,
+          told.fields.length ? this.inputs.root : h("p", { class: "quiet" }, say("The numbers of this machine cannot be changed here; open its model in Equipoise.")),
+        ),
+      ),
+      h("section", { class: "charts", "aria-label": say("Charts") }, this.plots.root),
+    );
+    new ResizeObserver(() => this.stage.resize(sheet.clientWidth, sheet.clientHeight)).observe(sheet);
+    this.stage.resize(sheet.clientWidth, sheet.clientHeight);
+    root.addEventListener("keydown", (event) => this.key(event));
+    turnable({
+      stage: this.stage,
+      state: () => this.shown,
+      angle: () => this.player.angle,
+      turn: (degrees) => this.turn(degrees),
+      chosen: () => undefined,
+    });
+  }
+
+  private begin(): void {
+    const { told, frames } = this.machine;
+    this.player.take({ angles: frames.length, turns: told.turns, speed: told.speed });
+    this.player.suit();
+    this.player.angle = told.begin;
+    this.transport.take(frames.length);
+    this.show(this.found, true);
+    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.toggle();
+    const tick = (now: number) => {
+      if (this.player.tick(now)) this.point();
+      requestAnimationFrame(tick);
+    };
+    requestAnimationFrame(tick);
+  }
+
+  // -- what is shown ------------------------------------------------------------------------------
+
+  private show(found: Solution, first = false): void {
+    this.found = found;
+    this.shown = this.drawing.of(found);
+    this.shaking?.take(found);
+    this.stage.show(this.shown, first);
+    const changes = changed(this.machine, found.design);
+    const before = changes.length ? this.original : null;
+    this.plots.show(found, before);
+    this.readout.show(found, before);
+    this.inputs.show(found);
+    const speed = found.number("drive.speed") ?? this.machine.told.speed;
+    this.player.take({ angles: this.machine.frames.length, turns: this.machine.told.turns, speed });
+    this.lines.value = toml(this.machine, found.design);
+    this.copies.hidden = !changes.length;
+    this.resetButton.disabled = !changes.length;
+    this.undoButton.disabled = !this.past.length;
+    this.point();
+  }
+
+  private point(): void {
+    this.stage.pose(this.player.sample);
+    this.hands.describe();
+    this.hands.follow();
+    this.transport.point();
+    this.plots.point(this.machine.frames[this.player.sample] as number);
+  }
+
+  private turn(degrees: number): void {
+    this.player.playing = false;
+    this.transport.state();
+    this.player.angle = degrees;
+    this.point();
+  }
+
+  private toggle(): void {
+    this.player.playing = !this.player.playing;
+    this.transport.state();
+  }
+
+  private tell(sentence: string, bad: boolean): void {
+    write(this.said, sentence);
+    this.said.classList.toggle("bad", bad);
+  }
+
+  // -- what is changed ----------------------------------------------------------------------------
+
+  /** While something is held the crank stands still. */
+  private hold(on: boolean): void {
+    if (!on) return;
+    this.player.playing = false;
+    this.transport.state();
+  }
+
+  release(): void {
+    for (const gesture of [...this.open]) gesture.end();
+  }
+
+  rest(): void {
+    if (this.found !== this.settled) this.show(this.settled);
+  }
+
+  attempt(_label: string, edits: Edit[], _stamp: number, done: (refusal: string | null) => void): void {
+    const [found, why] = this.edited(edits);
+    if (why) this.hands.refused();
+    else {
+      this.hands.accepted();
+      this.show(found);
+    }
+    this.tell(why ?? this.changes(found), !!why);
+    done(why);
+  }
+
+  ask({ edits }: { edits: Edit[] }): void {
+    const [found, why] = this.edited(edits);
+    if (!why) this.settle(found);
+    else this.rest();
+  }
+
+  /** A machine with edits, from where it was before they began; why it cannot be, or null. */
+  private edited(edits: Edit[]): [Solution, string | null] {
+    const at = this.machine.frames[this.player.sample] as number;
+    let design = this.settled.design;
+    let goal: Extract<Edit, { move: string }> | null = null;
+    for (const edit of edits) {
+      if ("move" in edit) [design, goal] = [moved(this.settled, edit.move, edit.to, at), edit];
+      else if ("move_mass" in edit) design = massMoved(this.settled, edit.move_mass, edit.to, at);
+    }
+    const found = this.machine.solve(design);
+    if (found.refusal) return [found, found.refusal];
+    if (goal && !reaches(found, goal.move, goal.to, at) && !reaches(found, goal.move, this.settled.point(goal.move, at), at)) {
+      const side = this.onGuide(goal.move) ? null : say("{name} would need its links on their other side, which this file cannot do; open the model in Equipoise", { name: goal.move });
+      return [found, side];
+    }
+    return [found, null];
+  }
+
+  private onGuide(name: string): boolean {
+    return this.machine.told.sliders.some(({ point }) => point === name) || this.machine.told.driven.some((link) => this.machine.told.links[link]?.sized === "length");
+  }
+
+  /** Of which bodies a drag has changed numbers. */
+  private changes(found: Solution): string {
+    const { fields } = this.machine.told;
+    const other = fields.filter((_, k) => found.design[k] !== this.settled.design[k]);
+    const bodies = [...new Set(other.map(({ heading }) => heading))];
+    return bodies.length ? say("changed: {what}", { what: bodies.join(say(", ")) }) : "";
+  }
+
+  private commit(design: Float64Array): string | null {
+    const found = this.machine.solve(design);
+    if (!found.refusal) this.settle(found);
+    return found.refusal;
+  }
+
+  private settle(found: Solution): void {
+    if (found.design.some((value, k) => value !== this.settled.design[k])) this.past.push(this.settled.design);
+    this.settled = found;
+    this.show(found);
+  }
+
+  private undo(): void {
+    const design = this.past.pop();
+    if (!design) return;
+    this.settled = this.machine.solve(design);
+    this.tell("", false);
+    this.show(this.settled);
+  }
+
+  private reset(): void {
+    this.tell("", false);
+    this.settle(this.original);
+  }
+
+  private async copy(): Promise<void> {
+    this.lines.select();
+    try {
+      await navigator.clipboard.writeText(this.lines.value);
+      this.tell(say("copied"), false);
+    } catch {
+      this.lines.focus(); // what is selected can be copied by hand
+    }
+  }
+
+  private key(event: KeyboardEvent): void {
+    const typing = event.target instanceof HTMLInputElement || event.target instanceof HTMLTextAreaElement;
+    if (typing && (event.target as HTMLInputElement).type !== "range") return;
+    if (event.key === "z" && (event.ctrlKey || event.metaKey)) this.undo();
+    else if (event.key === " " && !(event.target instanceof HTMLButtonElement) && !(event.target instanceof HTMLElement && event.target.closest("summary, select"))) {
+      event.preventDefault();
+      this.toggle();
+    }
+  }
+}
+
+export type { Grip };
+
+if (typeof document !== "undefined") {
+  const root = document.getElementById("equipoise-interactive");
+  const text = document.getElementById("equipoise-machine")?.textContent;
+  const { states } = globalThis as unknown as { states?: States };
+  if (root && text && states) {
+    const told = JSON.parse(text) as Told;
+    speak(told.language, told.words);
+    follow(told.rules);
+    measure(told.length);
+    new Page(root, new Machine(told, states));
+  }
+}

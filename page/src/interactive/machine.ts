@@ -1,0 +1,212 @@
+/** A machine computed from its numbers: signals, figures, and why it cannot move; without a page. */
+
+import { signed } from "../format";
+import type { Pair } from "../protocol";
+import { say } from "../words";
+import type { States, Told } from "./told";
+
+/** Cosine of the angle between a link and the base's, beyond which turns cannot be counted. */
+const FAR = -0.5;
+/** Share of a value below which an extreme is no other one. */
+const ROUNDING = 1e-12;
+
+export interface Figures {
+  mean: number;
+  rms: number;
+  peak: number;
+  /** Crank angle of the peak, rad. */
+  peak_at: number;
+  max: number;
+  min: number;
+}
+
+export class Machine {
+  readonly theta: Float64Array;
+  readonly base: Float64Array;
+  /** Crank angles that are equally spaced over the cycle, by their places among all. */
+  readonly frames: number[];
+  /** Crank angles that curves go through and extremes are taken from. */
+  readonly shown: number[];
+  readonly place = new Map<string, number>();
+  /** Place of a number in a design, by its path. */
+  readonly numbers = new Map<string, number>();
+  private readonly grid: Float64Array;
+  private readonly shares: Float64Array | null;
+
+  constructor(
+    readonly told: Told,
+    private readonly states: States,
+  ) {
+    this.theta = floats(told.theta);
+    this.grid = floats(told.grid);
+    this.shares = told.shares === null ? null : floats(told.shares);
+    this.base = Float64Array.from(told.design);
+    const all = Array.from(this.theta, (_, k) => k);
+    this.frames = told.frames ?? all;
+    this.shown = told.shown ?? all;
+    told.names.forEach((name, k) => this.place.set(name, k));
+    told.fields.forEach(({ path }, k) => this.numbers.set(path, k));
+  }
+
+  /** Everything at all crank angles, of a design (numbers in SI units, in the order of the fields). */
+  solve(design: Float64Array): Solution {
+    const { angles, names } = this.told;
+    const out = new Float64Array(names.length * angles);
+    this.states(design, this.grid, angles, out);
+    return new Solution(this, design, out);
+  }
+
+  figures(values: Float64Array): Figures {
+    const count = values.length;
+    const share = (k: number) => (this.shares ? (this.shares[k] as number) : 1 / count);
+    let [mean, square, max, min, peak, at] = [0, 0, -Infinity, Infinity, 0, this.shown[0] ?? 0];
+    for (let k = 0; k < count; k++) {
+      const value = values[k] as number;
+      mean += share(k) * value;
+      square += share(k) * value * value;
+    }
+    for (const k of this.shown) {
+      const value = values[k] as number;
+      [max, min] = [Math.max(max, value), Math.min(min, value)];
+      const size = Math.abs(value);
+      if (size - peak > ROUNDING * size) at = k;
+      peak = Math.max(peak, size);
+    }
+    return { mean, rms: Math.sqrt(square), peak, peak_at: this.theta[at] as number, max, min };
+  }
+}
+
+export class Solution {
+  /** Why the machine cannot move through its cycle with these numbers; null where it can. */
+  readonly refusal: string | null;
+
+  constructor(
+    readonly machine: Machine,
+    readonly design: Float64Array,
+    private readonly out: Float64Array,
+  ) {
+    this.refusal = this.refused();
+  }
+
+  /** A signal over the crank angles. */
+  row(name: string): Float64Array | null {
+    const place = this.machine.place.get(name);
+    const { angles } = this.machine.told;
+    return place === undefined ? null : this.out.subarray(place * angles, (place + 1) * angles);
+  }
+
+  figures(name: string): Figures | null {
+    const row = this.row(name);
+    return row && this.machine.figures(row);
+  }
+
+  /** A vector at a crank angle. */
+  vector(name: string, at: number): Pair {
+    return [this.row(`${name}.x`)?.[at] ?? NaN, this.row(`${name}.y`)?.[at] ?? NaN];
+  }
+
+  /** Where a point is, m. */
+  point(name: string, at: number): Pair {
+    return this.vector(`points.${name}`, at);
+  }
+
+  /** exp(i angle) of a body. */
+  rotation(body: string, at: number): Pair {
+    return body === "frame" ? [1, 0] : this.vector(`rotation(${body})`, at);
+  }
+
+  /** A number of the design by its path, or what it is in the base's pose. */
+  number(path: string): number | undefined {
+    const place = this.machine.numbers.get(path);
+    return place === undefined ? undefined : this.design[place];
+  }
+
+  private refused(): string | null {
+    for (const [k, links] of this.machine.told.margins.entries()) {
+      const row = this.row(`margin ${k}`);
+      const why = row && this.unjoined(row, links);
+      if (why) return why;
+    }
+    for (const name of this.machine.told.names) {
+      if (name.startsWith("cosine ") && (this.row(name) ?? []).some((value) => value < FAR))
+        return say("turns of the gears cannot be counted this far from the original; open the model in Equipoise");
+    }
+    const at = this.endless();
+    if (at === null) return null;
+    return say("at crank angle {angle} this machine cannot be computed", { angle: told(at) });
+  }
+
+  /** The first crank angle at which something is no number. */
+  private endless(): number | null {
+    const { angles } = this.machine.told;
+    const bad = this.out.findIndex((value) => !Number.isFinite(value));
+    return bad < 0 ? null : (this.machine.theta[bad % angles] as number);
+  }
+
+  /** Why the links of a dyad do not reach each other over the whole cycle. */
+  private unjoined(row: Float64Array, links: string[]): string | null {
+    const { frames, theta, told: { least, crank } } = this.machine;
+    const values = frames.map((at) => (Number.isFinite(row[at]) ? (row[at] as number) : -Infinity));
+    const [low, at] = lowest(values);
+    if (low >= least) return null;
+    const names = links.map((name) => `'${name}'`);
+    const joined = names.length > 1 ? say("{first} and {last}", { first: names[0] ?? "", last: names[1] ?? "" }) : (names[0] ?? "");
+    const angle = told(theta[frames[at] as number] as number);
+    if (!values.some((value) => value > 0))
+      return say("{names} cannot be joined at any crank angle; check their lengths and where their pins are", { names: joined });
+    if (low >= -least || !values.some((value) => value < 0))
+      return say("change point at crank angle {angle}: {names} are stretched out or folded there, and the assembly mode after it is undetermined", { angle, names: joined });
+    if (crank === null) return say("{names} do not reach each other at crank angle {angle}", { names: joined, angle });
+    const ranges = reaching(values, frames.map((k) => theta[k] as number), this.machine.told.turns);
+    const parts = ranges.map(([a, b]) => say("from {low} to {high}", { low: told(a), high: told(b) }));
+    const where = parts.reduce((first, last) => say("{first} and {last}", { first, last }));
+    return say("the crank cannot turn fully: {names} reach each other only {told} of crank angle", { names: joined, told: where });
+  }
+}
+
+function told(angle: number): string {
+  return `${signed(((angle * 180) / Math.PI).toFixed(2))} deg`;
+}
+
+/** Smallest value over a cycle, also between samples by a parabola, and the sample next to it. */
+function lowest(values: number[]): [number, number] {
+  let [low, at] = [Infinity, 0];
+  const count = values.length;
+  for (let k = 0; k < count; k++) {
+    const middle = values[k] as number;
+    const [before, after] = [values[(k + count - 1) % count] as number, values[(k + 1) % count] as number];
+    const bend = before - 2 * middle + after;
+    const dip = middle <= before && middle <= after && bend > 0 && Number.isFinite(bend);
+    const value = dip ? middle - (after - before) ** 2 / (8 * bend) : middle;
+    if (value < low) [low, at] = [value, k];
+  }
+  return [low, at];
+}
+
+/** Ranges of crank angle over which values are above zero, where they pass it between samples. */
+function reaching(values: number[], theta: number[], turns: number): Pair[] {
+  const count = values.length;
+  const period = 2 * Math.PI * turns;
+  const at = (k: number) => (theta[((k % count) + count) % count] as number) + period * Math.floor(k / count);
+  const value = (k: number) => values[((k % count) + count) % count] as number;
+  const crossing = (k: number) => {
+    const [a, b] = [value(k - 1), value(k)];
+    const share = Number.isFinite(a) && Number.isFinite(b) ? a / (a - b) : 0.5;
+    return at(k - 1) + share * (at(k) - at(k - 1));
+  };
+  const ranges: Pair[] = [];
+  for (let k = 0; k < count; k++) {
+    if (value(k - 1) > 0 || !(value(k) > 0)) continue;
+    let end = k + 1;
+    while (value(end) > 0) end++;
+    let [a, b] = [crossing(k), crossing(end)];
+    if (b > period) [a, b] = [a - period, b - period];
+    ranges.push([a, b]);
+  }
+  return ranges.sort(([a], [b]) => a - b);
+}
+
+function floats(text: string): Float64Array {
+  const bytes = Uint8Array.from(atob(text), (sign) => sign.charCodeAt(0));
+  return new Float64Array(bytes.buffer);
+}

@@ -1,0 +1,137 @@
+"""Signs of a drawing that follow the numbers of a machine: what of each is tied to which points.
+
+A page that computes positions by itself draws the same signs with other lengths, without knowing
+what they stand for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from equipoise.mechanism.assembly.joints import coupling_pins
+from equipoise.mechanism.formulas.strands import LEFT, RIGHT
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.machine import FRAME
+from equipoise.symbols.pieces import Piece, pieces
+from equipoise.symbols.scene import Guide, Scene
+from equipoise.symbols.shapes import Array, Shape
+from equipoise.web.block import Values
+
+SAME = 1e-9
+"""Over the size of the machine: how near a corner is to the point that it is."""
+PLATES = ("edge", "body", "rod-edge", "rod")
+"""Roles of shapes around all points of a link."""
+
+
+def ties_of(scene: Scene, motion: Motion) -> list[list[Values | None]]:
+    """What each shape of each sign is tied to, in the order of `stage_of`; None of one that stays.
+
+    corners : of each corner a point, ``@`` and a link for its centre of mass, a guide and the share
+        of the way from one end of the block's path to the other, or None where it stays.
+    hull : true where corners are those around all points of the link.
+    turned : ``about`` a point, by the vector ``between`` two points in the axes of the body ``of``.
+    strand : side of a belt's strand, its pins ``between`` and the pulleys' radii.
+    """
+    return [
+        [_tie(scene, motion, piece, shape) for shape in piece.shapes] for piece in pieces(scene)
+    ]
+
+
+def _tie(scene: Scene, motion: Motion, piece: Piece, shape: Shape) -> Values | None:
+    table, name = piece.part or ("", "")
+    body = FRAME if piece.hold is None else piece.hold.link
+    if not body:
+        return None  # it moves with a guide, or is stretched between points
+    if table in ("gears", "belts") and piece.layer == "wheels":
+        found = _turned(motion, piece, table, name)
+        if found is not None or table == "gears":
+            return found
+        return _strand(motion, shape, name) if shape.role == "strand" else None
+    if piece.layer == "drive" and piece.hold is not None:
+        return _of_arrow(scene, body)
+    own = {} if piece.layer == "guides" else dict(_places(scene, body))
+    guides = [guide for guide in scene.guides if guide.on == body]
+    corners = [_corner(scene, own, guides, complex(place)) for place in shape.places]
+    if all(one is None for one in corners):
+        return None
+    plate = shape.role in PLATES and len(corners) > 1
+    hull = plate and all(isinstance(one, str) and one[0] != "@" for one in corners)
+    return {"corners": corners, **({"hull": True} if hull else {})}
+
+
+def _places(scene: Scene, body: str) -> Iterator[tuple[str, complex]]:
+    """Points of a body and its centre of mass, from its first point and in its axes, m."""
+    if body == FRAME:
+        yield from ((name, complex(scene.places[name][0])) for name in scene.frame)
+        return
+    (found,) = (one for one in scene.bodies if one.name == body)
+    yield from ((name, scene.local(found, scene.places[name])) for name in found.points)
+    if body in scene.mass_centers:
+        yield f"@{body}", scene.local(found, scene.mass_centers[body])
+
+
+def _corner(
+    scene: Scene, own: dict[str, complex], guides: list[Guide], place: complex
+) -> str | list[str | float] | None:
+    near = SAME * 560 * scene.unit
+    for name, at in own.items():
+        if abs(at - place) <= near:
+            return name
+    for guide in guides:
+        low, high = _ends(scene, guide)
+        way = high - low
+        if not abs(way) > near:
+            continue
+        share = (place - low) / way
+        if abs(share.imag) * abs(way) <= near and -1e-6 <= share.real <= 1 + 1e-6:
+            return [guide.name, share.real]
+    return None
+
+
+def _ends(scene: Scene, guide: Guide) -> tuple[complex, complex]:
+    """Both ends of a block's path, in the axes of the body that has its line, m."""
+    place = scene.places[guide.point]
+    ends = place - guide.behind * guide.way, place + guide.ahead * guide.way
+    if guide.on == FRAME:
+        return complex(ends[0][0]), complex(ends[1][0])
+    (body,) = (one for one in scene.bodies if one.name == guide.on)
+    return scene.local(body, ends[0]), scene.local(body, ends[1])
+
+
+def _turned(motion: Motion, piece: Piece, table: str, name: str) -> Values | None:
+    """A gear, whose pitch curve follows the distance of its pins; a pulley keeps its radius."""
+    joints = motion.linkage.joints
+    one = next((one for one in joints.couplings if (one.table, one.name) == (table, name)), None)
+    if one is None or table == "belts":
+        return None
+    driver, driven = coupling_pins(joints, one)
+    link = FRAME if piece.hold is None else piece.hold.link
+    about = driver if link == one.driver else driven
+    return {"turned": {"about": about, "between": [driver, driven], "of": one.carrier}}
+
+
+def _strand(motion: Motion, shape: Shape, name: str) -> Values | None:
+    joints = motion.linkage.joints
+    belt = next(one for one in motion.machine.belts if one.name == name)
+    pins = coupling_pins(joints, belt)
+    points = motion.machine.bodies[belt.carrier]
+    start, end = (complex(*points[pin]) for pin in pins)
+    found = belt.strands(end - start)
+    sides: dict[int, Array] = {side: found.ends(side)[0] for side in (LEFT, RIGHT)}
+    first = complex(shape.places[0])
+    base = complex(*points[next(iter(points))]) if belt.carrier != FRAME else 0j
+    side = min(sides, key=lambda one: abs(complex(sides[one]) + start - base - first))
+    return {"strand": {"side": side, "between": [*pins], "radii": [found.radius, found.other]}}
+
+
+def _of_arrow(scene: Scene, link: str) -> Values | None:
+    """The arrow of a crank's sense, which follows the crank's longest arm."""
+    (drive,) = (one for one in scene.drives if one.link == link)
+    (body,) = (one for one in scene.bodies if one.name == link)
+    arms = scene.corners(body) - scene.local(body, scene.places[drive.pivot])
+    far = body.outline[int(np.argmax(abs(arms)))]
+    if far == drive.pivot:
+        return None
+    return {"turned": {"about": drive.pivot, "between": [drive.pivot, far], "of": link}}

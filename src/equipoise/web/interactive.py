@@ -1,0 +1,369 @@
+"""An interactive page in one file: the machine, its script, and all that a browser needs of them.
+
+The script is that of `codegen.javascript`: signals from the numbers of the model.  What the page
+calls things, and in which units it shows them, is what the product does.
+"""
+
+from __future__ import annotations
+
+import json
+from base64 import b64encode
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from equipoise.codegen.emit import pose_signals, signals_in_loops
+from equipoise.codegen.javascript import Script, javascript
+from equipoise.errors import UsageError
+from equipoise.exchange.formats import Job
+from equipoise.i18n import Note, catalogue, said, say, spoken
+from equipoise.mechanism.assembly.family import can_vary
+from equipoise.mechanism.assembly.full_turn import CHANGE_POINT
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.outputs.declared import GROUPS
+from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.quantities import FACTORS, KINDS, display, display_rules
+from equipoise.quantities.numbers import Display, in_unit
+from equipoise.results.analysis import Analysis, analyze
+from equipoise.results.outputs import Output
+from equipoise.schema.finding import steps_of
+from equipoise.schema.numbers import POLAR, Number
+from equipoise.schema.template import Template
+from equipoise.symbols.scene import Scene
+from equipoise.web.assets import asset
+from equipoise.web.block import Array, Values
+from equipoise.web.drawing import stage_of
+from equipoise.web.edits import movable
+from equipoise.web.fields import SECTIONS
+from equipoise.web.figures import told_signals
+from equipoise.web.following import extent_of
+from equipoise.web.following_signs import ties_of
+from equipoise.web.measures import measures_of
+from equipoise.web.played import POLICY
+
+HTML = """<!doctype html>
+<html lang="{language}">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta http-equiv="content-security-policy" content="{policy}">
+<title>{title}</title>
+<link rel="icon" href="data:,">
+<style>{style}</style>
+</head>
+<body>
+<main id="equipoise-interactive"></main>
+<noscript>{without_scripts}</noscript>
+<script type="application/json" id="equipoise-machine">{machine}</script>
+<script id="equipoise-states">{states}</script>
+<script type="module" id="equipoise-page">{page}</script>
+</body>
+</html>
+"""
+
+
+def made(job: Job) -> str:
+    """The file's content.
+
+    Raises
+    ------
+    UsageError : no script can be written of the machine, or the page has not been built.
+    """
+    for what, given in (
+        ("the support and its mounts", job.machine.support),
+        ("all rows but one", job.machine.rows[1:]),
+    ):
+        if given:
+            job.leave_out(what)
+    job.leave_out_forces()
+    job.leave_out_motor()
+    machine = replace(job.machine, support=None, rows=(), balance=None)
+    page = Interactive(machine, job.crank_angle)
+    script = asset("interactive.js")
+    words = {text: word for text, word in catalogue(spoken()).items() if _says(script, text)}
+    content = {**page.content, "language": spoken(), "words": words}
+    return HTML.format(
+        language=spoken(),
+        policy=POLICY,
+        title=escape(said(machine.title)),
+        without_scripts=escape(say("This page needs JavaScript.")),
+        style=asset("interactive.css").replace("</", "<\\/"),
+        machine=json.dumps(content, ensure_ascii=False, allow_nan=False).replace("<", "\\u003c"),
+        states=page.script.text,
+        page=script.replace("</script", "<\\/script"),
+    )
+
+
+def _says(script: str, text: str) -> bool:
+    """Whether a script has a text, which may stand there in quotes of either kind."""
+    return text in script or json.dumps(text, ensure_ascii=False)[1:-1] in script
+
+
+@dataclass(frozen=True)
+class Interactive:
+    """A machine as an interactive page holds it.
+
+    crank_angle : at which it is shown first, rad.
+    """
+
+    machine: Machine
+    crank_angle: float = 0.0
+
+    @cached_property
+    def analysis(self) -> Analysis:
+        """The machine as it is, at the crank angles that `equipoise analyze` takes."""
+        return analyze(self.machine)
+
+    @property
+    def motion(self) -> Motion:
+        """At the crank angles that resolve where forces jump."""
+        return self.analysis.resolved.motion
+
+    @cached_property
+    def outputs(self) -> list[Output]:
+        """Those that a script can have."""
+        every = [one for one in self.analysis.outputs if one.declared.array or one.declared.summed]
+        found = {one.name: one for one in every}
+        return [found[name] for name in signals_in_loops(self.motion.linkage, found)]
+
+    @cached_property
+    def template(self) -> Template:
+        return Template.of(self.machine)
+
+    @cached_property
+    def script(self) -> Script:
+        """Signals of the outputs and poses, from all numbers from which they can be written.
+
+        Raises
+        ------
+        UsageError : there is none.
+        """
+        linkage = self.motion.linkage
+        try:
+            names = [*(one.name for one in self.outputs), *pose_signals(linkage)]
+            plain = javascript(linkage, names)
+        except UsageError as error:
+            refusal = Note(
+                "an interactive page computes in the browser, which this machine does not let it: "
+                "{why}; give another format",
+                why=error.note,
+            )
+            raise UsageError(refusal) from error
+        known = {path: one.value for path, one in self._candidates.items()}
+        return self._with_numbers(names, known) or plain
+
+    def _with_numbers(self, names: Sequence[str], numbers: Mapping[str, float]) -> Script | None:
+        """A script of as many of the numbers as can be handed to one; None of none."""
+        kept = [*self._written(names, [*numbers.items()])]
+        while kept:
+            try:
+                return javascript(self.motion.linkage, names, dict(kept))
+            except UsageError:
+                kept = kept[: len(kept) // 2]
+        return None
+
+    def _written(
+        self, names: Sequence[str], numbers: list[tuple[str, float]]
+    ) -> Iterator[tuple[str, float]]:
+        """Those of some numbers from which the signals can be written, by halves that can."""
+        if not numbers:
+            return
+        try:
+            javascript(self.motion.linkage, names, dict(numbers))
+        except UsageError:
+            if len(numbers) > 1:
+                middle = len(numbers) // 2
+                yield from self._written(names, numbers[:middle])
+                yield from self._written(names, numbers[middle:])
+        else:
+            yield from numbers
+
+    @cached_property
+    def _candidates(self) -> dict[str, Number]:
+        """Numbers of the model that may be columns, by the path that columns have."""
+        found = {}
+        for path, one in self.template.numbers().items():
+            plain = column_path(path)
+            polar = path.rpartition(".")[2] in POLAR and f"{path.rpartition('.')[0]}.x" in (
+                self.template.numbers()
+            )
+            if not polar and can_vary(self.machine, plain):
+                found[plain] = one
+        return found
+
+    # -- what the page is told ---------------------------------------------------------------------
+
+    @cached_property
+    def content(self) -> Values:
+        """All that the page knows of the machine, as JSON has it; arrays are 64-bit floats."""
+        motion, script, scene = self.motion, self.script, self.scene
+        length = display("length", [extent_of(self.machine)])
+        sampling = motion.sampling
+        theta = motion.crank_angle
+        content: Values = {
+            "title": said(self.machine.title),
+            "description": said(self.machine.description),
+            "rules": display_rules(),
+            "length": {"unit": length.name, "factor": length.factor},
+            "turns": motion.turns if motion.whole_cycle else 1,
+            "speed": motion.speed,
+            "begin": float(np.degrees(self.crank_angle)),
+            "angles": len(theta),
+            "theta": _floats(theta if sampling is None else sampling.at),
+            "shares": None if sampling is None else _floats(sampling.shares),
+            "shown": None if sampling is None else sampling.shown.tolist(),
+            "frames": None if sampling is None else sampling.grid.tolist(),
+            "grid": _floats(script.grid(theta)),
+            "design": self._design(),
+            "names": script.names,
+            "outputs": [*self._outputs()],
+            "fields": [*self._fields()],
+            "measures": [*self._measures()],
+            "margins": self._margins(),
+            "least": CHANGE_POINT,
+            "links": {
+                name: {"points": [*link.points], "places": dict(link.points), "sized": _sized(link)}
+                for name, link in self.machine.links.items()
+            },
+            "sliders": [
+                {
+                    "name": one.name,
+                    "point": one.point,
+                    "on": one.on,
+                    "link": one.link,
+                    "direction": one.direction,
+                }
+                for one in self.machine.sliders
+            ],
+            "driven": [one.link for one in self.machine.driven],
+            "crank": self.machine.drive.link if self.machine.has_crank else None,
+            "scene": stage_of(scene, movable(self.machine)),
+            "ties": ties_of(scene, self.analysis.motion),
+        }
+        return content
+
+    def _design(self) -> list[float]:
+        """What the script takes: the numbers of the model, or what it finds in the linkage."""
+        if not self.script.paths:
+            return [*map(float, self.script.numbers(self.motion.linkage))]
+        return [float(self._candidates[path].value) for path in self.script.paths]
+
+    @cached_property
+    def scene(self) -> Scene:
+        return Scene.of(self.analysis.motion)
+
+    def _outputs(self) -> Iterator[Values]:
+        """What can be drawn over the crank angle, and of what figures are told."""
+        groups = {group: say(title) for group, title in GROUPS.items()}
+        first = told_signals()
+        for one in self.outputs:
+            yield {
+                "name": one.name,
+                "label": one.label(),
+                "group": groups[one.group],
+                "kind": one.group,
+                **_told_unit(display(one.dimension)),
+                "summed": bool(one.declared.summed),
+                "first": one.name in first,
+            }
+
+    def _fields(self) -> Iterator[Values]:
+        """Every number of the script, in its order."""
+        template = self.template
+        paths = {column_path(path): path for path in template.numbers()}
+        numbers = self._candidates
+        for path in self.script.paths:
+            number, written = numbers[path], paths[path]
+            unit = _unit(number, template.unit(written))
+            key = template.key(written)
+            steps = steps_of(written)
+            yield {
+                "path": path,
+                "steps": [*steps],
+                "label": said(template.words(written)),
+                "heading": str(steps[1]) if steps[0] == "links" else _section(str(steps[0])),
+                "value": float(number.value),
+                **_told_unit(unit),
+                "written": unit.unit,
+                "units": _factors(number),
+                "least": key and key.at_least,
+                "above": key and key.above,
+                "below": key and key.below,
+            }
+
+    def _measures(self) -> Iterator[Values]:
+        """Lengths between points of bodies whose places are numbers of the script."""
+        paths = {*self.script.paths}
+        bodies = {FRAME: self.machine.frame}
+        bodies |= {name: link.points for name, link in self.machine.links.items()}
+        for body, points in bodies.items():
+            where = f"{FRAME}.points" if body == FRAME else f"links.{body}.points"
+            for one in measures_of(points):
+                ends = [f"{where}.{point}" for point in (one.start, one.moves)]
+                if one.dimension == "length" and {f"{ends[1]}.x", f"{ends[1]}.y"} <= paths:
+                    yield {
+                        "label": one.label,
+                        "heading": _section(FRAME) if body == FRAME else body,
+                        "start": one.start,
+                        "moves": one.moves,
+                        "from": ends[0],
+                        "path": ends[1],
+                        "fixed": points[one.start],
+                        **_told_unit(in_unit("mm")),
+                        "units": _factors(Number(one.value, "length")),
+                    }
+
+    def _margins(self) -> list[list[str]]:
+        """Of each margin among the signals, the links that it joins."""
+        groups = [
+            group
+            for group in self.motion.linkage.groups
+            if group.margin is not None and not group.through
+        ]
+        return [[*groups[dyad].links] for dyad in self.script.source.watched]
+
+
+def column_path(path: str) -> str:
+    """The path of a number as columns have it: names as they are, without quotes."""
+    steps = steps_of(path)
+    return "".join(
+        f"[{step + 1}]" if isinstance(step, int) else f".{step}" for step in steps
+    ).removeprefix(".")
+
+
+def _section(name: str) -> str:
+    return say(SECTIONS.get(name, name))
+
+
+def _sized(link: Any) -> str:
+    """How the lengths of a link are given: by ``points``, a ``length`` or ``sides``."""
+    return "length" if link.length is not None else "sides" if link.sides else "points"
+
+
+def _unit(number: Number, unit: str) -> Display:
+    if number.share:
+        return Display("%", 100.0)
+    if number.dimension is None:
+        return Display("", 1.0)
+    return in_unit(unit)
+
+
+def _factors(number: Number) -> dict[str, float]:
+    """SI units in each unit in which a number may be typed."""
+    if number.dimension is None:
+        return {"%": 0.01} if number.share else {}
+    return {unit: float(FACTORS[unit]) for unit in KINDS[number.dimension].units}
+
+
+def _told_unit(unit: Display) -> Values:
+    return {"unit": unit.name, "factor": unit.factor}
+
+
+def _floats(values: Array) -> str:
+    """64-bit floats, little-endian, in base 64."""
+    return b64encode(np.ascontiguousarray(values, "<f8").tobytes()).decode()

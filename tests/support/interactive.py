@@ -1,0 +1,46 @@
+"""An interactive file without a browser: its own functions, run by Node."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+NODE = shutil.which("node")
+BLOCK = r'<script[^>]* id="equipoise-{}">(.*?)</script>'
+RUN = """
+import {{ Machine, changed, massMoved, moved, outside, toml, typed, withLength }} from "./page.mjs";
+import {{ readFileSync, writeFileSync }} from "node:fs";
+const told = JSON.parse(readFileSync("machine.json", "utf8"));
+const states = new Function(readFileSync("states.js", "utf8") + "; return states;")();
+const machine = new Machine(told, states);
+const found = machine.solve(machine.base);
+const given = {given};
+const answer = (() => {{ {body} }})();
+writeFileSync("answer.json", JSON.stringify(answer));
+"""
+
+
+def block(html: str, name: str) -> str:
+    """The content of one of the file's scripts."""
+    match = re.search(BLOCK.format(name), html, re.DOTALL)
+    assert match is not None
+    return match[1]
+
+
+def asked(html: str, body: str, folder: Path, given: Any = None) -> Any:
+    """What a JavaScript function body returns in the file; it has `machine`, `found`, `given`."""
+    (folder / "page.mjs").write_text(block(html, "page"), encoding="utf-8")
+    (folder / "machine.json").write_text(block(html, "machine"), encoding="utf-8")
+    (folder / "states.js").write_text(block(html, "states"), encoding="utf-8")
+    run = folder / "run.mjs"
+    run.write_text(RUN.format(given=json.dumps(given), body=body), encoding="utf-8")
+    assert NODE is not None
+    done = subprocess.run(
+        [NODE, run.name], cwd=folder, capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return json.loads((folder / "answer.json").read_text(encoding="utf-8"))

@@ -1,0 +1,224 @@
+"""Interactive files, by their own functions under Node, against analyses of the same machines."""
+
+from __future__ import annotations
+
+import re
+import runpy
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import RangeError, UsageError
+from equipoise.exchange.export import made
+from equipoise.exchange.formats import FORMATS
+from equipoise.i18n import catalogue, speaking
+from equipoise.schema.template import Template
+from equipoise.web.interactive import Interactive, column_path
+from support.interactive import NODE, asked
+
+ROOT = Path(__file__).parents[3]
+if not runpy.run_path(str(ROOT / "page" / "bundle.py"))["is_fresh"]():
+    pytest.skip("there is no bundle of the page, or an old one: make page", allow_module_level=True)
+node = pytest.mark.skipif(NODE is None, reason="needs Node to run JavaScript: install nodejs")
+HTML = FORMATS["html"]
+
+FIGURES = """
+const figures = {};
+for (const { name, summed } of machine.told.outputs)
+    if (summed) figures[name] = found.figures(name);
+return { figures, refusal: found.refusal };
+"""
+AFTER = """
+const design = machine.base.slice();
+for (const [path, value] of Object.entries(given)) design[machine.numbers.get(path)] = value;
+const other = machine.solve(design);
+const figures = {};
+for (const { name, summed } of machine.told.outputs)
+    if (summed) figures[name] = other.figures(name);
+return { figures, refusal: other.refusal, text: toml(machine, design) };
+"""
+
+
+def page_of(machine: eq.Machine) -> str:
+    """The file; it skips the test of a machine of which no script can be written."""
+    try:
+        return str(made(machine, HTML, 0.0)[1])
+    except UsageError as error:
+        pytest.skip(str(error))
+
+
+def compare(figures: Any, analysis: eq.Analysis, tolerance: float) -> None:
+    """Figures of the file beside those of an analysis, over the largest of the same dimension."""
+    known = {name: one for name, one in analysis.summary.items() if name in figures}
+    assert figures and known.keys() == figures.keys()
+    largest: dict[str, float] = {}
+    for name, one in known.items():
+        unit = analysis.outputs[name].unit
+        largest[unit] = max(largest.get(unit, 0.0), one.peak)
+    for name, one in known.items():
+        near = tolerance * largest[analysis.outputs[name].unit]
+        for figure in ("mean", "rms", "peak", "max", "min"):
+            got = figures[name][figure]
+            assert got == pytest.approx(getattr(one, figure), rel=0, abs=near), (name, figure)
+
+
+@node
+@pytest.mark.parametrize("name", eq.examples("linkage"))
+def test_figures_are_those_of_an_analysis(name: str, tmp_path: Path) -> None:
+    machine = eq.load(name)
+    got = asked(page_of(machine), FIGURES, tmp_path)
+    assert got["refusal"] is None
+    alone = eq.analyze(machine)
+    if alone.solved is not None:
+        compare(got["figures"], alone, 1e-12)
+
+
+CHANGED = [
+    "yamashita-1", "slider-crank-engine", "quick-return", "scotch-yoke", "watt-six-bar",
+    "planetary-planting-arm", "sieve",
+]  # fmt: skip
+
+
+@node
+@pytest.mark.parametrize("name", CHANGED)
+def test_changed_numbers_are_those_of_a_changed_machine(name: str, tmp_path: Path) -> None:
+    """Every number changed at once, by as much as lets the machine turn."""
+    machine = eq.load(name)
+    template = Template.of(machine)
+    by_column = {column_path(path): path for path in template.numbers()}
+    random = np.random.default_rng(7)
+    given = {}
+    for path in Interactive(machine).script.paths:
+        value = template.number(by_column[path])[0]
+        given[path] = float(value * (1 + 2e-3 * random.uniform(-1, 1)))
+    changed = template.machine({by_column[path]: value for path, value in given.items()})
+    got = asked(page_of(machine), AFTER, tmp_path, given)
+    assert got["refusal"] is None
+    compare(got["figures"], eq.analyze(changed), 1e-9)
+
+
+@node
+def test_dragged_joints_come_where_they_are_put(tmp_path: Path) -> None:
+    """Other joints stay at that crank angle; forces are those of the machine that it is."""
+    machine = eq.load("yamashita-1")
+    body = """
+    const at = machine.frames[40];
+    const [x, y] = found.point("C", at);
+    const design = moved(found, "C", [x + 0.004, y - 0.003], at);
+    const other = machine.solve(design);
+    const { fields } = machine.told;
+    const numbers = Object.fromEntries(fields.map(({ path }, k) => [path, design[k]]));
+    const places = (one) => ["A", "B", "C", "D"].map((name) => one.point(name, at));
+    const figures = { shaking_force: other.figures("shaking_force") };
+    return { before: places(found), after: places(other), numbers, figures };
+    """
+    got = asked(page_of(machine), body, tmp_path)
+    before, after = (np.array(got[key]) for key in ("before", "after"))
+    moves = np.array([[0, 0], [0, 0], [0.004, -0.003], [0, 0]])
+    # dragged numbers have 7 digits over the size of the machine, 0.3 m
+    assert np.allclose(after, before + moves, rtol=0, atol=1e-7)
+    changed = Template.of(machine).machine(got["numbers"])
+    compare(got["figures"], eq.analyze(changed), 1e-9)
+    own = eq.analyze(machine).summary["shaking_force"].peak
+    assert abs(got["figures"]["shaking_force"]["peak"] - own) > 1e-2 * own
+
+
+@node
+def test_lines_of_changed_numbers_make_the_same_machine(tmp_path: Path) -> None:
+    machine = eq.load("yamashita-1")
+    given = {"links.crank.mass": 0.4, "drive.speed": 30.0, "links.rocker.points.C.x": 0.081}
+    got = asked(page_of(machine), AFTER, tmp_path, given)
+    assert got["text"].splitlines() == [
+        "[drive]", f'speed = "{30 * 30 / np.pi:.15g} rpm"', "",
+        "[links.crank]", 'mass = "400 g"', "",
+        "[links.rocker.points]", 'C = ["81 mm", "0 mm"]',
+    ]  # fmt: skip
+    changed = Template.of(machine).machine(given)
+    compare(got["figures"], eq.analyze(changed), 1e-9)
+
+
+@node
+def test_what_does_not_turn_says_where(tmp_path: Path) -> None:
+    """As the analysis of such a machine does; whole where no crank angle joins the links."""
+    machine = eq.load("yamashita-1")
+    html = page_of(machine)
+    long = {"links.crank.points.B.x": 0.09}
+    refusal = asked(html, AFTER, tmp_path, long)["refusal"]
+    assert refusal.startswith(
+        "the crank cannot turn fully: 'coupler' and 'rocker' reach each other"
+    )
+    with pytest.raises(RangeError) as caught:
+        eq.analyze(Template.of(machine).machine(long))
+    angles = [float(one) for one in re.findall(r"-?\d+\.\d+", refusal.replace("\u2212", "-"))]
+    # between two crank angles a degree apart the file takes the margin as straight
+    assert np.allclose(angles, np.degrees(np.ravel(sorted(caught.value.ranges))), rtol=0, atol=0.05)
+    apart = {"frame.points.D.x": 0.9}
+    assert "cannot be joined at any crank angle" in asked(html, AFTER, tmp_path, apart)["refusal"]
+    with pytest.raises(RangeError, match="cannot be joined at any crank angle"):
+        eq.analyze(Template.of(machine).machine(apart))
+
+
+@node
+def test_limits_and_units_of_typed_numbers(tmp_path: Path) -> None:
+    body = """
+    const mass = machine.told.fields.find(({ path }) => path === "links.crank.mass");
+    const texts = ["300", "0.3 kg", "1 lb", "-1", "x", "3 mm", ""];
+    return texts.map((text) => {
+        const value = typed(text, mass);
+        return [value, typeof value === "number" ? outside(mass, value) : null];
+    });
+    """
+    got = asked(page_of(eq.load("yamashita-1")), body, tmp_path)
+    values, refusals = zip(*got, strict=True)
+    assert values[:3] == (0.3, 0.3, pytest.approx(0.45359237))
+    assert refusals[:3] == (None, None, None)
+    assert "give 0 g or more" in refusals[3]
+    assert all("give a number, such as 12.5 g" in one for one in values[4:])
+
+
+@node
+def test_lengths_between_points(tmp_path: Path) -> None:
+    """The second point of a length moves along its line."""
+    body = """
+    const measure = machine.told.measures.find(({ label }) => label === "D to C");
+    const design = withLength(found, measure, 0.09);
+    return ["x", "y"].map((axis) => design[machine.numbers.get(`${measure.path}.${axis}`)]);
+    """
+    machine = eq.load("yamashita-1")
+    x, y = asked(page_of(machine), body, tmp_path)
+    place = complex(*machine.links["rocker"].points["C"])
+    assert complex(x, y) == pytest.approx(0.09 * place / abs(place))
+
+
+def test_what_cannot_be_computed_is_one_sentence(tmp_path: Path) -> None:
+    for name, why in (
+        ("class-three", "loops that no dyads solve cannot be written in JavaScript"),
+        ("hydraulic-loader", "drives that push"),
+    ):
+        with pytest.raises(UsageError, match=why):
+            eq.export(eq.load(name), tmp_path / "machine.html")
+    assert [*tmp_path.iterdir()] == []
+
+
+def test_what_is_left_out_is_reported(tmp_path: Path) -> None:
+    left = eq.export(eq.load("four-row-transplanter"), tmp_path / "machine.html")
+    assert "all rows but one" in left
+    left = eq.export(eq.load("yamashita-rig"), tmp_path / "rig.html")
+    assert "the support and its mounts" in left
+
+
+def test_the_file_speaks_the_language_of_its_export() -> None:
+    with speaking("ja"):
+        html = str(made(eq.load("yamashita-1"), HTML, 0.0)[1])
+    assert '<html lang="ja">' in html
+    for text in ("Reset all", "What a drag changes", "RMS"):
+        assert catalogue("ja")[text] in html
+
+
+def test_the_file_asks_for_nothing() -> None:
+    html = str(made(eq.load("yamashita-1"), HTML, 0.0)[1])
+    assert "default-src 'none'" in html
+    assert "http:" not in html.replace("http://www.w3.org/2000/svg", "") and "https:" not in html
