@@ -24,6 +24,7 @@ import equipoise as eq
 import study_runs
 import sympy_four_bar
 from asked import Limit, Table, agree
+from equipoise.balancing import Objective
 from equipoise.codegen import backends
 from equipoise.codegen.backends import run_loop
 from equipoise.codegen.batch import Batch, all_angles, designs_of, grid_of
@@ -33,6 +34,8 @@ from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.gear_shapes import GearShape
 from equipoise.mechanism.parts.laws import LengthLaw, LengthSegment
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.schema.template import Template
+from equipoise.studies.objective_map import SingleValues, Variants, landscape
 from study_runs import ANGLES, MACHINE, SIGNALS, VARIED, designs
 from timing import in_turn
 
@@ -267,6 +270,28 @@ def masses(table: Table) -> None:
     table.value("masses alone, 12 numbers", [1e9 * one for one in times], "ns", Limit(100))
 
 
+def maps(table: Table) -> None:
+    """A map of a million machines that differ in masses, beside the machines one by one."""
+    paths = ("links.coupler.center_of_mass.x", "links.crank.mass")
+    model = Template.load("yamashita-1")
+    x, y = np.linspace(-0.06, 0.06, 1000), np.linspace(0.1, 0.5, 1000)
+    some = np.stack([np.tile(x[::200], 5), np.repeat(y[::200], 5)], axis=1)
+    for measure in ("ripple", "peak"):
+        of = Objective("shaking_force.y" if measure == "ripple" else "shaking_force", measure)
+        single = SingleValues(Variants(model, {}), of, paths)
+        found = landscape(model, dict(zip(paths, (x, y), strict=True)), of)
+        agree(f"map, {measure}", found.values[::200, ::200].ravel(), single(some), CLOSE)
+        tasks = {
+            "map": (
+                lambda of=of: landscape(model, dict(zip(paths, (x, y), strict=True)), of),
+                10**6,
+            ),
+            "one by one": (lambda single=single: single(some), len(some)),
+        }
+        times = timed(tasks, 3)
+        table.ratio(f"map, {measure}: a point / one machine", times["map"], times["one by one"])
+
+
 def main() -> None:
     """Print what was measured."""
     busy = (
@@ -279,6 +304,7 @@ def main() -> None:
     beside_peers(table)
     other_machines(table)
     masses(table)
+    maps(table)
     for part in (study_runs.first_call, study_runs.stored, study_runs.memory, study_runs.cluster):
         part(table)
     print()

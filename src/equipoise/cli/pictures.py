@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 app = App(name="plot")
 MOST_ANGLES = 12
-POINTS, MOST_POINTS = 51, 400
+POINTS, MOST_POINTS = 51, 1000
 """Values of each number of a map."""
 RANGE = '"links.crank.mass = 100 g : 500 g"'
 NUMBER = '"links.crank.mass = 300 g"'

@@ -8,26 +8,33 @@ links, so that one of them tells all.
 from __future__ import annotations
 
 import re
-from cmath import rect
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from math import nan
-from typing import Any
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from equipoise.balancing.design_variables import LinkParameters, with_parameters
-from equipoise.balancing.effects import Effects
-from equipoise.balancing.objectives import Near, measured, signals_of, unit_of
+from equipoise.balancing.effects import Effects, Signal
+from equipoise.balancing.objectives import (
+    Near,
+    mean_square_rows,
+    measured_each,
+    signals_of,
+    unit_of,
+)
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.room import pin_of
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError
 from equipoise.i18n import Note, to_say
+from equipoise.mechanism.assembly.family import with_columns
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.assembly.refusing import wrong
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.forces import massless
-from equipoise.mechanism.dynamics.parameters import parameter_values
-from equipoise.mechanism.parts.balance import Balance, Objective
+from equipoise.mechanism.dynamics.parameters import parameters_of
+from equipoise.mechanism.parts.balance import Balance, Measure, Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, output_of
 from equipoise.results.result import Result
@@ -35,8 +42,9 @@ from equipoise.signals import highest_at
 from equipoise.studies.design_space import Model
 
 Array = np.ndarray[Any, Any]
-Value = Callable[[Mapping[str, float]], float]
-"""An objective of the machine with these numbers; NaN where there is none or it cannot turn."""
+Point = Mapping[str, float]
+Values = Callable[[Array], Array]
+"""An objective (P,) at values (P, 2) of the two numbers; NaN where the linkage cannot turn."""
 
 Progress = Callable[[int, int], None]
 
@@ -44,6 +52,8 @@ MOST = 1_000
 """Values of either number."""
 CLOSE = 1e-7
 """Share of the ranges to which the best place is found."""
+AT_ONCE = 128
+"""Machines whose signals are computed at a time, so that these stay in the processor's cache."""
 COUNTERWEIGHT = re.compile(r"counterweights\.(?P<link>.+)\.(?P<key>mass|radius|direction)")
 KEYS = {"mass": "mass", "radius": "length", "direction": "angle"}
 """Numbers of a counterweight, which no file has, and what they are."""
@@ -82,19 +92,12 @@ class Variants:
     model: Model
     given: Mapping[str, float]
 
-    def parameters(self, point: Mapping[str, float]) -> tuple[Machine, dict[str, Array]]:
+    def parameters(self, point: Point) -> tuple[Machine, dict[str, Array]]:
         """The machine without counterweights, and inertial parameters (4,) by link with them."""
         values = {**self.given, **point}
         own = {path: v for path, v in values.items() if not COUNTERWEIGHT.fullmatch(path)}
         machine = linkage_of(self.model.machine(own))
-        rows = parameter_values(machine).reshape(-1, 4)
-        found = dict(zip(machine.links, rows, strict=True))
-        for link, weight in _weights(values).items():
-            pin = complex(*machine.links[link].points[pin_of(machine, link)])
-            at = pin + rect(weight["radius"], weight["direction"])
-            point_mass = np.array([1.0, at.real, at.imag, abs(at) ** 2])
-            found[link] = found[link] + weight["mass"] * point_mass
-        return machine, found
+        return machine, inertial_parameters(machine, values)
 
     def machine(self, point: Mapping[str, float]) -> Machine:
         """The machine with its counterweights."""
@@ -106,17 +109,49 @@ class Variants:
             machine = with_parameters(machine, link, parameters[link])
         return machine
 
-    def value(self, of: Objective, point: Mapping[str, float]) -> float:
-        """The objective of one machine; NaN where there is none or it cannot turn."""
+
+@dataclass(frozen=True, eq=False)
+class SingleValues:
+    """An objective of machines that are computed one by one."""
+
+    maker: Variants
+    of: Objective
+    paths: tuple[str, str]
+    at_once: ClassVar[int] = 1
+
+    def __call__(self, points: Array) -> Array:
+        """The objective (P,) at values (P, 2); NaN where there is none or it cannot turn."""
+        return np.array(
+            [self._value(dict(zip(self.paths, one, strict=True))) for one in points.tolist()]
+        )
+
+    def _value(self, point: Point) -> float:
         try:
-            return Problem.value_of(self.machine(point), of)
+            return Problem.value_of(self.maker.machine(point), self.of)
         except EquipoiseError:
             return nan
 
 
-def _weights(values: Mapping[str, float]) -> dict[str, dict[str, float]]:
+def inertial_parameters(machine: Machine, values: Mapping[str, Any]) -> dict[str, Array]:
+    """Inertial parameters (..., 4) by link, with counterweights by their numbers in SI units.
+
+    Numbers may be columns (P, 1), of which there are (P, 1, 4) then.
+    """
+    found = {
+        name: np.stack(np.broadcast_arrays(*parameters_of(link)), axis=-1)
+        for name, link in machine.links.items()
+    }
+    for link, weight in _weights(values).items():
+        pin = complex(*machine.links[link].points[pin_of(machine, link)])
+        at = pin + weight["radius"] * np.exp(1j * np.asarray(weight["direction"]))
+        point_mass = np.stack(np.broadcast_arrays(1.0, at.real, at.imag, abs(at) ** 2), axis=-1)
+        found[link] = found[link] + np.expand_dims(weight["mass"], -1) * point_mass
+    return found
+
+
+def _weights(values: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     """Counterweights by link; what is not given of them is 0."""
-    found: dict[str, dict[str, float]] = {}
+    found: dict[str, dict[str, Any]] = {}
     for path, value in values.items():
         weight = COUNTERWEIGHT.fullmatch(path)
         if weight is not None:
@@ -127,32 +162,97 @@ def _weights(values: Mapping[str, float]) -> dict[str, dict[str, float]]:
 # -- many machines that differ in masses -----------------------------------------------------------
 
 
-def linear_value(
-    maker: Variants, of: Objective, points: Sequence[Mapping[str, float]]
-) -> Value | None:
-    """The objective by inertial parameters; None where more differs, or more than those count."""
-    try:
-        base, start = maker.parameters(points[0])
-        others = [maker.parameters(points[k])[0] for k in (len(points) // 3, -1)]
-        if not _differ_in_masses(base, others, of):
-            return None
-        machine = base
-        for link, values in start.items():
-            machine = with_parameters(machine, link, values)
-        effects = Effects(machine, [LinkParameters(link) for link in base.links])
-        (signal,) = signals_of(effects, of, Near(machine))
-    except EquipoiseError:
-        return None
+@dataclass(frozen=True, eq=False)
+class LinearValues:
+    """An objective that is linear in inertial parameters, of many machines at once.
 
-    def value(point: Mapping[str, float]) -> float:
+    maker, paths : the machines, and which two numbers vary.
+    machine : the first of them, from which changes count.
+    start : its inertial parameters (4,) by link, with counterweights.
+    signal : the output, with a column for each parameter in the order of `start`.
+    """
+
+    maker: Variants
+    paths: tuple[str, str]
+    machine: Machine
+    start: Mapping[str, Array]
+    signal: Signal
+    measure: Measure
+    at_once: ClassVar[int] = 65_536
+
+    @classmethod
+    def of(
+        cls, maker: Variants, of: Objective, paths: tuple[str, str], points: Array
+    ) -> Self | None:
+        """None where more than masses differs at points (P, 2), or more than those counts."""
+        named = [
+            dict(zip(paths, points[k].tolist(), strict=True)) for k in (0, len(points) // 3, -1)
+        ]
         try:
-            found = maker.parameters(point)[1]
+            (base, start), *others = map(maker.parameters, named)
+            if not _differ_in_masses(base, [machine for machine, _ in others], of):
+                return None
+            machine = base
+            for link, values in start.items():
+                machine = with_parameters(machine, link, values)
+            effects = Effects(machine, [LinkParameters(link) for link in base.links])
+            (signal,) = signals_of(effects, of, Near(machine))
         except EquipoiseError:
-            return nan
-        changed = np.concatenate([found[link] - own for link, own in start.items()])
-        return measured(signal.at(changed), of.measure, signal.sampling)
+            return None
+        return cls(maker, paths, base, start, signal, of.measure)
 
-    return value
+    def __call__(self, points: Array) -> Array:
+        """The objective (P,) at values (P, 2); NaN where no machine can have these."""
+        changes = self._changes(points)
+        moving = np.any(changes != 0, axis=0)  # NaN counts
+        columns, changes = self.signal.columns[moving], changes[:, moving]
+        signal = replace(self.signal, columns=columns)
+        if self.measure in {"rms", "ripple"}:
+            matrix, vector = mean_square_rows(signal, self.measure)
+            return np.asarray(np.linalg.norm(changes @ matrix.T + vector, axis=1))
+        if self.measure == "peak":
+            return np.concatenate([_peaks(signal.shown, one) for one in _parts(changes)])
+        each = (
+            measured_each(signal.at(one), self.measure, signal.sampling) for one in _parts(changes)
+        )
+        return np.concatenate([*each])
+
+    def _changes(self, points: Array) -> Array:
+        """Changes (P, 4 L) of inertial parameters; NaN where no machine can have these numbers."""
+        columns = {path: points[:, [k]] for k, path in enumerate(self.paths)}
+        own = {path: one for path, one in columns.items() if not COUNTERWEIGHT.fullmatch(path)}
+        try:
+            machine = with_columns(self.machine, own)
+        except UsageError:  # a number that follows from others in the file
+            return np.array([self._change(point) for point in points])
+        with np.errstate(all="ignore"):
+            found = inertial_parameters(machine, {**self.maker.given, **columns})
+        change = np.empty((len(points), 4 * len(self.start)))
+        for k, (link, start) in enumerate(self.start.items()):
+            change[:, 4 * k : 4 * k + 4] = found[link].reshape(-1, 4) - start
+        if own:
+            change[wrong(machine, assemble(self.machine), own)] = nan
+        return change
+
+    def _change(self, point: Array) -> Array:
+        """The same of one machine (4 L,)."""
+        try:
+            found = self.maker.parameters(dict(zip(self.paths, point.tolist(), strict=True)))[1]
+        except EquipoiseError:
+            return np.full(4 * len(self.start), nan)
+        return np.concatenate([found[link] - own for link, own in self.start.items()])
+
+
+def _parts(changes: Array) -> Iterator[Array]:
+    return (changes[k : k + AT_ONCE] for k in range(0, len(changes), AT_ONCE))
+
+
+def _peaks(signal: Signal, changes: Array) -> Array:
+    """Largest size (P,) of a signal for changes (P, K); of a vector by its two components."""
+    squares = np.square(changes @ signal.columns.real + signal.start.real)
+    if np.iscomplexobj(signal.start):
+        squares += np.square(changes @ signal.columns.imag + signal.start.imag)
+    return np.asarray(np.sqrt(np.max(squares, axis=1)))
 
 
 def _differ_in_masses(base: Machine, others: Sequence[Machine], of: Objective) -> bool:
@@ -274,13 +374,14 @@ def landscape(
     ends = (dict(zip(paths, (one[k] for one in drawn), strict=True)) for k in (0, -1))
     _check_weights(*({**given, **end} for end in ends))
     x, y = drawn
-    points = [{paths[0]: one, paths[1]: other} for other in y.tolist() for one in x.tolist()]
-    value = linear_value(maker, of, points) or partial(maker.value, of)
+    points = np.stack([one.ravel() for one in np.meshgrid(x, y)], axis=1)
+    linear = LinearValues.of(maker, of, paths, points)
+    value = linear or SingleValues(maker, of, paths)
     found = np.empty(len(points))
-    for k, point in enumerate(points):
-        found[k] = value(point)
+    for k in range(0, len(points), value.at_once):
+        found[k : k + value.at_once] = value(points[k : k + value.at_once])
         if progress is not None:
-            progress(k + 1, len(points))
+            progress(min(k + value.at_once, len(points)), len(points))
     if np.all(np.isnan(found)):
         raise UsageError(f"no linkage turns with {paths[0]} and {paths[1]} in these ranges")
     lowest = int(highest_at(np.where(np.isnan(found), -np.inf, -found), smooth=False))
@@ -288,7 +389,7 @@ def landscape(
     start, before = None, nan
     if not given and not any(COUNTERWEIGHT.fullmatch(path) for path in paths):
         start = float(model.number(paths[0])[0]), float(model.number(paths[1])[0])
-        before = value(dict(zip(paths, start, strict=True)))
+        before = float(value(np.array([start]))[0])
     values = found.reshape(len(y), len(x))
     asked = (of, paths, given, dimensions, words, x, y, values, unit_of(of, base))
     return Landscape(base.with_balance(None), *asked, best, least, start, before)
@@ -326,22 +427,19 @@ def _check_weights(lowest: Mapping[str, float], largest: Mapping[str, float]) ->
             raise UsageError(f'{path}: the counterweight has no mass; set {mass}, such as "1 kg"')
 
 
-def _refined(
-    value: Value, start: Mapping[str, float], x: Array, y: Array
-) -> tuple[tuple[float, float], float]:
-    """The best place about the best point of the grid, and the objective there."""
+def _refined(values: Values, start: Array, x: Array, y: Array) -> tuple[tuple[float, float], float]:
+    """The best place about the best point (2,) of the grid, and the objective there."""
     from scipy.optimize import minimize
 
     low = np.array([x[0], y[0]])
     width = np.array([x[-1], y[-1]]) - low
-    begin = (np.array([*start.values()]) - low) / width
+    begin = (start - low) / width
     steps = np.diag([1 / (len(x) - 1), 1 / (len(y) - 1)])
     simplex = begin + np.vstack([[0.0, 0.0], np.where(begin > 0.5, -steps, steps)])
 
     def at(share: Array) -> float:
-        here = low + np.clip(share, 0.0, 1.0) * width
-        found = value(dict(zip(start, here.tolist(), strict=True)))
-        return np.inf if np.isnan(found) else found
+        (found,) = values((low + np.clip(share, 0.0, 1.0) * width)[None])
+        return np.inf if np.isnan(found) else float(found)
 
     least = at(begin)
     options = {"initial_simplex": simplex, "xatol": CLOSE, "fatol": 1e-12 * least, "maxiter": 400}

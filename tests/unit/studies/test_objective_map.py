@@ -11,7 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError
-from equipoise.studies.objective_map import Landscape, landscape
+from equipoise.studies.objective_map import Landscape, SingleValues, Variants, landscape
 from surface.running import example_text
 
 RIPPLE = eq.balancing.Objective("shaking_force.y", "ripple")
@@ -113,6 +113,44 @@ def test_quick_and_slow_way_agree(name: str, objective: eq.balancing.Objective) 
             machine: Any = model.machine(dict(zip(found.paths, (mass, inertia), strict=True)))
             value = Problem.value_of(machine, objective)
             assert found.values[row, column] == pytest.approx(value, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "output", "measure"),
+    [
+        ("yamashita-1", "shaking_force.y", "ripple"),
+        ("yamashita-1", "shaking_force", "peak"),
+        ("yamashita-1", "drive_torque", "peak_to_peak"),
+        ("quick-return", "drive_torque", "area"),
+        ("quick-return", "joints.A", "peak"),
+    ],
+)
+def test_many_machines_at_once_are_those_one_by_one(name: str, output: str, measure: Any) -> None:
+    """More than are computed at a time, some of which nobody can build, with a counterweight."""
+    of = eq.balancing.Objective(output, measure)
+    link = next(iter(eq.load(name).links))
+    paths = (f"links.{link}.mass", "counterweights.crank.direction")
+    given = {"counterweights.crank.mass": 0.4, "counterweights.crank.radius": 0.03}
+    x, y = np.linspace(-0.2, 0.6, 31), np.linspace(0.0, 6.0, 11)
+    found = landscape(TEMPLATE(name), dict(zip(paths, (x, y), strict=True)), of, given)
+    points = np.stack([one.ravel() for one in np.meshgrid(x, y)], axis=1)
+    single = SingleValues(Variants(TEMPLATE(name), given), of, paths)
+    some = slice(3, None, 17)
+    np.testing.assert_allclose(found.values.ravel()[some], single(points[some]), rtol=1e-9)
+    assert np.array_equal(np.isnan(found.values), np.broadcast_to(x < 0, found.values.shape))
+
+
+def test_a_map_of_masses_makes_no_machine_for_each_point(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = []
+    made = eq.schema.Template.machine
+
+    def counted(self: Any, values: Any) -> Any:
+        calls.append(values)
+        return made(self, values)
+
+    monkeypatch.setattr(eq.schema.Template, "machine", counted)
+    over_coupler(100)
+    assert len(calls) < 10
 
 
 @pytest.mark.parametrize(
