@@ -1,9 +1,10 @@
-"""Make the pictures of README: a linkage that moves, the live page, the first page of a report.
+"""Make the pictures of README: a linkage that moves, a force before and after, page and report.
 
     make pictures
 
-The linkage is what `equipoise animate` writes.  The others are screenshots, for which Chromium is
-needed; `sources.json` keeps what they were taken of, so that a test can say when they are stale.
+The first two are what `equipoise animate` and `equipoise balance --plot` write.  The others are
+screenshots, for which Chromium is needed; `sources.json` keeps what they were taken of, so that a
+test can say when they are stale.
 """
 
 from __future__ import annotations
@@ -26,7 +27,8 @@ HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 SOURCES = HERE / "sources.json"
 
-MOVING, SERVED, REPORTED = "transplanter", "yamashita-rig", "balance-crank"
+MOVING, BALANCED, SERVED = "transplanter", "balance-crank", "yamashita-rig"
+REPORTED = BALANCED
 """Examples that are shown."""
 COLORS = 128
 """Of a screenshot: enough for lines and text, at a quarter of the bytes."""
@@ -44,6 +46,14 @@ def written(command: str, *words: str) -> str:
 def linkage() -> str:
     """The linkage that moves, as SVG."""
     return written("animate", MOVING, "--force")
+
+
+def balanced() -> str:
+    """The shaking force before and after, as SVG."""
+    with TemporaryDirectory() as folder:
+        run = [sys.executable, "-m", "equipoise", "balance", BALANCED, "--plot", folder]
+        subprocess.run(run, check=True, capture_output=True)
+        return (Path(folder) / "force.svg").read_text(encoding="utf-8")
 
 
 # -- what the screenshots were taken of ------------------------------------------------------------
@@ -116,8 +126,9 @@ def main() -> None:
     from support.chromium import chromium, path_of_chromium
 
     (HERE / "linkage.svg").write_text(linkage(), encoding="utf-8")
+    (HERE / "balanced.svg").write_text(balanced(), encoding="utf-8")
     if path_of_chromium() is None:
-        sys.exit("pictures: made linkage.svg only; the screenshots need Chromium")
+        sys.exit("pictures: made linkage.svg and balanced.svg only; the screenshots need Chromium")
     with chromium() as browser:
         (HERE / "page.png").write_bytes(_reduced(_page(browser)))
         (HERE / "report.png").write_bytes(_reduced(_report(browser)))

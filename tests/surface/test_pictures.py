@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+import equipoise as eq
+
 ROOT = Path(__file__).parents[2]
 PICTURES = ROOT / "docs" / "pictures"
 MAKE = runpy.run_path(str(PICTURES / "make.py"))
@@ -23,10 +25,24 @@ def test_readme_shows_all_of_them_and_they_are_small() -> None:
     assert sum((PICTURES / name).stat().st_size for name in there) < 1_000_000
 
 
-def test_the_linkage_moves_as_it_would_now() -> None:
+def test_readme_is_short_and_begins_with_what_balancing_gains() -> None:
+    """Its numbers are those of the result."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 120
+    result = eq.balance(eq.load(MAKE["BALANCED"]))
+    ((before, after),) = result.objectives.values()
+    (change,) = result.to_dict()["changes"]
+    mass = round(1e3 * change["mass"])
+    assert f"a counterweight of {mass} g on the crank" in text
+    assert f"takes {100 * (1 - after / before):.0f} % of the vertical force" in text
+    assert text.index("balanced.svg") < text.index("## Start")
+
+
+@pytest.mark.parametrize("name", ["linkage", "balanced"])
+def test_drawings_are_as_they_would_be_now(name: str) -> None:
     """The same text, and the same numbers but for the last digit, which processors round."""
-    kept = (PICTURES / "linkage.svg").read_text(encoding="utf-8")
-    fresh = MAKE["linkage"]()
+    kept = (PICTURES / f"{name}.svg").read_text(encoding="utf-8")
+    fresh = MAKE[name]()
     assert NUMBER.sub("#", kept) == NUMBER.sub("#", fresh), STALE
     numbers = ([float(n) for n in NUMBER.findall(text)] for text in (kept, fresh))
     assert next(numbers) == pytest.approx(next(numbers), abs=0.11, rel=1e-3), STALE
