@@ -380,6 +380,16 @@ class Periodic:
         """Largest minus smallest value, (...), not only at samples."""
         return self.extreme(1)[0] - self.extreme(-1)[0]
 
+    @property
+    def figures(self) -> Figures:
+        """Figures of one signal, whose extremes may lie between samples."""
+        (high, high_at), (low, low_at) = (map(float, self.extreme(sign)) for sign in (1, -1))
+        above = high >= -low - EQUAL * (high - low)
+        return Figures(
+            float(self.mean), float(self.rms), max(high, -low), high_at if above else low_at,
+            high, high_at, low, low_at,
+        )  # fmt: skip
+
     def extreme(self, sign: int) -> tuple[Array, Array]:
         """Largest (sign 1) or smallest (-1) value (...) and its crank angle (...), rad.
 

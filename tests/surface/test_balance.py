@@ -144,7 +144,8 @@ def test_several_objectives() -> None:
     assert list(content["objectives"]) == ["peak of shaking_force", "rms of drive_torque"]
     before_after = content["objectives"].values()
     cost = sum(w * x["after"] / x["before"] for w, x in zip((2, 1), before_after, strict=True))
-    assert content["cost"] == pytest.approx(cost)
+    # the optimisation sees a peak at twice the crank angles of the figures that are told
+    assert content["cost"] == pytest.approx(cost, rel=3e-4)
 
 
 @pytest.mark.parametrize(
@@ -309,7 +310,7 @@ def test_the_new_model_does_what_was_printed(name: str) -> None:
     assert machine.description.startswith("Changed by equipoise balance: ")
     assert "Changed" not in machine.description.texts["ja"]  # type: ignore[attr-defined]
     assert machine.balance is None
-    forces = eq.forces(eq.move(machine, 720, acceleration=0.0))
+    forces = eq.forces(eq.move(machine, 360, acceleration=0.0))
     for output, values in (
         ("shaking_force", forces.shaking_force.value),
         ("shaking_moment", forces.shaking_moment),

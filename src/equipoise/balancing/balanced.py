@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from itertools import chain
 from math import isclose, sqrt
@@ -62,7 +62,8 @@ class Balanced(Result):
     machine : with the changes made.  original : without.
     plan : what was asked.
     changes : what to change, in the order of the plan.
-    objectives : name -> value before and after, SI units.
+    objectives : name -> value before and after, SI units, as the optimisation has them; extremes at
+        twice the crank angles of an analysis.
     cost, bound : what was made small (the objectives over their values before, as the plan combines
         them), and a proved lower bound of it for every machine that the plan allows.
     method : ``closed form``, ``cone program`` or ``branch and bound``, with what was scanned.
@@ -131,7 +132,31 @@ class Balanced(Result):
     @cached_property
     def aims(self) -> dict[Objective, compared.Pair]:
         """What was made small, before and after; of an output at several speeds the loudest."""
-        return compared.merged(self.plan, self.objectives)
+        return compared.merged(self.plan, self.reported)
+
+    @cached_property
+    def reported(self) -> dict[str, compared.Pair]:
+        """Each objective before and after by its name, as `before` and `after` have it.
+
+        Those that are no such figures, such as single orders, are as the optimisation has them.
+        """
+        old, new = self._shaking
+        names = self._figures_of(self.plan.objectives)
+        return {**self.objectives, **{one: (old[name], new[name]) for one, name in names.items()}}
+
+    @cached_property
+    def limits(self) -> dict[str, Price]:
+        """The price of each limit by its name, and what is used of it as `after` has it."""
+        names = self._figures_of(one.objective for one in self.plan.limits)
+        own = {one: self._shaking[1][names[one]] for one in self.prices if one in names}
+        return {**self.prices, **{one: replace(self.prices[one], used=own[one]) for one in own}}
+
+    def _figures_of(self, asked: Iterable[Objective]) -> dict[str, str]:
+        """Names of the figures before and after that objectives are, by the objective's name."""
+        both = self._shaking[0].keys() & self._shaking[1].keys()
+        rows = len(self.original.rows)
+        found = {one.name: compared.figure_of(one, rows, both) for one in asked}
+        return {one: name for one, name in found.items() if name is not None}
 
     @cached_property
     def worse(self) -> tuple[compared.Worse, ...]:
@@ -225,15 +250,22 @@ class Balanced(Result):
             "flywheel": self.advice.flywheel,
         }
 
+    def _phased(self, phasing: Phasing) -> dict[str, Any]:
+        """What phases bring, with the objectives as they are reported."""
+        objectives = [
+            {"name": name, "before": old, "after": new}
+            for name, (old, new) in self.reported.items()
+            if name in phasing.before
+        ]
+        return phasing.to_dict() | {"objectives": objectives}
+
     def to_dict(self, wanted: Collection[str] | None = None) -> dict[str, Any]:
         """The machine-readable output, SI units and radians.
 
         wanted : keys that are needed of those that take time; None for all.
         """
         asked = wanted is None or "sensitivities" in wanted
-        pairs = {
-            name: {"before": old, "after": new} for name, (old, new) in self.objectives.items()
-        }
+        pairs = {name: {"before": old, "after": new} for name, (old, new) in self.reported.items()}
         return {
             "title": self.original.title,
             "speed": self.original.drive.speed,
@@ -244,7 +276,7 @@ class Balanced(Result):
             "gap": self.gap,
             "scope": " and ".join(map(str, self.scope)),
             "changes": [change.to_dict() for change in self.changes],
-            "prices": {name: asdict(price) for name, price in self.prices.items()},
+            "prices": {name: asdict(price) for name, price in self.limits.items()},
             "added_mass": self.added_mass,
             "before": self.before,
             "after": self.after,
@@ -255,7 +287,7 @@ class Balanced(Result):
             "equivalent_speeds": self.equivalent_speeds,
             "planting_kept": self.planting_kept,
             **({"sensitivities": self.sensitivities} if asked else {}),
-            **({} if self.phasing is None else {"rows": self.phasing.to_dict()}),
+            **({} if self.phasing is None else {"rows": self._phased(self.phasing)}),
             **({} if self.advice is None else self._advised()),
             "notes": list(map(str, self.notes)),
         }

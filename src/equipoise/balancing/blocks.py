@@ -203,7 +203,7 @@ def _kin(unit: str) -> str:
 def _prices(found: Balanced) -> Table:
     named = {one.name: objective_named(one.objective) for one in found.plan.limits}
     rows: list[tuple[Cell, ...]] = []
-    for name, price in found.prices.items():
+    for name, price in found.limits.items():
         unit = found.units[name]
         over = broken_if(price.used > price.at_most * (1 + 1e-6))
         used = replace(quantity(price.used, unit), emphasis=over)

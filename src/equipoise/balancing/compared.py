@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from equipoise.balancing.effects import ANGLES
 from equipoise.balancing.multi_row import Rows, Term
 from equipoise.balancing.objectives import measured
 from equipoise.errors import EquipoiseError, ModelError, ResponseError
-from equipoise.mechanism.dynamics.forces import forces
-from equipoise.mechanism.kinematics.jumps import resolved
-from equipoise.mechanism.kinematics.motion import move
-from equipoise.mechanism.outputs.declared import DECLARED, GROUPS, declared
-from equipoise.mechanism.parts.balance import Balance, Objective
+from equipoise.mechanism.outputs.declared import GROUPS, declared
+from equipoise.mechanism.parts.balance import Balance, Measure, Objective
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import GAUGES, WITHIN
 from equipoise.planting.summary import plant
-from equipoise.results.analysis import Analysis
-from equipoise.results.outputs import Outputs, unit_of_measure
+from equipoise.results.analysis import Analysis, analyze
+from equipoise.results.outputs import Output, unit_of_measure
 from equipoise.vibration.forced import respond
 
 WORSE = 0.01
@@ -30,6 +25,9 @@ FAINT = 1e-4
 """Of the largest figure of its unit: what is smaller is nobody's concern."""
 IMPORTANT = tuple(dict.fromkeys(("gauges", "rows", *GROUPS)))
 """Groups of outputs in the order in which a reader asks for them."""
+
+ROWS = "rows."
+"""Before the name of what all rows do together."""
 
 Pair = tuple[float, float]
 """A value before and after."""
@@ -134,6 +132,18 @@ def merged(plan: Balance, values: Mapping[str, Pair]) -> dict[Objective, Pair]:
     return found
 
 
+def figure_of(one: Objective, rows: int, figures: Collection[str]) -> str | None:
+    """The name among figures of what an objective asks for; None where it is none of them.
+
+    rows : of the machine, which add up in all but what acts within one of them.
+    """
+    if one.about or one.orders or one.speeds:
+        return None
+    inner = rows < 2 or one.output.startswith((GAUGES, *WITHIN))
+    name = f"{'' if inner else ROWS}{one.output}.{one.measure}"
+    return name if name in figures else None
+
+
 # -- figures before and after ----------------------------------------------------------------------
 
 
@@ -142,22 +152,31 @@ def figures_of(machine: Machine) -> dict[str, float]:
 
     Moments are about the drive's pivot; areas are under the absolute value over 360 deg, in J.
     """
-    motion = resolved(move(machine, ANGLES, acceleration=0.0))
+    analysis = analyze(machine, acceleration=0.0)
     figures = {"mass": machine.mass}
-    for one in Outputs(Analysis(motion, forces(motion))):
+    for one in analysis.outputs:
         for measure in one.declared.compared if one.declared.is_of_row else ():
-            figures[f"{one.name}.{measure}"] = measured(one.component, measure, motion.sampling)
-    return figures | _of_rows(machine) | _of_support(machine)
+            figures[f"{one.name}.{measure}"] = _measured(analysis, one, measure)
+    return figures | _of_rows(analysis) | _of_support(machine)
 
 
-def _of_rows(machine: Machine) -> dict[str, float]:
-    """Figures of all rows together, where there are several."""
-    rows, phases, figures = Rows(machine), np.array([row.phase for row in machine.rows]), {}
-    for one in DECLARED.values() if len(phases) > 1 else ():
+def _measured(analysis: Analysis, output: Output, measure: Measure) -> float:
+    """A measure of an output as an analysis has it, which sees where forces jump."""
+    whole = analysis.resolved
+    values = output.declared.component(output.declared.vector(whole, output.item))
+    return measured(values, measure, whole.motion.sampling)
+
+
+def _of_rows(analysis: Analysis) -> dict[str, float]:
+    """Figures of all rows together, where there are several; 0 where the rows cancel."""
+    rows, figures = Rows(analysis.machine), {}
+    for output in analysis.outputs:
+        one = output.declared
         for measure in one.compared if one.needs == "rows" else ():
-            objective = Objective(one.name.removeprefix("rows."), measure)
-            value = Term(objective, rows.signals(objective)).value_at(phases)
-            figures[f"{one.name}.{measure}"] = value
+            objective = Objective(output.name.removeprefix(ROWS), measure)
+            term = Term(objective, rows.signals(objective))
+            value = term.without_rounding(_measured(analysis, output, measure))
+            figures[f"{output.name}.{measure}"] = value
     return figures
 
 

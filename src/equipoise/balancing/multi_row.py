@@ -270,6 +270,10 @@ class Term:
         value, jumping = float(self.values(phases)), self.signals.jumping
         if jumping is not None and by_orders(self.measure):
             value = jumping.rms(phases, self.measure == "ripple")
+        return self.without_rounding(value)
+
+    def without_rounding(self, value: float) -> float:
+        """A value; 0 where it is what rounding leaves of the rows' own."""
         return value if value > NOTHING * self.single else 0.0
 
     @cached_property

@@ -38,7 +38,7 @@ from equipoise.vibration.forced import excitation_model_of
 from equipoise.vibration.linear import Linear
 
 if TYPE_CHECKING:
-    from equipoise.signals import Periodic
+    from equipoise.signals import Figures, Periodic
     from equipoise.vibration.response import GaugeSignals, MountForce, Response
     from equipoise.vibration.transient import Transient
 
@@ -129,11 +129,11 @@ def drive(response: Response) -> Chart:
     """Torque of the drive and, where it varies, speed of the crank."""
     found = response.drive
     y = read_axis(say("drive torque"), "force", True, sampled(found.torque)[1], room=ROOM)
-    panels = [_with_mean(response, found.torque, y)]
+    panels = [_with_mean(response, found.torque, found.torque_figures, y)]
     if found.speed is not None:
         title = say("varies by {share} % of its mean", share=shown(100 * found.fluctuation))
         y = Axis.of(say("crank speed"), "angular speed", (), "rpm", room=ROOM)
-        panels.append(_with_mean(response, found.speed, y, title=title))
+        panels.append(_with_mean(response, found.speed, found.speed.figures, y, title=title))
     what = say("Drive of {link}", link=short(response.machine.drive.link))
     rows = len(response.machine.rows)
     what += ", " + say("{rows} rows together", rows=rows) if rows > 1 else ""
@@ -141,13 +141,15 @@ def drive(response: Response) -> Chart:
     return Chart("drive", response.machine.title, what, tuple(panels))
 
 
-def _with_mean(response: Response, signal: Periodic, y: Axis, **rest: Any) -> Panel:
-    """A signal over a period, with a dashed line at its mean and its value."""
+def _with_mean(
+    response: Response, signal: Periodic, figures: Figures, y: Axis, **rest: Any
+) -> Panel:
+    """A signal over a period, marked at its extremes, with a dashed line at its mean."""
     theta, values, places = told(signal)
     lines: tuple[Line, ...] = ()
     if varies(values):
-        mean = float(signal.mean)
-        mean = 0.0 if abs(mean) <= VARIES * float(np.ptp(values)) else mean
+        mean = 0.0 if abs(figures.mean) <= VARIES * float(np.ptp(values)) else figures.mean
+        places = [(figures.max_at, figures.max), (figures.min_at, figures.min)]
         lines = (Line(mean, "mean", axis="y"),)
         rest["remark"] = say("dashed: mean {value}", value=y.quantity(mean))
     marks = extremes(y, values, places, "main")

@@ -65,8 +65,8 @@ def mounted(response: Response) -> str:
 
 def driven(response: Response) -> str:
     """Between which torques the drive swings."""
-    torque = response.drive.torque
-    low, high = (told(float(torque.extreme(k)[0]), "torque", digits=3) for k in (-1, 1))
+    torque = response.drive.torque_figures
+    low, high = (told(end, "torque", digits=3) for end in (torque.min, torque.max))
     return say("The drive torque swings between {low} and {high}", low=low, high=high)
 
 

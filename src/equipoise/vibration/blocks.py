@@ -17,7 +17,7 @@ from equipoise.signals import Array
 from equipoise.vibration.response import MODELS, Model
 
 if TYPE_CHECKING:
-    from equipoise.signals import Periodic
+    from equipoise.signals import Figures
     from equipoise.vibration.response import Mode, Response
     from equipoise.vibration.transient import Transient
 
@@ -229,9 +229,10 @@ def _mounts(response: Response) -> Table:
 
 def _drive(response: Response) -> Iterator[Block]:
     drive = response.drive
-    rows = [_extremes(say("drive torque"), drive.torque, ("torque", None))]
+    rows = [_extremes(say("drive torque"), drive.torque_figures, ("torque", None))]
     if drive.speed is not None:
-        rows.append(_extremes(say("crank speed"), drive.speed, ("angular speed", "rpm")))
+        found = drive.speed.figures
+        rows.append(_extremes(say("crank speed"), found, ("angular speed", "rpm")))
     labels = ("", say("mean"), say("largest"), say("smallest"), say("peak to peak"))
     yield Table.of(say("Drive, all rows together"), labels, rows)
     if drive.speed is None:
@@ -245,9 +246,8 @@ def _drive(response: Response) -> Iterator[Block]:
         )
 
 
-def _extremes(name: str, signal: Periodic, kind: Kind) -> tuple[Cell, ...]:
-    high, low = float(signal.extreme(1)[0]), float(signal.extreme(-1)[0])
-    return _row(name, (float(signal.mean), high, low, high - low), kind)
+def _extremes(name: str, found: Figures, kind: Kind) -> tuple[Cell, ...]:
+    return _row(name, (found.mean, found.max, found.min, found.peak_to_peak), kind)
 
 
 def _joints(response: Response) -> Table:

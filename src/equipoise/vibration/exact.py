@@ -15,11 +15,10 @@ import numpy as np
 
 from equipoise.errors import ResponseError
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.dynamics.reactions import Pass
-from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import FREEDOMS
+from equipoise.results.analysis import analyze
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import IN_PLANE, PITCH, Body, Reading
 from equipoise.vibration.coupled import TO_SETTLE, Coupled, StallError, follow, settled
@@ -297,10 +296,10 @@ class ExactSolution:
     def _joints(self) -> dict[str, Joint]:
         """Of the first row, beside the same joints on solid ground at a constant speed."""
         here = self.passes[0]
-        ground = forces(move(self.machine, SAMPLES, self.speed, 0.0))
-        still = ground.solved.contacts
+        ground = analyze(self.machine, speed=self.speed, acceleration=0.0).resolved
+        still, figures = ground.forces.solved.contacts, ground.motion.figures
         return {
-            name: Joint(float(np.max(joint.size)), float(np.max(still[name].size)))
+            name: Joint(float(np.max(joint.size)), figures(still[name].size).peak)
             for name, joint in here.contacts.items()
         }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import pi
 from typing import Any, Literal
 
@@ -11,8 +12,9 @@ import numpy as np
 
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.results.analysis import analyze
 from equipoise.results.result import Result
-from equipoise.signals import Array, Periodic
+from equipoise.signals import Array, Figures, Periodic
 
 Values = dict[str, Any]
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]
@@ -187,11 +189,25 @@ class DriveSignals:
 
     torque : on all cranks together, N m.  speed : rad/s, or None where it is constant.
     shift : by which the motor's curve is moved along its speed to hold the mean speed, rad/s.
+    grounded : the machine whose torque on solid ground this is, and the speed of its crank, rad/s;
+        None where the motion of the support changes the torque.
     """
 
     torque: Periodic
     speed: Periodic | None = None
     shift: float = 0.0
+    grounded: tuple[Machine, float] | None = None
+
+    @cached_property
+    def torque_figures(self) -> Figures:
+        """Mean, RMS and extremes of the torque; on solid ground those of an analysis."""
+        if self.grounded is not None:
+            machine, speed = self.grounded
+            analysis = analyze(machine, speed=speed, acceleration=0.0)
+            name = analysis.whole("drive_torque")
+            if name in analysis.summary:
+                return analysis.summary[name]
+        return self.torque.figures
 
     @property
     def fluctuation(self) -> float:
@@ -202,7 +218,9 @@ class DriveSignals:
 
     def to_dict(self) -> Values:
         """Figures of the torque, and of the speed where it is not constant."""
-        values: Values = {"torque": by_order(self.torque)}
+        found = self.torque_figures
+        told = {name: getattr(found, name) for name in ("mean", "max", "min", "peak_to_peak")}
+        values: Values = {"torque": by_order(self.torque) | told}
         if self.speed is not None:
             values["speed"] = by_order(self.speed)
             values |= {"fluctuation": self.fluctuation, "curve_shift": self.shift}

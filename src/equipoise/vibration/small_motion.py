@@ -50,7 +50,7 @@ def respond_linear(linear: Linear, speed: float) -> Response:
         _gauges(linear, moved, moving, moving.derivative() * speed),
         mounts,
         linear.modes,
-        DriveSignals(_torque(linear, speed)),
+        DriveSignals(_torque(linear, speed), grounded=(body.machine, speed)),
         notes=tuple(notes),
         motion=linear.body.whole(moved),
     )

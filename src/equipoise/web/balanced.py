@@ -37,7 +37,7 @@ from equipoise.results.outputs import objective_named, shown_in
 from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
 from equipoise.web.drawn import Drawn
 from equipoise.web.edits import Solved, solved
-from equipoise.web.figures import compared, figures_of, signals_of
+from equipoise.web.figures import compared, figures_of
 from equipoise.web.messages import Message
 from equipoise.web.replies import Reply
 
@@ -279,8 +279,7 @@ def _read(base: Solved, after: Solved) -> dict[str, tuple[float, float]]:
     """Figures before and after as the page shows them, by name; SI units."""
     if base.analysis.machine.drive.acceleration:  # which balancing leaves out
         return {}
-    machine = after.analysis.machine
-    figures = figures_of(signals_of(after.analysis), signals_of(base.analysis), machine)
+    figures = figures_of(after.analysis, base.analysis)
     pairs = {one["name"]: (one.get("before"), one["value"]) for one in figures}
     return {name: (a, b) for name, (a, b) in pairs.items() if a is not None and b is not None}
 

@@ -7,12 +7,15 @@ those by order have a number for each of the message's orders.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from math import isfinite
 from typing import Any
 
 import numpy as np
 
 from equipoise.i18n import say, to_say
+from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.outputs.declared import DECLARED, Declared
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import Display, change, display, number, typeset
@@ -49,12 +52,12 @@ def _together(analysis: Analysis) -> Signals:
     return {f"rows.{name}": values for name, values in analysis.together.items()}
 
 
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(np.abs(values) ** 2)))
+def _rms(motion: Motion, values: Array) -> float:
+    return float(np.sqrt(motion.mean(np.abs(values) ** 2)))
 
 
-def _peak(values: Array) -> float:
-    return float(np.max(np.abs(values)))
+def _peak(motion: Motion, values: Array) -> float:
+    return float(np.max(np.abs(motion.shown(values)[1])))
 
 
 def _signed(measure: str, values: Array, size: float) -> float:
@@ -80,26 +83,44 @@ def _size_of(machine: Machine) -> float:
     return max(extent_of(machine), *rows, 0.0)
 
 
-def figures_of(signals: Signals, before: Signals | None, machine: Machine) -> list[Values]:
-    """RMS and peak of each signal, with what they were before; 0 where that is rounding."""
-    return [*_figures(signals, before, _size_of(machine))]
+def figures_of(analysis: Analysis, before: Analysis | None = None) -> list[Values]:
+    """RMS and peak of each signal, with what they were before; 0 where that is rounding.
+
+    As analyses have them, of crank angles that resolve where forces jump.
+    """
+    return [*_figures(_Read.of(analysis), None if before is None else _Read.of(before))]
 
 
-def _figures(signals: Signals, old: Signals | None, size: float) -> Iterator[Values]:
-    parts = _with_parts(signals)
-    olds, several = {} if old is None else _with_parts(old), "rows.shaking_force" in signals
-    loudest = max(
-        (_peak(values) for one in (parts, olds) for name, values in one.items() if _is_force(name)),
-        default=0.0,
-    )
+@dataclass(frozen=True, eq=False)
+class _Read:
+    """Signals of a machine, components of vectors beside them, with figures of each."""
+
+    motion: Motion
+    signals: Signals
+
+    @classmethod
+    def of(cls, analysis: Analysis) -> _Read:
+        whole = analysis.resolved
+        return cls(whole.motion, _with_parts(signals_of(whole)))
+
+    @cached_property
+    def loudest(self) -> float:
+        """Largest force, N."""
+        forces = (values for name, values in self.signals.items() if _is_force(name))
+        return max((_peak(self.motion, values) for values in forces), default=0.0)
+
+
+def _figures(read: _Read, old: _Read | None) -> Iterator[Values]:
+    size, several = _size_of(read.motion.machine), "rows.shaking_force" in read.signals
+    loudest = max(read.loudest, 0.0 if old is None else old.loudest)
     for name, one in told_signals().items():
-        if name not in parts:
+        if name not in read.signals:
             continue
-        values, was = parts[name], olds.get(name)
+        values = read.signals[name]
         least = NOTHING * loudest * (1.0 if _is_force(name) else size)
         label = one.say("", several)
         for measure, (shown, of) in MEASURES.items():
-            value = _plain(of(values), least)
+            value = _plain(of(read.motion, values), least)
             unit = display(one.dimension)
             entry = {
                 "name": f"{name}.{measure}",
@@ -110,8 +131,8 @@ def _figures(signals: Signals, old: Signals | None, size: float) -> Iterator[Val
                 "value": value,
                 "text": text_of(_in(unit, value and _signed(measure, values, value))),
             }
-            if was is not None:
-                before = _plain(of(was), least)
+            if old is not None and name in old.signals:
+                before = _plain(of(old.motion, old.signals[name]), least)
                 entry |= {"before": before, "was": was_of(_in(unit, before), _in(unit, value))}
             yield entry
 

@@ -58,7 +58,6 @@ def state_of(
         _add_signals(block, old, before.analysis, "before.")
         _add_outputs(block, before.analysis, wanted, "before.")
     against = against or before
-    compared = old if against is before else signals_of(against.analysis) if against else None
     length = display("length", [extent_of(machine)])
     lacking = forces_lack(machine)
     content: Values = {
@@ -74,7 +73,7 @@ def state_of(
         "scene": stage_of(scene, movable(machine), cams_told(machine, motion.linkage.joints)),
         "traced": traced(motion),
         "first": first_of(machine)[0],
-        "figures": figures_of(signals, compared, machine),
+        "figures": figures_of(analysis, against.analysis if against else None),
         "outputs": outputs_of(analysis),
         "charts": charts_of(analysis, signals),
         "least": least_of(signals),

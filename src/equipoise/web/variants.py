@@ -15,7 +15,7 @@ from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.quantities import Dimension, display
 from equipoise.quantities.numbers import SAME
 from equipoise.web.edits import Solved
-from equipoise.web.figures import figures_of, signals_of, text_of
+from equipoise.web.figures import figures_of, text_of
 from equipoise.web.shaken import can_be_shaken, responded
 
 Values = dict[str, Any]
@@ -102,7 +102,7 @@ class Variants:
         Of every figure the smallest is best; none is where all are the same.
         """
         every = [one.analysis for one in (*self.kept.values(), now)]
-        figures = [_named(figures_of(signals_of(one), None, one.machine)) for one in every]
+        figures = [_named(figures_of(one)) for one in every]
         names = [name for name in figures[-1] if all(name in one for one in figures)]
         rows = [_row([one[name] for one in figures]) for name in names]
         rows += _gauges((*self.kept.values(), now))

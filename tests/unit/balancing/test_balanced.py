@@ -38,7 +38,7 @@ def with_figures(found: Balanced, before: dict[str, float], after: dict[str, flo
 
 def test_figures_are_those_of_the_analysis() -> None:
     for machine, figures in ((MACHINE, FOUND.before), (FOUND.machine, FOUND.after)):
-        forces = eq.analyze(machine, 720, acceleration=0.0).forces
+        forces = eq.analyze(machine, acceleration=0.0).forces
         moment, torque = forces.shaking_moment, forces.drive_torque
         wanted = {
             "mass": sum(link.mass for link in machine.links.values()),

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
 from functools import cache
 from inspect import signature
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.balancing import compared
 from equipoise.cli.linkage import analyze as command
 from equipoise.figures import analysis as charts
 from equipoise.figures import forces as forces_charts
+from equipoise.mechanism.parts.balance import Balance, Limit, Objective, Phases
 from equipoise.present.cells import grid
 from equipoise.present.composition import build
 from equipoise.present.findings import Findings, find
@@ -27,13 +31,19 @@ from equipoise.results.blocks import Block, Drawn, Many, Section, Table, Value
 from equipoise.signals import highest_at
 from equipoise.vibration.resonance import nearest_loud
 from equipoise.web.edits import solved
-from equipoise.web.figures import figures_of, signals_of
+from equipoise.web.figures import figures_of
 from equipoise.web.openings import opened_example
 from support.found import found as found_of
 
 MACHINES = (
     *("cam-pusher", "four-stroke-engine", "hydraulic-loader", "riding-transplanter"),
     *("sieve", "twin-engine", "yamashita-rig"),
+)
+EXAMPLES = Path(eq.__file__).parent / "examples"
+WITH_FORCES = sorted(
+    file.stem
+    for file in EXAMPLES.glob("*.toml")
+    if (text := file.read_text("utf-8")).count("\n[drive]") and "\nmass = " in text
 )
 
 
@@ -175,6 +185,81 @@ def test_every_number_of_tables_is_in_the_json(name: str) -> None:
     assert count > 30
 
 
+@pytest.mark.parametrize("name", MACHINES)
+def test_every_number_of_respond_and_balance_is_in_the_json(name: str) -> None:
+    """Orders of modes, and places of rows across the machine, stand in tables alone."""
+    found = found_of(name)
+    assert isinstance(found, Findings)
+    results = [one for one in (found.response, found.sweep, found.balanced) if one is not None]
+    tables = [one for result in results for one in result.blocks() if isinstance(one, Table)]
+    for table in tables:
+        for row, value in cells_of(table) if not table.title.startswith("Rows;") else ():
+            near = 1e-9 * max(abs(value.value), value.scale) + 1e-12
+            assert is_told(name, value.value, near), (table.title, row, value)
+    assert results
+
+
+def same_as_analyzed(analysis: eq.Analysis, figures: Mapping[str, float | None]) -> int:
+    """Figures by their paths against the summary of an analysis; how many there are in both."""
+    count = 0
+    for path, value in figures.items():
+        output, _, measure = path.rpartition(".")
+        if output not in analysis.summary or not hasattr(analysis.summary[output], measure):
+            continue
+        wanted = getattr(analysis.summary[output], measure)
+        small = 1e-4 * analysis.summary[output].rms  # shown as 0 where it is next to nothing
+        assert value == pytest.approx(wanted, rel=1e-9, abs=1e-12) or (
+            value == 0.0 and abs(wanted) <= max(small, 1e-9)
+        ), path
+        count += 1
+    return count
+
+
+@pytest.mark.parametrize("name", WITH_FORCES)
+def test_other_surfaces_have_the_figures_of_analyze(name: str) -> None:
+    machine = eq.load(name)
+    analysis = eq.analyze(machine, acceleration=0.0)
+    assert same_as_analyzed(analysis, compared.figures_of(machine)) > 8
+    page = solved(opened_example(name)).analysis
+    shown = {one["name"]: one["value"] for one in figures_of(page)}
+    assert same_as_analyzed(page, shown) >= 8
+    if machine.support is not None:
+        torque = eq.respond(machine).to_dict()["drive"]["torque"]
+        ends = {f"{analysis.whole('drive_torque')}.{end}": torque[end] for end in ("max", "min")}
+        assert same_as_analyzed(analysis, ends) == 2
+
+
+def test_the_exact_model_compares_with_the_forces_of_analyze() -> None:
+    machine = eq.load("sieve")
+    joints = eq.respond(machine, model="exact").joints
+    summary = eq.analyze(machine, acceleration=0.0).summary
+    for name, joint in joints.items():
+        assert joint.on_ground == pytest.approx(summary[f"joints.{name}"].peak, rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["balance-coupler", "riding-transplanter", "twin-engine"])
+def test_what_balance_makes_small_is_what_analyze_says(name: str) -> None:
+    """Peaks too, which the optimisation sees at more crank angles."""
+    machine = eq.load(name)
+    aims = (Objective("shaking_force", "peak"), Objective("drive_torque", "peak_to_peak"))
+    limit = Limit(Objective("shaking_moment", "peak"), ratio=2.0)
+    own = Balance(phases=Phases()) if machine.rows else machine.balance
+    plan = replace(own, objectives=aims, limits=() if machine.rows else (limit,))
+    found = eq.balance(machine, plan)
+    told, before, after = (
+        found.to_dict(),
+        *(eq.analyze(one, acceleration=0.0) for one in (machine, found.machine)),
+    )
+    for aim in aims:
+        output = before.whole(aim.output)
+        pair = [getattr(one.summary[output], aim.measure) for one in (before, after)]
+        assert [*found.aims[aim]] == pytest.approx(pair, rel=1e-9)
+        assert [*told["objectives"][aim.name].values()] == pytest.approx(pair, rel=1e-9)
+    if not machine.rows:
+        used = after.summary[before.whole("shaking_moment")].peak
+        assert told["prices"][limit.name]["used"] == pytest.approx(used, rel=1e-9)
+
+
 # -- one sampling, one sign, one unit, all rows ---------------------------------------------------
 
 
@@ -199,7 +284,7 @@ def test_a_peak_has_its_sign() -> None:
     assert tile.value == "-153"
     page = eq.load("four-stroke-engine")
     analysis = eq.analyze(page)
-    entries = figures_of(signals_of(analysis), None, page)
+    entries = figures_of(analysis)
     (text,) = (one["text"] for one in entries if one["name"] == "drive_torque.peak")
     assert text == "\N{MINUS SIGN}153.2"
 

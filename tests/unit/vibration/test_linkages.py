@@ -455,7 +455,7 @@ def test_signals_are_those_of_the_motion(solved: dict[str, ExactSolution], case:
 def test_largest_joint_forces_are_told() -> None:
     """Of the first row, beside those on solid ground."""
     solution = solve_exact(rig(), SPEED, False)
-    ground = eq.analyze(rig(), 720, speed=SPEED, acceleration=0.0).forces
+    ground = eq.analyze(rig(), speed=SPEED, acceleration=0.0).forces
     for name, joint in solution.response().joints.items():
         assert joint.on_ground == pytest.approx(float(np.max(ground.joints[name].size)))
         here = solution.passes[0].joints[name]

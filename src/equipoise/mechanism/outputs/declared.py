@@ -357,8 +357,10 @@ of_rows("shaking_force", "force", to_say("shaking force"), XY, summed=(True, Fal
 of_rows("shaking_moment", "torque", to_say("shaking moment"), compared=FORCE, yardstick="span")
 of_rows("roll_moment", "torque", to_say("roll moment"), compared=FORCE, yardstick="bearings")
 of_rows("yaw_moment", "torque", to_say("yaw moment"), compared=FORCE, yardstick="bearings")
-of_rows("drive_torque", "torque", to_say("drive torque"), yardstick="effort", **TURNED)
-of_rows("drive_force", "force", to_say("drive force"), yardstick="effort", **PUSHED)
+of_rows("drive_torque", "torque", to_say("drive torque"), compared=TORQUE, yardstick="effort",
+        **TURNED)  # fmt: skip
+of_rows("drive_force", "force", to_say("drive force"), compared=TORQUE, yardstick="effort",
+        **PUSHED)  # fmt: skip
 DECLARED["gauges.{}"] = Declared(
     "gauges.{}",
     "length",
