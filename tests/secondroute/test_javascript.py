@@ -109,6 +109,22 @@ def test_numbers_that_are_changed(name: str, tmp_path: Path) -> None:
     assert not np.allclose(known, [own[one] for one in signals])
 
 
+@node
+@pytest.mark.parametrize("path", ["drive.speed", "links.crank.mass", "links.rocker.points.C.x"])
+def test_one_number_of_many(path: str, tmp_path: Path) -> None:
+    """What it does not change is written once, as of a script of all numbers."""
+    base = eq.load("watt-six-bar")
+    every = {one.path: one.value for one in numbers_of(base, 1e-3)}
+    linkage, names = assemble(base), signals_of(base)
+    script = javascript(linkage, names, {path: every[path]})
+    assert len(script.text) < 1.5 * len(javascript(linkage, names, every).text)
+    theta = np.linspace(0.0, 6.0, ANGLES)
+    got = run(script, np.array([every[path]]), theta, tmp_path)
+    plain = javascript(linkage, names)
+    same = run(plain, plain.numbers(linkage), theta, tmp_path)
+    assert np.all(np.abs(got - same) <= 1e-12 * size(same))
+
+
 def test_long_functions_are_split() -> None:
     """Engines do not optimise long ones; what runs is compared in `test_example`."""
     machine = eq.load("knife-drive")

@@ -182,7 +182,8 @@ class _Writer:
 
         script.used.clear()
         before = len(script.names)
-        for line in script.write((BOTH,)):
+        # where designs differ in few numbers, much depends on the crank angle alone that did not
+        for line in script.write((ANGLE, BOTH)):
             put(line, [*script.names][before:])
             before = len(script.names)
         for k, one in enumerate(self.outputs):
