@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
 from lessons import TABLE, lessons
@@ -23,13 +23,23 @@ class Words(NamedTuple):
     teaches: str
     picture: str
     to_try: str
+    live: str
+    page: str
     colon: str = ": "
 
 
 WORDS = {
-    "en": Words("What it teaches", "The picture", "To try"),
-    "ja": Words("学べること", "図を作るコマンド", "試すコマンド", "："),
-    "ko": Words("배울 수 있는 것", "그림을 만드는 명령", "해 볼 명령"),
+    "en": Words("What it teaches", "The picture", "To try", "open live", "open in the live page"),
+    "ja": Words(
+        "学べること", "図を作るコマンド", "試すコマンド", "動かして開く", "ライブページで開く", "："
+    ),
+    "ko": Words(
+        "배울 수 있는 것",
+        "그림을 만드는 명령",
+        "해 볼 명령",
+        "움직이며 열기",
+        "라이브 페이지에서 열기",
+    ),
 }
 
 
@@ -38,7 +48,25 @@ def plain(text: str) -> str:
     return re.sub(r"[\\`*_\[\]<>]", r"\\\g<0>", text)
 
 
-def card(language: str, name: str, content: Mapping[str, Any], lesson: str, to_try: str) -> str:
+def opened(language: str, name: str, live: Collection[str]) -> str:
+    """Links that open an example: its interactive file, and the live page where there is one.
+
+    The live page is beside the documentation on a site only, which then shows its link.
+    """
+    words, top = WORDS[language], "" if language == "en" else "../"
+    file = f'<a class="open-live" href="{top}live/{language}/{name}.html">{words.live}</a>'
+    page = f'<a class="open-page" hidden href="{top}../#example={name}">{words.page}</a>'
+    return f"{file} {page}" if name in live else page
+
+
+def card(
+    language: str,
+    name: str,
+    content: Mapping[str, Any],
+    lesson: str,
+    to_try: str,
+    live: Collection[str],
+) -> str:
     """What there is to say of one example; `lesson` and `to_try` are Markdown."""
     words = WORDS[language]
     picture = f"/moving/{content.get('model', name)}.svg"  # of a study, its model
@@ -50,19 +78,22 @@ def card(language: str, name: str, content: Mapping[str, Any], lesson: str, to_t
         f"**{words.picture}**": f"`equipoise {command_of(picture)}`",
         f"**{words.to_try}**": to_try,
     }
-    heads = [f"## {title}", f"![{title}]({picture})"]
+    heads = [f"## {title}", f"![{title}]({picture})", opened(language, name, live)]
     parts = [f"{head}{words.colon}{text}".rstrip(f" {words.colon}") for head, text in told.items()]
     return "\n\n".join([*heads, *parts, ""])
 
 
-def gallery(pages: Mapping[str, str]) -> dict[str, str]:
-    """Put cards in the place of each page's table; pages : language -> text."""
+def gallery(pages: Mapping[str, str], live: Collection[str] = ()) -> dict[str, str]:
+    """Put cards in the place of each page's table.
+
+    pages : language -> text.  live : examples that have an interactive file.
+    """
     contents = {name: tomllib.loads(file.read_text("utf-8")) for name, file in bundled().items()}
     english = lessons(pages["en"])
     done = {}
     for language, text in pages.items():
         cards = [
-            card(language, name, contents[name], told[0], english[name][1])
+            card(language, name, contents[name], told[0], english[name][1], live)
             for name, told in lessons(text).items()
         ]
         before, after = TABLE.split(text)

@@ -24,6 +24,8 @@ AROUND = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")
 MADE = {"examples": "scripts.md"}
 """Folders of the repository that have a page here."""
 GALLERY = {"en": "examples.md", "ja": "ja/examples.md", "ko": "ko/examples.md"}
+EXTRA = "extra"
+"""Folder of what Sphinx takes over as it is."""
 SITE_ONLY = re.compile(r"<!-- site only\n(.*?)-->\n", re.DOTALL)
 """What is hidden in a page of the repository, for it goes to pages that only the site has."""
 ANCHOR = re.compile(r'<a id="([\w-]+)"></a>')
@@ -60,6 +62,7 @@ def lay_out(source: Path) -> None:
     """Write every page and picture that Sphinx reads."""
     from commands import commands
     from gallery import gallery
+    from live import write_live
     from names import names
     from pictures import draw
 
@@ -70,9 +73,10 @@ def lay_out(source: Path) -> None:
         "commands.md": commands(),
         "scripts.md": scripts(),
     }
-    shown = gallery({language: pages[page] for language, page in GALLERY.items()})
-    pages |= {GALLERY[language]: text for language, text in shown.items()}
     source.mkdir(parents=True)
+    live = write_live(source / EXTRA, GALLERY)
+    shown = gallery({language: pages[page] for language, page in GALLERY.items()}, live)
+    pages |= {GALLERY[language]: text for language, text in shown.items()}
     draw(pages.values(), source)
     for name, text in pages.items():
         path = source / name
@@ -96,7 +100,8 @@ def digest() -> str:
     """What the site is made of: the same as what it was made of last, if nothing has changed."""
     folders = ("docs", "examples", "src")
     files = [file for folder in folders for file in (ROOT / folder).rglob("*.*") if file.is_file()]
-    kept = [file for file in files if file.suffix not in {".pyc", ".js", ".map"}]
+    page = "interactive.js"  # which every interactive file carries
+    kept = [one for one in files if one.suffix not in {".pyc", ".js", ".map"} or one.name == page]
     every = sorted([*kept, *(ROOT / name for name in AROUND)])
     return sha256(b"".join(map(Path.read_bytes, every))).hexdigest()
 
@@ -110,7 +115,8 @@ def main() -> int:
         for old in (SOURCE, BUILT):
             shutil.rmtree(old, ignore_errors=True)
         lay_out(SOURCE)
-        options = ["--quiet", "--fail-on-warning", f"-c{HERE}", f"-d{SOURCE}/.read"]
+        extra = f"-Dhtml_extra_path={SOURCE / EXTRA}"
+        options = ["--quiet", "--fail-on-warning", f"-c{HERE}", f"-d{SOURCE}/.read", extra]
         if status := sphinx([*options, str(SOURCE), str(BUILT)]):
             return status
         stamp.write_text(now, encoding="utf-8")

@@ -126,3 +126,18 @@ def test_nothing_is_written_through_a_link(tmp_path: Path) -> None:
         write_site(tmp_path / "link", RUNTIME)
     assert not any(outside.iterdir())
     assert {path.name for path in tmp_path.iterdir()} == {".site.new", "link", "outside", "site"}
+
+
+def test_the_gallery_opens_machines_in_the_page(tmp_path: Path) -> None:
+    """Its links are hidden where there is no page around the documentation."""
+    if not RUNTIME.is_dir():
+        pytest.skip("the runtime could not be fetched: make test fetches it")
+    docs = tmp_path / "docs"
+    (docs / "ja").mkdir(parents=True)
+    (docs / "index.html").write_text("", encoding="utf-8")
+    link = '<a class="open-page" hidden href="../../#example=sieve">動かす</a>'
+    (docs / "ja" / "examples.html").write_text(link, encoding="utf-8")
+    site = write_site(tmp_path / "site", RUNTIME, docs=docs)
+    shown = (site.folder / "docs" / "ja" / "examples.html").read_text(encoding="utf-8")
+    assert shown == link.replace(" hidden", "")
+    assert (docs / "ja" / "examples.html").read_text(encoding="utf-8") == link

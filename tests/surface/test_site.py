@@ -20,6 +20,11 @@ GALLERY = {"en": "examples", "ja": "ja/examples", "ko": "ko/examples"}
 lessons = runpy.run_path(str(DOCS / "site" / "lessons.py"))["lessons"]
 
 
+def source(language: str) -> str:
+    """The page of the gallery in a language, in Markdown."""
+    return (DOCS / f"{GALLERY[language]}.md").read_text(encoding="utf-8")
+
+
 def test_it_has_every_command_and_every_public_name(site: Path) -> None:
     told = (site / "commands.html").read_text(encoding="utf-8")
     assert [name for name in COMMANDS if f'id="equipoise-{name}"' not in told] == []
@@ -37,9 +42,24 @@ def test_the_gallery_has_every_example_with_its_picture(site: Path, language: st
     pictures = re.findall(r'<img alt="[^"]+" loading="lazy" src="([^"]+\.svg)"', body)
     assert len(pictures) == len(bundled())
     assert all((page.parent / one).is_file() for one in pictures)
-    told = lessons((DOCS / f"{GALLERY[language]}.md").read_text(encoding="utf-8"))
+    told = lessons(source(language))
     assert {*told} == {*bundled()}
     assert [name for name in told if f">{name}<" not in body] == []
+
+
+@pytest.mark.parametrize("language", GALLERY)
+def test_every_machine_of_the_gallery_opens_live(site: Path, language: str) -> None:
+    """By its file where there is one, and by the live page of the site around it."""
+    page = site / f"{GALLERY[language]}.html"
+    text = page.read_text(encoding="utf-8")
+    files = re.findall(r'<a class="open-live" href="([^"]+)"', text)
+    assert len(files) == len([*(site / "live" / language).glob("*.html")]) > 30
+    for one in files:
+        live = (page.parent / one).read_text(encoding="utf-8")
+        assert f'<html lang="{language}">' in live and "function states(" in live
+    top = "../" if language == "en" else "../../"
+    pages = re.findall(r'<a class="open-page" hidden href="([^"]+)"', text)
+    assert pages == [f"{top}#example={name}" for name in lessons(source(language))]
 
 
 @pytest.mark.parametrize("name", bundled())

@@ -88,6 +88,7 @@ export class Drawing {
   }
 
   private shape(shape: Shape, tie: Tie, body: string, found: Solution): Shape {
+    if (tie.made_of) return this.kept(tie.made_of, found) ? shape : nothing(shape);
     if (tie.hull) return this.plate(shape, body, found);
     if (tie.strand) return this.strand(shape, tie.strand, body, found);
     if (tie.turned) return this.turned(shape, tie.turned, body, found);
@@ -100,6 +101,14 @@ export class Drawing {
       next.splice(4 * i, 4, ...at, ...offset);
     });
     return [role, closed, radius, grown, next];
+  }
+
+  /** Whether all numbers whose paths begin so are those of the original. */
+  private kept(beginnings: string[], found: Solution): boolean {
+    const { machine } = this;
+    return machine.told.fields.every(
+      ({ path }, k) => found.design[k] === machine.base[k] || !beginnings.some((start) => path.startsWith(start)),
+    );
   }
 
   /** Where a corner is in the axes of its body, and how its offset is turned. */
@@ -146,7 +155,8 @@ export class Drawing {
   }
 
   private turned([role, closed, radius, grown, corners]: Shape, { about, between, of }: NonNullable<Tie["turned"]>, body: string, found: Solution): Shape {
-    const vector = (one: Solution) => minus(this.local(between[1], of, one), this.local(between[0], of, one));
+    const vector = (one: Solution): Pair =>
+      between && of ? minus(this.local(between[1], of, one), this.local(between[0], of, one)) : [1, 0];
     const by = ratio(vector(found), vector(this.base));
     const [from, to] = [this.local(about, body, this.base), this.local(about, body, found)];
     const next: number[] = [];
@@ -169,6 +179,12 @@ export class Drawing {
     const ends = [plus(start, scaled(out, radii[0])), plus(end, scaled(out, radii[1]))];
     return [role, closed, radius, grown, ends.flatMap(([x, y]) => [x, y, 0, 0])];
   }
+}
+
+/** A shape of which nothing is seen, but that is still a circle or a line. */
+function nothing([role, closed, radius, grown]: Shape): Shape {
+  const round = radius + grown > 0;
+  return [role, closed, round ? 1e-12 : 0, 0, round ? [0, 0, 0, 0] : []];
 }
 
 /** Corners of the smallest convex outline around places, counterclockwise. */

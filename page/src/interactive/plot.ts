@@ -8,6 +8,8 @@ import type { Machine, Solution } from "./machine";
 import type { Output } from "./told";
 
 const [WIDE, HIGH, LEFT, BELOW, ABOVE] = [560, 168, 52, 20, 8];
+/** Below which a curve is drawn as none, in the unit of its output. */
+const LEAST = 1e-12;
 const ROLES = ["main", "stress"] as const;
 
 export interface Curve {
@@ -68,7 +70,7 @@ export class Plot {
     const rows = (one: Solution) => this.curves.map(({ output }) => this.values(one, output));
     this.rows = rows(found);
     const old = original ? rows(original) : [];
-    const scale = scaleOf([...this.rows, ...old], 1e-12, false);
+    const scale = scaleOf([...this.rows, ...old], LEAST, false);
     this.largest = Math.max(...extremes(this.rows).map(Math.abs));
     const y = (value: number) => HIGH - BELOW - share(value, scale) * (HIGH - BELOW - ABOVE);
     const path = (row: Float64Array) =>
@@ -113,7 +115,8 @@ export class Plot {
     set(this.cursor, { d: `M${x} ${ABOVE}V${HIGH - BELOW}` });
     this.rows.forEach((row, i) => {
       const { unit } = (this.curves[i] as Curve).output;
-      write(this.readings[i] as HTMLElement, `${steady(row[at] as number, this.largest)}\u00a0${unit}`);
+      const value = this.largest < LEAST ? "0" : steady(row[at] as number, this.largest);
+      write(this.readings[i] as HTMLElement, `${value}\u00a0${unit}`);
     });
   }
 }

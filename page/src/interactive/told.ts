@@ -57,7 +57,8 @@ export type Corner = string | [guide: string, share: number] | null;
 export interface Tie {
   corners?: Corner[];
   hull?: boolean;
-  turned?: { about: string; between: [string, string]; of: string };
+  turned?: { about: string; between?: [string, string]; of?: string };
+  made_of?: string[];
   strand?: { side: number; between: [string, string]; radii: [number, number] };
 }
 

@@ -31,8 +31,10 @@ def ties_of(scene: Scene, motion: Motion) -> list[list[Values | None]]:
     corners : of each corner a point, ``@`` and a link for its centre of mass, a guide and the share
         of the way from one end of the block's path to the other, or None where it stays.
     hull : true where corners are those around all points of the link.
-    turned : ``about`` a point, by the vector ``between`` two points in the axes of the body ``of``.
+    turned : moves with a point that it is ``about``; larger and turned as the vector ``between``
+        two points is, in the axes of the body ``of``, where these are given.
     strand : side of a belt's strand, its pins ``between`` and the pulleys' radii.
+    made_of : beginnings of paths of numbers; where one of these is another, the shape is left out.
     """
     return [
         [_tie(scene, motion, piece, shape) for shape in piece.shapes] for piece in pieces(scene)
@@ -40,17 +42,41 @@ def ties_of(scene: Scene, motion: Motion) -> list[list[Values | None]]:
 
 
 def _tie(scene: Scene, motion: Motion, piece: Piece, shape: Shape) -> Values | None:
-    table, name = piece.part or ("", "")
     body = FRAME if piece.hold is None else piece.hold.link
     if not body:
         return None  # it moves with a guide, or is stretched between points
-    if table in ("gears", "belts") and piece.layer == "wheels":
-        found = _turned(motion, piece, table, name)
-        if found is not None or table == "gears":
-            return found
-        return _strand(motion, shape, name) if shape.role == "strand" else None
+    if shape.role in ("solid", "opening"):
+        keys = ("bodies", "points", "length", "sides")
+        return {"made_of": [f"links.{body}.{key}" for key in keys]}
     if piece.layer == "drive" and piece.hold is not None:
         return _of_arrow(scene, body)
+    if piece.part is not None and piece.part[0] != "slider":
+        return _of_coupling(motion, piece, shape)
+    return _of_points(scene, piece, shape, body)
+
+
+def _of_coupling(motion: Motion, piece: Piece, shape: Shape) -> Values | None:
+    """What is drawn of gears, belts, racks and cams."""
+    table, name = piece.part or ("", "")
+    joints = motion.linkage.joints
+    one = next(one for one in joints.couplings if (one.table, one.name) == (table, name))
+    link = FRAME if piece.hold is None else piece.hold.link
+    if table == "belts" and shape.role == "strand":
+        return _strand(motion, shape, name)
+    if table == "cams" or (table == "racks" and link != one.driver):
+        return {"made_of": [*_made_of(motion, table, name)]}
+    driver = joints.pins_between(one.driver, one.carrier)[0]
+    if table == "racks":
+        return {"turned": {"about": driver}}
+    pins = coupling_pins(joints, one)
+    about = driver if link == one.driver else pins[1]
+    if table == "belts":
+        return {"turned": {"about": about}}
+    return {"turned": {"about": about, "between": [*pins], "of": one.carrier}}
+
+
+def _of_points(scene: Scene, piece: Piece, shape: Shape, body: str) -> Values | None:
+    """Corners that are points, centres of mass, or on the path of a block."""
     own = {} if piece.layer == "guides" else dict(_places(scene, body))
     guides = [guide for guide in scene.guides if guide.on == body]
     corners = [_corner(scene, own, guides, complex(place)) for place in shape.places]
@@ -100,18 +126,6 @@ def _ends(scene: Scene, guide: Guide) -> tuple[complex, complex]:
     return scene.local(body, ends[0]), scene.local(body, ends[1])
 
 
-def _turned(motion: Motion, piece: Piece, table: str, name: str) -> Values | None:
-    """A gear, whose pitch curve follows the distance of its pins; a pulley keeps its radius."""
-    joints = motion.linkage.joints
-    one = next((one for one in joints.couplings if (one.table, one.name) == (table, name)), None)
-    if one is None or table == "belts":
-        return None
-    driver, driven = coupling_pins(joints, one)
-    link = FRAME if piece.hold is None else piece.hold.link
-    about = driver if link == one.driver else driven
-    return {"turned": {"about": about, "between": [driver, driven], "of": one.carrier}}
-
-
 def _strand(motion: Motion, shape: Shape, name: str) -> Values | None:
     joints = motion.linkage.joints
     belt = next(one for one in motion.machine.belts if one.name == name)
@@ -124,6 +138,26 @@ def _strand(motion: Motion, shape: Shape, name: str) -> Values | None:
     base = complex(*points[next(iter(points))]) if belt.carrier != FRAME else 0j
     side = min(sides, key=lambda one: abs(complex(sides[one]) + start - base - first))
     return {"strand": {"side": side, "between": [*pins], "radii": [found.radius, found.other]}}
+
+
+def _made_of(motion: Motion, table: str, name: str) -> Iterator[str]:
+    """Numbers from which the shape of a cam or rack, as it is drawn, is computed."""
+    joints = motion.linkage.joints
+    couplings = [one for one in joints.couplings if one.table == table]
+    number, one = next((k, one) for k, one in enumerate(couplings, 1) if one.name == name)
+    yield f"{table}[{number}]"
+    for slider, guide in enumerate(joints.sliders, 1):
+        if (guide.link, guide.on) == (one.driven, one.carrier):
+            yield f"sliders[{slider}]"
+    ends = {
+        point
+        for link in (one.driver, one.driven)
+        for point in joints.pins_between(link, one.carrier)
+    }
+    ends |= {point for point in (getattr(one, "point", None),) if point}
+    for body in (one.driver, one.driven, one.carrier):
+        where = FRAME if body == FRAME else f"links.{body}"
+        yield from (f"{where}.points.{point}." for point in sorted(ends))
 
 
 def _of_arrow(scene: Scene, link: str) -> Values | None:

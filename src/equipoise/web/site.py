@@ -126,6 +126,7 @@ def write_site(
             (fresh / "wheels" / name).write_bytes(data)
         if docs is not None:
             shutil.copytree(docs, fresh / "docs")
+            _link_page(fresh / "docs")
         about = {
             "runtime": "runtime/",
             "own": [f"wheels/{name}" for name, _ in own.values()],
@@ -142,6 +143,14 @@ def write_site(
         shutil.rmtree(fresh, ignore_errors=True)
     missing = [name for name, one in packages.items() if "/" not in one["file_name"]]
     return Site(target, first, tuple(sorted(missing)))
+
+
+def _link_page(docs: Path) -> None:
+    """Show the links by which a gallery opens its machines in the live page."""
+    for gallery in docs.rglob("examples.html"):
+        text = gallery.read_text(encoding="utf-8")
+        shown = text.replace('<a class="open-page" hidden ', '<a class="open-page" ')
+        gallery.write_text(shown, encoding="utf-8")
 
 
 def _check_free(target: Path, folder: object) -> None:
