@@ -28,6 +28,7 @@ copyright = "The Equipoise authors"
 release = version = equipoise.__version__
 extensions = ["myst_parser", "sphinx.ext.autodoc"]
 root_doc = "index"
+smartquotes = False  # two hyphens begin an option, and quotes are typed
 default_role = "code"
 nitpicky = True
 nitpick_ignore_regex = [("py:.*", ".*")]  # types of annotations; links of pages are all looked for

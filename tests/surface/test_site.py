@@ -33,6 +33,15 @@ def test_it_has_every_command_and_every_public_name(site: Path) -> None:
     assert {name.rpartition(".")[2] for name in NAMES} <= ids
 
 
+def test_options_and_values_stand_as_they_are_typed(site: Path) -> None:
+    """Two hyphens are no dash, and quotes of a value are those of a shell."""
+    for page in site.rglob("*.html"):
+        assert re.findall(r".{20}[–—][a-z].{20}", page.read_text(encoding="utf-8")) == [], page.name
+    told = (site / "commands.html").read_text(encoding="utf-8")
+    assert re.findall(r".{20}[“”‘].{20}", told) == []
+    assert "With --json: add every force by cause and by link." in told
+
+
 @pytest.mark.parametrize("language", GALLERY)
 def test_the_gallery_has_every_example_with_its_picture(site: Path, language: str) -> None:
     page = site / f"{GALLERY[language]}.html"

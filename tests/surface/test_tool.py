@@ -139,6 +139,11 @@ def test_a_file_to_start_from() -> None:
     refuses("new mine.toml --tool", "is there already")
 
 
+def test_a_check_shows_what_tubes_are_made_of() -> None:
+    told = " ".join(succeeded(equipoise("check", "brush-cutter")).split())
+    assert "0.9926 kg, aluminium, 2700 kg/m^3, 70.00 GPa, bending stiffness" in told
+
+
 # -- a better tool ---------------------------------------------------------------------------------
 
 SMALL = """

@@ -92,6 +92,19 @@ def test_functions_are_read_without_scrolling() -> None:
     assert long == []
 
 
+def test_the_documentation_tells_these_sizes() -> None:
+    told = (TOP / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    assert f"at most {FILE} lines; a function at most {FUNCTION} without its docstring" in told
+    assert f"at most {FILE} lines long" in (TOP / "docs/architecture.md").read_text("utf-8")
+    sizes = [
+        node.end_lineno - node.lineno + 1
+        for file in FILES
+        for node in nodes(file)
+        if isinstance(node, ast.FunctionDef) and node.end_lineno is not None
+    ]
+    assert sum(size < 10 for size in sizes) > len(sizes) / 2, "most have fewer than 10"
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_files_that_the_documentation_names_are_there(page: Path) -> None:
     """By their path from the top, from the package, or by their name alone."""

@@ -69,6 +69,12 @@ class Tube(Frozen):
     poisson_ratio: float = inside(Number(), default=0.3)
     carried: float = inside("mass per length", default=0.0, at_least=0)
 
+    @property
+    def material(self) -> tuple[str, Material]:
+        """Its material, and the name of that, empty where it is no known one."""
+        own = Material(self.youngs_modulus, self.density, self.poisson_ratio)
+        return next((name for name, values in MATERIALS.items() if values == own), ""), own
+
     def section(self, theory: Theory) -> Section:
         """The section as a theory sees it; shear by the coefficient of Cowper (1966)."""
         area = pi / 4 * (self.outer_diameter**2 - self.inner_diameter**2)
@@ -222,9 +228,8 @@ def profile_table(profile: Section | Tube) -> dict[str, Any]:
             sentence = "a file cannot tell shear_stiffness and rotary_inertia; give a Tube instead"
             raise ModelError("", sentence)
         return {name: getattr(profile, name) for name in ("mass_per_length", "bending_stiffness")}
-    material = Material(profile.youngs_modulus, profile.density, profile.poisson_ratio)
-    name = next((name for name, values in MATERIALS.items() if values == material), "")
-    made_of = {"material": name} if name else material._asdict()
+    name, values = profile.material
+    made_of = {"material": name} if name else values._asdict()
     if made_of.get("poisson_ratio") == Material._field_defaults["poisson_ratio"]:
         del made_of["poisson_ratio"]
     table = {"outer_diameter": profile.outer_diameter, **made_of}

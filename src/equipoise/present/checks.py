@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from equipoise.errors import ModelError
 from equipoise.handheld.design_plan import OUTPUTS
 from equipoise.handheld.hand_blocks import varied_named
+from equipoise.handheld.shaft import Section
 from equipoise.mechanism.assembly.cycle import turns_given
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.dynamics.assessment import remarks
@@ -28,7 +29,7 @@ from equipoise.vibration.linear import Excitation as Shaking
 if TYPE_CHECKING:
     from equipoise.handheld.design_plan import DesignPlan
     from equipoise.handheld.model import Both, Excitation, Hand, Operation, Station, Tool
-    from equipoise.handheld.shaft import Section, Shaft
+    from equipoise.handheld.shaft import Shaft, Tube
     from equipoise.mechanism.assembly.linkage import Linkage
     from equipoise.mechanism.parts.force_elements import Motor
     from equipoise.mechanism.parts.machine import Machine
@@ -264,10 +265,20 @@ def _bending(section: Section) -> str:
     return f"bending stiffness {told(section.bending_stiffness, 'bending stiffness')}"
 
 
+def _material(tube: Tube) -> tuple[str, ...]:
+    name, values = tube.material
+    return (
+        name,
+        told(values.density, "density", "kg/m^3"),
+        told(values.youngs_modulus, "modulus", "GPa"),
+    )
+
+
 def _shaft(shaft: Shaft) -> Iterator[str]:
     pieces = shaft.pieces
     stiffness = _bending(pieces[0][2]) if len(pieces) == 1 else ""
-    parts = [_length(shaft.length), _mass(shaft.mass), stiffness, shaft.theory.title()]
+    stuff = () if isinstance(shaft.profile, Section) else _material(shaft.profile)
+    parts = [_length(shaft.length), _mass(shaft.mass), *stuff, stiffness, shaft.theory.title()]
     if shaft.loss_factor:
         parts.append(f"loss factor {number(shaft.loss_factor)}")
     yield f"shaft: {', '.join(filter(None, parts))}"

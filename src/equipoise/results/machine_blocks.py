@@ -10,7 +10,7 @@ import numpy as np
 
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs.spoken import body_named
-from equipoise.mechanism.parts.bodies import inertia_of, together
+from equipoise.mechanism.parts.bodies import inertia_of, material_of, together
 from equipoise.quantities import Dimension, Display, angle, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
 from equipoise.signals import Array, Figures
@@ -144,15 +144,16 @@ def bodies_tables(machine: Machine) -> Iterator[Table]:
     unit = display("length", [part for xy in every_place(machine) for part in xy])
     for name, link in machine.links.items():
         parts = [inertia_of(body, link.points) for body in link.bodies]
-        named = [*zip(map(_named, link.bodies), parts, strict=True)]
+        named = [*zip(map(_named, link.bodies), map(_stuff, link.bodies), parts, strict=True)]
         if len(parts) > 1:
-            named.append((say("together"), together(parts)))
-        for part, (mass, center, inertia) in named:
+            named.append((say("together"), "", together(parts)))
+        for part, stuff, (mass, center, inertia) in named:
             where = place((center.real, center.imag), unit)
-            rows.append((name, part, Value(mass), where, Value(inertia)))
+            rows.append((name, part, stuff, Value(mass), where, Value(inertia)))
     if rows:
-        heads = mass_columns()
-        columns = ("", say("body"), heads[0], f"{say('centre of mass')}, {unit.name}", heads[1])
+        mass, inertia = mass_columns()
+        place_of = f"{say('centre of mass')}, {unit.name}"
+        columns = ("", say("body"), say("material"), mass, place_of, inertia)
         yield Table.of(say("What links are made of; places in the axes of each"), columns, rows)
 
 
@@ -170,6 +171,15 @@ def _named(body: Body) -> str:
     """A body by its shape and the points where it is."""
     spots = (*body.between, *body.corners, body.at)
     return " ".join([say(SHAPES[body.shape]), *(spot for spot in spots if isinstance(spot, str))])
+
+
+def _stuff(body: Body) -> str:
+    """The material of a body and its density, or that alone; nothing where it is weighed."""
+    if body.density is None:
+        return ""
+    density = told(body.density, "density", "kg/m^3")
+    name = material_of(body.density)
+    return f"{say(name)}, {density}" if name else density
 
 
 def rows_table(machine: Machine) -> Table:

@@ -1,0 +1,107 @@
+"""Commands, options, targets and variables that pages name are there (snippets run elsewhere)."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import cyclopts
+import pytest
+
+from equipoise.cli import COMMANDS, app
+
+TOP = Path(__file__).parents[2]
+PAGES = [
+    *sorted((TOP / "docs").rglob("*.md")),
+    *(TOP / name for name in ("README.md", "CONTRIBUTING.md", "SECURITY.md")),
+]
+EACH_PAGE = pytest.mark.parametrize(
+    "page", PAGES, ids=lambda page: page.relative_to(TOP).as_posix()
+)
+ELSEWHERE = {"--seeds", "--narrow"}
+"""Options of the tests and of `.ci/run`."""
+STYLE = re.compile("--linkage-")
+"""Of a drawing, for style sheets."""
+
+
+def blocks(text: str) -> Iterator[str]:
+    """Lines of code blocks as a shell has them, fenced or by indentation."""
+    fenced = re.findall(r"```(?:bash|sh|console|text)?\n(.*?)```", text, re.DOTALL)
+    indented = re.findall(r"(?:^    .+\n)+", text, re.MULTILINE)
+    for block in (*fenced, *indented):
+        for line in re.sub(r"\\\n\s*", " ", block).splitlines():
+            yield re.sub(r"^(\.venv/bin/)?equipoise ", "equipoise ", line.strip(" $"))
+
+
+def commands(text: str) -> Iterator[list[str]]:
+    """Words of each line that runs the program, up to where the shell goes on with another."""
+    for line in blocks(text):
+        if line.startswith("equipoise "):
+            words = shlex.split(line, comments=True)
+            ends = [k for k, word in enumerate(words) if word in ("|", ">", "&&")]
+            yield words[1 : ends[0] if ends else None]
+
+
+@cache
+def options() -> set[str]:
+    """Names of all options of all commands."""
+    found: set[str] = set()
+
+    def of(one: cyclopts.App) -> None:
+        if one.default_command:
+            for argument in one.assemble_argument_collection():
+                found.update((*argument.names, *argument.negatives))
+        for name in one:
+            if name.startswith("-"):
+                found.add(name)
+            else:
+                of(one[name])
+
+    _ = app.resolved_commands()
+    of(app)
+    return found
+
+
+@EACH_PAGE
+def test_commands_are_understood(page: Path) -> None:
+    for words in commands(page.read_text(encoding="utf-8")):
+        app.parse_args(words, exit_on_error=False, print_error=False)
+
+
+@EACH_PAGE
+def test_named_commands_and_options_are_there(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    code = re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.DOTALL))
+    named = [one for one in code if one.startswith(("equipoise ", "--"))]
+    for one in named:
+        words = one.split()
+        if words[0] == "equipoise" and words[1].islower() and words[1][0] != "-":
+            assert words[1] in COMMANDS, one
+        for option in re.findall(r"(?<![\w-])--[a-z][\w-]*", one):
+            assert option in {*options(), *ELSEWHERE} or STYLE.match(option), one
+
+
+@EACH_PAGE
+def test_targets_and_variables_are_there(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    targets = re.findall(
+        r"^([\w-]+):", (TOP / "Makefile").read_text(encoding="utf-8"), re.MULTILINE
+    )
+    assert {*re.findall(r"(?:`|^    )make (\w+)", text, re.MULTILINE)} <= {*targets}
+    for name in {*re.findall(r"\bEQUIPOISE_\w+", text)}:
+        used = (file for folder in ("src", "tests") for file in (TOP / folder).rglob("*.py"))
+        assert any(
+            name in file.read_text(encoding="utf-8")
+            for file in used
+            if file.name != "test_pages.py"
+        )
+
+
+def test_a_wrong_command_would_be_seen() -> None:
+    (words,) = commands("```sh\n$ equipoise analyze sieve --no-such   # told\n```\n")
+    with pytest.raises(cyclopts.UnknownOptionError):
+        app.parse_args(words, exit_on_error=False, print_error=False)
+    assert "--no-such" not in options() and {"--full", "--json", "--plot"} <= options()
