@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from playwright.sync_api import Browser, Locator, Page, expect
+from playwright.sync_api import Browser, Locator, Page, ViewportSize, expect
 
 import equipoise as eq
 from browser.live import FITS, SCREENSHOTS, Live
@@ -33,12 +33,12 @@ def open_file(browser: Browser, tmp_path: Path) -> Iterator[Open]:
         if not url.startswith((tmp_path.as_uri(), "data:", "blob:")):
             wrong.append(url)
 
-    def opened(name: str, **options: Any) -> Live:
+    def opened(name: str, *options: str) -> Live:
         path = tmp_path / f"{name}.html"
-        done = equipoise("export", name, "-o", path)
+        done = equipoise("export", name, "-o", path, *options)
         assert done.status == 0, done.err
-        usual = {"viewport": {"width": 1280, "height": 900}, "reduced_motion": "reduce"}
-        context = browser.new_context(**{**usual, **options})
+        size = ViewportSize(width=1280, height=900)
+        context = browser.new_context(viewport=size, reduced_motion="reduce")
         contexts.append(context)
         context.on("request", lambda sent: watch(sent.url))
         context.on("weberror", lambda error: wrong.append(str(error.error)))
@@ -169,6 +169,16 @@ def test_typed_numbers_and_keys(open_file: Open) -> None:
     expect(live.told("changed: crank, coupler")).to_be_visible()
     live.button("Reset all").click()
     assert figures(page) == before
+
+
+def test_it_begins_at_a_crank_angle(open_file: Open) -> None:
+    live = open_file("yamashita-1", "--at", "30 deg")
+    expect(live.page.locator(".transport .angle")).to_have_text("30.0°")
+    live.page.get_by_role("slider", name="Crank angle").press("ArrowRight")
+    expect(live.page.locator(".transport .angle")).to_have_text("31.0°")
+    live.button("Play").click()
+    expect(live.page.locator(".transport .angle")).not_to_have_text("31.0°")
+    live.button("Pause").click()
 
 
 def test_what_cannot_turn_is_refused_in_words(open_file: Open) -> None:

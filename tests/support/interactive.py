@@ -12,7 +12,7 @@ from typing import Any
 NODE = shutil.which("node")
 BLOCK = r'<script[^>]* id="equipoise-{}">(.*?)</script>'
 RUN = """
-import {{ Machine, changed, massMoved, moved, outside, toml, typed, withLength }} from "./page.mjs";
+import {{ Drawing, Machine, moved, outside, toml, typed, withLength }} from "./page.mjs";
 import {{ readFileSync, writeFileSync }} from "node:fs";
 const told = JSON.parse(readFileSync("machine.json", "utf8"));
 const states = new Function(readFileSync("states.js", "utf8") + "; return states;")();

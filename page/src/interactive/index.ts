@@ -20,8 +20,9 @@ import { Inputs, Readout } from "./numbers";
 import { Plots } from "./plot";
 import type { States, Told } from "./told";
 
-export { changed, toml } from "./changes";
-export { massMoved, moved, outside, typed, withLength } from "./edits";
+export { toml } from "./changes";
+export { moved, outside, typed, withLength } from "./edits";
+export { Drawing } from "./drawing";
 export { Machine } from "./machine";
 
 /** The longest arrow of the shaking force, over the size of the drawing. */
@@ -220,7 +221,7 @@ class Page implements Attempts {
 
   private point(): void {
     this.stage.pose(this.player.sample);
-    this.hands.describe();
+    if (!this.player.playing) this.hands.describe();
     this.hands.follow();
     this.transport.point();
     this.plots.point(this.machine.frames[this.player.sample] as number);
@@ -236,6 +237,7 @@ class Page implements Attempts {
   private toggle(): void {
     this.player.playing = !this.player.playing;
     this.transport.state();
+    this.point();
   }
 
   private tell(sentence: string, bad: boolean): void {

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.emit import pose_signals, signals_in_loops
+from equipoise.codegen.emit import moves_shared, pose_signals, signals_in_loops
 from equipoise.codegen.javascript import Script, javascript
 from equipoise.errors import UsageError
 from equipoise.exchange.formats import Job
@@ -185,15 +185,19 @@ class Interactive:
 
     @cached_property
     def _candidates(self) -> dict[str, Number]:
-        """Numbers of the model that may be columns, by the path that columns have."""
-        found = {}
-        for path, one in self.template.numbers().items():
-            plain = column_path(path)
-            polar = path.rpartition(".")[2] in POLAR and f"{path.rpartition('.')[0]}.x" in (
-                self.template.numbers()
-            )
-            if not polar and can_vary(self.machine, plain):
-                found[plain] = one
+        """Numbers of the model that may be columns, by the path that columns have.
+
+        Lengths that have to agree with others, as where joints hold more than the motion needs, are
+        none of them.
+        """
+        found, numbers, linkage = {}, self.template.numbers(), self.motion.linkage
+        for path, one in numbers.items():
+            whole, _, part = path.rpartition(".")
+            if part in POLAR and f"{whole}.x" in numbers:
+                continue  # the same point by its coordinates
+            column = column_path(path)
+            if can_vary(self.machine, column) and not moves_shared(linkage, [column]):
+                found[column] = one
         return found
 
     # -- what the page is told ---------------------------------------------------------------------
