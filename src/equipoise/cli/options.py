@@ -181,6 +181,7 @@ PlantingFile = Annotated[str, file_named("Path of a model file with a table [pla
 SupportFile = Annotated[str, file_named("Path of a model file with a table [support]")]
 ToolFile = Annotated[str, file_named("Path of a tool's file, with a table [shaft]")]
 StudyFile = Annotated[str, file_named("Path of a study file", "STUDY")]
+WorkerCount = Annotated[int | None, count(1, 1000)]
 StorePath = Annotated[
     str, Parameter(name="STORE", help='Path of a store, as "equipoise sweep" makes it.')
 ]

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from equipoise.interrupts import check
 from equipoise.quantities.numbers import rate_told, time_told
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from equipoise.studies.blocks import Unit
     from equipoise.studies.outcomes import Outcome, Progress
+    from equipoise.studies.pooling import PooledEvaluator
     from equipoise.studies.study import Study
 
 SECONDS, GROWTH, LONGEST = 5.0, 0.5, 60.0
@@ -197,22 +198,34 @@ def swept(units: Mapping[str, Unit]) -> Iterator[Callable[[Progress], None]]:
 
 
 class Watched:
-    """Computes designs of a study, and tells how far it is each time."""
+    """Computes designs of a study, and tells how far it is each time; a context manager.
 
-    def __init__(self, study: Study, told: Callable[[Progress], None]) -> None:
+    workers : processes, as many as this machine has processors if not given.
+    """
+
+    def __init__(
+        self, study: Study, told: Callable[[Progress], None], workers: int | None = None
+    ) -> None:
         from equipoise.studies.outcomes import Tally
 
-        self.study, self.told = study, told
+        self.study, self.told, self.workers = study, told, workers
         self.tally = Tally(study.outputs, 0)
-        self.compute: Callable[[Any], Outcome] | None = None
+        self.compute: PooledEvaluator | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        if self.compute is not None:
+            self.compute.__exit__(*error)
 
     def __call__(self, values: Any) -> Outcome:
         """Compute designs (P, d)."""
-        from equipoise.studies.evaluate import evaluator
         from equipoise.studies.outcomes import Block
+        from equipoise.studies.pooling import PooledEvaluator
 
         if self.compute is None:
-            self.compute = evaluator(self.study)
+            self.compute = PooledEvaluator(self.study, self.workers)
         outcome = self.compute(values)
         self.tally.add(Block(values, outcome), computed=True)
         return outcome

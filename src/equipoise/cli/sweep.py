@@ -17,6 +17,7 @@ from equipoise.cli.options import (
     Out,
     StorePath,
     StudyFile,
+    WorkerCount,
     blaming_by_place,
     count,
     file_named,
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from equipoise.studies.outcomes import Progress
     from equipoise.studies.store import Store
 
-MOST_WORKERS, MOST_DESIGNS = 1000, 10_000_000
+MOST_DESIGNS = 10_000_000
 TOLD = 3
 """Designs that are told in the end."""
 
@@ -44,7 +45,7 @@ TOLD = 3
 class Computers:
     """Who computes."""
 
-    workers: Annotated[int | None, count(1, MOST_WORKERS)] = None
+    workers: WorkerCount = None
     """Threads or processes of this machine, one a processor if not given."""
     cluster: Annotated[str | None, wants("ADDRESS")] = None
     """Address of a Dask scheduler whose workers compute instead, such as tcp://192.168.0.7:8786."""
@@ -195,6 +196,7 @@ def tolerance(
     /,
     *,
     designs: Annotated[int | None, count(1, MOST_DESIGNS)] = None,
+    workers: WorkerCount = None,
     outputs: Drawn = Drawn(),
 ) -> None:
     """What manufacturing tolerances do to the figures of a machine, and which to tighten first.
@@ -203,6 +205,8 @@ def tolerance(
     ----------
     designs
         Machines that are drawn, instead of as many as the study has.
+    workers
+        Processes for what no loop computes; as many as there are processors if not given.
     """
     from equipoise.figures.studies import tolerance_charts
     from equipoise.schema.studies import load_study
@@ -215,8 +219,11 @@ def tolerance(
         if designs is not None:
             asked = replace(asked, sampling=replace(asked.sampling, designs=designs))
         units = units_of(asked)
-        with blaming_by_place({} if designs is None else given), swept(units) as told:
-            watched = Watched(asked, told)
+        with (
+            blaming_by_place({} if designs is None else given),
+            swept(units) as told,
+            Watched(asked, told, workers) as watched,
+        ):
             found = of_study(asked, progress=lambda _, total: watched.tell(total), compute=watched)
     outputs.draw(asked, lambda: tolerance_charts(found, units))
     outputs.print(asked, found.to_dict, lambda: found.blocks(units=units))

@@ -33,10 +33,9 @@ from multiprocessing.connection import Connection
 from socket import gethostname
 from time import monotonic, sleep
 from types import ModuleType
-from typing import Any
+from typing import Any, TypeVar
 
 from equipoise.errors import UsageError, needed
-from equipoise.studies.outcomes import Block
 from equipoise.studies.store import brief, versions
 
 TRIES = 3
@@ -47,6 +46,7 @@ DEAD = (
     f"processes that compute died {TRIES} times in a row, perhaps for want of memory; give fewer "
     "workers"
 )
+Chunk = TypeVar("Chunk")
 MOST_PROCESSES = 61 if sys.platform == "win32" else 10_000
 
 
@@ -55,11 +55,11 @@ class Task:
     """What is to be computed of a chunk.
 
     function : at the top level of a module, so that other processes find it; it is given `study`
-        and the numbers of the designs.
+        and a chunk, such as the numbers of its designs.
     study : as the bytes that go to other processes.
     """
 
-    function: Callable[[bytes, range], Block]
+    function: Callable[[bytes, Any], Any]
     study: bytes
 
 
@@ -76,8 +76,8 @@ class Pool(ABC):
     room: int
 
     @abstractmethod
-    def submit(self, designs: range) -> Future[Block]:
-        """Begin to compute designs."""
+    def submit(self, chunk: Any) -> Future[Any]:
+        """Begin to compute a chunk."""
 
     @abstractmethod
     def close(self) -> None:
@@ -94,8 +94,8 @@ class Pool(ABC):
         return None
 
 
-def computed(pool: Pool, chunks: Iterable[range]) -> Iterator[tuple[range, Block]]:
-    """Compute chunks, and give each with the numbers of its designs once it is finished.
+def computed(pool: Pool, chunks: Iterable[Chunk]) -> Iterator[tuple[Chunk, Any]]:
+    """Compute chunks, and give each with its result once it is finished.
 
     They come in any order, and few are under way at a time.  What was lost because a process died
     is begun again, which changes nothing in it.
@@ -104,7 +104,7 @@ def computed(pool: Pool, chunks: Iterable[range]) -> Iterator[tuple[range, Block
     ------
     StoppedError : nobody can compute them.
     """
-    left, under_way = deque(chunks), dict[Future[Block], range]()
+    left, under_way = deque(chunks), dict[Future[Any], Chunk]()
     deaths, looked = 0, monotonic()
     while left or under_way:
         while left and len(under_way) < pool.room:
@@ -144,8 +144,8 @@ class Threads(Pool):
         self.task, self.room = task, workers + 1
         self.executor = ThreadPoolExecutor(workers)
 
-    def submit(self, designs: range) -> Future[Block]:
-        return self.executor.submit(self.task.function, self.task.study, designs)
+    def submit(self, chunk: Any) -> Future[Any]:
+        return self.executor.submit(self.task.function, self.task.study, chunk)
 
     def close(self) -> None:
         """Wait for the chunks that are under way; they do not take long."""
@@ -169,17 +169,17 @@ class Processes(Pool):
         self.watched, self.held = context.Pipe(duplex=False)
         self.executor = ProcessPoolExecutor(self.workers, context, _begin, (self.watched,))
 
-    def submit(self, designs: range) -> Future[Block]:
+    def submit(self, chunk: Any) -> Future[Any]:
         try:
-            return self._submitted(designs)
+            return self._submitted(chunk)
         except BrokenExecutor:
             self.close()
             self._start()
-            return self._submitted(designs)
+            return self._submitted(chunk)
 
-    def _submitted(self, designs: range) -> Future[Block]:
+    def _submitted(self, chunk: Any) -> Future[Any]:
         with _apart():  # here is where processes are started
-            return self.executor.submit(self.task.function, self.task.study, designs)
+            return self.executor.submit(self.task.function, self.task.study, chunk)
 
     def close(self) -> None:
         """End the processes."""
@@ -253,9 +253,9 @@ class Cluster(Pool):
             self.executor = client.get_executor(pure=False)
             self.held = held.pop_all()
 
-    def submit(self, designs: range) -> Future[Block]:
-        call = Call(_compute, (versions(), self.task.function, self.task.study, designs))
-        future: Future[Block] = self.executor.submit(pickle.loads, pickle.dumps(call))
+    def submit(self, chunk: Any) -> Future[Any]:
+        call = Call(_compute, (versions(), self.task.function, self.task.study, chunk))
+        future: Future[Any] = self.executor.submit(pickle.loads, pickle.dumps(call))
         return future
 
     def look(self) -> None:
@@ -321,16 +321,16 @@ class Call:
 
 
 def _compute(
-    wanted: dict[str, str], function: Callable[[bytes, range], Block], study: bytes, designs: range
-) -> Block:
-    """On a worker: compute designs, if it has the versions of whoever asks."""
+    wanted: dict[str, str], function: Callable[[bytes, Any], Any], study: bytes, chunk: Any
+) -> Any:
+    """On a worker: compute a chunk, if it has the versions of whoever asks."""
     for name, found in versions().items():
         if found != wanted.get(name):
             raise StoppedError(
                 f"the worker on {gethostname()} has {name} {found}, and whoever asks it has "
                 f"{wanted.get(name)}; install the same on all hosts"
             )
-    return function(study, designs)
+    return function(study, chunk)
 
 
 @contextmanager

@@ -8,6 +8,7 @@ ever computed, not of the last generation.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass
 from math import comb, inf, isnan
 from time import perf_counter
@@ -20,7 +21,6 @@ from equipoise.errors import ModelError, UsageError, lacking
 from equipoise.results.result import Result
 from equipoise.sequences import sobol
 from equipoise.studies.design_space import Choices, Make, Range
-from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import (
     Block,
     Evaluator,
@@ -34,6 +34,7 @@ from equipoise.studies.outcomes import (
     signs_of,
     why_none,
 )
+from equipoise.studies.pooling import PooledEvaluator
 from equipoise.studies.sampling import canonical, values_at
 from equipoise.studies.study import Study
 
@@ -121,6 +122,7 @@ def search_designs(
     seed: int | None = None,
     progress: OnGeneration | None = None,
     compute: Evaluator | None = None,
+    workers: int | None = None,
 ) -> Searched:
     """Look for the best designs of a study.
 
@@ -135,6 +137,8 @@ def search_designs(
     seed : of the random numbers, that of the study where None; the same gives the same result.
     progress : see `OnGeneration`.
     compute : computes designs instead of the study's own evaluator.
+    workers : processes that compute what no loop does, where that takes more than some seconds; as
+        many as this machine has processors if not given.
 
     Raises
     ------
@@ -149,7 +153,15 @@ def search_designs(
     if not 1 <= generations <= MOST_GENERATIONS:
         raise UsageError(f"got {generations} generations; give 1 to {MOST_GENERATIONS}")
     seed = study.sampling.seed if seed is None else seed
-    seen = _Archive(study, compute or evaluator(study))
+    with ExitStack() as held:
+        evaluate = compute or held.enter_context(PooledEvaluator(study, workers))
+        return _search(_Archive(study, evaluate), population, generations, seed, progress)
+
+
+def _search(
+    seen: _Archive, population: int, generations: int, seed: int, progress: OnGeneration | None
+) -> Searched:
+    study = seen.study
     breeding = _evolution(seen, population, seed)
     volumes = Hypervolumes()
     for generation in range(1, generations + 1):

@@ -8,6 +8,7 @@ tolerances.  Which tolerance causes it comes from a second run of about the same
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
 from dataclasses import asdict, dataclass
 from time import monotonic
 from typing import TYPE_CHECKING, Any
@@ -17,8 +18,8 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED
 from equipoise.errors import ModelError, UsageError
 from equipoise.results.result import Result
-from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Evaluator, Outcome, failures, kept, why_none
+from equipoise.studies.pooling import PooledEvaluator
 from equipoise.studies.sampling import samples
 from equipoise.studies.study import SLOW_CHUNK
 from equipoise.studies.variance import (
@@ -117,7 +118,11 @@ class Tolerances(Result):
 
 
 def tolerance(
-    study: Study, *, progress: OnProgress | None = None, compute: Evaluator | None = None
+    study: Study,
+    *,
+    progress: OnProgress | None = None,
+    compute: Evaluator | None = None,
+    workers: int | None = None,
 ) -> Tolerances:
     """What the tolerances of a study do to its outputs, and which to tighten first.
 
@@ -127,6 +132,8 @@ def tolerance(
         scatter, and about as many again to tell the tolerances apart.
     progress : see `OnProgress`.
     compute : computes designs instead of the study's own evaluator.
+    workers : processes that compute what no loop does, where that takes more than some seconds; as
+        many as this machine has processors if not given.
 
     Raises
     ------
@@ -135,10 +142,16 @@ def tolerance(
     UsageError : no machine can be computed.
     """
     _check(study)
+    with ExitStack() as held:
+        evaluate = compute or held.enter_context(PooledEvaluator(study, workers))
+        return _tolerances(study, evaluate, progress)
+
+
+def _tolerances(study: Study, evaluate: Evaluator, progress: OnProgress | None) -> Tolerances:
     causes = causes_of(study)
     rows, total = rows_of(study.size, len(causes)), machines_of(study)
     step = min(study.chunk, SLOW_CHUNK)
-    run = _Run(compute or evaluator(study), step, study.chunk, progress, total)
+    run = _Run(evaluate, step, study.chunk, progress, total)
     starts = range(0, study.size, study.chunk)
     drawn = run.joined(samples(study, k, min(study.chunk, study.size - k)) for k in starts)
     reasons = drawn.counts

@@ -1,0 +1,88 @@
+"""Designs that are given, shared out among processes: the same figures in the same order."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from equipoise.errors import UsageError
+from equipoise.schema.studies import load_study
+from equipoise.studies import pooling
+from equipoise.studies.design_space import Output
+from equipoise.studies.evaluate import evaluator
+from equipoise.studies.pooling import PooledEvaluator
+from equipoise.studies.sampling import samples
+from equipoise.studies.search import search_designs
+from equipoise.studies.study import Study
+from equipoise.studies.tolerances import tolerance
+
+
+def slow(name: str, designs: int) -> Study:
+    """A bundled study whose only output no loop computes."""
+    some = load_study(name)
+    output = Output("swing", "analyze", "strokes.rocker.stroke", make="smallest")
+    return replace(some, outputs=(output,), sampling=replace(some.sampling, designs=designs))
+
+
+@pytest.fixture
+def at_once(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """Processes begin with the second design; returns what is computed by them."""
+    parts: list[Any] = []
+    computed = pooling.computed
+
+    def counted(pool: Any, chunks: Any) -> Any:
+        for part, outcome in computed(pool, chunks):
+            parts.append(part)
+            yield part, outcome
+
+    monkeypatch.setattr(pooling, "PATIENCE", -1.0)
+    monkeypatch.setattr(pooling, "computed", counted)
+    return parts
+
+
+def test_processes_give_the_figures_in_the_order_of_the_designs(at_once: list[Any]) -> None:
+    some = slow("study-of-balance", 64)
+    values = samples(some, 0, 23)
+    values[5] = -values[5]  # no machine
+    with PooledEvaluator(some, 2) as evaluate:
+        found, again = evaluate(values), evaluate(values[::-1])
+    alone = evaluator(some)(values)
+    assert alone.reason[5] != 0
+    assert np.isfinite(alone.figures).any()
+    for outcome, order in ((found, slice(None)), (again, slice(None, None, -1))):
+        np.testing.assert_array_equal(outcome.figures[order], alone.figures)
+        np.testing.assert_array_equal(outcome.reason[order], alone.reason)
+    assert sum(len(part.values) for part in at_once) == 22 + 23
+
+
+def test_what_is_over_soon_starts_no_process() -> None:
+    some = slow("study-of-balance", 64)
+    with PooledEvaluator(some, 2) as evaluate:
+        evaluate(samples(some, 0, 4))
+        assert evaluate.pool is None
+
+
+def test_loops_share_out_nothing(at_once: list[Any]) -> None:
+    some = load_study("study-of-balance")
+    with PooledEvaluator(some, 2) as evaluate:
+        evaluate(samples(some, 0, 64))
+        assert evaluate.pool is None
+    assert not at_once
+
+
+def test_a_search_is_the_same_with_any_number_of_workers(at_once: list[Any]) -> None:
+    some = slow("study-of-balance", 64)
+    results = [search_designs(some, population=8, generations=2, workers=k) for k in (1, 2)]
+    assert results[0].to_dict() == results[1].to_dict()
+    assert at_once
+
+
+@pytest.mark.parametrize("count", [0, -1])
+def test_fewer_than_one_worker_is_refused(count: int) -> None:
+    with pytest.raises(UsageError, match=f"got {count} workers; give 1 or more"):
+        PooledEvaluator(load_study("study-of-balance"), count)
+    with pytest.raises(UsageError, match="workers"):
+        tolerance(load_study("study-of-tolerances"), workers=count)
