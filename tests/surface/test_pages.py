@@ -12,6 +12,7 @@ import cyclopts
 import pytest
 
 from equipoise.cli import COMMANDS, app
+from surface.running import example_text, read, written
 
 TOP = Path(__file__).parents[2]
 PAGES = [
@@ -105,3 +106,20 @@ def test_a_wrong_command_would_be_seen() -> None:
     with pytest.raises(cyclopts.UnknownOptionError):
         app.parse_args(words, exit_on_error=False, print_error=False)
     assert "--no-such" not in options() and {"--full", "--json", "--plot"} <= options()
+
+
+def test_the_first_hour_tells_what_is_offered_without_a_plan() -> None:
+    text = example_text("sieve").partition("\n[balance]")[0]
+    found = read("balance", written(text))
+    offered, left, right = found["tried"]
+    (weight,), (hanger,) = (one["changes"] for one in (offered, left))
+    plates = [1e3 * one["pieces"][0]["thickness"] for one in (weight, hanger)]
+    told = " ".join((TOP / "docs/first-machine.md").read_text(encoding="utf-8").split())
+    assert f"a sector of {plates[0]:.0f} mm plate on the {weight['link']}" in told
+    assert (
+        f"of {1e3 * weight['mass']:.0f} g, which takes {100 * offered['gain']:.0f} % away" in told
+    )
+    assert f"Sectors of {plates[1]:.0f} mm plate on the hangers would take away" in told
+    assert left["gain"] > right["gain"]
+    assert f"would take away {100 * left['gain']:.0f} %, but" in told
+    assert [one["worth"] for one in (offered, left, right)] == [True, False, False]
