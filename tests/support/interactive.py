@@ -14,10 +14,10 @@ BLOCK = r'<script[^>]* id="equipoise-{}">(.*?)</script>'
 RUN = """
 import {{ Drawing, Machine, moved, outside, toml, typed, withLength }} from "./page.mjs";
 import {{ readFileSync, writeFileSync }} from "node:fs";
-const told = JSON.parse(readFileSync("machine.json", "utf8"));
+const data = JSON.parse(readFileSync("machine.json", "utf8"));
 const states = new Function(readFileSync("states.js", "utf8") + "; return states;")();
-const machine = new Machine(told, states);
-const found = machine.solve(machine.base);
+const machine = new Machine(data, states);
+const solution = machine.solve(machine.base);
 const given = {given};
 const answer = (() => {{ {body} }})();
 writeFileSync("answer.json", JSON.stringify(answer));
@@ -31,8 +31,11 @@ def block(html: str, name: str) -> str:
     return match[1]
 
 
-def asked(html: str, body: str, folder: Path, given: Any = None) -> Any:
-    """What a JavaScript function body returns in the file; it has `machine`, `found`, `given`."""
+def evaluated(html: str, body: str, folder: Path, given: Any = None) -> Any:
+    """What a JavaScript function body returns in the file.
+
+    It has the `machine`, its `solution` as it is, and what is `given`.
+    """
     (folder / "page.mjs").write_text(block(html, "page"), encoding="utf-8")
     (folder / "machine.json").write_text(block(html, "machine"), encoding="utf-8")
     (folder / "states.js").write_text(block(html, "states"), encoding="utf-8")

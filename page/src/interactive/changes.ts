@@ -1,16 +1,16 @@
 /** Numbers that were changed, as lines of a model file. */
 
 import type { Machine } from "./machine";
-import type { Field } from "./told";
+import type { Field } from "./data";
 
 /** Fields whose number is another than in the model. */
 export function changed(machine: Machine, design: Float64Array): number[] {
-  return machine.told.fields.flatMap((_, k) => (design[k] === machine.base[k] ? [] : [k]));
+  return machine.data.fields.flatMap((_, k) => (design[k] === machine.base[k] ? [] : [k]));
 }
 
 /** Tables and keys of the model file with the numbers that were changed. */
 export function toml(machine: Machine, design: Float64Array): string {
-  const { fields } = machine.told;
+  const { fields } = machine.data;
   const tables = new Map<string, Map<string, string>>();
   for (const k of changed(machine, design)) {
     const field = fields[k] as Field;

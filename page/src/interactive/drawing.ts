@@ -3,26 +3,26 @@
 import type { Drawable, Pair, Rows, Scene, Shape, Sign, Status } from "../protocol";
 import { guideWay, massesMovable, movable } from "./edits";
 import type { Machine, Solution } from "./machine";
-import type { Corner, Tie } from "./told";
+import type { Corner, Tie } from "./data";
 import { dot, minus, mirrored, plus, ratio, scaled, size, times } from "./vectors";
 
 /** Positions and angles at the equally spaced crank angles, as the drawing wants them. */
 class Poses implements Rows {
   private readonly rows = new Map<string, Float32Array>();
 
-  constructor(found: Solution) {
-    const { told, frames } = found.machine;
+  constructor(solution: Solution) {
+    const { data, frames } = solution.machine;
     const pairs = (name: string, of: (at: number) => Pair) => {
       const row = new Float32Array(2 * frames.length);
       frames.forEach((at, k) => row.set(of(at), 2 * k));
       this.rows.set(name, row);
     };
-    for (const name of pointsOf(told.scene)) pairs(`place.${name}`, (at) => found.point(name, at));
-    for (const link of told.scene.mass_centers) pairs(`mass_center.${link}`, (at) => found.vector(`center(${link})`, at));
-    for (const slider of told.sliders) pairs(`guide.${slider.name}`, (at) => guideWay(found, slider, at));
-    for (const { name } of told.scene.bodies) {
+    for (const name of pointsOf(data.scene)) pairs(`place.${name}`, (at) => solution.point(name, at));
+    for (const link of data.scene.mass_centers) pairs(`mass_center.${link}`, (at) => solution.vector(`center(${link})`, at));
+    for (const slider of data.sliders) pairs(`guide.${slider.name}`, (at) => guideWay(solution, slider, at));
+    for (const { name } of data.scene.bodies) {
       const angle = (at: number) => {
-        const [x, y] = found.rotation(name, at);
+        const [x, y] = solution.rotation(name, at);
         return Math.atan2(y, x);
       };
       this.rows.set(`angle.${name}`, Float32Array.from(frames, angle));
@@ -55,47 +55,47 @@ export class Drawing {
   }
 
   /** What the stage shows of a design that moves. */
-  of(found: Solution): Drawable {
-    const { scene, ties, crank } = this.machine.told;
-    const signs = scene.signs.map((sign, i) => this.sign(sign, ties[i] ?? [], found));
+  of(solution: Solution): Drawable {
+    const { scene, ties, crank } = this.machine.data;
+    const signs = scene.signs.map((sign, i) => this.sign(sign, ties[i] ?? [], solution));
     const status: Status = { mobility: 1, text: "", finished: true, drive: crank };
     return {
-      scene: { ...scene, signs, movable: this.movable, mass_centers: this.masses, box: this.box(found) },
+      scene: { ...scene, signs, movable: this.movable, mass_centers: this.masses, box: this.box(solution) },
       angles: this.machine.frames.length,
       status,
-      numbers: new Poses(found),
+      numbers: new Poses(solution),
     };
   }
 
   /** All that the original shows, and all places that points come to. */
-  private box(found: Solution): [number, number, number, number] {
-    let [x0, y0, x1, y1] = this.machine.told.scene.box;
-    for (const name of pointsOf(this.machine.told.scene))
+  private box(solution: Solution): [number, number, number, number] {
+    let [x0, y0, x1, y1] = this.machine.data.scene.box;
+    for (const name of pointsOf(this.machine.data.scene))
       for (const at of this.machine.frames) {
-        const [x, y] = found.point(name, at);
+        const [x, y] = solution.point(name, at);
         [x0, y0, x1, y1] = [Math.min(x0, x), Math.min(y0, y), Math.max(x1, x), Math.max(y1, y)];
       }
     return [x0, y0, x1, y1];
   }
 
-  private sign(sign: Sign, ties: (Tie | null)[], found: Solution): Sign {
+  private sign(sign: Sign, ties: (Tie | null)[], solution: Solution): Sign {
     const body = sign.hold?.link ?? "frame";
     const shapes = sign.shapes.map((shape, j) => {
       const tie = ties[j];
-      return tie ? this.shape(shape, tie, body, found) : shape;
+      return tie ? this.shape(shape, tie, body, solution) : shape;
     });
     return { ...sign, shapes };
   }
 
-  private shape(shape: Shape, tie: Tie, body: string, found: Solution): Shape {
-    if (tie.made_of) return this.kept(tie.made_of, found) ? shape : nothing(shape);
-    if (tie.hull) return this.plate(shape, body, found);
-    if (tie.strand) return this.strand(shape, tie.strand, body, found);
-    if (tie.turned) return this.turned(shape, tie.turned, body, found);
+  private shape(shape: Shape, tie: Tie, body: string, solution: Solution): Shape {
+    if (tie.made_of) return this.kept(tie.made_of, solution) ? shape : nothing(shape);
+    if (tie.hull) return this.plate(shape, body, solution);
+    if (tie.strand) return this.strand(shape, tie.strand, body, solution);
+    if (tie.turned) return this.turned(shape, tie.turned, body, solution);
     const [role, closed, radius, grown, corners] = shape;
     const next = corners.slice();
     tie.corners?.forEach((corner, i) => {
-      const [at, turn] = this.corner(corner, body, found);
+      const [at, turn] = this.corner(corner, body, solution);
       if (!at) return;
       const offset = times(corners.slice(4 * i + 2, 4 * i + 4) as Pair, turn);
       next.splice(4 * i, 4, ...at, ...offset);
@@ -104,43 +104,43 @@ export class Drawing {
   }
 
   /** Whether all numbers whose paths begin so are those of the original. */
-  private kept(beginnings: string[], found: Solution): boolean {
+  private kept(beginnings: string[], solution: Solution): boolean {
     const { machine } = this;
-    return machine.told.fields.every(
-      ({ path }, k) => found.design[k] === machine.base[k] || !beginnings.some((start) => path.startsWith(start)),
+    return machine.data.fields.every(
+      ({ path }, k) => solution.design[k] === machine.base[k] || !beginnings.some((start) => path.startsWith(start)),
     );
   }
 
   /** Where a corner is in the axes of its body, and how its offset is turned. */
-  private corner(corner: Corner, body: string, found: Solution): [Pair | null, Pair] {
+  private corner(corner: Corner, body: string, solution: Solution): [Pair | null, Pair] {
     if (corner === null) return [null, [1, 0]];
-    if (typeof corner === "string") return [this.local(corner, body, found), [1, 0]];
-    const [low, high, way] = this.guide(corner[0], found);
+    if (typeof corner === "string") return [this.local(corner, body, solution), [1, 0]];
+    const [low, high, way] = this.guide(corner[0], solution);
     const [, , before] = this.guide(corner[0], this.base);
     return [plus(low, scaled(minus(high, low), corner[1])), ratio(way, before)];
   }
 
   /** A point, or the centre of mass of a link, from a body's first point and in its axes. */
-  private local(name: string, body: string, found: Solution): Pair {
+  private local(name: string, body: string, solution: Solution): Pair {
     const [first] = this.machine.frames as [number];
     const center = name.startsWith("@");
-    const place = center ? found.vector(`center(${name.slice(1)})`, first) : found.point(name, first);
-    return this.inside(place, body, found, first);
+    const place = center ? solution.vector(`center(${name.slice(1)})`, first) : solution.point(name, first);
+    return this.inside(place, body, solution, first);
   }
 
-  private inside(place: Pair, body: string, found: Solution, at: number): Pair {
+  private inside(place: Pair, body: string, solution: Solution, at: number): Pair {
     if (body === "frame") return place;
-    const [origin] = this.machine.told.links[body]?.points ?? [];
-    return times(minus(place, found.point(origin as string, at)), mirrored(found.rotation(body, at)));
+    const [origin] = this.machine.data.links[body]?.points ?? [];
+    return times(minus(place, solution.point(origin as string, at)), mirrored(solution.rotation(body, at)));
   }
 
   /** Both ends of a block's path on its guide, in the axes of the body that has that, and its direction there. */
-  private guide(name: string, found: Solution): [Pair, Pair, Pair] {
-    const slider = this.machine.told.sliders.find((one) => one.name === name);
+  private guide(name: string, solution: Solution): [Pair, Pair, Pair] {
+    const slider = this.machine.data.sliders.find((slider) => slider.name === name);
     if (!slider) return [[0, 0], [0, 0], [1, 0]];
     const [first] = this.machine.frames as [number];
-    const way = times(guideWay(found, slider, first), mirrored(found.rotation(slider.on, first)));
-    const places = this.machine.frames.map((at) => this.inside(found.point(slider.point, at), slider.on, found, at));
+    const way = times(guideWay(solution, slider, first), mirrored(solution.rotation(slider.on, first)));
+    const places = this.machine.frames.map((at) => this.inside(solution.point(slider.point, at), slider.on, solution, at));
     const along = places.map((place) => dot(place, way));
     const [start] = places as [Pair];
     const end = (value: number) => plus(start, scaled(way, value - dot(start, way)));
@@ -148,17 +148,17 @@ export class Drawing {
   }
 
   /** A bar or plate around all points of a link. */
-  private plate([role, closed, radius, grown]: Shape, body: string, found: Solution): Shape {
-    const points = this.machine.told.links[body]?.points ?? [];
-    const around = hull(points.map((name) => this.local(name, body, found)));
+  private plate([role, closed, radius, grown]: Shape, body: string, solution: Solution): Shape {
+    const points = this.machine.data.links[body]?.points ?? [];
+    const around = hull(points.map((name) => this.local(name, body, solution)));
     return [role, closed && around.length > 2, radius, grown, around.flatMap(([x, y]) => [x, y, 0, 0])];
   }
 
-  private turned([role, closed, radius, grown, corners]: Shape, { about, between, of }: NonNullable<Tie["turned"]>, body: string, found: Solution): Shape {
-    const vector = (one: Solution): Pair =>
-      between && of ? minus(this.local(between[1], of, one), this.local(between[0], of, one)) : [1, 0];
-    const by = ratio(vector(found), vector(this.base));
-    const [from, to] = [this.local(about, body, this.base), this.local(about, body, found)];
+  private turned([role, closed, radius, grown, corners]: Shape, { about, between, of }: NonNullable<Tie["turned"]>, body: string, solution: Solution): Shape {
+    const vector = (design: Solution): Pair =>
+      between && of ? minus(this.local(between[1], of, design), this.local(between[0], of, design)) : [1, 0];
+    const by = ratio(vector(solution), vector(this.base));
+    const [from, to] = [this.local(about, body, this.base), this.local(about, body, solution)];
     const next: number[] = [];
     for (let i = 0; i < corners.length; i += 4) {
       const at = plus(to, times(minus(corners.slice(i, i + 2) as Pair, from), by));
@@ -169,8 +169,8 @@ export class Drawing {
   }
 
   /** A strand of a belt, as `mechanism/formulas/strands.py` has it. */
-  private strand([role, closed, radius, grown]: Shape, { side, between, radii }: NonNullable<Tie["strand"]>, body: string, found: Solution): Shape {
-    const [start, end] = between.map((pin) => this.local(pin, body, found)) as [Pair, Pair];
+  private strand([role, closed, radius, grown]: Shape, { side, between, radii }: NonNullable<Tie["strand"]>, body: string, solution: Solution): Shape {
+    const [start, end] = between.map((pin) => this.local(pin, body, solution)) as [Pair, Pair];
     const apart = minus(end, start);
     const far = size(apart) || 1;
     const sine = (radii[0] - radii[1]) / far;
@@ -193,16 +193,16 @@ export function hull(places: Pair[]): Pair[] {
   ordered.sort(([ax, ay], [bx, by]) => ax - bx || ay - by);
   if (ordered.length < 3) return ordered;
   const chain = (points: Pair[]) => {
-    const found: Pair[] = [];
+    const outline: Pair[] = [];
     for (const point of points) {
       const left = () => {
-        const [a, b] = found.slice(-2) as [Pair, Pair];
+        const [a, b] = outline.slice(-2) as [Pair, Pair];
         return (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0]);
       };
-      while (found.length > 1 && left() <= 0) found.pop();
-      found.push(point);
+      while (outline.length > 1 && left() <= 0) outline.pop();
+      outline.push(point);
     }
-    return found.slice(0, -1);
+    return outline.slice(0, -1);
   };
   return [...chain(ordered), ...chain(ordered.reverse())];
 }

@@ -3,7 +3,7 @@
 import type { Pair } from "../protocol";
 import { say } from "../words";
 import type { Machine, Solution } from "./machine";
-import type { Field, Measure } from "./told";
+import type { Field, Measure } from "./data";
 import { dot, minus, mirrored, plus, scaled, size, times, towards } from "./vectors";
 
 /** Digits of a dragged number over the size of the machine. */
@@ -11,33 +11,33 @@ const DIGITS = 7;
 
 /** Points that can be dragged: those whose places are numbers in each body that has them. */
 export function movable(machine: Machine): string[] {
-  return machine.told.scene.movable.filter((name) => isMovable(machine, name));
+  return machine.data.scene.movable.filter((name) => isMovable(machine, name));
 }
 
-function isMovable({ told, numbers }: Machine, name: string): boolean {
+function isMovable({ data, numbers }: Machine, name: string): boolean {
   const at = (path: string) => numbers.has(`${path}.x`) && numbers.has(`${path}.y`);
-  if (told.scene.frame.includes(name) && !at(`frame.points.${name}`)) return false;
-  return Object.entries(told.links).every(([link, { points, sized }]) => {
+  if (data.scene.frame.includes(name) && !at(`frame.points.${name}`)) return false;
+  return Object.entries(data.links).every(([link, { points, sized }]) => {
     if (!points.includes(name) || points.length < 2) return true;
     if (sized === "points") return at(`links.${link}.points.${name}`);
-    return points.every((other) => other === name || lengthPath({ told, numbers }, link, name, other));
+    return points.every((other) => other === name || lengthPath({ data, numbers }, link, name, other));
   });
 }
 
 /** Links whose centre of mass can be dragged. */
-export function massesMovable({ told, numbers }: Machine): string[] {
+export function massesMovable({ data, numbers }: Machine): string[] {
   const there = (link: string) => ["x", "y"].every((axis) => numbers.has(`links.${link}.center_of_mass.${axis}`));
-  return told.scene.mass_centers.filter(there);
+  return data.scene.mass_centers.filter(there);
 }
 
 function lengthPath(
-  { told, numbers }: Pick<Machine, "told" | "numbers">,
+  { data, numbers }: Pick<Machine, "data" | "numbers">,
   link: string,
-  one: string,
+  point: string,
   other: string,
 ): string | null {
-  if (told.links[link]?.sized === "length") return numbers.has(`links.${link}.length`) ? `links.${link}.length` : null;
-  const paths = [`${one}-${other}`, `${other}-${one}`].map((side) => `links.${link}.sides.${side}`);
+  if (data.links[link]?.sized === "length") return numbers.has(`links.${link}.length`) ? `links.${link}.length` : null;
+  const paths = [`${point}-${other}`, `${other}-${point}`].map((side) => `links.${link}.sides.${side}`);
   return paths.find((path) => numbers.has(path)) ?? null;
 }
 
@@ -47,41 +47,41 @@ function lengthPath(
  * Each link keeps its pose: the point gets new coordinates in the axes of each that has it, or lengths to its
  * other points. On a guide, or at the end of a driven link of a given length, it goes as near as these let it.
  */
-export function moved(found: Solution, name: string, to: Pair, at: number): Float64Array {
-  const { machine, design } = found;
-  const { told } = machine;
-  const target = reachable(found, name, to, at);
+export function moved(solution: Solution, name: string, to: Pair, at: number): Float64Array {
+  const { machine, design } = solution;
+  const { data } = machine;
+  const target = reachable(solution, name, to, at);
   const next = design.slice();
   const put = (path: string, value: number) => {
     const place = machine.numbers.get(path);
-    if (place !== undefined) next[place] = rounded(value, extent(told.scene.box));
+    if (place !== undefined) next[place] = rounded(value, extent(data.scene.box));
   };
-  if (told.scene.frame.includes(name)) putPoint(put, `frame.points.${name}`, target);
-  for (const [link, { points, sized }] of Object.entries(told.links)) {
+  if (data.scene.frame.includes(name)) putPoint(put, `frame.points.${name}`, target);
+  for (const [link, { points, sized }] of Object.entries(data.links)) {
     if (!points.includes(name) || points.length < 2) continue;
     const others = points.filter((point) => point !== name);
-    if (sized === "points") putPoint(put, `links.${link}.points.${name}`, local(found, link, others[0] as string, target, at));
+    if (sized === "points") putPoint(put, `links.${link}.points.${name}`, local(solution, link, others[0] as string, target, at));
     else
       for (const other of others) {
         const path = lengthPath(machine, link, name, other);
-        if (path) put(path, size(minus(target, found.point(other, at))));
+        if (path) put(path, size(minus(target, solution.point(other, at))));
       }
   }
   return next;
 }
 
 /** Numbers with which the centre of mass of a link is at a place at a crank angle. */
-export function massMoved(found: Solution, link: string, to: Pair, at: number): Float64Array {
-  const next = found.design.slice();
-  const { machine } = found;
-  const [first] = machine.told.links[link]?.points ?? [];
+export function massMoved(solution: Solution, link: string, to: Pair, at: number): Float64Array {
+  const next = solution.design.slice();
+  const { machine } = solution;
+  const [first] = machine.data.links[link]?.points ?? [];
   putPoint(
     (path, value) => {
       const place = machine.numbers.get(path);
-      if (place !== undefined) next[place] = rounded(value, extent(machine.told.scene.box));
+      if (place !== undefined) next[place] = rounded(value, extent(machine.data.scene.box));
     },
     `links.${link}.center_of_mass`,
-    local(found, link, first as string, to, at),
+    local(solution, link, first as string, to, at),
   );
   return next;
 }
@@ -92,75 +92,75 @@ function putPoint(put: (path: string, value: number) => void, path: string, [x, 
 }
 
 /** A place of the frame in the axes of a link, by another point of that. */
-function local(found: Solution, link: string, by: string, place: Pair, at: number): Pair {
-  const arm = times(minus(place, found.point(by, at)), mirrored(found.rotation(link, at)));
-  return plus(own(found, link, by), arm);
+function local(solution: Solution, link: string, by: string, place: Pair, at: number): Pair {
+  const arm = times(minus(place, solution.point(by, at)), mirrored(solution.rotation(link, at)));
+  return plus(own(solution, link, by), arm);
 }
 
 /** A point of a link in that link's axes, m. */
-function own(found: Solution, link: string, point: string): Pair {
-  const [x, y] = [".x", ".y"].map((axis) => found.number(`links.${link}.points.${point}${axis}`));
+function own(solution: Solution, link: string, point: string): Pair {
+  const [x, y] = [".x", ".y"].map((axis) => solution.number(`links.${link}.points.${point}${axis}`));
   if (x !== undefined && y !== undefined) return [x, y];
-  return found.machine.told.links[link]?.places[point] ?? [0, 0];
+  return solution.machine.data.links[link]?.places[point] ?? [0, 0];
 }
 
 /** As near to a place as guides and the direction of driven links let a point come. */
-function reachable(found: Solution, name: string, to: Pair, at: number): Pair {
-  const { told } = found.machine;
-  const from = found.point(name, at);
-  const ways = told.sliders.filter(({ point }) => point === name).map((one) => guideWay(found, one, at));
-  for (const link of told.driven) {
-    const { points = [], sized } = told.links[link] ?? {};
+function reachable(solution: Solution, name: string, to: Pair, at: number): Pair {
+  const { data } = solution.machine;
+  const from = solution.point(name, at);
+  const ways = data.sliders.filter(({ point }) => point === name).map((slider) => guideWay(solution, slider, at));
+  for (const link of data.driven) {
+    const { points = [], sized } = data.links[link] ?? {};
     const other = points.find((point) => point !== name);
-    if (sized === "length" && points.includes(name) && other) ways.push(minus(from, found.point(other, at)));
+    if (sized === "length" && points.includes(name) && other) ways.push(minus(from, solution.point(other, at)));
   }
   return ways.reduce((place, way) => plus(from, scaled(way, dot(minus(place, from), way) / (dot(way, way) || 1))), to);
 }
 
 /** Direction of a guide at a crank angle. */
-export function guideWay(found: Solution, slider: { name: string; on: string; direction: number }, at: number): Pair {
-  const number = found.machine.told.sliders.findIndex(({ name }) => name === slider.name) + 1;
-  const direction = found.number(`sliders[${number}].direction`) ?? slider.direction;
-  return times(found.rotation(slider.on, at), towards(direction));
+export function guideWay(solution: Solution, slider: { name: string; on: string; direction: number }, at: number): Pair {
+  const number = solution.machine.data.sliders.findIndex(({ name }) => name === slider.name) + 1;
+  const direction = solution.number(`sliders[${number}].direction`) ?? slider.direction;
+  return times(solution.rotation(slider.on, at), towards(direction));
 }
 
 /** Whether a point is where it was put. */
-export function reaches(found: Solution, name: string, to: Pair, at: number): boolean {
-  return size(minus(found.point(name, at), to)) <= 1e-5 * extent(found.machine.told.scene.box);
+export function reaches(solution: Solution, name: string, to: Pair, at: number): boolean {
+  return size(minus(solution.point(name, at), to)) <= 1e-5 * extent(solution.machine.data.scene.box);
 }
 
 /** The length that a measure has in a design. */
-export function lengthOf(found: Solution, { from, path, fixed }: Measure): number {
-  return size(minus(pointOf(found, path, [0, 0]), pointOf(found, from, fixed)));
+export function lengthOf(solution: Solution, { from, path, fixed }: Measure): number {
+  return size(minus(pointOf(solution, path, [0, 0]), pointOf(solution, from, fixed)));
 }
 
 /** Numbers with which it has another. */
-export function withLength(found: Solution, measure: Measure, value: number): Float64Array {
-  const start = pointOf(found, measure.from, measure.fixed);
-  const way = minus(pointOf(found, measure.path, [0, 0]), start);
+export function withLength(solution: Solution, measure: Measure, value: number): Float64Array {
+  const start = pointOf(solution, measure.from, measure.fixed);
+  const way = minus(pointOf(solution, measure.path, [0, 0]), start);
   const [x, y] = plus(start, scaled(way, value / (size(way) || 1)));
-  const next = found.design.slice();
-  for (const [axis, one] of [["x", x], ["y", y]] as const)
-    next[found.machine.numbers.get(`${measure.path}.${axis}`) as number] = one;
+  const next = solution.design.slice();
+  for (const [axis, coordinate] of [["x", x], ["y", y]] as const)
+    next[solution.machine.numbers.get(`${measure.path}.${axis}`) as number] = coordinate;
   return next;
 }
 
-function pointOf(found: Solution, path: string, fixed: Pair): Pair {
-  return [found.number(`${path}.x`) ?? fixed[0], found.number(`${path}.y`) ?? fixed[1]];
+function pointOf(solution: Solution, path: string, fixed: Pair): Pair {
+  return [solution.number(`${path}.x`) ?? fixed[0], solution.number(`${path}.y`) ?? fixed[1]];
 }
 
 /** A value in SI units from what was typed; a sentence where it is none. */
-export function typed(text: string, one: Pick<Field, "units" | "unit" | "factor" | "label">): number | string {
+export function typed(text: string, field: Pick<Field, "units" | "unit" | "factor" | "label">): number | string {
   const match = /^([-+−]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)\s*(.*)$/i.exec(text.trim());
   const unit = match?.[2]?.trim() ?? "";
-  const factor = unit === "" || unit === one.unit ? 1 / one.factor : one.units[unit];
+  const factor = unit === "" || unit === field.unit ? 1 / field.factor : field.units[unit];
   if (!match || factor === undefined) {
-    const example = `12.5 ${Object.keys(one.units).find((other) => one.units[other] === 1 / one.factor) ?? one.unit}`.trim();
-    return say("{label}: got {text}; give a number, such as {example}", { label: one.label, text: text.trim() || "–", example });
+    const example = `12.5 ${Object.keys(field.units).find((other) => field.units[other] === 1 / field.factor) ?? field.unit}`.trim();
+    return say("{label}: got {text}; give a number, such as {example}", { label: field.label, text: text.trim() || "–", example });
   }
   const value = Number((match[1] as string).replace("−", "-"));
   // 1 / factor of 1000 is exact, but 0.001 times a number is not always the number nearest to it
-  return unit === "" || unit === one.unit ? value / one.factor : value * factor;
+  return unit === "" || unit === field.unit ? value / field.factor : value * factor;
 }
 
 /** Why a number cannot be this, by the limits of its key; null where it can. */

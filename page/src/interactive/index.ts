@@ -18,7 +18,7 @@ import { massMoved, moved, reaches } from "./edits";
 import { Machine, type Solution } from "./machine";
 import { Inputs, Readout } from "./numbers";
 import { Plots } from "./plot";
-import type { States, Told } from "./told";
+import type { States, MachineData } from "./data";
 
 export { toml } from "./changes";
 export { moved, outside, typed, withLength } from "./edits";
@@ -33,7 +33,7 @@ class Shaking implements Overlay<Drawable> {
   readonly element = s("g", { class: "arrows", "aria-hidden": "true" });
   private readonly shaft = s("path", { class: "shaft" });
   private readonly head = s("path", { class: "head" });
-  private found: Solution | null = null;
+  private solution: Solution | null = null;
   private largest = 0;
 
   constructor(private readonly at: string) {
@@ -45,8 +45,8 @@ class Shaking implements Overlay<Drawable> {
     this.largest = original.figures("shaking_force")?.peak ?? 0;
   }
 
-  take(found: Solution): void {
-    this.found = found;
+  take(solution: Solution): void {
+    this.solution = solution;
   }
 
   show(): void {
@@ -54,10 +54,10 @@ class Shaking implements Overlay<Drawable> {
   }
 
   pose(view: View, k: number): void {
-    const at = this.found?.machine.frames[k];
-    if (!this.found || at === undefined || !this.largest) return;
-    const [fx, fy] = this.found.vector("shaking_force", at);
-    const [x, y] = view.px(...this.found.point(this.at, at));
+    const at = this.solution?.machine.frames[k];
+    if (!this.solution || at === undefined || !this.largest) return;
+    const [fx, fy] = this.solution.vector("shaking_force", at);
+    const [x, y] = view.px(...this.solution.point(this.at, at));
     const scale = (LONGEST * Math.min(view.width, view.height)) / this.largest;
     const [dx, dy] = [fx * scale, -fy * scale];
     const long = Math.hypot(dx, dy);
@@ -80,7 +80,7 @@ class Page implements Attempts {
   private readonly inputs: Inputs;
   private readonly readout: Readout;
   private readonly shaking: Shaking | null;
-  private readonly said = h("p", { class: "said", role: "status" });
+  private readonly status = h("p", { class: "said", role: "status" });
   private readonly hint = h("p", { class: "hint", "aria-hidden": "true" });
   private readonly lines = h("textarea", { readonly: true, rows: 6, "aria-label": say("Changed numbers as lines of the model file") });
   private readonly undoButton: HTMLButtonElement;
@@ -88,7 +88,7 @@ class Page implements Attempts {
   private readonly copies: HTMLElement;
   private readonly past: Float64Array[] = [];
   private shown: Drawable;
-  private found: Solution;
+  private solution: Solution;
   /** What was last committed, and from which a drag begins. */
   private settled: Solution;
 
@@ -96,9 +96,9 @@ class Page implements Attempts {
     root: HTMLElement,
     private readonly machine: Machine,
   ) {
-    this.original = this.found = this.settled = machine.solve(machine.base);
+    this.original = this.solution = this.settled = machine.solve(machine.base);
     this.drawing = new Drawing(machine);
-    this.shown = this.drawing.of(this.found);
+    this.shown = this.drawing.of(this.solution);
     this.hands = new Hands<Drawable>(
       {
         talk: this,
@@ -133,7 +133,7 @@ class Page implements Attempts {
   }
 
   private arrow(): Shaking {
-    const { crank, links, scene } = this.machine.told;
+    const { crank, links, scene } = this.machine.data;
     const points = crank ? (links[crank]?.points ?? []) : [];
     const shaking = new Shaking(points.find((name) => scene.frame.includes(name)) ?? (scene.frame[0] as string));
     shaking.measure(this.original);
@@ -142,14 +142,14 @@ class Page implements Attempts {
   }
 
   private lay(root: HTMLElement): void {
-    const { told } = this.machine;
+    const { data } = this.machine;
     root.className = "equipoise equipoise-page interactive";
     root.dataset.settled = ""; // nothing is waited for: all is computed at once
     const fit = h("button", { type: "button", class: "fit", title: say("Show all"), "aria-label": say("Show all"), onclick: () => this.stage.fit() }, icon("M2.500 6v-3.500h3.500M10 2.500h3.500v3.500M13.500 10v3.500h-3.500M6 13.500h-3.500v-3.500"));
     const sheet = h("div", { class: "sheet" });
-    sheet.append(this.stage.lines, this.stage.svg, this.stage.numbers, this.hint, this.said, fit);
+    sheet.append(this.stage.lines, this.stage.svg, this.stage.numbers, this.hint, this.status, fit);
     root.replaceChildren(
-      h("header", {}, h("h1", {}, told.title), h("p", { class: "quiet" }, told.description)),
+      h("header", {}, h("h1", {}, data.title), h("p", { class: "quiet" }, data.description)),
       h(
         "section",
         { class: "motion", "aria-label": say("Linkage") },
@@ -166,7 +166,7 @@ class Page implements Attempts {
           { class: "values", "aria-label": say("Numbers") },
           h("h2", {}, say("Numbers"), this.undoButton, this.resetButton),
           this.copies,
-          told.fields.length ? this.inputs.root : h("p", { class: "quiet" }, say("The numbers of this machine cannot be changed here; open its model in Equipoise.")),
+          data.fields.length ? this.inputs.root : h("p", { class: "quiet" }, say("The numbers of this machine cannot be changed here; open its model in Equipoise.")),
         ),
       ),
       h("section", { class: "charts", "aria-label": say("Charts") }, this.plots.root),
@@ -184,12 +184,12 @@ class Page implements Attempts {
   }
 
   private begin(): void {
-    const { told, frames } = this.machine;
-    this.player.take({ angles: frames.length, turns: told.turns, speed: told.speed });
+    const { data, frames } = this.machine;
+    this.player.take({ angles: frames.length, turns: data.turns, speed: data.speed });
     this.player.suit();
-    this.player.angle = told.begin;
+    this.player.angle = data.begin;
     this.transport.take(frames.length);
-    this.show(this.found, true);
+    this.show(this.solution, true);
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.toggle();
     const tick = (now: number) => {
       if (this.player.tick(now)) this.point();
@@ -200,19 +200,19 @@ class Page implements Attempts {
 
   // -- what is shown ------------------------------------------------------------------------------
 
-  private show(found: Solution, first = false): void {
-    this.found = found;
-    this.shown = this.drawing.of(found);
-    this.shaking?.take(found);
+  private show(solution: Solution, first = false): void {
+    this.solution = solution;
+    this.shown = this.drawing.of(solution);
+    this.shaking?.take(solution);
     this.stage.show(this.shown, first);
-    const changes = changed(this.machine, found.design);
+    const changes = changed(this.machine, solution.design);
     const before = changes.length ? this.original : null;
-    this.plots.show(found, before);
-    this.readout.show(found, before);
-    this.inputs.show(found);
-    const speed = found.number("drive.speed") ?? this.machine.told.speed;
-    this.player.take({ angles: this.machine.frames.length, turns: this.machine.told.turns, speed });
-    this.lines.value = toml(this.machine, found.design);
+    this.plots.show(solution, before);
+    this.readout.show(solution, before);
+    this.inputs.show(solution);
+    const speed = solution.number("drive.speed") ?? this.machine.data.speed;
+    this.player.take({ angles: this.machine.frames.length, turns: this.machine.data.turns, speed });
+    this.lines.value = toml(this.machine, solution.design);
     this.copies.hidden = !changes.length;
     this.resetButton.disabled = !changes.length;
     this.undoButton.disabled = !this.past.length;
@@ -241,8 +241,8 @@ class Page implements Attempts {
   }
 
   private tell(sentence: string, bad: boolean): void {
-    write(this.said, sentence);
-    this.said.classList.toggle("bad", bad);
+    write(this.status, sentence);
+    this.status.classList.toggle("bad", bad);
   }
 
   // -- what is changed ----------------------------------------------------------------------------
@@ -259,23 +259,23 @@ class Page implements Attempts {
   }
 
   rest(): void {
-    if (this.found !== this.settled) this.show(this.settled);
+    if (this.solution !== this.settled) this.show(this.settled);
   }
 
   attempt(_label: string, edits: Edit[], _stamp: number, done: (refusal: string | null) => void): void {
-    const [found, why] = this.edited(edits);
+    const [solution, why] = this.edited(edits);
     if (why) this.hands.refused();
     else {
       this.hands.accepted();
-      this.show(found);
+      this.show(solution);
     }
-    this.tell(why ?? this.changes(found), !!why);
+    this.tell(why ?? this.changes(solution), !!why);
     done(why);
   }
 
   ask({ edits }: { edits: Edit[] }): void {
-    const [found, why] = this.edited(edits);
-    if (!why) this.settle(found);
+    const [solution, why] = this.edited(edits);
+    if (!why) this.settle(solution);
     else this.rest();
   }
 
@@ -288,37 +288,37 @@ class Page implements Attempts {
       if ("move" in edit) [design, goal] = [moved(this.settled, edit.move, edit.to, at), edit];
       else if ("move_mass" in edit) design = massMoved(this.settled, edit.move_mass, edit.to, at);
     }
-    const found = this.machine.solve(design);
-    if (found.refusal) return [found, found.refusal];
-    if (goal && !reaches(found, goal.move, goal.to, at) && !reaches(found, goal.move, this.settled.point(goal.move, at), at)) {
+    const solution = this.machine.solve(design);
+    if (solution.refusal) return [solution, solution.refusal];
+    if (goal && !reaches(solution, goal.move, goal.to, at) && !reaches(solution, goal.move, this.settled.point(goal.move, at), at)) {
       const side = this.onGuide(goal.move) ? null : say("{name} would need its links on their other side, which this file cannot do; open the model in Equipoise", { name: goal.move });
-      return [found, side];
+      return [solution, side];
     }
-    return [found, null];
+    return [solution, null];
   }
 
   private onGuide(name: string): boolean {
-    return this.machine.told.sliders.some(({ point }) => point === name) || this.machine.told.driven.some((link) => this.machine.told.links[link]?.sized === "length");
+    return this.machine.data.sliders.some(({ point }) => point === name) || this.machine.data.driven.some((link) => this.machine.data.links[link]?.sized === "length");
   }
 
   /** Of which bodies a drag has changed numbers. */
-  private changes(found: Solution): string {
-    const { fields } = this.machine.told;
-    const other = fields.filter((_, k) => found.design[k] !== this.settled.design[k]);
+  private changes(solution: Solution): string {
+    const { fields } = this.machine.data;
+    const other = fields.filter((_, k) => solution.design[k] !== this.settled.design[k]);
     const bodies = [...new Set(other.map(({ heading }) => heading))];
     return bodies.length ? say("changed: {what}", { what: bodies.join(say(", ")) }) : "";
   }
 
   private commit(design: Float64Array): string | null {
-    const found = this.machine.solve(design);
-    if (!found.refusal) this.settle(found);
-    return found.refusal;
+    const solution = this.machine.solve(design);
+    if (!solution.refusal) this.settle(solution);
+    return solution.refusal;
   }
 
-  private settle(found: Solution): void {
-    if (found.design.some((value, k) => value !== this.settled.design[k])) this.past.push(this.settled.design);
-    this.settled = found;
-    this.show(found);
+  private settle(solution: Solution): void {
+    if (solution.design.some((value, k) => value !== this.settled.design[k])) this.past.push(this.settled.design);
+    this.settled = solution;
+    this.show(solution);
   }
 
   private undo(): void {
@@ -362,10 +362,10 @@ if (typeof document !== "undefined") {
   const text = document.getElementById("equipoise-machine")?.textContent;
   const { states } = globalThis as unknown as { states?: States };
   if (root && text && states) {
-    const told = JSON.parse(text) as Told;
-    speak(told.language, told.words);
-    follow(told.rules);
-    measure(told.length);
-    new Page(root, new Machine(told, states));
+    const data = JSON.parse(text) as MachineData;
+    speak(data.language, data.words);
+    follow(data.rules);
+    measure(data.length);
+    new Page(root, new Machine(data, states));
   }
 }

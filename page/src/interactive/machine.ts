@@ -3,7 +3,7 @@
 import { signed } from "../format";
 import type { Pair } from "../protocol";
 import { say } from "../words";
-import type { States, Told } from "./told";
+import type { States, MachineData } from "./data";
 
 /** Cosine of the angle between a link and the base's, beyond which turns cannot be counted. */
 const FAR = -0.5;
@@ -34,23 +34,23 @@ export class Machine {
   private readonly shares: Float64Array | null;
 
   constructor(
-    readonly told: Told,
+    readonly data: MachineData,
     private readonly states: States,
   ) {
-    this.theta = floats(told.theta);
-    this.grid = floats(told.grid);
-    this.shares = told.shares === null ? null : floats(told.shares);
-    this.base = Float64Array.from(told.design);
+    this.theta = floats(data.theta);
+    this.grid = floats(data.grid);
+    this.shares = data.shares === null ? null : floats(data.shares);
+    this.base = Float64Array.from(data.design);
     const all = Array.from(this.theta, (_, k) => k);
-    this.frames = told.frames ?? all;
-    this.shown = told.shown ?? all;
-    told.names.forEach((name, k) => this.place.set(name, k));
-    told.fields.forEach(({ path }, k) => this.numbers.set(path, k));
+    this.frames = data.frames ?? all;
+    this.shown = data.shown ?? all;
+    data.names.forEach((name, k) => this.place.set(name, k));
+    data.fields.forEach(({ path }, k) => this.numbers.set(path, k));
   }
 
   /** Everything at all crank angles, of a design (numbers in SI units, in the order of the fields). */
   solve(design: Float64Array): Solution {
-    const { angles, names } = this.told;
+    const { angles, names } = this.data;
     const out = new Float64Array(names.length * angles);
     this.states(design, this.grid, angles, out);
     return new Solution(this, design, out);
@@ -91,7 +91,7 @@ export class Solution {
   /** A signal over the crank angles. */
   row(name: string): Float64Array | null {
     const place = this.machine.place.get(name);
-    const { angles } = this.machine.told;
+    const { angles } = this.machine.data;
     return place === undefined ? null : this.out.subarray(place * angles, (place + 1) * angles);
   }
 
@@ -122,49 +122,49 @@ export class Solution {
   }
 
   private refused(): string | null {
-    for (const [k, links] of this.machine.told.margins.entries()) {
+    for (const [k, links] of this.machine.data.margins.entries()) {
       const row = this.row(`margin ${k}`);
       const why = row && this.unjoined(row, links);
       if (why) return why;
     }
-    for (const name of this.machine.told.names) {
+    for (const name of this.machine.data.names) {
       if (name.startsWith("cosine ") && (this.row(name) ?? []).some((value) => value < FAR))
         return say("turns of the gears cannot be counted this far from the original; open the model in Equipoise");
     }
     const at = this.endless();
     if (at === null) return null;
-    return say("at crank angle {angle} this machine cannot be computed", { angle: told(at) });
+    return say("at crank angle {angle} this machine cannot be computed", { angle: inDegrees(at) });
   }
 
   /** The first crank angle at which something is no number. */
   private endless(): number | null {
-    const { angles } = this.machine.told;
+    const { angles } = this.machine.data;
     const bad = this.out.findIndex((value) => !Number.isFinite(value));
     return bad < 0 ? null : (this.machine.theta[bad % angles] as number);
   }
 
   /** Why the links of a dyad do not reach each other over the whole cycle. */
   private unjoined(row: Float64Array, links: string[]): string | null {
-    const { frames, theta, told: { least, crank } } = this.machine;
+    const { frames, theta, data: { least, crank } } = this.machine;
     const values = frames.map((at) => (Number.isFinite(row[at]) ? (row[at] as number) : -Infinity));
     const [low, at] = lowest(values);
     if (low >= least) return null;
     const names = links.map((name) => `'${name}'`);
     const joined = names.length > 1 ? say("{first} and {last}", { first: names[0] ?? "", last: names[1] ?? "" }) : (names[0] ?? "");
-    const angle = told(theta[frames[at] as number] as number);
+    const angle = inDegrees(theta[frames[at] as number] as number);
     if (!values.some((value) => value > 0))
       return say("{names} cannot be joined at any crank angle; check their lengths and where their pins are", { names: joined });
     if (low >= -least || !values.some((value) => value < 0))
       return say("change point at crank angle {angle}: {names} are stretched out or folded there, and the assembly mode after it is undetermined", { angle, names: joined });
     if (crank === null) return say("{names} do not reach each other at crank angle {angle}", { names: joined, angle });
-    const ranges = reaching(values, frames.map((k) => theta[k] as number), this.machine.told.turns);
-    const parts = ranges.map(([a, b]) => say("from {low} to {high}", { low: told(a), high: told(b) }));
+    const ranges = reaching(values, frames.map((k) => theta[k] as number), this.machine.data.turns);
+    const parts = ranges.map(([a, b]) => say("from {low} to {high}", { low: inDegrees(a), high: inDegrees(b) }));
     const where = parts.reduce((first, last) => say("{first} and {last}", { first, last }));
     return say("the crank cannot turn fully: {names} reach each other only {told} of crank angle", { names: joined, told: where });
   }
 }
 
-function told(angle: number): string {
+function inDegrees(angle: number): string {
   return `${signed(((angle * 180) / Math.PI).toFixed(2))} deg`;
 }
 

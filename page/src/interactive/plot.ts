@@ -5,7 +5,7 @@ import { steady } from "../format";
 import { extremes, levels, marked, scaleOf, share, turning } from "../scale";
 import { say } from "../words";
 import type { Machine, Solution } from "./machine";
-import type { Output } from "./told";
+import type { Output } from "./data";
 
 const [WIDE, HIGH, LEFT, BELOW, ABOVE] = [560, 168, 52, 20, 8];
 /** Below which a curve is drawn as none, in the unit of its output. */
@@ -44,7 +44,7 @@ export class Plot {
       const box = this.svg.getBoundingClientRect();
       const x = ((event.clientX - box.left) / box.width) * WIDE;
       const part = Math.min(Math.max((x - LEFT) / (WIDE - LEFT - 8), 0), 1);
-      this.turn(part * 360 * machine.told.turns);
+      this.turn(part * 360 * machine.data.turns);
     };
     this.svg.addEventListener("pointerdown", (event) => {
       this.svg.setPointerCapture(event.pointerId);
@@ -66,9 +66,9 @@ export class Plot {
   }
 
   /** Draw a design; pale, and behind, what the original does. */
-  show(found: Solution, original: Solution | null): void {
-    const rows = (one: Solution) => this.curves.map(({ output }) => this.values(one, output));
-    this.rows = rows(found);
+  show(solution: Solution, original: Solution | null): void {
+    const rows = (design: Solution) => this.curves.map(({ output }) => this.values(design, output));
+    this.rows = rows(solution);
     const old = original ? rows(original) : [];
     const scale = scaleOf([...this.rows, ...old], LEAST, false);
     this.largest = Math.max(...extremes(this.rows).map(Math.abs));
@@ -84,16 +84,16 @@ export class Plot {
     set(this.svg, { "aria-label": `${label}, ${unit}` });
   }
 
-  private values(one: Solution, { name, factor }: Output): Float64Array {
-    return (one.row(name) ?? new Float64Array(this.machine.told.angles)).map((value) => value * factor);
+  private values(design: Solution, { name, factor }: Output): Float64Array {
+    return (design.row(name) ?? new Float64Array(this.machine.data.angles)).map((value) => value * factor);
   }
 
   private x(angle: number): number {
-    return LEFT + (angle / (2 * Math.PI * this.machine.told.turns)) * (WIDE - LEFT - 8);
+    return LEFT + (angle / (2 * Math.PI * this.machine.data.turns)) * (WIDE - LEFT - 8);
   }
 
-  private scale(marks: number[], y: (value: number) => number, told: (value: number, all: number[]) => string): void {
-    const whole = 360 * this.machine.told.turns;
+  private scale(marks: number[], y: (value: number) => number, format: (value: number, all: number[]) => string): void {
+    const whole = 360 * this.machine.data.turns;
     const step = turning(whole);
     const angles = Array.from({ length: Math.floor(whole / step) + 1 }, (_, i) => i * step);
     const across = (degrees: number) => this.x((degrees * Math.PI) / 180);
@@ -104,7 +104,7 @@ export class Plot {
     const text = (x: number, top: number, anchor: string, words: string) =>
       s("text", { x: x.toFixed(1), y: top.toFixed(1), "text-anchor": anchor }, words);
     this.texts.replaceChildren(
-      ...marks.map((mark) => text(LEFT - 6, y(mark) + 3.5, "end", told(mark, marks))),
+      ...marks.map((mark) => text(LEFT - 6, y(mark) + 3.5, "end", format(mark, marks))),
       ...angles.map((degrees) => text(across(degrees), HIGH - 5, degrees === whole ? "end" : "middle", `${degrees}°`)),
     );
   }
@@ -121,7 +121,7 @@ export class Plot {
   }
 }
 
-/** Charts that come first, and one that shows what is chosen. */
+/** Charts that come first, and a chart that shows what is chosen. */
 export class Plots {
   readonly root = h("div", { class: "plots" });
   private readonly plots: Plot[] = [];
@@ -133,12 +133,12 @@ export class Plots {
     private readonly machine: Machine,
     turn: (degrees: number) => void,
   ) {
-    const { outputs } = machine.told;
-    const byName = new Map(outputs.map((one) => [one.name, one]));
-    for (const one of outputs.filter(({ first, name }) => first && !/\.[xy]$/.test(name))) {
-      const parts = ["x", "y"].flatMap((axis) => byName.get(`${one.name}.${axis}`) ?? []);
-      const plot = new Plot(machine, h("b", {}, capital(one.label)), turn);
-      const curves = parts.length ? parts.map((part, i) => ({ output: part, short: "xy"[i] as string })) : [{ output: one, short: "" }];
+    const { outputs } = machine.data;
+    const byName = new Map(outputs.map((output) => [output.name, output]));
+    for (const output of outputs.filter(({ first, name }) => first && !/\.[xy]$/.test(name))) {
+      const parts = ["x", "y"].flatMap((axis) => byName.get(`${output.name}.${axis}`) ?? []);
+      const plot = new Plot(machine, h("b", {}, capital(output.label)), turn);
+      const curves = parts.length ? parts.map((part, i) => ({ output: part, short: "xy"[i] as string })) : [{ output, short: "" }];
       plot.choose(curves);
       this.plots.push(plot);
     }
@@ -152,7 +152,7 @@ export class Plots {
   }
 
   private choose(name: string): void {
-    const output = this.machine.told.outputs.find((one) => one.name === name);
+    const output = this.machine.data.outputs.find((output) => output.name === name);
     if (!output) return;
     this.select.value = name;
     this.chosen.choose([{ output, short: "" }]);
@@ -162,9 +162,9 @@ export class Plots {
 
   private at = 0;
 
-  show(found: Solution, original: Solution | null): void {
-    this.last = [found, original];
-    for (const plot of this.plots) plot.show(found, original);
+  show(solution: Solution, original: Solution | null): void {
+    this.last = [solution, original];
+    for (const plot of this.plots) plot.show(solution, original);
   }
 
   point(at: number): void {
@@ -179,7 +179,7 @@ function grouped(outputs: Output[]): HTMLElement[] {
     h(
       "optgroup",
       { label: group },
-      ...outputs.filter((one) => one.group === group).map(({ name, label }) => h("option", { value: name }, capital(label))),
+      ...outputs.filter((output) => output.group === group).map(({ name, label }) => h("option", { value: name }, capital(label))),
     ),
   );
 }

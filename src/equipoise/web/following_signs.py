@@ -59,20 +59,24 @@ def _of_coupling(motion: Motion, piece: Piece, shape: Shape) -> Values | None:
     """What is drawn of gears, belts, racks and cams."""
     table, name = piece.part or ("", "")
     joints = motion.linkage.joints
-    one = next(one for one in joints.couplings if (one.table, one.name) == (table, name))
+    coupling = next(
+        coupling
+        for coupling in joints.couplings
+        if (coupling.table, coupling.name) == (table, name)
+    )
     link = FRAME if piece.hold is None else piece.hold.link
     if table == "belts" and shape.role == "strand":
         return _strand(motion, shape, name)
-    if table == "cams" or (table == "racks" and link != one.driver):
+    if table == "cams" or (table == "racks" and link != coupling.driver):
         return {"made_of": [*_made_of(motion, table, name)]}
-    driver = joints.pins_between(one.driver, one.carrier)[0]
+    driver = joints.pins_between(coupling.driver, coupling.carrier)[0]
     if table == "racks":
         return {"turned": {"about": driver}}
-    pins = coupling_pins(joints, one)
-    about = driver if link == one.driver else pins[1]
+    pins = coupling_pins(joints, coupling)
+    about = driver if link == coupling.driver else pins[1]
     if table == "belts":
         return {"turned": {"about": about}}
-    return {"turned": {"about": about, "between": [*pins], "of": one.carrier}}
+    return {"turned": {"about": about, "between": [*pins], "of": coupling.carrier}}
 
 
 def _of_points(scene: Scene, piece: Piece, shape: Shape, body: str) -> Values | None:
@@ -80,10 +84,10 @@ def _of_points(scene: Scene, piece: Piece, shape: Shape, body: str) -> Values | 
     own = {} if piece.layer == "guides" else dict(_places(scene, body))
     guides = [guide for guide in scene.guides if guide.on == body]
     corners = [_corner(scene, own, guides, complex(place)) for place in shape.places]
-    if all(one is None for one in corners):
+    if all(corner is None for corner in corners):
         return None
     plate = shape.role in PLATES and len(corners) > 1
-    hull = plate and all(isinstance(one, str) and one[0] != "@" for one in corners)
+    hull = plate and all(isinstance(corner, str) and corner[0] != "@" for corner in corners)
     return {"corners": corners, **({"hull": True} if hull else {})}
 
 
@@ -92,10 +96,10 @@ def _places(scene: Scene, body: str) -> Iterator[tuple[str, complex]]:
     if body == FRAME:
         yield from ((name, complex(scene.places[name][0])) for name in scene.frame)
         return
-    (found,) = (one for one in scene.bodies if one.name == body)
-    yield from ((name, scene.local(found, scene.places[name])) for name in found.points)
+    (link,) = (link for link in scene.bodies if link.name == body)
+    yield from ((name, scene.local(link, scene.places[name])) for name in link.points)
     if body in scene.mass_centers:
-        yield f"@{body}", scene.local(found, scene.mass_centers[body])
+        yield f"@{body}", scene.local(link, scene.mass_centers[body])
 
 
 def _corner(
@@ -122,48 +126,50 @@ def _ends(scene: Scene, guide: Guide) -> tuple[complex, complex]:
     ends = place - guide.behind * guide.way, place + guide.ahead * guide.way
     if guide.on == FRAME:
         return complex(ends[0][0]), complex(ends[1][0])
-    (body,) = (one for one in scene.bodies if one.name == guide.on)
+    (body,) = (body for body in scene.bodies if body.name == guide.on)
     return scene.local(body, ends[0]), scene.local(body, ends[1])
 
 
 def _strand(motion: Motion, shape: Shape, name: str) -> Values | None:
     joints = motion.linkage.joints
-    belt = next(one for one in motion.machine.belts if one.name == name)
+    belt = next(belt for belt in motion.machine.belts if belt.name == name)
     pins = coupling_pins(joints, belt)
     points = motion.machine.bodies[belt.carrier]
     start, end = (complex(*points[pin]) for pin in pins)
-    found = belt.strands(end - start)
-    sides: dict[int, Array] = {side: found.ends(side)[0] for side in (LEFT, RIGHT)}
+    strands = belt.strands(end - start)
+    sides: dict[int, Array] = {side: strands.ends(side)[0] for side in (LEFT, RIGHT)}
     first = complex(shape.places[0])
     base = complex(*points[next(iter(points))]) if belt.carrier != FRAME else 0j
-    side = min(sides, key=lambda one: abs(complex(sides[one]) + start - base - first))
-    return {"strand": {"side": side, "between": [*pins], "radii": [found.radius, found.other]}}
+    side = min(sides, key=lambda side: abs(complex(sides[side]) + start - base - first))
+    return {"strand": {"side": side, "between": [*pins], "radii": [strands.radius, strands.other]}}
 
 
 def _made_of(motion: Motion, table: str, name: str) -> Iterator[str]:
     """Numbers from which the shape of a cam or rack, as it is drawn, is computed."""
     joints = motion.linkage.joints
-    couplings = [one for one in joints.couplings if one.table == table]
-    number, one = next((k, one) for k, one in enumerate(couplings, 1) if one.name == name)
+    couplings = [coupling for coupling in joints.couplings if coupling.table == table]
+    number, coupling = next(
+        (k, coupling) for k, coupling in enumerate(couplings, 1) if coupling.name == name
+    )
     yield f"{table}[{number}]"
     for slider, guide in enumerate(joints.sliders, 1):
-        if (guide.link, guide.on) == (one.driven, one.carrier):
+        if (guide.link, guide.on) == (coupling.driven, coupling.carrier):
             yield f"sliders[{slider}]"
     ends = {
         point
-        for link in (one.driver, one.driven)
-        for point in joints.pins_between(link, one.carrier)
+        for link in (coupling.driver, coupling.driven)
+        for point in joints.pins_between(link, coupling.carrier)
     }
-    ends |= {point for point in (getattr(one, "point", None),) if point}
-    for body in (one.driver, one.driven, one.carrier):
+    ends |= {point for point in (getattr(coupling, "point", None),) if point}
+    for body in (coupling.driver, coupling.driven, coupling.carrier):
         where = FRAME if body == FRAME else f"links.{body}"
         yield from (f"{where}.points.{point}." for point in sorted(ends))
 
 
 def _of_arrow(scene: Scene, link: str) -> Values | None:
     """The arrow of a crank's sense, which follows the crank's longest arm."""
-    (drive,) = (one for one in scene.drives if one.link == link)
-    (body,) = (one for one in scene.bodies if one.name == link)
+    (drive,) = (drive for drive in scene.drives if drive.link == link)
+    (body,) = (body for body in scene.bodies if body.name == link)
     arms = scene.corners(body) - scene.local(body, scene.places[drive.pivot])
     far = body.outline[int(np.argmax(abs(arms)))]
     if far == drive.pivot:

@@ -127,9 +127,12 @@ class Interactive:
     @cached_property
     def outputs(self) -> list[Output]:
         """Those that a script can have."""
-        every = [one for one in self.analysis.outputs if one.declared.array or one.declared.summed]
-        found = {one.name: one for one in every}
-        return [found[name] for name in signals_in_loops(self.motion.linkage, found)]
+        outputs = {
+            output.name: output
+            for output in self.analysis.outputs
+            if output.declared.array or output.declared.summed
+        }
+        return [outputs[name] for name in signals_in_loops(self.motion.linkage, outputs)]
 
     @cached_property
     def template(self) -> Template:
@@ -145,7 +148,7 @@ class Interactive:
         """
         linkage = self.motion.linkage
         try:
-            names = [*(one.name for one in self.outputs), *pose_signals(linkage)]
+            names = [*(output.name for output in self.outputs), *pose_signals(linkage)]
             plain = javascript(linkage, names)
         except UsageError as error:
             refusal = Note(
@@ -154,7 +157,7 @@ class Interactive:
                 why=error.note,
             )
             raise UsageError(refusal) from error
-        known = {path: one.value for path, one in self._candidates.items()}
+        known = {path: number.value for path, number in self._candidates.items()}
         return self._with_numbers(names, known) or plain
 
     def _with_numbers(self, names: Sequence[str], numbers: Mapping[str, float]) -> Script | None:
@@ -190,17 +193,17 @@ class Interactive:
         Lengths that have to agree with others, as where joints hold more than the motion needs, are
         none of them.
         """
-        found, numbers, linkage = {}, self.template.numbers(), self.motion.linkage
-        for path, one in numbers.items():
+        columns, numbers, linkage = {}, self.template.numbers(), self.motion.linkage
+        for path, number in numbers.items():
             whole, _, part = path.rpartition(".")
             if part in POLAR and f"{whole}.x" in numbers:
                 continue  # the same point by its coordinates
             column = column_path(path)
             if can_vary(self.machine, column) and not moves_shared(linkage, [column]):
-                found[column] = one
-        return found
+                columns[column] = number
+        return columns
 
-    # -- what the page is told ---------------------------------------------------------------------
+    # -- what the page knows -----------------------------------------------------------------------
 
     @cached_property
     def content(self) -> Values:
@@ -236,15 +239,15 @@ class Interactive:
             },
             "sliders": [
                 {
-                    "name": one.name,
-                    "point": one.point,
-                    "on": one.on,
-                    "link": one.link,
-                    "direction": one.direction,
+                    "name": slider.name,
+                    "point": slider.point,
+                    "on": slider.on,
+                    "link": slider.link,
+                    "direction": slider.direction,
                 }
-                for one in self.machine.sliders
+                for slider in self.machine.sliders
             ],
-            "driven": [one.link for one in self.machine.driven],
+            "driven": [drive.link for drive in self.machine.driven],
             "crank": self.machine.drive.link if self.machine.has_crank else None,
             "scene": stage_of(scene, movable(self.machine)),
             "ties": ties_of(scene, self.analysis.motion),
@@ -262,18 +265,18 @@ class Interactive:
         return Scene.of(self.analysis.motion)
 
     def _outputs(self) -> Iterator[Values]:
-        """What can be drawn over the crank angle, and of what figures are told."""
+        """What can be drawn over the crank angle, and of what figures are reported."""
         groups = {group: say(title) for group, title in GROUPS.items()}
         first = told_signals()
-        for one in self.outputs:
+        for output in self.outputs:
             yield {
-                "name": one.name,
-                "label": one.label(),
-                "group": groups[one.group],
-                "kind": one.group,
-                **_told_unit(display(one.dimension)),
-                "summed": bool(one.declared.summed),
-                "first": one.name in first,
+                "name": output.name,
+                "label": output.label(),
+                "group": groups[output.group],
+                "kind": output.group,
+                **_unit_content(display(output.dimension)),
+                "summed": bool(output.declared.summed),
+                "first": output.name in first,
             }
 
     def _fields(self) -> Iterator[Values]:
@@ -292,7 +295,7 @@ class Interactive:
                 "label": said(template.words(written)),
                 "heading": str(steps[1]) if steps[0] == "links" else _section(str(steps[0])),
                 "value": float(number.value),
-                **_told_unit(unit),
+                **_unit_content(unit),
                 "written": unit.unit,
                 "units": _factors(number),
                 "least": key and key.at_least,
@@ -307,19 +310,19 @@ class Interactive:
         bodies |= {name: link.points for name, link in self.machine.links.items()}
         for body, points in bodies.items():
             where = f"{FRAME}.points" if body == FRAME else f"links.{body}.points"
-            for one in measures_of(points):
-                ends = [f"{where}.{point}" for point in (one.start, one.moves)]
-                if one.dimension == "length" and {f"{ends[1]}.x", f"{ends[1]}.y"} <= paths:
+            for measure in measures_of(points):
+                ends = [f"{where}.{point}" for point in (measure.start, measure.moves)]
+                if measure.dimension == "length" and {f"{ends[1]}.x", f"{ends[1]}.y"} <= paths:
                     yield {
-                        "label": one.label,
+                        "label": measure.label,
                         "heading": _section(FRAME) if body == FRAME else body,
-                        "start": one.start,
-                        "moves": one.moves,
+                        "start": measure.start,
+                        "moves": measure.moves,
                         "from": ends[0],
                         "path": ends[1],
-                        "fixed": points[one.start],
-                        **_told_unit(in_unit("mm")),
-                        "units": _factors(Number(one.value, "length")),
+                        "fixed": points[measure.start],
+                        **_unit_content(in_unit("mm")),
+                        "units": _factors(Number(measure.value, "length")),
                     }
 
     def _margins(self) -> list[list[str]]:
@@ -364,7 +367,7 @@ def _factors(number: Number) -> dict[str, float]:
     return {unit: float(FACTORS[unit]) for unit in KINDS[number.dimension].units}
 
 
-def _told_unit(unit: Display) -> Values:
+def _unit_content(unit: Display) -> Values:
     return {"unit": unit.name, "factor": unit.factor}
 
 

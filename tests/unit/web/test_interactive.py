@@ -20,7 +20,7 @@ from equipoise.schema.template import Template
 from equipoise.symbols.scene import Scene
 from equipoise.web.drawing import stage_of
 from equipoise.web.interactive import Interactive, column_path
-from support.interactive import NODE, asked
+from support.interactive import NODE, evaluated
 
 ROOT = Path(__file__).parents[3]
 if not runpy.run_path(str(ROOT / "page" / "bundle.py"))["is_fresh"]():
@@ -30,16 +30,16 @@ HTML = FORMATS["html"]
 
 FIGURES = """
 const figures = {};
-for (const { name, summed } of machine.told.outputs)
-    if (summed) figures[name] = found.figures(name);
-return { figures, refusal: found.refusal };
+for (const { name, summed } of machine.data.outputs)
+    if (summed) figures[name] = solution.figures(name);
+return { figures, refusal: solution.refusal };
 """
 AFTER = """
 const design = machine.base.slice();
 for (const [path, value] of Object.entries(given)) design[machine.numbers.get(path)] = value;
 const other = machine.solve(design);
 const figures = {};
-for (const { name, summed } of machine.told.outputs)
+for (const { name, summed } of machine.data.outputs)
     if (summed) figures[name] = other.figures(name);
 return { figures, refusal: other.refusal, text: toml(machine, design) };
 """
@@ -72,7 +72,7 @@ def compare(figures: Any, analysis: eq.Analysis, tolerance: float) -> None:
 @pytest.mark.parametrize("name", eq.examples("linkage"))
 def test_figures_are_those_of_an_analysis(name: str, tmp_path: Path) -> None:
     machine = eq.load(name)
-    got = asked(page_of(machine), FIGURES, tmp_path)
+    got = evaluated(page_of(machine), FIGURES, tmp_path)
     assert got["refusal"] is None
     alone = eq.analyze(machine)
     if alone.solved is not None:
@@ -105,7 +105,7 @@ def test_changed_numbers_are_those_of_a_changed_machine(name: str, tmp_path: Pat
         value = template.number(by_column[path])[0]
         given[path] = float(value * (1 + 2e-3 * random.uniform(-1, 1)))
     changed = template.machine({by_column[path]: value for path, value in given.items()})
-    got = asked(page_of(machine), AFTER, tmp_path, given)
+    got = evaluated(page_of(machine), AFTER, tmp_path, given)
     assert got["refusal"] is None
     compare(got["figures"], eq.analyze(changed), 1e-9)
 
@@ -116,16 +116,16 @@ def test_dragged_joints_come_where_they_are_put(tmp_path: Path) -> None:
     machine = eq.load("yamashita-1")
     body = """
     const at = machine.frames[40];
-    const [x, y] = found.point("C", at);
-    const design = moved(found, "C", [x + 0.004, y - 0.003], at);
+    const [x, y] = solution.point("C", at);
+    const design = moved(solution, "C", [x + 0.004, y - 0.003], at);
     const other = machine.solve(design);
-    const { fields } = machine.told;
+    const { fields } = machine.data;
     const numbers = Object.fromEntries(fields.map(({ path }, k) => [path, design[k]]));
-    const places = (one) => ["A", "B", "C", "D"].map((name) => one.point(name, at));
+    const places = (design) => ["A", "B", "C", "D"].map((name) => design.point(name, at));
     const figures = { shaking_force: other.figures("shaking_force") };
-    return { before: places(found), after: places(other), numbers, figures };
+    return { before: places(solution), after: places(other), numbers, figures };
     """
-    got = asked(page_of(machine), body, tmp_path)
+    got = evaluated(page_of(machine), body, tmp_path)
     before, after = (np.array(got[key]) for key in ("before", "after"))
     moves = np.array([[0, 0], [0, 0], [0.004, -0.003], [0, 0]])
     # dragged numbers have 7 digits over the size of the machine, 0.3 m
@@ -140,7 +140,7 @@ def test_dragged_joints_come_where_they_are_put(tmp_path: Path) -> None:
 def test_lines_of_changed_numbers_make_the_same_machine(tmp_path: Path) -> None:
     machine = eq.load("yamashita-1")
     given = {"links.crank.mass": 0.4, "drive.speed": 30.0, "links.rocker.points.C.x": 0.081}
-    got = asked(page_of(machine), AFTER, tmp_path, given)
+    got = evaluated(page_of(machine), AFTER, tmp_path, given)
     assert got["text"].splitlines() == [
         "[drive]", f'speed = "{30 * 30 / np.pi:.15g} rpm"', "",
         "[links.crank]", 'mass = "400 g"', "",
@@ -156,7 +156,7 @@ def test_what_does_not_turn_says_where(tmp_path: Path) -> None:
     machine = eq.load("yamashita-1")
     html = page_of(machine)
     long = {"links.crank.points.B.x": 0.09}
-    refusal = asked(html, AFTER, tmp_path, long)["refusal"]
+    refusal = evaluated(html, AFTER, tmp_path, long)["refusal"]
     assert refusal.startswith(
         "the crank cannot turn fully: 'coupler' and 'rocker' reach each other"
     )
@@ -166,7 +166,9 @@ def test_what_does_not_turn_says_where(tmp_path: Path) -> None:
     # between two crank angles a degree apart the file takes the margin as straight
     assert np.allclose(angles, np.degrees(np.ravel(sorted(caught.value.ranges))), rtol=0, atol=0.05)
     apart = {"frame.points.D.x": 0.9}
-    assert "cannot be joined at any crank angle" in asked(html, AFTER, tmp_path, apart)["refusal"]
+    assert (
+        "cannot be joined at any crank angle" in evaluated(html, AFTER, tmp_path, apart)["refusal"]
+    )
     with pytest.raises(RangeError, match="cannot be joined at any crank angle"):
         eq.analyze(Template.of(machine).machine(apart))
 
@@ -174,14 +176,14 @@ def test_what_does_not_turn_says_where(tmp_path: Path) -> None:
 @node
 def test_limits_and_units_of_typed_numbers(tmp_path: Path) -> None:
     body = """
-    const mass = machine.told.fields.find(({ path }) => path === "links.crank.mass");
+    const mass = machine.data.fields.find(({ path }) => path === "links.crank.mass");
     const texts = ["300", "0.3 kg", "1 lb", "-1", "x", "3 mm", ""];
     return texts.map((text) => {
         const value = typed(text, mass);
         return [value, typeof value === "number" ? outside(mass, value) : null];
     });
     """
-    got = asked(page_of(eq.load("yamashita-1")), body, tmp_path)
+    got = evaluated(page_of(eq.load("yamashita-1")), body, tmp_path)
     values, refusals = zip(*got, strict=True)
     assert values[:3] == (0.3, 0.3, pytest.approx(0.45359237))
     assert refusals[:3] == (None, None, None)
@@ -193,12 +195,12 @@ def test_limits_and_units_of_typed_numbers(tmp_path: Path) -> None:
 def test_lengths_between_points(tmp_path: Path) -> None:
     """The second point of a length moves along its line."""
     body = """
-    const measure = machine.told.measures.find(({ label }) => label === "D to C");
-    const design = withLength(found, measure, 0.09);
+    const measure = machine.data.measures.find(({ label }) => label === "D to C");
+    const design = withLength(solution, measure, 0.09);
     return ["x", "y"].map((axis) => design[machine.numbers.get(`${measure.path}.${axis}`)]);
     """
     machine = eq.load("yamashita-1")
-    x, y = asked(page_of(machine), body, tmp_path)
+    x, y = evaluated(page_of(machine), body, tmp_path)
     place = complex(*machine.links["rocker"].points["C"])
     assert complex(x, y) == pytest.approx(0.09 * place / abs(place))
 
@@ -247,7 +249,7 @@ UNLIKE = {"hatch", "driver", "driver-head", "spring", "spoke", "cam", "rib", "gr
 
 def outlines(signs: Any) -> dict[str, list[Any]]:
     """Corners of all shapes that are to be the same, by what they are of: m and pixels."""
-    found: dict[str, list[Any]] = {}
+    shapes: dict[str, list[Any]] = {}
     for sign in signs:
         for role, _, radius, grown, corners in sign["shapes"]:
             if role not in UNLIKE:
@@ -256,8 +258,10 @@ def outlines(signs: Any) -> dict[str, list[Any]]:
                 )  # as -0.0 sorts by rounding
                 rows = sorted(map(tuple, places.tolist()))
                 key = f"{sign['layer']} {sign['link']} {role}"
-                found.setdefault(key, []).append([radius, grown, *(x for row in rows for x in row)])
-    return {key: sorted(rows) for key, rows in found.items()}
+                shapes.setdefault(key, []).append(
+                    [radius, grown, *(x for row in rows for x in row)]
+                )
+    return {key: sorted(rows) for key, rows in shapes.items()}
 
 
 def compare_drawings(got: Any, known: Any, size: float) -> None:
@@ -279,7 +283,7 @@ def test_signs_follow_the_numbers(name: str, tmp_path: Path) -> None:
     machine = replace(eq.load(name), support=None, balance=None)
     html, template = page_of(machine), Template.of(machine)
     low, high = Scene.of(eq.analyze(machine).motion).box
-    same = asked(html, DRAWN, tmp_path, {})["signs"]
+    same = evaluated(html, DRAWN, tmp_path, {})["signs"]
     compare_drawings(same, Interactive(machine).content["scene"]["signs"], abs(high - low))
     by_column = {column_path(path): path for path in template.numbers()}
     random = np.random.default_rng(3)
@@ -289,7 +293,7 @@ def test_signs_follow_the_numbers(name: str, tmp_path: Path) -> None:
         for path in paths
     }
     changed = template.machine({by_column[path]: value for path, value in given.items()})
-    got = asked(html, DRAWN, tmp_path, given)
+    got = evaluated(html, DRAWN, tmp_path, given)
     assert got["refusal"] is None
     scene = Scene.of(eq.analyze(changed).motion)
     compare_drawings(got["signs"], stage_of(scene, [])["signs"], abs(high - low))
@@ -298,9 +302,9 @@ def test_signs_follow_the_numbers(name: str, tmp_path: Path) -> None:
 @node
 def test_lengths_that_have_to_agree_are_no_fields(tmp_path: Path) -> None:
     """Joints of the straw walker hold more than its motion needs: masses and speed can change."""
-    paths = asked(
+    paths = evaluated(
         page_of(eq.load("straw-walker")),
-        "return machine.told.fields.map(({ path }) => path);",
+        "return machine.data.fields.map(({ path }) => path);",
         tmp_path,
     )
     assert "drive.speed" in paths and any(path.endswith(".mass") for path in paths)
@@ -317,5 +321,5 @@ def test_a_machine_without_masses_only_moves(tmp_path: Path) -> None:
     )
     path = tmp_path / "machine.html"
     assert any("forces" in one for one in eq.export(bare, path))
-    names = asked(path.read_text("utf-8"), "return machine.told.names;", tmp_path)
+    names = evaluated(path.read_text("utf-8"), "return machine.data.names;", tmp_path)
     assert "points.P.x" in names and "shaking_force.x" not in names

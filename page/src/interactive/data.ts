@@ -77,7 +77,7 @@ export interface Link {
   sized: "points" | "length" | "sides";
 }
 
-export interface Told {
+export interface MachineData {
   language: string;
   words: Record<string, string>;
   title: string;
