@@ -1,8 +1,8 @@
-"""Tables 1 of Kim and Chung, and what their own way of computing makes of its readings.
+"""Table 1 of Kim and Chung, and what their own way of computing makes of readings.
 
-They held a protractor to the joints at every tenth degree of the crank, a scale to the links, and
-put both into [8-4] to [10].  `Reading` is that: the same equations with theta3 and theta4 off by
-half a degree and a1 to a4 by half a millimetre, each one either way.
+They held a protractor to the joints at every tenth degree of the crank, and put what they read into
+[8-4] to [10].  `Reading` is that: the same equations with theta3 and theta4 off by half a degree,
+either way, and where that is asked for with a1 to a4 of Table 1 off by half a digit.
 """
 
 from __future__ import annotations
@@ -26,8 +26,11 @@ FORWARD = 0.60
 DEPTH = 0.04
 """Planting depth above the lowest point, m (Table 2)."""
 ANGLE_OFF, LENGTH_OFF = radians(0.5), 5e-4
-"""Half of the finest mark: of a protractor, rad, and of a scale, m; Table 1 has no more digits."""
-CORNERS = np.array([(0,) * 6, *product((-1, 1), repeat=6)])[..., None]
+"""Half of the finest mark of a protractor, rad, and half a digit of Table 1, m."""
+ANGLES, ALL = (
+    np.array([(0,) * 6, *product((-1, 1), (-1, 1), *[sides] * 4)], float)[..., None]
+    for sides in ((0,), (-1, 1))
+)
 
 
 @dataclass(frozen=True)
@@ -60,12 +63,12 @@ C = Planter("kim-chung-c", (12.0, 3.8, 10.3, 7.5), -34.51 - 10.03j, 282, -1)
 class Reading:
     """Tip and ratios at crank angles theta2, rad: rows are as drawn, then all readings of it."""
 
-    def __init__(self, planter: Planter, theta2: Any) -> None:
+    def __init__(self, planter: Planter, theta2: Any, lengths: bool = False) -> None:
         t2 = np.atleast_1d(np.asarray(theta2, float))
         points = planter.move(t2).points
         pins = [points[name].place for name in ("A", "B", "C", "D")]
         x2, x3, x4 = (np.angle(end - start) for start, end in pairwise(pins))
-        off3, off4, *off = CORNERS.transpose(1, 0, 2)
+        off3, off4, *off = (ALL if lengths else ANGLES).transpose(1, 0, 2)
         t3, t4 = x3 - x2 + ANGLE_OFF * off3, x4 - x3 + ANGLE_OFF * off4
         a1, a2, a3, a4 = (
             x / 100 + LENGTH_OFF * sign for x, sign in zip(planter.lengths, off, strict=True)
@@ -84,6 +87,7 @@ class Reading:
 
 
 Signal = Callable[[Reading], Array]
+AND_LENGTHS = " and half a digit of their Table 1"
 
 
 def direction(vector: Array) -> Array:
@@ -91,10 +95,12 @@ def direction(vector: Array) -> Array:
     return np.asarray(np.degrees(np.angle(vector[0]) + np.angle(vector / vector[0])))
 
 
-def read_at(planter: Planter, theta2: float, signal: Signal, why: str = "") -> Cause:
+def read_at(
+    planter: Planter, theta2: float, signal: Signal, why: str = "", lengths: bool = False
+) -> Cause:
     """What a signal may be at one crank angle, deg."""
-    text = f"their readings at {theta2:g} deg{why}"
-    return Cause(text, lambda: _ends(signal(Reading(planter, radians(theta2)))))
+    text = f"their readings at {theta2:g} deg{why}{AND_LENGTHS if lengths else ''}"
+    return Cause(text, lambda: _ends(signal(Reading(planter, radians(theta2), lengths))))
 
 
 def extreme_at(planter: Planter, theta2: float, signal: Signal, sign: int) -> Cause:
@@ -110,15 +116,15 @@ def extreme_at(planter: Planter, theta2: float, signal: Signal, sign: int) -> Ca
     return Cause("by their readings it may be here", gives)
 
 
-def extent(planter: Planter, signal: Signal) -> Cause:
+def extent(planter: Planter, signal: Signal, lengths: bool = False) -> Cause:
     """Largest less smallest of a coordinate, cm."""
 
     def gives() -> list[float]:
-        least, most = _each(planter, signal)
+        least, most = _each(planter, signal, lengths)
         apart = [np.max(least) - np.min(most), np.max(most) - np.min(least)]
         return [100 * float(one) for one in apart]
 
-    return Cause("their readings", gives)
+    return Cause(f"their readings{AND_LENGTHS if lengths else ''}", gives)
 
 
 def crosses(planter: Planter, theta2: float) -> Cause:
@@ -162,9 +168,9 @@ def _ends_of_each(values: Array) -> tuple[Array, Array]:
 
 
 @cache
-def _every_ten_degrees(planter: Planter) -> Reading:
-    return Reading(planter, np.radians(np.arange(0.0, 360.0, 10.0)))
+def _every_ten_degrees(planter: Planter, lengths: bool) -> Reading:
+    return Reading(planter, np.radians(np.arange(0.0, 360.0, 10.0)), lengths)
 
 
-def _each(planter: Planter, signal: Signal) -> tuple[Array, Array]:
-    return _ends_of_each(signal(_every_ten_degrees(planter)))
+def _each(planter: Planter, signal: Signal, lengths: bool = False) -> tuple[Array, Array]:
+    return _ends_of_each(signal(_every_ten_degrees(planter, lengths)))

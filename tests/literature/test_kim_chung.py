@@ -284,11 +284,11 @@ def theirs(planter: Planter, instant: str) -> float:
     return float(THEIR_ANGLES[instant].split()[(A, B, C).index(planter)])
 
 
-def read_there(planter: Planter, instant: str, signal: Signal) -> Cause:
+def read_there(planter: Planter, instant: str, signal: Signal, lengths: bool = False) -> Cause:
     """Readings at the crank angle that is printed, or the one that they computed beside it."""
     printed = theirs(planter, instant)
     at = COMPUTED_AT.get((planter, instant), printed)
-    return read_at(planter, at, signal, "" if at == printed else f", for {printed:g}")
+    return read_at(planter, at, signal, "" if at == printed else f", for {printed:g}", lengths)
 
 
 def value_at(instant: str, signal: str) -> Callable[[Planter, float], Cause]:
@@ -314,7 +314,7 @@ FIGURES = {
     "curve.height": Figure("cm", "25 22.3 25", "25.16 22.26 24.82", lambda p: span(p, "y"), None),
     "curve.width": Figure(
         "cm", "7.4 9.8 12.7", "7.48 9.46 12.67", lambda p: span(p, "x"),
-        lambda p, _: extent(p, lambda reading: reading.place.real),
+        lambda p, _: extent(p, lambda reading: reading.place.real, lengths=p is B),
     ),
     "lowest.crank_angle": Figure(
         "deg", THEIR_ANGLES["lowest"], "146.77 310.185 324.91", lowest, least_at("lowest")
@@ -520,6 +520,7 @@ class Vector:
 
     The size stands with its crank angle above.  computed : the components or the direction.
     slip : which components are slips, and why.  open : what is known of a direction not explained.
+    lengths : whether it takes half a digit of Table 1 beside readings of angles.
     """
 
     planter: Planter
@@ -529,6 +530,7 @@ class Vector:
     computed: str
     slip: tuple[str, str] = ("", "")
     open: str = ""
+    lengths: bool = False
 
     def rows(self) -> Iterator[Printed]:
         polar = self.instant.startswith(("max", "min"))
@@ -543,7 +545,8 @@ class Vector:
             )  # fmt: skip
 
     def why(self, key: str, slip: bool) -> Cause | str:
-        read = read_there(self.planter, self.instant, partial(self.part, key[-1]))
+        part = partial(self.part, key[-1])
+        read = read_there(self.planter, self.instant, part, self.lengths)
         if slip and self.slip[1] == LOST:
             return Cause(LOST, lambda: [-one for one in read.gives()])
         return self.slip[1] if slip else self.open or read
@@ -578,14 +581,14 @@ VECTORS = [
     Vector(A, "max_acceleration", "acceleration", "100.07", "110.79"),
     Vector(A, "min_acceleration", "acceleration", "22.09", "34.82"),
     Vector(B, "entry", "acceleration", "-13 48", "-11.81 47.94"),
-    Vector(B, "exit", "acceleration", "30 41", "31.47 41.84"),
+    Vector(B, "exit", "acceleration", "30 41", "31.47 41.84", lengths=True),
     Vector(B, "lowest", "acceleration", "15.5 45.7", "15.46 45.74"),
     Vector(B, "max_acceleration", "acceleration", "-82.24", "-81.50"),
     Vector(B, "min_acceleration", "acceleration", "-119.4", "163.94"),
     Vector(C, "entry", "acceleration", "-10 61", "-8.49 62.18"),
     Vector(C, "exit", "acceleration", "40 30", "40.42 30.23"),
     Vector(C, "lowest", "acceleration", "33.7 50.8", "32.83 53.65"),
-    Vector(C, "max_acceleration", "acceleration", "-92.17", "-93.88"),
+    Vector(C, "max_acceleration", "acceleration", "-92.17", "-93.88", lengths=True),
     Vector(
         C, "min_acceleration", "acceleration", "116.56", "149.09",
         open="it is that of 196 deg; printed with it is 190",

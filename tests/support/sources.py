@@ -12,8 +12,8 @@ KIM_CHUNG = Source(
     """K. U. Kim, C. J. Chung, "An analytical method for kinematic analysis of the planting
     mechanism of a rice transplanter", Seoul National University, about 1977. They read
     the angles of joints off a protractor at every tenth degree of the crank. *Their readings* is
-    what their own equations give with these angles up to half a degree off and the lengths of
-    links up to half a millimetre. Crank angles are their theta2.""",
+    what their own equations give with these angles up to half a degree off. Crank angles are their
+    theta2.""",
     ('Table 2 calls both soil crossings "entry position"',
      "Table 2 has largest acceleration in degrees; it is in m/s2"),
 )  # fmt: skip
