@@ -11,7 +11,27 @@ from pathlib import Path
 import cyclopts
 import pytest
 
-from equipoise.cli import COMMANDS, app
+from equipoise.balancing import (
+    branch_and_bound,
+    geared,
+    pareto,
+    phase_bound,
+    phase_grid,
+    problem,
+    remedies,
+    room,
+)
+from equipoise.cli import COMMANDS, app, reports
+from equipoise.figures import film
+from equipoise.handheld import design
+from equipoise.measured import fits
+from equipoise.planting import search, variables
+from equipoise.planting.figures import SAMPLES_OF_TURN
+from equipoise.schema.files import LARGEST
+from equipoise.studies import cloud, outcomes, study, tolerances, variance
+from equipoise.studies import search as searching
+from equipoise.vibration import collocation, coupled, steady
+from equipoise.web import stores, variants
 from surface.running import example_text, read, written
 
 TOP = Path(__file__).parents[2]
@@ -123,3 +143,67 @@ def test_the_first_hour_tells_what_is_offered_without_a_plan() -> None:
     assert left["gain"] > right["gain"]
     assert f"would take away {100 * left['gain']:.0f} %, but" in told
     assert [one["worth"] for one in (offered, left, right)] == [True, False, False]
+
+
+CLAIMS = {
+    "animation.md": [
+        f"{film.MOST_PIXELS // 1_000_000} million pixels at most",
+        f"{film.MOST_PIXELS // 640**2} frames at a width of 640",
+        f"{reports.SVG_FRAMES} steps a turn",
+    ],
+    "balancing.md": [
+        f"at least {100 * remedies.LEAST_GAIN:.0f} % of its aim",
+        (
+            f"no thicker than {room.THICK:g} of the largest radius that is looked at, "
+            f"{1e3 * room.THICKEST:.0f} mm, and"
+        ),
+        f"meet, {branch_and_bound.MOST_NODES} at the most",
+        f"{geared.GRID} ratios, then",
+        f"q up to {geared.LARGEST_DENOMINATOR}",
+        f"{geared.WAYS} directions, with {geared.COARSE} ratios",
+        f"{phase_grid.MOST:,}".replace(",", " "),
+        f"{phase_bound.MOST_BOXES:,} boxes".replace(",", " "),
+        f"{pareto.POINTS} points, or `--points`",
+        f"Orders go up to {problem.HIGHEST}",
+    ],
+    "decay.md": [f"more than {fits.MOST:,} samples".replace(",", " ")],
+    "figures.md": [f"Of more than {cloud.MOST} designs"],
+    "live-page.md": [
+        f"A, B and so on, up to {variants.MOST}",
+        f"Of more than {stores.MOST} designs",
+        f"A model file may have {LARGEST // 1_000_000} MB",
+    ],
+    "planting.md": [
+        f"| {search.GENERATIONS} | of the global search",
+        f"| {search.POPULATION} | designs in a generation",
+        f"{variables.SHORTEST} to {variables.LONGEST} times as long",
+        f"at {SAMPLES_OF_TURN} crank angles",
+    ],
+    "studies.md": [
+        (
+            f"crank angles in a turn at which analyses are computed, {study.ANGLES[0]} to "
+            f"{study.ANGLES[1]}"
+        ),
+        f"up to {study.CHUNK} designs of compiled figures, up to {study.SLOW_CHUNK} of others",
+        f"rows again {variance.DRAWN_AGAIN} times",
+        f"and {tolerances.LEAST_ROWS} machines in each are the least",
+        f"generations of {searching.POPULATION} designs",
+        f"and at most {searching.GENERATIONS}",
+        f"{outcomes.PATIENCE} generations have added less than 1e-4",
+    ],
+    "theory.md": [
+        f"collocation with {collocation.STAGES} nodes an interval, {steady.INTERVALS} intervals",
+        f"most {steady.ROUNDS} times",
+        f"{coupled.KNOTS} crank angles a turn",
+    ],
+    "tools.md": [f"{design.TRIED} designs spread over the room"],
+    "trust.md": [f"{SAMPLES_OF_TURN} a turn"],
+    "vibration.md": [f"at most {steady.MOST_SWINGS} free swings"],
+}
+"""Numbers in words of pages that are constants of the code."""
+
+
+@pytest.mark.parametrize("page", CLAIMS)
+def test_numbers_of_pages_are_those_of_the_code(page: str) -> None:
+    text = " ".join((TOP / "docs" / page).read_text(encoding="utf-8").split())
+    assert [claim for claim in CLAIMS[page] if claim not in text] == []
