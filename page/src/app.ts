@@ -141,7 +141,7 @@ export class App {
         this.name({ name, undo: null, redo: null, lacking, file: null, downloads: [] });
       },
       saved: (name) => this.keeping.saved(name),
-      line: (up) => this.line(up),
+      line: (up, other, waiting) => this.line(up, other, waiting),
       waiting: (on) => set(this.root, { "data-waiting": on }),
       calm: (on) => (on ? this.frames.settle(0) : this.settled(false)),
     };
@@ -470,17 +470,18 @@ export class App {
     this.name();
   }
 
-  private line(up: boolean): void {
+  private line(up: boolean, other: boolean, waiting: number): void {
     this.lost.hidden = up;
-    this.tools.anew(); // what was asked is not answered any more
-    write(
-      this.lost,
-      up
-        ? ""
-        : say(
-            "The server does not answer; trying again. If it was ended, start it again and open the address that it prints.",
-          ),
-    );
+    set(this.root, { "data-lost": !up });
+    if (waiting === 0) this.tools.anew(); // what was asked is not answered any more
+    if (up) return write(this.lost, "");
+    const why = other
+      ? say("The server has another file open. What was done here is kept until one has this file.")
+      : say(
+          "The server does not answer; trying again. If it was ended, start it again and open the address that it prints: this tab goes on then.",
+        );
+    const kept = waiting ? ` ${say("Changes that wait for it, and are kept: {count}.", { count: waiting })}` : "";
+    write(this.lost, why + kept);
   }
 
   private async open(asked: Asked, name: string): Promise<void> {

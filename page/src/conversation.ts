@@ -5,7 +5,7 @@ import { mark } from "./frames";
 import { Numbers, type Pictured, type Planted, type ResponseMessage, type Side, type State } from "./protocol";
 import type { GhostMessage, Stores, StudyMessage, ToolMessage, VariantsMessage } from "./protocol";
 import { OPENS, type Shelf, type Shown, Story, type Told as Kept } from "./story";
-import { language } from "./words";
+import { language, say } from "./words";
 
 export interface Events {
   hello(message: Extract<Told, { type: "hello" }>): void;
@@ -26,7 +26,8 @@ export interface Events {
   saved(name: string): void;
   pictured(message: Pictured | null, numbers: Numbers): void;
   file(told: HandedOut, bytes: DataView | undefined): void;
-  line(up: boolean): void;
+  /** Whether the server answers; else whether it has another file open, and how much waits for it. */
+  line(up: boolean, other: boolean, waiting: number): void;
   /** An answer takes longer than a reader waits without a sign. */
   waiting(on: boolean): void;
   /** Something was asked, or all that was asked is answered. */
@@ -53,6 +54,9 @@ const PATIENCE = 100;
 /** What leaves the machine on the server as it was; all else is said again after a broken line. */
 const IDLE = new Set(["ready", "speak", "save", "download", "tables", "study", "stores"]);
 
+/** What is kept until a server answers that does not: what changes the machine, or how it is shown. */
+const kept = ({ type }: Asked) => !(IDLE.has(type) || SLOW.has(type) || OPENS.has(type));
+
 /** Who asks these says himself why not. */
 const ASIDE = new Set(["entry", "tables"]);
 
@@ -70,6 +74,9 @@ export class Conversation {
   private late = 0;
   /** The last question of a story that is done again. */
   private repeats = 0;
+  /** Whether the server does not answer, and whether a new line waits for its first word. */
+  private down = false;
+  private returning = false;
 
   /** `shelf` is where what was done outlives a reload. */
   constructor(
@@ -109,12 +116,15 @@ export class Conversation {
   /** Ask; every question gets its answer, in this order. */
   ask(asked: Asked, answered?: Answered, got?: Question["got"]): void {
     this.dropWaiting();
+    if (this.down && !kept(asked)) return this.unheard(answered);
     this.queue.push({ seq: ++this.seq, asked, answered, got });
+    if (this.down) this.wait(false);
     this.next();
   }
 
   /** Try an edit of a drag under way; a newer one takes its place while it waits. */
   attempt(label: string, edits: Edit[], stamp: number, answered?: Question["answered"]): void {
+    if (this.down) return;
     const seq = ++this.seq;
     mark("equipoise:input", seq, stamp);
     this.dropWaiting();
@@ -127,7 +137,7 @@ export class Conversation {
   }
 
   private next(): void {
-    if (this.flight) return;
+    if (this.flight || this.down) return;
     const question = this.queue.shift() ?? this.waiting;
     if (!question) return;
     if (question === this.waiting) this.waiting = null;
@@ -146,7 +156,7 @@ export class Conversation {
         // Without a machine a `hello` is all the answer there is to `ready`.
         if (!told.machine && this.flight?.asked.type === "ready") this.land();
         this.events.hello(told);
-        return this.next();
+        return this.returning ? this.back(told.base) : this.next();
       case "state":
         return this.state({ ...told, numbers: new Numbers(told.arrays, buffers[0]) });
       case "pictured":
@@ -257,17 +267,22 @@ export class Conversation {
 
   /** Do again what was done in this tab; tells whether there was anything. */
   recall(base: string): boolean {
-    return this.repeat(this.story.begin(base));
+    return this.goOn(this.story.begin(base));
   }
 
-  /** Go on with what was done in a tab that is closed. */
+  /** Go on with what was done in a tab that is closed, or whose server is gone. */
   resume(told: Kept, base: string): void {
-    this.repeat(this.story.resume(told, base));
+    this.goOn(this.story.resume(told, base));
   }
 
-  /** What was done in tabs that are closed. */
+  /** What was done in such tabs. */
   offered(base: string): Promise<Kept[]> {
     return this.story.offered(base);
+  }
+
+  /** Let other tabs know where the server is. */
+  announce(): void {
+    this.wire.announce?.();
   }
 
   /** Whether a question is of a story, and not of who sits here now. */
@@ -275,23 +290,63 @@ export class Conversation {
     return seq <= this.repeats;
   }
 
-  private repeat(story: Asked[]): boolean {
+  /** Repeat a story, and ask what was left to be asked. */
+  private goOn(story: Asked[]): boolean {
+    const waiting = this.story.waiting;
+    this.story.waits(null);
+    this.repeat(story);
+    for (const asked of waiting) this.ask(asked);
+    return story.length + waiting.length > 0;
+  }
+
+  private repeat(story: Asked[]): void {
     for (const asked of story) this.queue.push({ seq: ++this.seq, asked });
     this.repeats = this.seq;
     this.next();
-    return story.length > 0;
   }
 
-  /** A new connection knows nothing: tell it all that was done. */
   private line(up: boolean): void {
-    this.events.line(up);
+    this.returning = up;
+    if (up) return;
+    if (this.down) return this.wait(false);
+    this.down = true;
+    const asked = [...(this.flight ? [this.flight] : []), ...this.queue, ...this.aside.values()];
     this.land();
     this.waiting = null;
-    this.queue.length = 0;
     if (this.aside.size) this.events.busy(null);
     this.aside.clear();
-    if (!up) return;
+    this.queue.length = 0;
+    for (const question of asked.filter(({ seq }) => !this.repeated(seq))) {
+      if (kept(question.asked)) this.queue.push(question);
+      else if (question.asked.type !== "ready") this.unheard(question.answered);
+    }
+    this.wait(false);
+  }
+
+  /** What is asked is kept, for another tab too. */
+  private wait(other: boolean): void {
+    this.story.waits(this.queue.map(({ asked }) => asked));
+    this.events.line(false, other, this.queue.length);
+  }
+
+  private unheard(answered: Answered | undefined): void {
+    const message = say("the server does not answer; ask again when it does");
+    if (answered) answered(message, null);
+    else this.events.refused(message, null);
+  }
+
+  /** A new connection knows nothing: tell it all that was done, and then what has waited. */
+  private back(base: string): void {
+    this.returning = false;
+    if (!this.story.fits(base)) return this.wait(true);
+    this.down = false;
+    const waiting = this.queue.splice(0);
+    this.story.waits(null);
+    this.events.line(true, false, 0);
     this.wire.send({ type: "speak", languages: [language()] });
-    if (!this.repeat(this.story.all())) this.ask({ type: "ready" });
+    const story = this.story.all(base);
+    if (story.length) this.repeat(story);
+    else this.ask({ type: "ready" });
+    for (const question of waiting) this.queue.push({ ...question, seq: ++this.seq });
   }
 }

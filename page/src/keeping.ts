@@ -5,7 +5,7 @@ import { h } from "./dom";
 import type { Asked, Hello } from "./protocol";
 import { question } from "./question";
 import { fragment, LONGEST, read, type Shared } from "./share";
-import type { Told } from "./story";
+import { stepsOf, type Told } from "./story";
 import type { Opened } from "./toolbar";
 import { say } from "./words";
 
@@ -48,6 +48,12 @@ export class Keeping {
   /** A page begins: by what its address holds, or by what was done here; tells whether it has. */
   async begin(hello: Hello): Promise<boolean> {
     this.largest = hello.largest;
+    const begun = await this.goOn(hello);
+    this.page.talk.announce(); // once it is known what tabs without a server have left
+    return begun;
+  }
+
+  private async goOn(hello: Hello): Promise<boolean> {
     if (await this.shared()) return true;
     if (this.page.talk.recall(hello.base)) return true;
     const [told] = await this.page.talk.offered(hello.base);
@@ -155,7 +161,7 @@ export class Keeping {
   }
 
   private show(told: Told, base: string): void {
-    const count = told.past.length;
+    const count = stepsOf(told);
     this.offer.replaceChildren(
       say("{name} was changed here before, in {count} steps.", { name: told.name, count }),
       " ",

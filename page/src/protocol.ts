@@ -1,5 +1,7 @@
 /** What the page and the server say to each other. Lengths in m, angles in rad, all else in SI. */
 
+import type { Particles } from "./particles";
+
 export type Pair = [number, number];
 
 export type Edit =
@@ -74,7 +76,7 @@ export interface Hello {
   largest: number;
   /** Whether the server holds a machine already. */
   machine?: boolean;
-  /** Sign of the file that it can save; empty where there is none. */
+  /** Sign of the file that it can save, else name of what is open; empty where nothing is. */
   base: string;
   numbers: NumberRules;
 }
@@ -102,6 +104,8 @@ export interface Spoken {
   words: Record<string, string>;
   /** Chart -> what it shows, and what to look for. */
   explained: Record<string, string>;
+  /** How particles go by the word before them, in Korean. */
+  particles?: Particles | null;
 }
 
 /** In which something is read, and how many of it one SI unit is. */
@@ -669,6 +673,8 @@ export interface Wire {
   off(event: "msg:custom", heard: Heard): void;
   /** Give up what takes long; only where that can be done. */
   cancel?(): void;
+  /** Let other tabs know where the server is; only where there is one. */
+  announce?(): void;
 }
 
 export type Heard = (content: Told, buffers: DataView[]) => void;

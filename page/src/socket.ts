@@ -15,10 +15,18 @@ export class Socket extends Bytes implements Wire {
   private wait = FIRST_WAIT;
   private closed = false;
   private opened = 0;
+  private later = 0;
+  /** Between the tabs of a browser: the address of a server that was started. */
+  private readonly others = new BroadcastChannel("equipoise address");
 
-  constructor(private readonly address: string) {
+  constructor(private address: string) {
     super();
+    this.others.onmessage = ({ data }) => this.take(String(data));
     this.open();
+  }
+
+  announce(): void {
+    this.others.postMessage(this.address);
   }
 
   send(content: object): void {
@@ -29,6 +37,7 @@ export class Socket extends Bytes implements Wire {
 
   close(): void {
     this.closed = true;
+    this.others.close();
     this.socket?.close();
   }
 
@@ -36,7 +45,7 @@ export class Socket extends Bytes implements Wire {
     const socket = new WebSocket(this.address);
     socket.binaryType = "arraybuffer";
     socket.onopen = () => this.begin(socket);
-    socket.onclose = (event) => this.end(event.code === TRY_LATER);
+    socket.onclose = (event) => this.end(socket, event.code === TRY_LATER);
     socket.onmessage = (event: MessageEvent<ArrayBuffer | string>) => this.receive(event.data);
     this.socket = socket;
   }
@@ -51,11 +60,23 @@ export class Socket extends Bytes implements Wire {
     for (const text of this.unsent.splice(0)) socket.send(text);
   }
 
-  private end(told: boolean): void {
-    if (this.closed) return;
+  private end(socket: WebSocket, told: boolean): void {
+    if (this.closed || socket !== this.socket) return;
     if (!told) this.tell({ type: "lost" }, []);
-    setTimeout(() => !this.closed && this.open(), this.wait);
+    this.later = window.setTimeout(() => !this.closed && this.open(), this.wait);
     this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
+  }
+
+  /** Another tab has found a server: where this one has none, go there, and stay for a reload. */
+  private take(address: string): void {
+    const { host, search } = new URL(address, location.href);
+    const lost = this.opened && this.socket?.readyState !== WebSocket.OPEN;
+    if (!lost || address === this.address || host !== location.host) return;
+    this.address = address;
+    history.replaceState(null, "", `/${search}${location.hash}`);
+    clearTimeout(this.later);
+    this.wait = FIRST_WAIT;
+    this.open();
   }
 
   private receive(data: ArrayBuffer | string): void {

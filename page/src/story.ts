@@ -27,6 +27,8 @@ export interface Told {
   future: Step[];
   /** What was measured, which no step takes back. */
   record?: Asked | undefined;
+  /** What waits for a server that does not answer; there while none does. */
+  lost?: Asked[];
 }
 
 /** Where stories outlive the page; a widget in a notebook has none. */
@@ -34,7 +36,7 @@ export interface Shelf {
   readonly tab: string;
   read(tab: string): Told | null;
   write(told: Told): void;
-  /** Stories of tabs that are closed, the newest first. */
+  /** Stories of tabs that are closed, or whose server is gone, the newest first. */
   left(): Promise<Told[]>;
 }
 
@@ -80,12 +82,30 @@ export class Story {
   /** Stories of closed tabs that began with what the server has open. */
   async offered(base: string): Promise<Told[]> {
     const left = (await this.shelf?.left()) ?? [];
-    return left.filter((one) => one.past.length && fits(one, base));
+    return left.filter((one) => stepsOf(one) && fits(one, base));
+  }
+
+  /** Whether a server which has that open can be told it. */
+  fits(base: string): boolean {
+    return fits(this.told, base);
   }
 
   /** Everything, to be asked of a server that knows nothing but what it was started with. */
-  all(): Asked[] {
-    return asked(this.told, this.told.base);
+  all(base: string): Asked[] {
+    return asked(this.told, base);
+  }
+
+  /** What waits for a server. */
+  get waiting(): Asked[] {
+    return this.told.lost ?? [];
+  }
+
+  /** Nothing waits any more where it is null. */
+  waits(lost: Asked[] | null): void {
+    if (lost) this.told.lost = lost;
+    else if (this.told.lost) delete this.told.lost;
+    else return;
+    this.write();
   }
 
   /** Whether an answer tells of a step more. */
@@ -127,6 +147,11 @@ export class Story {
     this.told.when = Date.now();
     this.shelf?.write(this.told);
   }
+}
+
+/** How many steps there are, with those that wait. */
+export function stepsOf({ past, lost = [] }: Told): number {
+  return past.length + lost.length;
 }
 
 function empty(base: string): Told {
@@ -213,6 +238,6 @@ async function left(own: string): Promise<Told[]> {
   const { held } = await navigator.locks.query();
   const open = new Set((held ?? []).map(({ name }) => name));
   return stories()
-    .filter(({ tab }) => tab !== own && !open.has(PREFIX + tab))
+    .filter(({ tab, told }) => tab !== own && (told.lost || !open.has(PREFIX + tab)))
     .map(({ told }) => told);
 }

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 import socket
 from collections.abc import Callable
 from pathlib import Path
@@ -11,7 +13,7 @@ from playwright.sync_api import Page, WebSocketRoute, expect
 
 import equipoise as eq
 from browser.live import Live
-from support.chromium import serving
+from support.chromium import served, serving
 from surface.running import example_text
 
 LEAVES = "window.dispatchEvent(new Event('beforeunload', { cancelable: true }))"
@@ -166,6 +168,49 @@ def test_what_was_done_in_a_closed_tab_is_offered(live: Live, address: str) -> N
     expect(again.field("crank mass")).to_have_value("333 g")
     again.button("Undo").click()
     expect(again.field("crank mass")).to_have_value("199 g")
+
+
+def test_edits_without_a_server_are_kept_for_the_next_one(free_page: Page, tmp_path: Path) -> None:
+    """Which has another token: the open tab goes there as soon as another one is opened."""
+    path, port, page = tmp_path / "mine.toml", free_port(), free_page
+    eq.save(eq.load("yamashita-1"), path)
+    alert = page.get_by_role("alert").filter(has_text="does not answer")
+    with served(path, "--port", port) as (address, number):
+        live = Live.open(page, address)
+        live.type(live.field("drive speed"), "150 rpm")
+        os.kill(number, signal.SIGKILL)
+        expect(alert).to_be_visible()
+    live.field("crank mass").fill("300 g")
+    live.field("crank mass").press("Enter")
+    expect(alert).to_contain_text("Changes that wait for it, and are kept: 1")
+    page.get_by_title("Download", exact=True).click()
+    live.button("Download model").click()
+    expect(live.told("the server does not answer; ask again when it does")).to_be_visible()
+    live.button("Balance").click()
+    expect(live.told("the server does not answer; ask again when it does")).to_be_visible()
+    eq.save(eq.load("drag-link"), tmp_path / "other.toml")
+    with serving(tmp_path / "other.toml", "--port", port) as address:
+        other = page.context.new_page()
+        Live.open(other, address)
+        expect(page.get_by_role("alert").filter(has_text="has another file open")).to_be_visible()
+        expect(other.get_by_text("was changed here before")).to_be_hidden()
+    expect(alert).to_be_visible()
+    with serving(path, "--port", port) as address:
+        other.goto(address)
+        expect(other.get_by_text("mine.toml was changed here before, in 2 steps")).to_be_visible()
+        expect(page.locator(".lost[role=alert]")).to_be_hidden()
+        live.settled()
+        done = eq.load("yamashita-1").with_link("crank", mass=0.3)
+        for tab in (live, Live(other)):
+            if tab is not live:
+                other.get_by_role("button", name="Go on").click()
+            expect(tab.field("crank mass")).to_have_value("300 g")
+            expect(tab.field("drive speed")).to_have_value("150 rpm")
+            assert tab.machine().links == done.links
+            tab.button("Undo").click()
+            expect(tab.field("crank mass")).to_have_value("199 g")
+        page.reload()  # by the new address
+        expect(live.button("Redo")).to_be_enabled()
 
 
 def test_a_link_holds_the_model(live: Live, new_page: Callable[..., Page]) -> None:

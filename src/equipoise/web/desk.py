@@ -52,8 +52,18 @@ class Desk:
         """The first thing that a page is told."""
         reply = self.session.hello()
         reply.content["machine"] |= self.tool is not None or self.studied
+        reply.content["base"] = reply.content["base"] or self._name
         reply.content["study"] = None if self.store is None else self.store.name
         return reply
+
+    @property
+    def _name(self) -> str:
+        """Of what is open; empty where nothing is."""
+        if self.studied:
+            return "" if self.store is None else self.store.name
+        if self.tool is not None:
+            return self.tool.name
+        return "" if self.session.found is None else self.session.found.design.name
 
     def receive(self, message: Message) -> Iterator[Reply]:
         """Answer a message; what takes long comes last, and may be left unasked."""
