@@ -3,13 +3,14 @@
 import { h } from "./dom";
 import { say, toSay } from "./words";
 
-export const KEYS: [keys: string, what: string][] = [
+/** Keys as they are labelled, or in words. */
+export const KEYS: [keys: string | (() => string), what: string][] = [
   ["Tab", toSay("next joint, centre of mass, number or button")],
   ["← → ↑ ↓", toSay("move the chosen joint or centre of mass by one step")],
-  [toSay("Shift + arrow"), toSay("ten steps")],
-  [toSay("Alt + arrow"), toSay("a tenth of a step")],
+  [() => say("Shift + arrow"), toSay("ten steps")],
+  [() => say("Alt + arrow"), toSay("a tenth of a step")],
   ["Space", toSay("play and pause, while the drawing has the focus")],
-  [toSay(", and ."), toSay("crank back and on by one degree, while the drawing has the focus")],
+  [() => say(", and ."), toSay("crank back and on by one degree, while the drawing has the focus")],
   ["+ − 0", toSay("zoom in, zoom out, show all, while the drawing has the focus")],
   ["Enter, Escape", toSay("in a number: take it, or give back the old one")],
   ["↑ ↓", toSay("in a number: a little more, a little less (Shift: ten times)")],
@@ -23,7 +24,7 @@ export const KEYS: [keys: string, what: string][] = [
 
 export function helpDialog(version: () => string, tour: () => void): HTMLDialogElement {
   const rows = KEYS.map(([keys, what]) =>
-    h("tr", {}, h("th", { scope: "row" }, h("kbd", {}, say(keys))), h("td", {}, say(what))),
+    h("tr", {}, h("th", { scope: "row" }, h("kbd", {}, typeof keys === "string" ? keys : keys())), h("td", {}, say(what))),
   );
   const told = h("p", { class: "quiet" });
   const dialog = h(

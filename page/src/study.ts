@@ -184,17 +184,18 @@ export class StudyView {
     if (!designs || this.ranges.contains(document.activeElement)) return;
     const rows = designs.columns.map(({ told }, k) => {
       const [low, high] = designs.ranges.get(k) ?? [null, null];
-      const end = (name: string, value: number | null, at: 0 | 1) => {
+      const name = { label: told.label, unit: told.unit };
+      const end = (words: string, value: number | null, at: 0 | 1) => {
         const input = h("input", {
           type: "text",
           inputmode: "decimal",
-          "aria-label": `${told.label}, ${name}, ${told.unit}`,
+          "aria-label": words,
           value: value === null ? "" : shown(value).replace("−", "-"),
         });
         input.addEventListener("change", () => this.typed(k, at, input));
         return input;
       };
-      const ends = [end(say("from"), low, 0), end(say("to"), high, 1)];
+      const ends = [end(say("{label}, from, {unit}", name), low, 0), end(say("{label}, to, {unit}", name), high, 1)];
       const words = unbroken(`${capital(told.label)} ${told.unit}`.trim());
       return h("div", { class: "range-row" }, h("span", {}, words), ...ends);
     });

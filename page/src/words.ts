@@ -1,5 +1,6 @@
 /** The page's texts in the reader's language: English in the code, the rest told by the server. */
 
+import { particles } from "./particles";
 import type { Spoken, Told, Wire } from "./protocol";
 
 /** Where a reader's choice of a language is kept. */
@@ -11,11 +12,12 @@ let told: Omit<Spoken, "type"> = {
   words: {},
   explained: {},
 };
+let joined = (text: string): string => text;
 
 /** A text in the language that is spoken, its `{placeholders}` filled in. */
 export function say(text: string, values: Record<string, string | number> = {}): string {
   const said = told.words[text] ?? text;
-  return said.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
+  return joined(said.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole)));
 }
 
 /** Mark a text that is said later, by `say` of a name. */
@@ -70,7 +72,10 @@ export function agree(wire: Wire, wishes: string[]): Promise<void> {
       // Who is turned away, or has lost the server, reads so in English.
       if (content.type !== "spoken" && content.type !== "refused" && content.type !== "lost") return;
       wire.off("msg:custom", hear);
-      if (content.type === "spoken") told = content;
+      if (content.type === "spoken") {
+        told = content;
+        joined = content.particles ? particles(content.particles) : (text) => text;
+      }
       done();
     };
     wire.on("msg:custom", hear);

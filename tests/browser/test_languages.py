@@ -7,7 +7,7 @@ from collections.abc import Callable
 from playwright.sync_api import Page, expect
 
 from browser.live import FITS, Live
-from equipoise.i18n import catalogue
+from equipoise.i18n import catalogue, say, speaking
 
 
 def test_the_browser_s_language_is_spoken_until_another_is_chosen(
@@ -28,3 +28,37 @@ def test_the_browser_s_language_is_spoken_until_another_is_chosen(
     page.reload()
     expect(page.get_by_role("rowheader", name=ko["Shaking force"], exact=True)).to_be_visible()
     assert page.evaluate("document.documentElement.lang") == "ko"
+
+
+OPENED = (
+    "drag-link",
+    "class-three",
+    "balance-spring",
+    "yamashita-2",
+    "planetary-planting-arm",
+    "cam-pusher",
+)
+
+
+def test_korean_particles_go_by_the_name_before_them(
+    new_page: Callable[..., Page], address: str
+) -> None:
+    """As they do where Python says the sentence; and keys are called as they are labelled."""
+    page, ko = new_page(locale="ko-KR"), catalogue("ko")
+    live = Live.open(page, address)
+    live.drag(page.locator("[data-kind=point][data-name=B]"), (12, 0))
+    asked = page.get_by_role("dialog").filter(has_text="yamashita-1")
+    for name in OPENED:
+        page.get_by_role("combobox", name=ko["Example"]).select_option(name)
+        with speaking("ko"):
+            told = say(
+                "Opening {name} gives up what was done to {machine}, and all that can be undone.",
+                name=name,
+                machine="yamashita-1",
+            )
+        assert "(" not in told
+        expect(asked).to_contain_text(told)
+        asked.get_by_role("button", name=ko["Cancel"]).click()
+    page.keyboard.press("?")
+    keys = page.get_by_role("dialog", name=ko["Keys"]).locator("kbd").all_inner_texts()
+    assert "Delete" in keys and ko["Delete"] not in keys

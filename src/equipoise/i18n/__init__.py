@@ -13,6 +13,8 @@ from functools import cache
 from importlib import resources
 from typing import Any, Self
 
+from equipoise.i18n.particles import with_particles
+
 LANGUAGES = {"en": "English", "ja": "日本語", "ko": "한국어"}
 """Code of a language -> its own name."""
 
@@ -24,8 +26,12 @@ def say(text: str, /, **values: Any) -> str:
 
     text : in English, as in the catalogues; one that is in none of them stays English.
     """
-    said = catalogue(_spoken.get()).get(text, text)
-    return said.format(**values) if values else said
+    language = _spoken.get()
+    said = catalogue(language).get(text, text)
+    if values:
+        said = said.format(**values)
+        said = with_particles(said) if language == "ko" else said
+    return said
 
 
 def to_say(text: str) -> str:
@@ -144,6 +150,11 @@ def all_of(parts: Sequence[Note | str], commas: bool = False) -> Note | str:
         template = to_say("{first}, {last}") if commas else to_say("{first} and {last}")
         before = Note(template, first=before, last=one)
     return Note("{first} and {last}", first=before, last=last)
+
+
+def listed(first: str, last: str) -> str:
+    """Two parts of a label, with the comma of the language that is spoken."""
+    return say("{first}, {last}", first=first, last=last)
 
 
 def in_each(text: str, change: Callable[[str], str]) -> str:

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from equipoise.errors import EquipoiseError, MobilityError, UsageError, to_paste
-from equipoise.i18n import Note, say
+from equipoise.i18n import Note, listed, say
 from equipoise.mechanism.assembly.named_joints import pin_radii
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.machine import FRAME, Machine
@@ -201,7 +201,7 @@ def _fields(sketch: Sketch) -> Iterator[Field]:
         for axis, value in zip("xy", place, strict=True):
             put = partial(_placed, point, axis)
             path = f"frame.points.{point}.{axis}"
-            yield Field(path, FRAME, f"{point}, {axis}", "length", value, put)
+            yield Field(path, FRAME, listed(point, axis), "length", value, put)
 
 
 def _with_speed(sketch: Sketch, value: float) -> Sketch:

@@ -9,7 +9,7 @@ from math import pi
 from typing import Any
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.i18n import say, to_say
+from equipoise.i18n import listed, say, to_say
 from equipoise.keys import Frozen, Quantity, quantities_of
 from equipoise.mechanism.parts.links import MASS_FIELDS
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector, size_of
@@ -202,7 +202,7 @@ def _put(place: Place, design: Design, value: float) -> Design:
 
 def _point(place: Place, group: str, label: str, point: Vector) -> Iterator[Field]:
     for axis, value in zip("xy", point, strict=True):
-        yield _field((*place, axis), group, f"{label}, {axis}", "length", value)
+        yield _field((*place, axis), group, listed(label, axis), "length", value)
 
 
 def _numbers(
@@ -212,7 +212,8 @@ def _numbers(
     for key, one in quantities_of(item).items():
         value = getattr(item, one.field)
         if value is not None and key not in without and isinstance(one.kind, Quantity):
-            label = f"{of}{say(key.replace('_', ' '))}"
+            word = say(key.replace("_", " "))
+            label = listed(of, word) if of else word
             yield _field((*place, key), group, label, one.kind.dimension, value)
 
 
@@ -242,12 +243,12 @@ def _links(machine: Machine) -> Iterator[Field]:
 def _bodies(where: Place, name: str, link: Link) -> Iterator[Field]:
     for number, body in enumerate(link.bodies, 1):
         place = (*where, "bodies", str(number))
-        of = f"{say(body.shape)} {number}, "
+        of = f"{say(body.shape)} {number}"
         known = quantities_of(body).items()
         left_out = (key for key, one in known if getattr(body, key) == one.default)
         yield from _numbers(place, name, of, body, (*left_out,))
         if body.at is not None and not isinstance(body.at, str):
-            yield from _point((*place, "at"), name, f"{of}{say('centre')}", body.at)
+            yield from _point((*place, "at"), name, listed(of, say("centre")), body.at)
 
 
 def _measures(where: str, body: str, points: Mapping[str, Vector]) -> Iterator[Field]:
@@ -279,12 +280,12 @@ def _gears(machine: Machine) -> Iterator[Field]:
 def _cams(machine: Machine) -> Iterator[Field]:
     for number, cam in enumerate(machine.cams, 1):
         without = () if cam.rides == "roller" else ("roller_radius",)
-        yield from _numbers(("cams", str(number)), "cams", f"{cam.name}, ", cam, without)
+        yield from _numbers(("cams", str(number)), "cams", cam.name, cam, without)
 
 
 def _springs(machine: Machine) -> Iterator[Field]:
     for number, spring in enumerate(machine.springs, 1):
-        of = say("{point} to {other}", point=spring.point, other=spring.to) + ", "
+        of = say("{point} to {other}", point=spring.point, other=spring.to)
         yield from _numbers(("springs", str(number)), "springs", of, spring)
 
 

@@ -10,7 +10,7 @@ from math import hypot
 from typing import Any, Literal
 
 from equipoise.errors import UsageError
-from equipoise.i18n import Note, all_of, say
+from equipoise.i18n import Note, all_of, listed, say
 from equipoise.mechanism.parts.machine import Vector
 from equipoise.web.messages import Drag
 
@@ -48,7 +48,7 @@ class Measure:
     def label(self) -> str:
         """What a page calls it."""
         line = say("{point} to {other}", point=self.start, other=self.moves)
-        return line if self.dimension == "length" else f"{line}, {say('direction')}"
+        return line if self.dimension == "length" else listed(line, say("direction"))
 
     def place(
         self, points: Mapping[str, Vector], value: float, keep: tuple[str, ...] = ()

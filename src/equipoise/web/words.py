@@ -9,6 +9,7 @@ from importlib.resources import files
 from typing import Any
 
 from equipoise.i18n import LANGUAGES, catalogue, speaking
+from equipoise.i18n.particles import rules
 from equipoise.web.explained import explained
 
 WORDS = "words.json"
@@ -35,4 +36,5 @@ def spoken_in(language: str) -> dict[str, Any]:
     with speaking(language):
         charts = explained()
     words = words_of(language)
-    return {"language": language, "languages": LANGUAGES, "words": words, "explained": charts}
+    told = {"language": language, "languages": LANGUAGES, "words": words, "explained": charts}
+    return told | {"particles": rules() if language == "ko" else None}

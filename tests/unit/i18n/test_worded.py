@@ -65,7 +65,7 @@ def test_a_model_that_is_written_tells_what_was_done_in_each_language(tmp_path):
     for _ in range(2):
         write_model(machine, str(tmp_path / "new.toml"), Note(", balanced"), origin)
         machine = eq.load(tmp_path / "new.toml")
-    assert machine.title.texts == {"en": "Four-bar, balanced", "ja": "四節リンク、釣り合わせ後"}
+    assert machine.title.texts == {"en": "Four-bar, balanced", "ja": "四節リンク、釣合わせ後"}
     assert machine.description.texts["ko"] == f"{'A의 설계 3. 원래 설명: ' * 2}설명"
     assert in_each("plain", str.upper) == "PLAIN"
 
