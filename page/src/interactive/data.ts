@@ -77,6 +77,13 @@ export interface Link {
   sized: "points" | "length" | "sides";
 }
 
+/** A row of several on one shaft: grid of its crank angles, and where it is, m. */
+export interface MachineRow {
+  grid: string;
+  offset: [number, number];
+  lateral: number;
+}
+
 export interface MachineData {
   language: string;
   words: Record<string, string>;
@@ -97,6 +104,10 @@ export interface MachineData {
   /** Crank angles that extremes are taken from, and those that are equally spaced; null for all. */
   shown: number[] | null;
   frames: number[] | null;
+  rows: MachineRow[];
+  /** Moment of inertia of the flywheel that rows share, kg m2, and the acceleration of the crank, rad/s2. */
+  flywheel: number;
+  acceleration: number;
   design: number[];
   names: string[];
   outputs: Output[];

@@ -36,13 +36,16 @@ class Shaking implements Overlay<Drawable> {
   private solution: Solution | null = null;
   private largest = 0;
 
-  constructor(private readonly at: string) {
+  constructor(
+    private readonly at: string,
+    private readonly force: string,
+  ) {
     this.element.append(s("g", { class: "force" }, this.shaft, this.head));
   }
 
   /** The scale is that of the original, so that a smaller force is a shorter arrow. */
   measure(original: Solution): void {
-    this.largest = original.figures("shaking_force")?.peak ?? 0;
+    this.largest = original.figures(this.force)?.peak ?? 0;
   }
 
   take(solution: Solution): void {
@@ -56,7 +59,7 @@ class Shaking implements Overlay<Drawable> {
   pose(view: View, k: number): void {
     const at = this.solution?.machine.frames[k];
     if (!this.solution || at === undefined || !this.largest) return;
-    const [fx, fy] = this.solution.vector("shaking_force", at);
+    const [fx, fy] = this.solution.vector(this.force, at);
     const [x, y] = view.px(...this.solution.point(this.at, at));
     const scale = (LONGEST * Math.min(view.width, view.height)) / this.largest;
     const [dx, dy] = [fx * scale, -fy * scale];
@@ -133,9 +136,9 @@ class Page implements Attempts {
   }
 
   private arrow(): Shaking {
-    const { crank, links, scene } = this.machine.data;
+    const { crank, links, scene, rows } = this.machine.data;
     const points = crank ? (links[crank]?.points ?? []) : [];
-    const shaking = new Shaking(points.find((name) => scene.frame.includes(name)) ?? (scene.frame[0] as string));
+    const shaking = new Shaking(points.find((name) => scene.frame.includes(name)) ?? (scene.frame[0] as string), rows.length ? "rows.shaking_force" : "shaking_force");
     shaking.measure(this.original);
     this.stage.overlay(shaking, "grips");
     return shaking;

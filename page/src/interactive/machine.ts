@@ -3,7 +3,7 @@
 import { signed } from "../format";
 import type { Pair } from "../protocol";
 import { say } from "../words";
-import type { States, MachineData } from "./data";
+import type { MachineData, MachineRow, States } from "./data";
 
 /** Cosine of the angle between a link and the base's, beyond which turns cannot be counted. */
 const FAR = -0.5;
@@ -31,6 +31,7 @@ export class Machine {
   /** Place of a number in a design, by its path. */
   readonly numbers = new Map<string, number>();
   private readonly grid: Float64Array;
+  private readonly rowGrids: Float64Array[];
   private readonly shares: Float64Array | null;
 
   constructor(
@@ -39,6 +40,7 @@ export class Machine {
   ) {
     this.theta = floats(data.theta);
     this.grid = floats(data.grid);
+    this.rowGrids = data.rows.map(({ grid }) => floats(grid));
     this.shares = data.shares === null ? null : floats(data.shares);
     this.base = Float64Array.from(data.design);
     const all = Array.from(this.theta, (_, k) => k);
@@ -50,10 +52,18 @@ export class Machine {
 
   /** Everything at all crank angles, of a design (numbers in SI units, in the order of the fields). */
   solve(design: Float64Array): Solution {
-    const { angles, names } = this.data;
-    const out = new Float64Array(names.length * angles);
-    this.states(design, this.grid, angles, out);
-    return new Solution(this, design, out);
+    const run = (grid: Float64Array) => {
+      const out = new Float64Array(this.data.names.length * this.data.angles);
+      this.states(design, grid, this.data.angles, out);
+      return out;
+    };
+    return new Solution(this, design, run(this.grid), this.rowGrids.map(run));
+  }
+
+  /** A signal among all of them. */
+  signal(out: Float64Array, name: string): Float64Array | null {
+    const [place, { angles }] = [this.place.get(name), this.data];
+    return place === undefined ? null : out.subarray(place * angles, (place + 1) * angles);
   }
 
   figures(values: Float64Array): Figures {
@@ -77,6 +87,8 @@ export class Machine {
 }
 
 export class Solution {
+  /** Signals of all rows together. */
+  private readonly sums = new Map<string, Float64Array>();
   /** Why the machine cannot move through its cycle with these numbers; null where it can. */
   readonly refusal: string | null;
 
@@ -84,15 +96,41 @@ export class Solution {
     readonly machine: Machine,
     readonly design: Float64Array,
     private readonly out: Float64Array,
+    rows: Float64Array[],
   ) {
     this.refusal = this.refused();
+    if (rows.length) this.add(rows);
   }
 
   /** A signal over the crank angles. */
   row(name: string): Float64Array | null {
-    const place = this.machine.place.get(name);
-    const { angles } = this.machine.data;
-    return place === undefined ? null : this.out.subarray(place * angles, (place + 1) * angles);
+    return this.sums.get(name) ?? this.machine.signal(this.out, name);
+  }
+
+  /** Sum up what all rows do together, each at its own crank angles; see `Analysis.together`. */
+  private add(rows: Float64Array[]): void {
+    const { machine } = this;
+    const { angles, flywheel, acceleration } = machine.data;
+    type At = (signal: string) => number;
+    const sum = (name: string, of: (at: At, row: MachineRow) => number, shared = 0) => {
+      const at = (k: number) =>
+        rows.reduce((all, out, r) => {
+          const value = of((signal) => machine.signal(out, signal)?.[k] ?? 0, machine.data.rows[r] as MachineRow);
+          return all + value;
+        }, shared);
+      this.sums.set(`rows.${name}`, Float64Array.from({ length: angles }, (_, k) => at(k)));
+    };
+    // rows on one shaft share a flywheel
+    const shared = (rows.length - 1) * flywheel * (this.number("drive.acceleration") ?? acceleration);
+    const [x, y] = ["shaking_force.x", "shaking_force.y"] as const;
+    sum(x, (at) => at(x));
+    sum(y, (at) => at(y));
+    sum("shaking_moment", (at, { offset }) => at("shaking_moment") + offset[0] * at(y) - offset[1] * at(x), shared);
+    sum("roll_moment", (at, { lateral }) => at("rocking_moment.x") - lateral * at(y));
+    sum("yaw_moment", (at, { lateral }) => at("rocking_moment.y") + lateral * at(x));
+    sum("drive_torque", (at) => at("drive_torque"), -shared);
+    const [fx, fy] = [this.row(`rows.${x}`), this.row(`rows.${y}`)] as [Float64Array, Float64Array];
+    this.sums.set("rows.shaking_force", fx.map((value, k) => Math.hypot(value, fy[k] as number)));
   }
 
   figures(name: string): Figures | null {

@@ -39,7 +39,7 @@ from equipoise.web.block import Array, Values
 from equipoise.web.drawing import stage_of
 from equipoise.web.edits import movable
 from equipoise.web.fields import SECTIONS
-from equipoise.web.figures import told_signals
+from equipoise.web.figures import ROWS, told_signals
 from equipoise.web.following import extent_of
 from equipoise.web.following_signs import ties_of
 from equipoise.web.measures import measures_of
@@ -76,13 +76,13 @@ def made(job: Job) -> str:
     """
     for what, given in (
         ("the support and its mounts", job.machine.support),
-        ("all rows but one", job.machine.rows[1:]),
+        ("in its drawing all rows but one", job.machine.rows[1:]),
     ):
         if given:
             job.leave_out(what)
     job.leave_out_forces()
     job.leave_out_motor()
-    machine = replace(job.machine, support=None, rows=(), balance=None)
+    machine = replace(job.machine, support=None, balance=None)
     page = Interactive(machine, job.crank_angle)
     script = asset("interactive.js")
     words = {text: word for text, word in catalogue(spoken()).items() if _says(script, text)}
@@ -126,13 +126,15 @@ class Interactive:
 
     @cached_property
     def outputs(self) -> list[Output]:
-        """Those that a script can have."""
+        """Those that a script can have, and what all rows have together."""
         outputs = {
             output.name: output
             for output in self.analysis.outputs
             if output.declared.array or output.declared.summed
         }
-        return [outputs[name] for name in signals_in_loops(self.motion.linkage, outputs)]
+        rows = [output for name, output in outputs.items() if name.startswith(ROWS)]
+        known = signals_in_loops(self.motion.linkage, outputs)
+        return [*rows, *(outputs[name] for name in known)]
 
     @cached_property
     def template(self) -> Template:
@@ -148,7 +150,8 @@ class Interactive:
         """
         linkage = self.motion.linkage
         try:
-            names = [*(output.name for output in self.outputs), *pose_signals(linkage)]
+            signals = [one.name for one in self.outputs if not one.name.startswith(ROWS)]
+            names = [*signals, *pose_signals(linkage)]
             plain = javascript(linkage, names)
         except UsageError as error:
             refusal = Note(
@@ -226,6 +229,9 @@ class Interactive:
             "shown": None if sampling is None else sampling.shown.tolist(),
             "frames": None if sampling is None else sampling.grid.tolist(),
             "grid": _floats(script.grid(theta)),
+            "rows": [*self._rows()],
+            "flywheel": self.machine.drive.flywheel,
+            "acceleration": motion.acceleration,
             "design": self._design(),
             "names": script.names,
             "outputs": [*self._outputs()],
@@ -263,6 +269,12 @@ class Interactive:
     @cached_property
     def scene(self) -> Scene:
         return Scene.of(self.analysis.motion)
+
+    def _rows(self) -> Iterator[Values]:
+        """Rows on one shaft: where each is, and its crank angles; none where there is one."""
+        for row in self.machine.rows if len(self.machine.rows) > 1 else ():
+            grid = self.script.grid(self.motion.crank_angle + row.phase)
+            yield {"grid": _floats(grid), "offset": row.offset, "lateral": row.lateral}
 
     def _outputs(self) -> Iterator[Values]:
         """What can be drawn over the crank angle, and of what figures are reported."""
