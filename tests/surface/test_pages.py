@@ -24,13 +24,14 @@ from equipoise.balancing import (
 from equipoise.cli import COMMANDS, app, reports
 from equipoise.figures import film
 from equipoise.handheld import design
+from equipoise.limits import THREAD, USUAL
 from equipoise.measured import fits
 from equipoise.planting import search, variables
 from equipoise.planting.figures import SAMPLES_OF_TURN
 from equipoise.schema.files import LARGEST
 from equipoise.studies import cloud, outcomes, study, tolerances, variance
 from equipoise.studies import search as searching
-from equipoise.vibration import collocation, coupled, steady
+from equipoise.vibration import collocation, coupled, steady, transient
 from equipoise.web import stores, variants
 from surface.running import example_text, read, written
 
@@ -172,6 +173,11 @@ CLAIMS = {
         f"A, B and so on, up to {variants.MOST}",
         f"Of more than {stores.MOST} designs",
         f"A model file may have {LARGEST // 1_000_000} MB",
+    ],
+    "output.md": [
+        f"{transient.SAMPLES_PER_TURN} numbers for each turn and {transient.LEAST_SAMPLES} at "
+        "least",
+        f"at most {USUAL // 2**30} GiB of memory (and {THREAD // 2**20} MiB for each processor)",
     ],
     "planting.md": [
         f"| {search.GENERATIONS} | of the global search",

@@ -57,7 +57,9 @@ What stands where:
   printed number.
 - **off by**: what is computed less what is printed.
 - **why**: a cause, which a test computes: what it gives, or the range that it leaves, meets the
-  printed digits. *Open* is what no cause is known of, *slip* what is wrong in print.
+  printed digits. *Half a digit* of a table is the range that is left where each of its numbers may
+  be off by half of its last digit. *Open* is what no cause is known of, *slip* what is wrong in
+  print.
 - **at most**: the largest difference, as a part of the largest value, or of a thousandth of all
   forces where an output vanishes.
 """
