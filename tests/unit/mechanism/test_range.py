@@ -13,6 +13,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ChangePointError, EquipoiseError, MotionError, RangeError, UsageError
 from equipoise.mechanism.assembly import stuck
+from equipoise.mechanism.kinematics.swings import swing
 from equipoise.mechanism.parts.machine import FRAME
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
 
@@ -80,12 +81,40 @@ def test_a_slider_crank_with_a_short_rod() -> None:
     same_angles(sorted(limits_of(short)), [(-limit, limit), (pi - limit, pi + limit)])
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_the_swing_that_is_suggested_keeps_away_from_dead_positions(seed: int) -> None:
+    """At its ends too transmission angles are 40 deg and more, or a tenth of the range is left."""
+    rng, count = np.random.default_rng(seed), 0
+    for lengths in rng.uniform(0.3, 1.0, (12, 4)):
+        given = four_bar(*lengths)
+        try:
+            swung = swing(given)
+        except MotionError:
+            continue
+        if swung is None:
+            continue
+        low, high = swung.machine.drive.motion.between
+        away = min(low - swung.reach.low, swung.reach.high - high)
+        angles = eq.analyze(swung.machine, 90).summary["transmission.C"]
+        with pytest.raises(MotionError) as caught:
+            eq.move(given)
+        sentence = str(caught.value)
+        if "keeps transmission angles of 40 deg" in sentence:
+            assert np.degrees([angles.min, pi - angles.max]).min() > 39.5  # ends are rounded
+        else:
+            assert "a tenth of the range" in sentence
+            assert away == pytest.approx(0.1 * (swung.reach.high - swung.reach.low), rel=0.02)
+        count += 1
+    assert count > 2
+
+
 def test_the_message_tells_links_and_angles() -> None:
     limit = degrees(opposite(1.0, 0.9, 0.5 + 0.55))
     message = (
         f"the crank cannot turn fully: it stops at {-limit:.2f} deg and at {limit:.2f} deg, where "
         "'coupler' and 'rocker' lie in line; change a length or direction, or let it swing by a "
-        'motion in [drive]\n\nmotion = { between = ["-64.2 deg", "64.2 deg"] }'
+        "motion in [drive]; the motion below stays a tenth of the range away from both ends, near "
+        'which forces grow without bound\n\nmotion = { between = ["-53.5 deg", "53.5 deg"] }'
     )
     with pytest.raises(RangeError) as caught:
         eq.move(four_bar(1.0, 0.9, 0.5, 0.55))

@@ -138,13 +138,14 @@ def _in_turn(stuck: MotionError) -> list[tuple[float, float]]:
     return [*ranges, *((low + 2 * pi, high + 2 * pi) for low, high in ranges[:1])]
 
 
-def _has_loops(linkage: Assembled) -> bool:
+def has_loops(linkage: Assembled) -> bool:
+    """Whether a group is solved by its loop equations, from one crank angle to the next."""
     return any(group.kind == "loops" for group in linkage.groups)
 
 
 def _start(linkage: Assembled, stuck: MotionError) -> tuple[float, int]:
     """A crank angle of the range, and how many other ranges there are."""
-    if _has_loops(linkage):
+    if has_loops(linkage):
         return 0.0, 0
     theta = np.linspace(0.0, 2 * pi, POINTS, endpoint=False)
     good = _closed(linkage, theta)
@@ -160,11 +161,24 @@ def _start(linkage: Assembled, stuck: MotionError) -> tuple[float, int]:
 
 def _closed(linkage: Assembled, theta: Array) -> Array:
     """At which crank angles (N,) all dyads can be closed."""
+    dyads = [one for one in linkage.groups if one.margin is not None]
+    pairs = zip(margins_at(linkage, theta, through=True), dyads, strict=True)
+    good = [margin > _least(group) for margin, group in pairs]
+    return np.all(good, axis=0) if good else np.ones(theta.shape, bool)
+
+
+def margins_at(linkage: Assembled, theta: Array, through: bool = False) -> list[Array]:
+    """Squared sines (N,) of the transmission angle of each dyad at crank angles (N,), rad.
+
+    through : with those that are carried through their dead positions by other joints.
+    """
     with np.errstate(all="ignore"):
         state = run(linkage.motion, linkage.start(theta))
-    margins = [(state[one.margin], _least(one)) for one in linkage.groups if one.margin is not None]
-    good = [np.broadcast_to(margin, theta.shape) > least for margin, least in margins]
-    return np.all(good, axis=0) if good else np.ones(theta.shape, bool)
+    return [
+        np.broadcast_to(state[one.margin], theta.shape)
+        for one in linkage.groups
+        if one.margin is not None and (through or not one.through)
+    ]
 
 
 def _least(group: Group) -> float:
@@ -181,7 +195,7 @@ def _end(linkage: Assembled, start: float, side: int, gaps: Array) -> tuple[floa
         return float(way[-1]), ""
     kept = np.append(way[:good][:-NEAR:THINNER], way[:good][-NEAR:])
     way, good = np.append(kept, way[good]), len(kept)
-    for _ in range(LOOP_ROUNDS if _has_loops(linkage) else ROUNDS):
+    for _ in range(LOOP_ROUNDS if has_loops(linkage) else ROUNDS):
         last = way[good - 1]
         way = np.append(way[: good - 1], np.linspace(last, way[good], FINER + 1))
         good = _followed(linkage, way)
@@ -192,7 +206,7 @@ def _end(linkage: Assembled, start: float, side: int, gaps: Array) -> tuple[floa
 
 def _followed(linkage: Assembled, way: Array) -> int:
     """How many of the crank angles (N,) can be reached, one after the other."""
-    count = _solvable(linkage, way) if _has_loops(linkage) else len(way)
+    count = _solvable(linkage, way) if has_loops(linkage) else len(way)
     bad = np.flatnonzero(~_closed(linkage, way[:count]))
     return max(int(bad[0]), 1) if len(bad) else count
 

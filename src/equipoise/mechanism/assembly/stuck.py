@@ -2,22 +2,35 @@
 
 from __future__ import annotations
 
-from math import acos, degrees, floor, log10, radians
+from dataclasses import dataclass
+from math import acos, degrees, floor, log10, radians, sin
+
+import numpy as np
 
 from equipoise.errors import PASTE, ChangePointError, MotionError, RangeError
 from equipoise.i18n import Note, to_say
-from equipoise.mechanism.assembly.reach import Assembled, Reach, range_of
+from equipoise.mechanism.assembly.reach import Assembled, Reach, has_loops, margins_at, range_of
 from equipoise.mechanism.assembly.sides import key_text
 from equipoise.mechanism.checks import MODES
 from equipoise.mechanism.parts.laws import AngleLaw
-from equipoise.mechanism.parts.machine import Machine
 
-SHORT = 0.02
-"""Of the range, that a crank stays away from both ends, where forces grow without bound."""
+TRANSMISSION, LEAST_SHARE = radians(40), 1 / 3
+"""Smallest transmission angle of a dyad in a swing, as in Norton, Design of Machinery, 4.10, rad;
+and the share of the range that has to be left for that."""
+AWAY, SHORT = 0.1, 0.02
+"""Of the range, that a crank stays away from both ends where transmission angles leave too little;
+and where rough positions or starts of couplings lie in that, too."""
+LOOKED_AT = 720
+"""Crank angles of the range at which transmission angles are looked at."""
 DIGITS = 3
 """Of the range, to which the ends of a swing are rounded."""
 
-WITH_LINES = to_say("{reason}; {cure}{lines}")
+WITH_LINES = to_say("{reason}; {cure}; the motion below {room}{lines}")
+KEEPS_ANGLES = Note("keeps transmission angles of 40 deg and more")
+KEEPS_AWAY = Note("stays a tenth of the range away from both ends, near which forces grow without "
+                  "bound")  # fmt: skip
+KEEPS_SHORT = Note("stays 2 % of the range away from both ends, near which forces grow without "
+                   "bound")  # fmt: skip
 SWING = Note("change a length or direction, or let it swing by a motion in [drive]")
 SWING_ALONE = Note("change a length or direction, or let it swing by a motion in [drive], without "
                    "motor and flywheel")  # fmt: skip
@@ -41,11 +54,13 @@ def with_cures(linkage: Assembled, error: MotionError) -> MotionError:
         return error
     if found.is_point:
         return error
-    law = swing_law(machine, found)
-    lines = [motion_line(law)]
+    swing = swing_within(linkage, found)
+    lines = [motion_line(swing.law)]
     cure: Note = SWING_ALONE if machine.drive.motor or machine.drive.flywheel else SWING
     if not isinstance(error, ChangePointError):
-        message = Note(WITH_LINES, reason=found.note, cure=cure, lines=_pasted(lines))
+        message = Note(
+            WITH_LINES, reason=found.note, cure=cure, room=swing.room, lines=_pasted(lines)
+        )
         if isinstance(error, RangeError):
             return RangeError(message, error.ranges, reason=found.note)
         return type(error)(message, reason=found.note)
@@ -58,7 +73,9 @@ def with_cures(linkage: Assembled, error: MotionError) -> MotionError:
             f'# or {entry} = "{MODES[1]}"',
             f"# or, in [drive]: {lines[0]}",
         ]
-    message = Note(WITH_LINES, reason=error.reason, cure=cure, lines=_pasted(lines))
+    message = Note(
+        WITH_LINES, reason=error.reason, cure=cure, room=swing.room, lines=_pasted(lines)
+    )
     return ChangePointError(message, error.crank_angle, error.joint, reason=error.reason)
 
 
@@ -66,23 +83,62 @@ def _pasted(lines: list[str]) -> str:
     return PASTE + "\n".join(lines)
 
 
-def swing_law(machine: Machine, found: Reach) -> AngleLaw:
-    """A sine a little short of what a crank can reach, with ends that a file can hold.
+@dataclass(frozen=True)
+class SwingWithin:
+    """A motion by which a crank swings within what it can reach.
 
-    Where a rough position or starts of couplings say how the machine is at a crank angle, the crank
-    is there at that angle as before.
+    law : a sine.  room : what its ends keep.
     """
-    short = SHORT * (found.high - found.low)
-    span = degrees(found.high - found.low)
-    digits = max(0, DIGITS - floor(log10(span)))
-    low, high = (round(degrees(end), digits) for end in (found.low + short, found.high - short))
-    phase = 0.0
+
+    law: AngleLaw
+    room: Note
+
+
+def swing_within(linkage: Assembled, found: Reach) -> SwingWithin:
+    """A sine within what a crank can reach, with ends that a file can hold.
+
+    Its ends keep transmission angles that a designer would take, where these leave enough of the
+    range.  Where a rough position or starts of couplings say how the machine is at a crank angle,
+    the crank is there at that angle as before.
+    """
+    machine, span = linkage.machine, found.high - found.low
+    digits = max(0, DIGITS - floor(log10(degrees(span))))
+    at = None
     if machine.couplings or machine.position is not None:
         at = 0.0 if machine.position is None else degrees(machine.position.crank_angle)
-        if low < at < high:
-            level = (low + high - 2 * at) / (high - low)
-            phase = at - degrees(acos(level))
-    return AngleLaw(between=(radians(low), radians(high)), phase=radians(phase))
+    choices = [(found.low + share * span, found.high - share * span, room)
+               for share, room in ((AWAY, KEEPS_AWAY), (SHORT, KEEPS_SHORT))]  # fmt: skip
+    if (good := _well_transmitted(linkage, *choices[0][:2])) is not None:
+        choices.insert(0, (*good, KEEPS_ANGLES))
+    ends = [(round(degrees(low), digits), round(degrees(high), digits), room)
+            for low, high, room in choices]  # fmt: skip
+    holding = (end for end in ends if at is not None and end[0] < at < end[1])
+    low, high, room = next(holding, ends[0])
+    phase = 0.0
+    if at is not None and low < at < high:
+        phase = at - degrees(acos((low + high - 2 * at) / (high - low)))
+    return SwingWithin(AngleLaw(between=(radians(low), radians(high)), phase=radians(phase)), room)
+
+
+def _well_transmitted(linkage: Assembled, low: float, high: float) -> tuple[float, float] | None:
+    """The longest part of a range, rad, in which all transmission angles are large enough; None
+    where it is too short, or groups of loops have none.
+    """
+    if has_loops(linkage):
+        return None
+    theta = np.linspace(low, high, LOOKED_AT + 1)
+    good = np.all([margin >= sin(TRANSMISSION) ** 2 for margin in margins_at(linkage, theta)],
+                  axis=0)  # fmt: skip
+    edges = np.flatnonzero(
+        np.diff(np.concatenate([[False], np.broadcast_to(good, theta.shape), [False]]))
+    )
+    begins, ends = edges[::2], edges[1::2] - 1
+    if not len(begins):
+        return None
+    k = int(np.argmax(ends - begins))
+    if theta[ends[k]] - theta[begins[k]] < LEAST_SHARE * (high - low):
+        return None
+    return float(theta[begins[k]]), float(theta[ends[k]])
 
 
 def motion_line(law: AngleLaw) -> str:

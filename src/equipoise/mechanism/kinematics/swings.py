@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.reach import Reach, reach
-from equipoise.mechanism.assembly.stuck import motion_line, swing_law
+from equipoise.mechanism.assembly.stuck import motion_line, swing_within
 from equipoise.mechanism.parts.machine import Machine
 
 SWUNG = ("drive", "planting")
@@ -52,6 +52,6 @@ def swing(machine: Machine) -> Swing | None:
         return None
     if found.is_point:
         _ = linkage.cycle  # which says so
-    motion = swing_law(machine, found)
+    motion = swing_within(linkage, found).law
     drive = replace(machine.drive, motion=motion, motor=None, flywheel=0.0)
     return Swing(replace(machine, drive=drive, planting=None), found)
