@@ -117,6 +117,21 @@ def test_files_that_the_documentation_names_are_there(page: Path) -> None:
         assert name in names or (TOP / name).exists() or (ROOT / name).exists(), name
 
 
+@pytest.mark.parametrize("page", ["CONTRIBUTING.md", "docs/architecture.md"])
+def test_names_that_developers_look_for_are_there(page: str) -> None:
+    """Functions, classes and modules in code, by the last part of their names."""
+    places = ("src", "tests", "page/src", "docs", "benchmarks")
+    files = [one for place in places for one in (TOP / place).rglob("*.*")]
+    words = {one.stem for one in files} | {one.parent.name for one in files}
+    for one in (*files, TOP / "conftest.py", TOP / "hatch_build.py"):
+        if one.suffix in (".py", ".ts"):
+            words.update(re.findall(r"\w+", one.read_text(encoding="utf-8")))
+    text = re.sub(r"```.*?```", "", (TOP / page).read_text(encoding="utf-8"), flags=re.DOTALL)
+    named = re.findall(r"`([A-Za-z_][\w.]*)(?:\([^`]*\))?`", text)
+    of_numba = {"prange"}  # which is not used, and why not is said
+    assert {*(one.rstrip(".").rpartition(".")[2] for one in named)} - words <= of_numba
+
+
 def test_least_squares_are_asked_for_in_one_place() -> None:
     """Which keeps numbers from LAPACK of which it writes to standard output."""
     assert {file.name for file in FILES if "linalg.lstsq(" in text_of(file)} == {"signals.py"}
