@@ -36,8 +36,9 @@ def export(
     Parameters
     ----------
     out
-        The file, whose ending tells the format: .xml for MuJoCo, .dxf, .xlsx, and for the designs
-        of a store .csv or .parquet.  docs/exchange.md has them all.
+        The file, whose ending tells the format: .html for an interactive page, .xml for MuJoCo,
+        .dxf, .xlsx, and for the designs of a store .csv or .parquet.  docs/exchange.md has them
+        all.
     format
         Name of the format, such as mjcf, where the ending is to be another.
     at
