@@ -85,6 +85,7 @@ lint: $(VENV)/.installed-test
 bench: $(VENV)/.installed-test
 	$(BIN)/python -m pip install --quiet --editable ".[bench]"
 	$(BIN)/python benchmarks/analysis.py
+	$(BIN)/python benchmarks/reuse.py
 	$(BIN)/python benchmarks/planting.py
 	$(BIN)/python benchmarks/vibration.py
 	$(BIN)/python benchmarks/balancing.py

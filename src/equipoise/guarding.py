@@ -50,6 +50,8 @@ PLAIN: dict[str, tuple[Accepts, str]] = {
 """What is declared -> whether a value is that, and what to say of it."""
 NUMBERS = ("Array", "np.ndarray", "Sequence[float]", "Sequence[str]", "Vector")
 """How arrays are declared."""
+NAMED = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
+"""Kinds of parameters that have one value each, which may be given by name."""
 READ = {"Machine", "Tool", "Study"}
 """What `load` gives."""
 ROOMS = ("", "mechanism", "handheld", "studies", "balancing", "vibration", "planting", "measured")
@@ -86,15 +88,27 @@ def _guarded(function: Callable[..., Any]) -> Callable[..., Any]:
     if hasattr(function, "__wrapped__"):
         return function
     name, declared = function.__name__, signature(function)
+    parameters = declared.parameters
+    plain = [place for place, one in parameters.items() if one.kind in NAMED]
+    required = {place for place in plain if parameters[place].default is Parameter.empty}
+    in_order = [place for place in plain if parameters[place].kind is not Parameter.KEYWORD_ONLY]
+    accepted: set[tuple[str, type]] = set()
 
     @wraps(function)
     def call(*args: Any, **kwargs: Any) -> Any:
-        given = bound(name, declared, args, kwargs)
+        given = dict(zip(in_order, args, strict=False)) | kwargs
+        is_clear = len(given) == len(args) + len(kwargs) and required <= given.keys()
+        if not is_clear or len(plain) < len(parameters) or not given.keys() <= parameters.keys():
+            given = bound(name, declared, args, kwargs)
         for place, value in given.items():
-            parameter = declared.parameters[place]
+            if (place, type(value)) in accepted:
+                continue
+            parameter = parameters[place]
             each = value if parameter.kind is Parameter.VAR_POSITIONAL else (value,)
             for wrong in filter(None, (_wrong(one, parameter, function) for one in each)):
                 raise UsageError(f"{name}: {place}: {wrong}")
+            if place in plain and not hasattr(value, "ndim"):  # of arrays the shape matters
+                accepted.add((place, type(value)))
         return function(*args, **kwargs)
 
     return call

@@ -54,7 +54,7 @@ def push_of(builder: Builder, joints: Structure, cam: Cam) -> Push:
     ModelError : they cannot be joined like this, or the cam cannot be made.
     """
     fit = fitted(builder.machine, joints, cam)
-    if np.ndim(fit.rest) == 0:  # else `refusing` tells which designs can be made
+    if isinstance(fit.rest, float | complex):  # else `refusing` tells which designs can be made
         check_shape(builder.machine, joints, fit)
     return Push(fit)
 

@@ -37,6 +37,7 @@ from equipoise.mechanism.assembly.steps import (
     needed_references,
     pin_reaction,
     run,
+    tells_flanks,
 )
 from equipoise.mechanism.assembly.stuck import with_cures
 from equipoise.mechanism.checks import MODE, MODES, meant
@@ -95,6 +96,11 @@ class Linkage:
             decided = self.shared.decided
             return (*(step for group in decided for step in group.forces), self.shared)
         return tuple(step for group in reversed(self.groups) for step in group.forces)
+
+    @cached_property
+    def forces_on_flanks(self) -> tuple[Step, ...]:
+        """The same without the steps that tell which flanks, or strands, are loaded."""
+        return tuple(step for step in self.forces if not tells_flanks(step))
 
     @cached_property
     def reactions(self) -> tuple[Reaction, ...]:

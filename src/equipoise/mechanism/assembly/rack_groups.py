@@ -19,6 +19,7 @@ from equipoise.mechanism.assembly.steps import (
     Reaction,
     Rotation,
     Step,
+    at_start,
     demand_names,
     p,
     pin_reaction,
@@ -218,6 +219,6 @@ def _related(
     inputs = (*driver, *_turned(rack.carrier))
     state = run(before, builder.now)
     with np.errstate(all="ignore"):  # a driver that cannot come to crank angle 0 is told of later
-        at_start = run([Call(kernel, inputs, (*numbers, 0.0), driven)], dict(state))[driven[0]]
-    offset = rack.start - (at_start if np.ndim(at_start) > 1 else float(np.ravel(at_start)[0]))
+        state = run([Call(kernel, inputs, (*numbers, 0.0), driven)], dict(state))
+    offset = rack.start - at_start(state[driven[0]])
     return Call(kernel, inputs, (*numbers, offset), driven)

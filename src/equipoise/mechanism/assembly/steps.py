@@ -23,6 +23,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from equipoise.mechanism.formulas import joint_kernels
+from equipoise.mechanism.formulas.curves import direction
 from equipoise.mechanism.parts.machine import FRAME, Machine, Vector, size_of
 
 Array = np.ndarray[Any, Any]
@@ -75,15 +76,15 @@ def running_angle(state: State, link: str, reference: Any = None) -> Array:
     angle = plain_angle(state, link)
     if reference is None:
         return np.unwrap(angle)
-    turns = np.round((reference - angle) / (2 * np.pi))
+    turns = np.rint((reference - angle) / (2 * np.pi))
     running: Array = angle + 2 * np.pi * turns
     return running
 
 
 def plain_angle(state: State, link: str) -> Array:
     """Angle of a link (N,) within half a turn of 0."""
-    angle: Array = np.angle(state[f"u({link})"])
-    return angle if np.ndim(angle) else np.full(np.shape(state["theta"]), angle)
+    angle: Array = direction(state[f"u({link})"])
+    return angle if np.ndim(angle) else angle + np.zeros(np.shape(state["theta"]))
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,14 @@ class Rotation:
 
     def run(self, state: State) -> None:
         state[f"u({self.link})"] = np.exp(1j * np.asarray(state[f"phi({self.link})"]))
+
+
+def at_start(values: Any) -> Any:
+    """A value of a state that has crank angle 0 alone, as a number.
+
+    Columns of designs, and terms, stay as they are.
+    """
+    return values.item(0) if np.ndim(values) == 1 else values
 
 
 def needed_references(steps: Iterable[Step]) -> list[str]:
@@ -190,6 +199,11 @@ def flanked(
         Call(joint_kernels.flank, (f"M({push.on})",), (), (sense,)),
         Call(kernel, inputs, numbers, outputs),
     )
+
+
+def tells_flanks(step: Step) -> bool:
+    """Whether a step says which flank, or strand, is loaded, and nothing else."""
+    return isinstance(step, Call) and all(name.startswith("flank(") for name in step.outputs)
 
 
 def pin_reaction(point: str, on: str, by: str) -> Reaction:

@@ -12,7 +12,15 @@ from equipoise.i18n import Note
 from equipoise.mechanism.assembly.builder import Builder, Group
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.loops import CouplingLoop, End, Poses
-from equipoise.mechanism.assembly.steps import Call, Reaction, Rotation, Step, pin_reaction, run
+from equipoise.mechanism.assembly.steps import (
+    Call,
+    Reaction,
+    Rotation,
+    Step,
+    at_start,
+    pin_reaction,
+    run,
+)
 from equipoise.mechanism.parts.couplings import Coupling
 
 
@@ -52,8 +60,7 @@ class Turned(ABC):
         with np.errstate(
             all="ignore"
         ):  # where it cannot come to crank angle 0, that is told of later
-            at_start = run([bare], dict(now))[f"phi({link})"]
-        offset = coupling.start - (at_start if at_start.ndim > 1 else float(at_start[0]))
+            offset = coupling.start - at_start(run([bare], dict(now))[f"phi({link})"])
         motion = (
             *before,
             *builder.reach(bearer, pin),

@@ -60,7 +60,7 @@ def acting_strands(motion: Motion) -> Iterator[tuple[Belt, list[Acting]]]:
     for belt in motion.machine.belts:
         if belt.tension is not None:
             driver, driven = coupling_pins(motion.linkage.joints, belt)
-            apart = motion.points[driven].place - motion.points[driver].place
+            apart = motion.point(driven).place - motion.point(driver).place
             pull = belt.tension * belt.strands(apart).toward
             ends = (belt.driver, driver, pull), (belt.driven, driven, -pull)
             yield belt, [(*end, 0.0) for end in ends if end[0] != FRAME]
@@ -104,7 +104,7 @@ def soil_force(motion: Motion, tip: str | None = None) -> Array:
     planting = motion.machine.planting
     if planting is None or planting.soil is None:
         return np.zeros(len(motion.crank_angle), complex)
-    point = motion.points[tip or planting.tip]
+    point = motion.point(tip or planting.tip)
     depth = surface_of(motion.machine) - point.y
     over_ground = point.velocity + planting.forward(motion.speed)
     speed = np.abs(over_ground)
@@ -131,13 +131,13 @@ def spring_force(motion: Motion, spring: Spring) -> Any:
     """
     if spring.free_length:
         spring_direction(motion, spring.link, spring.point, spring.to)
-    place, to = motion.points[spring.point].place, motion.points[spring.to].place
+    place, to = motion.point(spring.point).place, motion.point(spring.to).place
     return kernels.spring(place, to, spring.stiffness, spring.free_length)
 
 
 def spring_vector(motion: Motion, point: str, to: str) -> Any:
     """From a point to another, both ends of a spring (N,), m, complex."""
-    return motion.points[to].place - motion.points[point].place
+    return motion.point(to).place - motion.point(point).place
 
 
 def spring_direction(motion: Motion, link: str, point: str, to: str) -> Any:
@@ -149,7 +149,7 @@ def spring_direction(motion: Motion, link: str, point: str, to: str) -> Any:
     """
     along = spring_vector(motion, point, to)
     length = abs(along)
-    coordinates = abs(motion.points[point].place) + abs(motion.points[to].place)
+    coordinates = abs(motion.point(point).place) + abs(motion.point(to).place)
     meeting = length <= MEETING * coordinates
     if meeting.any():
         angle = degrees(motion.crank_angle[meeting.argmax()])

@@ -8,7 +8,7 @@ stack of them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -77,7 +77,7 @@ class Forces(Exerted):
     def shaking_moment_about(self, point: str | Vector | complex) -> Array:
         """Shaking moment, N m, about a point of the frame (its name) or (x, y) in m."""
         pole = in_frame(self.motion.machine.frame, point)
-        return full(self.motion, -self._moment(self.inertia, pole), float)
+        return full(self.motion, -self.moment(self.inertia, pole), float)
 
     @cached_property
     def weight(self) -> VectorSignal:
@@ -87,7 +87,7 @@ class Forces(Exerted):
     @cached_property
     def weight_moment(self) -> Array:
         """Moment of the weight about `about`, N m."""
-        return full(self.motion, -self._moment(self.weights, self.about), float)
+        return full(self.motion, -self.moment(self.weights, self.about), float)
 
     @cached_property
     def solved(self) -> Pass:
@@ -115,7 +115,7 @@ class Forces(Exerted):
         """Moment of all joints, springs, reactions of loads and of the drive on the frame about
         `about`, N m.
         """
-        parts = self._moment(self.springs, self.about) + self._moment(self.inner, self.about)
+        parts = self.moment(self.springs, self.about) + self.moment(self.inner, self.about)
         return np.asarray(self.solved.frame_moment(self.about) + parts)
 
     @property
@@ -175,7 +175,8 @@ class Forces(Exerted):
         whole = -sum(force for force, _ in demands.values())
         return VectorSignal(full(self.motion, whole, complex))
 
-    def _moment(self, demands: Mapping[str, Demand], about: complex) -> Any:
+    def moment(self, demands: Mapping[str, Demand], about: complex) -> Any:
+        """Moment of demands of links about a point, N m."""
         return sum(
             moment + kernels.cross(self.motion.state[f"p({self.anchor(link)})"] - about, force)
             for link, (force, moment) in demands.items()
@@ -203,14 +204,54 @@ def forces(motion: Motion, about: str | Vector | complex | None = None) -> Force
     if missing := massless(machine):
         raise MassError(missing)
     pole = in_frame(machine.frame, motion.linkage.pivot if about is None else about)
-    speed2, gravity = motion.speed**2, complex(*machine.gravity)
+    gravity = complex(*machine.gravity)
+    rates = [
+        (rate, _units(motion, k))
+        for k, rate in enumerate((motion.speed**2, motion.acceleration))
+        if rate
+    ]
     inertia, weights = {}, {}
     for link in machine.links:
-        mass, moment, turning = inertia_moved(machine, link, motion.linkage.anchors[link])
-        inertia[link] = demand_of_inertia(motion, link, speed2, mass, moment, turning)
-        weights[link] = kernels.weight_demand(motion.state[f"u({link})"], mass, moment, gravity)
+        own = inertia_moved(machine, link, motion.linkage.anchors[link])
+        inertia[link] = _needed([(rate, units[link]) for rate, units in rates], *own)
+        weights[link] = kernels.weight_demand(motion.state[f"u({link})"], *own[:2], gravity)
     held = acting.load_demands(motion), acting.spring_demands(motion), acting.inner_demands(motion)
     return Forces(motion, pole, inertia, weights, *held)
+
+
+Units = tuple[Array, Array, Array, Array, Array]
+"""Of a link: force for a unit of mass, and of first moment along x; moment for a unit of first
+moment along x and along y, and of inertia."""
+UNITS = "units({})"
+"""Name of units in a state, by what they are for a unit of: 0, speed squared; 1, acceleration."""
+
+
+def _units(motion: Motion, rate: int) -> Mapping[str, Units]:
+    """What units of inertial parameters demand; kept with the state, on which alone it depends."""
+    name = UNITS.format(rate)
+    if name not in motion.state:
+        motion.state[name] = {link: _units_of(motion, link, rate) for link in motion.machine.links}
+    kept: Mapping[str, Units] = motion.state[name]
+    return kept
+
+
+def _units_of(motion: Motion, link: str, rate: int) -> Units:
+    mass, x, y, inertia = np.eye(4)[:, :, None]
+    rates = (1.0, 0.0) if rate == 0 else (0.0, 1.0)
+    force, turning = _inertia(motion, link, *rates, mass, x + 1j * y, inertia)
+    return force[0], force[1], turning[1], turning[2], turning[3]
+
+
+def _needed(
+    rates: Sequence[tuple[float, Units]], mass: float, moment: complex, inertia: float
+) -> Demand:
+    """What a link with these inertial parameters needs for its motion, which is linear in them."""
+    forces, moments = [], []
+    for rate, (of_mass, of_moment, of_x, of_y, of_inertia) in rates:
+        first, x, y = rate * moment, rate * moment.real, rate * moment.imag
+        forces.append(complex(rate * mass) * of_mass + first * of_moment)
+        moments.append((rate * inertia) * of_inertia + x * of_x + y * of_y)
+    return (forces[0], moments[0]) if len(rates) == 1 else (sum(forces), sum(moments))
 
 
 def massless(machine: Machine) -> Note | str:
@@ -251,11 +292,13 @@ def demand_of_inertia(
     motion: Motion, link: str, speed2: float, mass: Any, moment: Any, inertia: Any
 ) -> Demand:
     """What moves a link with these inertial parameters about its anchor."""
-    _, p1, p2 = (motion.state[name] for name in p(motion.linkage.anchors[link]))
-    rotation, w, a = (motion.state[name] for name in u(link))
-    force, turning = kernels.inertia_demand(
-        p1, p2, rotation, w, a, speed2, motion.acceleration, mass, moment, inertia
-    )
+    return _inertia(motion, link, speed2, motion.acceleration, mass, moment, inertia)
+
+
+def _inertia(motion: Motion, link: str, *numbers: Any) -> Demand:
+    """The same at any speed squared and acceleration, which come first."""
+    rates = (*p(motion.linkage.anchors[link])[1:], *u(link))
+    force, turning = kernels.inertia_demand(*(motion.state[name] for name in rates), *numbers)
     return force, turning
 
 
@@ -285,10 +328,10 @@ def split(whole: Forces) -> Split:
     for link, demand in whole.inner.items():
         at = CAUSES.index("load"), links.index(link)
         frame_force[at] += demand[0]
-        frame_moment[at] += whole._moment({link: demand}, whole.about)
+        frame_moment[at] += whole.moment({link: demand}, whole.about)
     return Split(
         inertial * -sum(force for force, _ in demands.values()),
-        inertial * -whole._moment(demands, whole.about),
+        inertial * -whole.moment(demands, whole.about),
         frame_force,
         frame_moment,
         solved.drive_torque,

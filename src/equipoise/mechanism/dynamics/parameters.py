@@ -24,7 +24,6 @@ from equipoise.mechanism.assembly.steps import Array, planar
 from equipoise.mechanism.dynamics.across import Across, exerted_in, needed_by_inertia
 from equipoise.mechanism.dynamics.acting import spring_direction, spring_vector
 from equipoise.mechanism.dynamics.forces import (
-    Forces,
     demand_of_inertia,
     forces,
     massless,
@@ -113,10 +112,9 @@ def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Re
     pole = in_frame(machine.frame, motion.linkage.pivot if about is None else about)
     inertia, total = _unit_demands(motion)
     solved = reactions(motion, total, whole.solved)
-    shaking = Forces(motion, pole, inertia, {}, {})
     return Regressor(
         -sum(force for force, _ in inertia.values()),
-        shaking.shaking_moment,
+        -whole.moment(inertia, pole),
         solved.frame_force,
         solved.frame_moment(pole),
         solved.drive_torque,

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism.assembly.steps import Array, Call, Reaction, State, Step, demand_names, run
+from equipoise.mechanism.assembly.steps import Array, Reaction, State, demand_names, run
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dynamics.undecided import hidden
 from equipoise.mechanism.formulas import kernels
@@ -215,7 +215,7 @@ class Pass:
             return JointForce(force, on, by)
         slider = next(s for s in self.motion.machine.sliders if s.name == reaction.name)
         direction = self.state[f"u({slider.on})"] * np.exp(1j * slider.direction)
-        at = self.state[f"p({reaction.at})"] - self.motion.points[slider.point].place
+        at = self.state[f"p({reaction.at})"] - self.motion.point(slider.point).place
         moment = sign * self.state[reaction.couple] + kernels.cross(at, force)
         normal = kernels.cross(direction, force)
         return SliderForce(force, on, by, normal, full(self.motion, moment, float))
@@ -294,13 +294,9 @@ def _passed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) ->
     of_links[FRAME] = 0j, 0.0
     for link, (force, moment) in of_links.items():
         state[f"F({link})"], state[f"M({link})"] = force, moment
-    known = {} if like is None else like.flanks
-    state.update(known)
-
-    def is_known(step: Step) -> bool:
-        return isinstance(step, Call) and set(step.outputs) <= known.keys()
-
-    run([step for step in motion.linkage.forces if not is_known(step)], state)
+    linkage = motion.linkage
+    state.update({} if like is None else like.flanks)
+    run(linkage.forces if like is None else linkage.forces_on_flanks, state)
     for name, more in zip((f"F({FRAME})", f"M({FRAME})"), on_frame, strict=True):
         state[name] = state[name] + more
     for drive in motion.machine.driven:
@@ -333,7 +329,7 @@ def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
     for link, point, force, torque in acting:
         anchor = motion.state[f"p({motion.linkage.anchors[link]})"]
         named = isinstance(point, str)
-        at = anchor if point is None else motion.points[point].place if named else point
+        at = anchor if point is None else motion.point(point).place if named else point
         f, m = kernels.load_demand(anchor, at, force, torque)
         before = result.get(link, (0.0, 0.0))
         result[link] = (before[0] + f, before[1] + m)

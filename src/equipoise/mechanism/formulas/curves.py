@@ -29,6 +29,11 @@ JUMP = 1e-6
 """Of the largest value of a derivative: what is more than rounding."""
 
 
+def direction(vector: Any) -> Any:
+    """Angle of a vector, rad, within half a turn of 0; also of terms, which `np.angle` refuses."""
+    return np.arctan2(vector.imag, vector.real)
+
+
 @dataclass(frozen=True, eq=False)
 class Curve:
     """A curve y(x) in K pieces, from 0 to `length`; beyond, it goes on periodically.

@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism.formulas.curves import MOST_POWERS, Array, Curve, Curves, spline
+from equipoise.mechanism.formulas.curves import MOST_POWERS, Array, Curve, Curves, direction, spline
 from equipoise.mechanism.formulas.rolling_kernels import half_angle, series_term
 
 Levels = tuple[Array, Array, Array]
@@ -139,7 +139,7 @@ class HalfAngle:
         x = x - self.zero
         turned = np.exp(1j * self.lobes * x)
         told = half_angle(turned, self.mean, self.share, self.depth, self.lobes)  # type: ignore[no-untyped-call]
-        y = self.mean * x + (2 / self.lobes) * self.share * np.angle(told[0])
+        y = self.mean * x + (2 / self.lobes) * self.share * direction(told[0])
         return y, told[2], told[3]
 
 

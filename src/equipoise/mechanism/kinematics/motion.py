@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import pi
 from numbers import Real
 from typing import Any
@@ -29,6 +29,8 @@ from equipoise.signals import Figures, JumpSampling, Periodic
 
 MOST_ANGLES = 400_000
 """In one analysis; it takes about a kilobyte for each crank angle and link."""
+MOST_KEPT = 4096
+"""Crank angles up to which poses of the last few linkages are kept: some megabytes each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +136,10 @@ class Motion:
         """Motion of each link's centre of mass, for links whose mass is known."""
         found = self.machine.links.items()
         centers = ((name, link.center_of_mass) for name, link in found if link.center_of_mass)
-        return Named("link with mass", ((name, self._attached(name, at)) for name, at in centers))
+        return Named(
+            "link with mass",
+            ((name, self._moving(*self._attached(name, at))) for name, at in centers),
+        )
 
     @cached_property
     def sliders(self) -> Mapping[str, SliderMotion]:
@@ -242,20 +247,28 @@ class Motion:
     def point(self, point: str) -> PointMotion:
         """Motion of one of the points; of a state that is not whole, of one that it tells of."""
         names = p(point)
-        if names[0] in self.state:
-            return self._moving(*(self.state[name] for name in names))
-        links = self.machine.links
-        link = next(
-            name for name in links if point in links[name].points and u(name)[0] in self.state
-        )
-        return self._attached(link, links[link].points[point])
+        if names[0] not in self.state:
+            links = self.machine.links
+            link = next(
+                name for name in links if point in links[name].points and u(name)[0] in self.state
+            )
+            values = self._attached(link, links[link].points[point])
+            self.state.update(zip(names, self._kept(*values), strict=True))
+        return self._moving(*(self.state[name] for name in names))
 
-    def _attached(self, link: str, place: Vector) -> PointMotion:
-        """A point given in a link's axes."""
+    def _attached(self, link: str, place: Vector) -> tuple[Array, ...]:
+        """A point given in a link's axes, and its two derivatives."""
         anchor = self.linkage.anchors[link]
         arm = complex(*place) - complex(*self.machine.points_of(link)[anchor])
         known = [self.state[name] for name in (*p(anchor), *u(link))]
-        return self._moving(*kernels.point(*known, arm))  # type: ignore[call-arg]
+        values = kernels.point(*known, arm)  # type: ignore[call-arg]
+        return tuple(self._full(value, complex) for value in values)
+
+    def _kept(self, *values: Array) -> tuple[Array, ...]:
+        """Values to be kept with the state, to which nobody writes where others reuse it."""
+        for one in values:
+            one.setflags(write=self.crank_angle.flags.writeable)
+        return values
 
     def _moving(self, *values: Any) -> PointMotion:
         place, first, second = (self._full(value, complex) for value in values)
@@ -289,16 +302,52 @@ def move(
     linkage = assemble(machine)
     if isinstance(angles, bool):
         raise UsageError(f"got {angles}; give a number of crank angles, or angles")
-    whole_cycle = isinstance(angles, int | np.integer)
-    theta = _cycle_angles(linkage, int(angles)) if whole_cycle else _given_angles(angles)  # type: ignore[arg-type]
+    if isinstance(angles, int | np.integer):
+        find = _poses if angles * linkage.cycle.turns > MOST_KEPT else _kept_poses
+        theta, state = find(_Grid(linkage, int(angles)))
+        return Motion(linkage, theta, *_rates(machine.drive, speed, acceleration), True, state)
+    theta = _given_angles(angles)
     rates = _rates(machine.drive, speed, acceleration)
     try:
         state = linkage.solve(theta)
     except (RangeError, ChangePointError) as error:
-        if whole_cycle:
-            raise
         state = solve_swinging(linkage, theta, error)
-    return Motion(linkage, theta, *rates, whole_cycle, state)
+    return Motion(linkage, theta, *rates, False, state)
+
+
+@dataclass(frozen=True, eq=False)
+class _Grid:
+    """Crank angles in a cycle of a linkage: equal for machines that differ in masses or speed.
+
+    count : in a turn.
+    """
+
+    linkage: Linkage
+    count: int
+
+    def __eq__(self, other: object) -> bool:
+        return (
+            isinstance(other, _Grid)
+            and other.count == self.count
+            and other.linkage.anchors is self.linkage.anchors
+        )
+
+    def __hash__(self) -> int:
+        return hash((id(self.linkage.anchors), self.count))
+
+
+def _poses(grid: _Grid) -> tuple[Array, State]:
+    """Crank angles and state, in arrays to which nobody writes."""
+    theta = _cycle_angles(grid.linkage, grid.count)
+    state = grid.linkage.solve(theta)
+    for values in (theta, *state.values()):
+        if isinstance(values, np.ndarray):
+            values.setflags(write=False)
+    return theta, state
+
+
+_kept_poses = lru_cache(8)(_poses)
+"""Those of the last few linkages, so that other speeds and masses reuse them."""
 
 
 def _cycle_angles(linkage: Linkage, count: int) -> Array:
@@ -328,7 +377,7 @@ def _rates(usual: Drive | Motion, *given: float | None) -> tuple[float, float]:
     rates = []
     for name, value in zip(("speed", "acceleration"), given, strict=True):
         rate = getattr(usual, name) if value is None else value
-        if not isinstance(rate, Real) or not abs(rate) < HUGE:  # type: ignore[operator]
+        if not isinstance(rate, float | Real) or not abs(rate) < HUGE:  # type: ignore[operator]
             raise UsageError(f"got {rate!r} for {name}; give a finite number in SI units")
         rates.append(float(rate))
     return rates[0], rates[1]
