@@ -31,6 +31,7 @@ from math import degrees, hypot, pi, radians, sqrt
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 
 import equipoise as eq
 from equipoise.mechanism.parts.support import Gauge, Mount, Row
@@ -40,7 +41,15 @@ from equipoise.vibration.linear import Linear
 from equipoise.vibration.resonance import resonances
 from equipoise.vibration.response import Model
 from equipoise.vibration.sweep import sweep_speed
-from literature.yamashita import TYPE_2, Finger, by_table_3, vertical_acceleration
+from literature.yamashita import (
+    TYPE_1,
+    TYPE_2,
+    Finger,
+    by_table_3,
+    numbers_of_table_3,
+    vertical_acceleration,
+    with_table_3,
+)
 from support.conformance import Cause, Printed, published
 from support.sources import YAMASHITA
 
@@ -182,14 +191,51 @@ def test_columns_of_table_4_agree(order: int) -> None:
 def test_table_4_misses_by_a_bump_at_one_place() -> None:
     """What Table 4 adds to the exact acceleration lies near theta_b = 47 deg and is 0.4 m/s2."""
     theta_b = np.radians(np.arange(0.0, 360.0, 0.05))
-    table = [printed.split() for printed, _ in PRINTED.values()]
-    printed = np.array([0.0209, *(complex(float(a), -float(b)) for a, b, *_ in table)])
-    wrong = printed - over_theta_b("yamashita-1").amplitudes[:10]
+    wrong = table_4() - over_theta_b("yamashita-1").amplitudes[:10]
     bump = (wrong @ np.exp(1j * np.outer(np.arange(10), theta_b))).real
     assert np.degrees(theta_b[np.argmax(bump)]) == pytest.approx(47.5, abs=1)
     assert np.max(bump) == pytest.approx(0.406, abs=0.005)
     elsewhere = (np.degrees(theta_b) > 90) & (np.degrees(theta_b) < 330)
     assert np.max(np.abs(bump[elsewhere])) < 0.04
+
+
+def table_4() -> np.ndarray:
+    """Mean and complex amplitudes as printed, m/s2."""
+    rows = [printed.split() for printed, _ in PRINTED.values()]
+    return np.array([0.0209, *(complex(float(a), -float(b)) for a, b, *_ in rows)])
+
+
+def test_rounded_data_do_not_give_table_4() -> None:
+    """The best of all that half a digit of Table 3 leaves misses an amplitude by 0.05 m/s2."""
+    data, halves = numbers_of_table_3(TYPE_1)
+    printed = table_4()[1:]
+
+    def missed(off: np.ndarray) -> np.ndarray:
+        found = np.fft.fft(vertical_acceleration(with_table_3(data + off * halves)))
+        off_by = found[1:10] * 2 / len(found) - printed
+        return np.concatenate([off_by.real, off_by.imag])
+
+    best = least_squares(missed, np.zeros(len(data)), bounds=(-1, 1))
+    assert best.success
+    assert np.max(np.abs(best.fun)) == pytest.approx(0.053, abs=0.002)
+
+
+@pytest.mark.parametrize("count", [24, 36, 72])
+def test_few_wrong_samples_do_not_give_table_4(count: int) -> None:
+    """Up to three neighbours of samples every 15, 10 or 5 deg, wrong by anything: 0.01 m/s2 off."""
+    theta_b = 2 * pi * np.arange(count) / count
+    signal = over_theta_b("yamashita-1").samples(72 * count)[::72]
+    of_sample = np.exp(-1j * np.outer(np.arange(10), theta_b)) * 2 / count
+    of_sample[0] /= 2
+    off = table_4() - of_sample @ signal
+    parts = np.concatenate([of_sample.real, of_sample.imag])
+    wanted = np.concatenate([off.real, off.imag])
+    misses = []
+    for first in range(count):
+        wrong = parts[:, [(first + k) % count for k in range(3)]]
+        size = np.linalg.lstsq(wrong, wanted, rcond=None)[0]
+        misses.append(np.max(np.abs(wrong @ size - wanted)))
+    assert min(misses) > 0.01
 
 
 def test_orders_fall_off() -> None:

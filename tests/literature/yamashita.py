@@ -131,18 +131,28 @@ def vertical_acceleration(finger: Finger) -> Array:
 # -- what makes printed numbers other ones ---------------------------------------------------------
 
 
-def by_table_3(finger: Finger, value: Callable[[Finger], float]) -> Cause:
-    """What half a digit of Table 3 leaves of a value: lengths, centres, masses, psi and speed."""
+def numbers_of_table_3(finger: Finger) -> tuple[Array, Array]:
+    """Lengths, centres, masses, psi and speed as one array, and half of the last digit of each."""
     data = [*finger.lengths, *(x for g in finger.centers for x in (g.real, g.imag)),
             *finger.masses, finger.psi, finger.rpm]  # fmt: skip
     halves = [0.5 if one == int(one) else 0.05 for one in data]
+    return np.array(data), np.array(halves)
 
-    def of(numbers: Array) -> float:
-        a, b, c, d, *rest, m_b, m_c, m_d, psi, rpm = numbers.tolist()
-        g_b, g_c, g_d = (complex(*rest[k : k + 2]) for k in (0, 2, 4))
-        return value(Finger("", (a, b, c, d), (g_b, g_c, g_d), (m_b, m_c, m_d), psi, rpm))
 
-    return Cause("half a digit of their Table 3", lambda: reach(of, data, halves))
+def with_table_3(numbers: Array) -> Finger:
+    """A type with other numbers than those of Table 3."""
+    a, b, c, d, *rest, m_b, m_c, m_d, psi, rpm = numbers.tolist()
+    g_b, g_c, g_d = (complex(*rest[k : k + 2]) for k in (0, 2, 4))
+    return Finger("", (a, b, c, d), (g_b, g_c, g_d), (m_b, m_c, m_d), psi, rpm)
+
+
+def by_table_3(finger: Finger, value: Callable[[Finger], float]) -> Cause:
+    """What half a digit of Table 3 leaves of a value."""
+
+    def gives() -> list[float]:
+        return reach(lambda numbers: value(with_table_3(numbers)), *numbers_of_table_3(finger))
+
+    return Cause("half a digit of their Table 3", gives)
 
 
 def first_order(finger: Finger) -> float:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from math import floor, log10
+from typing import Any
 
 import numpy as np
+
+Array = np.ndarray[Any, Any]
 
 
 def half_digits(numbers: Sequence[float], significant: int) -> list[float]:
@@ -14,7 +17,7 @@ def half_digits(numbers: Sequence[float], significant: int) -> list[float]:
 
 
 def reach(
-    value: Callable[[np.ndarray], float], data: Sequence[float], halves: Sequence[float]
+    value: Callable[[Array], float], data: Sequence[float] | Array, halves: Sequence[float] | Array
 ) -> list[float]:
     """A number as its data have it, least and largest where each datum is half a digit off.
 
