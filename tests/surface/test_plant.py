@@ -15,7 +15,16 @@ import pytest
 import equipoise as eq
 from equipoise.mechanism.parts.field import Soil
 from equipoise.planting.summary import plant
-from surface.running import cells, changed, equipoise, massless, read, refuses, succeeded
+from surface.running import (
+    cells,
+    changed,
+    equipoise,
+    example_text,
+    massless,
+    read,
+    refuses,
+    succeeded,
+)
 from unit.planting.build import planetary, spinner, twice
 
 EXAMPLES = ("kim-chung-a", "kim-chung-b", "kim-chung-c")
@@ -285,3 +294,33 @@ def test_a_machine_that_cannot_plant(old: str, new: str, said: str) -> None:
     """One sentence that names the file, and no results beside it."""
     changed("kim-chung-a", (old, new))
     assert refuses("plant model.toml --csv tip.csv", said).startswith(f"model.toml: {said}")
+
+
+DWELLING = """
+[planting]
+tip = "C"
+depth = "1 mm"
+forward_speed = "0.4 m/s"
+[[drive.motion.segments]]
+over = "120 deg"
+to = "0 deg"
+
+[[drive.motion.segments]]
+over = "120 deg"
+to = "-60 deg"
+law = "3-4-5"
+
+[[drive.motion.segments]]
+over = "120 deg"
+to = "0 deg"
+law = "3-4-5"
+"""
+
+
+def test_a_tip_that_dwells(tmp_path: Path) -> None:
+    """Where it stands still, speed and acceleration are nothing at once; loops, unlike dyads, have
+    no pose at a crank angle that is no number.
+    """
+    file = tmp_path / "dwelling.toml"
+    file.write_text(example_text("class-three") + DWELLING, encoding="utf-8")
+    assert cells(succeeded(equipoise("plant", file)), "depth in the soil") == ["1.000"]
