@@ -14,13 +14,19 @@ from math import isfinite
 from typing import Any
 
 from equipoise.balancing.workshop import sentences
-from equipoise.errors import needed
+from equipoise.errors import UsageError, needed
 from equipoise.exchange.formats import Job
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.outputs import Output
 
 Cell = str | float | None
+HEADS, MOST_ROWS, MOST_COLUMNS = 2, 2**20, 2**14
+"""Rows above the signals, with their names and units; what a sheet takes."""
+LARGE = 1_000_000
+"""Numbers of signals beyond which rows go to the disk as they are written, since each takes some
+hundred bytes; then columns keep their usual widths.
+"""
 BESIDE, HIGH = 8, 16
 """Columns and rows that a chart takes."""
 
@@ -28,9 +34,13 @@ BESIDE, HIGH = 8, 16
 def made(job: Job) -> bytes:
     """The file's content."""
     data = io.BytesIO()
-    book = needed("xlsxwriter", "Excel").Workbook(data, {"in_memory": True})
-    book.set_properties({"title": str(job.machine.title)})
     analysis = analyze(job.machine)
+    columns = analysis.outputs.arrays
+    rows = len(analysis.crank_angle)
+    _check_size(rows, 1 + len(columns), analysis.motion.turns)
+    kept = {"constant_memory": True} if rows * len(columns) > LARGE else {"in_memory": True}
+    book = needed("xlsxwriter", "Excel").Workbook(data, kept)
+    book.set_properties({"title": str(job.machine.title)})
     job.leave_out_forces()
     _sheet(book, "Summary", _summary(analysis))
     _sheet(book, "Links", _links(job.machine))
@@ -39,11 +49,19 @@ def made(job: Job) -> bytes:
         told = [(sentence,) for change in job.changes for sentence in sentences(change)]
         _sheet(book, "Changes", [("what to change",), *told])
     charts = book.add_worksheet("Charts")
-    columns = analysis.outputs.arrays
     _signals(book, analysis, columns)
     _charts(book, charts, columns, len(analysis.crank_angle))
     book.close()
     return data.getvalue()
+
+
+def _check_size(rows: int, columns: int, turns: int) -> None:
+    """Refuse more signals than a sheet takes, of which the library would leave out the rest."""
+    if rows + HEADS > MOST_ROWS or columns > MOST_COLUMNS:
+        raise UsageError(
+            f"a cycle of {turns} turns has {rows} crank angles and {columns} columns; a sheet of "
+            f"Excel takes {MOST_ROWS - HEADS} and {MOST_COLUMNS}: write .mat instead"
+        )
 
 
 def _sheet(book: Any, name: str, rows: Sequence[Sequence[Cell]]) -> Any:
@@ -54,7 +72,8 @@ def _sheet(book: Any, name: str, rows: Sequence[Sequence[Cell]]) -> Any:
         for column, cell in enumerate(row):
             _write(sheet, number, column, cell, *([] if number else [bold]))
     sheet.freeze_panes(1, 1)
-    sheet.autofit()
+    if not book.constant_memory:
+        sheet.autofit()
     return sheet
 
 
@@ -96,10 +115,11 @@ def _signals(book: Any, analysis: Analysis, columns: Iterable[Output]) -> None:
     told = [(one.name, one.unit, one.values) for one in columns]
     sheet = _sheet(book, "Signals", [["crank_angle", *(name for name, _, _ in told)]])
     every = [("crank_angle", "rad", analysis.crank_angle), *told]
-    for column, (_, unit, values) in enumerate(every):
+    for column, (_, unit, _) in enumerate(every):
         _write(sheet, 1, column, unit)
-        for row, value in enumerate(values.tolist(), 2):
-            _write(sheet, row, column, value)
+    for row, values in enumerate(zip(*(values for _, _, values in every), strict=True), HEADS):
+        for column, value in enumerate(values):
+            _write(sheet, row, column, float(value))
     sheet.freeze_panes(2, 1)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,9 @@ import pytest
 from scipy.io import loadmat
 
 import equipoise as eq
+from equipoise.errors import UsageError
+from equipoise.exchange import xlsx
+from equipoise.exchange.formats import Job
 
 MACHINE = eq.load("slider-crank-engine")
 SIGNS = ("=1+1", "+1", "-1", "@sum(1)")
@@ -49,6 +53,33 @@ def test_signals_and_summary(analysis: Any, book: Any) -> None:
         assert told[name]["peak_at [rad]"] == pytest.approx(one.peak_at, rel=1e-14)
     assert [*book["Links"].values][1][:2] == ("crank", 0.9)
     assert ("rod", "C", 0.09, 0.0) in [*book["Points"].values]
+
+
+def test_large_cycles_are_written_row_by_row(
+    analysis: Any, book: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With the same cells, and in little of the memory."""
+    monkeypatch.setattr(xlsx, "analyze", lambda machine: analysis)
+    tracemalloc.start()
+    xlsx.made(Job(MACHINE))
+    _, at_once = tracemalloc.get_traced_memory()
+    monkeypatch.setattr(xlsx, "LARGE", 10)
+    tracemalloc.reset_peak()
+    xlsx.made(Job(MACHINE))
+    _, by_row = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    cells = len(analysis.crank_angle) * len(analysis.outputs.arrays)
+    assert by_row < at_once - 200 * cells  # each takes some hundred bytes where all are kept
+    rows = opened(MACHINE, tmp_path / "rows.xlsx")
+    for name in book.sheetnames:
+        assert [*rows[name].values] == [*book[name].values]
+
+
+def test_more_crank_angles_than_a_sheet_takes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The library would leave the rest out, and say nothing."""
+    monkeypatch.setattr(xlsx, "MOST_ROWS", 500)
+    with pytest.raises(UsageError, match=r"2 turns has 720 crank angles .* takes 498 and"):
+        xlsx.made(Job(eq.load("four-stroke-engine")))
 
 
 def test_charts_show_every_signal(analysis: Any, book: Any) -> None:
