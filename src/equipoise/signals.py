@@ -423,18 +423,3 @@ class Periodic:
             turning = np.exp(1j * np.multiply.outer(flat[some], self.orders))
             value[some] = np.sum((amplitudes[some] * turning).real, axis=-1)
         return value.reshape(np.shape(theta))
-
-
-def lstsq(
-    matrix: Array, right: Array, rcond: float | None = None
-) -> tuple[Array, Array, int, Array]:
-    """Least squares as `numpy.linalg.lstsq`, of which LAPACK never prints to standard output.
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError : numbers are not finite, or it does not converge.
-    """
-    if not np.all(np.isfinite(matrix)):  # LAPACK would print a line of its own before it fails
-        raise np.linalg.LinAlgError("least squares of numbers that are not finite")
-    found, left, rank, sizes = np.linalg.lstsq(matrix, right, rcond=rcond)
-    return found, left, int(rank), sizes

@@ -14,13 +14,14 @@ from typing import Any
 import numpy as np
 
 from equipoise.balancing.linear_conditions import conditions, parameter_scales
+from equipoise.decompositions import lstsq, svd
 from equipoise.errors import UsageError
 from equipoise.i18n import say
 from equipoise.mechanism.dynamics.parameters import parameter_values
 from equipoise.mechanism.parts.machine import Machine, Vector, unknown
 from equipoise.results.blocks import Block, Cell, Column, Table, Value
 from equipoise.results.result import Result
-from equipoise.signals import Array, lstsq
+from equipoise.signals import Array
 
 MET = 1e-9
 """Share of a condition's largest term that may be left of it."""
@@ -121,7 +122,7 @@ def _least(costed: Array, free: Array, right: Array) -> Array:
 
 def _blind_to(columns: Array) -> Array:
     """Rows that are orthogonal to columns, and to each other."""
-    left, sizes, _ = np.linalg.svd(columns, full_matrices=True)
+    left, sizes, _ = svd(columns, full_matrices=True)
     rank = int(np.sum(sizes > RANK * np.max(sizes, initial=0.0)))
     return np.asarray(left[:, rank:].T)
 

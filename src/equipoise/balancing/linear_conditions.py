@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from equipoise.balancing.readings import UNITS, Reading, machine_size, reading
+from equipoise.decompositions import lstsq, pinv
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.assembly.linkage import assemble
@@ -32,7 +33,7 @@ from equipoise.quantities import Dimension, display
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value
 from equipoise.results.outputs import output_named
 from equipoise.results.result import Result
-from equipoise.signals import Array, harmonics, lstsq
+from equipoise.signals import Array, harmonics
 
 Kind = Literal["zero", "sine"]
 
@@ -218,7 +219,7 @@ def _without_noise(kept: Array, grouping: Array, columns: Array) -> Array:
     Small ones are left out together, the others fitted anew, and this is taken where nothing is
     lost by it.
     """
-    noise = ROUNDING * np.linalg.norm(np.linalg.pinv(kept), axis=1)
+    noise = ROUNDING * np.linalg.norm(pinv(kept), axis=1)
     found = grouping.copy()
     for k, column in enumerate(columns.T):
         used = np.abs(grouping[:, k]) > noise

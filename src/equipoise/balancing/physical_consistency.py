@@ -23,6 +23,7 @@ from equipoise.balancing.linear_conditions import (
 )
 from equipoise.balancing.program import Affine, NoSolutionError, Program
 from equipoise.balancing.readings import machine_size, reading
+from equipoise.decompositions import pinv
 from equipoise.mechanism.dynamics.parameters import QUANTITIES
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.quantities import SI, display
@@ -186,7 +187,7 @@ class ConsistentMasses:
         gone = np.abs(combination) < share * np.max(np.abs(combination))
         unwanted = self.rows[:, gone].T
         unwanted = np.where(np.abs(unwanted) < PIVOT, 0.0, unwanted)  # no inverse of rounding
-        tidied = (y - np.linalg.pinv(unwanted, rcond=PIVOT) @ (unwanted @ y)) @ self.rows
+        tidied = (y - pinv(unwanted, rcond=PIVOT) @ (unwanted @ y)) @ self.rows
         gone_too = np.allclose(tidied[gone], 0.0, atol=1e-12)
         return np.where(gone, 0.0, tidied) if gone_too else combination
 

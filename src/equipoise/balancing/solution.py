@@ -20,11 +20,12 @@ from equipoise.balancing.problem import ADDED, WITHOUT_EFFECT, Problem
 from equipoise.balancing.program import Affine, NoSolutionError, Program, StalledError
 from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
+from equipoise.decompositions import lstsq
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.parts.balance import Limit
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.signals import Array, lstsq
+from equipoise.signals import Array
 
 Progress = Callable[[int, int], None]
 

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, MOST_ANGLES, NO_MACHINE, NOT_STILL, Figure
+from equipoise.decompositions import svd
 from equipoise.errors import UsageError
 from equipoise.mechanism.assembly.family import can_vary, massive_link, with_columns
 from equipoise.mechanism.assembly.linkage import assemble
@@ -178,7 +179,7 @@ class MassBatch:
             mean: Array = np.mean(samples * roots, axis=0, keepdims=True)
             return mean
         count = len(samples) // (2 if output[0].is_vector else 1)
-        _, singular, rows = np.linalg.svd(samples * self.scale, full_matrices=False)
+        _, singular, rows = svd(samples * self.scale, full_matrices=False)
         kept = singular > RANK * singular[0]
         factor: Array = (singular[:, None] * rows)[kept] / (self.scale * np.sqrt(count))
         return factor

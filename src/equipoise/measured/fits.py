@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.decompositions import pinv
 from equipoise.errors import UsageError
 from equipoise.measured.record import Kind, Record, Swinging, reaches
 from equipoise.measured.turning import Turns
@@ -186,7 +187,7 @@ def _line(turns: Turns) -> tuple[Array, Array]:
     done = min(tried, key=lambda one: one.cost)
     free = len(number) - 4
     scatter = max(2 * done.cost / free, LEAST_SCATTER**2) if free else 0.0
-    covariance = scatter * np.linalg.pinv(done.jac.T @ done.jac)
+    covariance = scatter * pinv(done.jac.T @ done.jac)
     return np.array(done.x * unit), np.array(covariance * np.outer(unit, unit))
 
 
@@ -281,7 +282,7 @@ def fit_whole(record: Record, turns: Turns, line: Constants, confidence: float) 
     correlated = _correlated(residual)
     free = len(time) / correlated - UNKNOWNS
     covariance = correlated * 2 * done.cost / max(len(time) - UNKNOWNS, 1)
-    matrix = covariance * np.linalg.pinv(done.jac.T @ done.jac) * np.outer(unit, unit)
+    matrix = covariance * pinv(done.jac.T @ done.jac) * np.outer(unit, unit)
     change = np.zeros((3, UNKNOWNS))  # -ln n = pi sigma / beta in place of sigma
     change[0, 3] = change[2, 5] = 1.0
     change[1, 3], change[1, 4] = -found.loss / found.damped, np.pi / found.damped

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from equipoise.decompositions import pinv
 from equipoise.signals import Array
 
 ORDERS = ((9, (0, 1, 2, 3, 4)), (4, (0, 1, 2)), (2, (0, 1)), (1, (0,)))
@@ -86,7 +87,7 @@ def fitted(samples: Samples, at: float, width: float, still: bool = False, side:
     if powers is None:
         return Local(at, np.nan, inf, None, np.zeros(5), width)
     design = np.vander(u, powers[-1] + 1, increasing=True)[:, powers]
-    inverse = np.linalg.pinv(design.T @ design, hermitian=True)
+    inverse = pinv(design.T @ design, hermitian=True)
     mean = float(np.mean(y))  # values about it: a large offset must not cost digits
     found = inverse @ (design.T @ (y - mean))
     left = y - mean - design @ found

@@ -13,10 +13,11 @@ from math import inf
 
 import numpy as np
 
+from equipoise.decompositions import lstsq
 from equipoise.errors import UsageError
 from equipoise.measured.record import Record
 from equipoise.measured.smoothing import Local, Samples, fitted, means, steepest_time, top, zigzag
-from equipoise.signals import Array, lstsq
+from equipoise.signals import Array
 
 ROUGH = 0.3
 """Of the whole range: swings above it show at once."""
@@ -111,7 +112,8 @@ def _even(whole: Samples, tops: list[Local]) -> tuple[float, list[Local]]:
     half = float(np.median(np.diff(times)))
     if len(heights) > 1:  # friction moves the steepest places less than the tops of small swings
         passed = [steepest_time(whole, *ends, half)[0] for ends in pairwise(tops)]
-        half = float(np.polyfit(np.arange(len(heights)), passed, 1, w=heights)[0])
+        line = np.column_stack([np.arange(len(heights)), np.ones(len(heights))])
+        half = float(lstsq(line * heights[:, None], heights * passed)[0][0])
     size = np.minimum(np.append(heights, heights[-1]), np.append(heights[0], heights))
     number = np.arange(len(tops))
     first = _first(times - half * number, size)

@@ -16,11 +16,12 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.decompositions import lstsq
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, Gauge, Mount, Support, unit_vector
-from equipoise.signals import Array, Periodic, lstsq
+from equipoise.signals import Array, Periodic
 
 MISSING = Note(
     "the machine stands on solid ground; add a table [support] with its mass, mounts and gauges"

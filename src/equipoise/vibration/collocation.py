@@ -15,7 +15,8 @@ from typing import Protocol
 
 import numpy as np
 
-from equipoise.signals import Array, lstsq
+from equipoise.decompositions import lstsq
+from equipoise.signals import Array
 
 Rates = Callable[[Array], Array]
 

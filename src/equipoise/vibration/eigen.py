@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from equipoise.decompositions import svd
 from equipoise.signals import Array, highest_at
 from equipoise.vibration.response import Mode
 
@@ -25,7 +26,7 @@ def find_modes(mass: Array, damping: Array, stiffness: Array) -> tuple[Mode, ...
     least = STILL * float(np.max(np.abs(values), initial=0.0))
     # Eigenvectors of a zero that stands twice, for standing and drifting, are one; the stiffness
     # tells free motions apart.
-    _, sizes, shapes = np.linalg.svd(stiffness)
+    _, sizes, shapes = svd(stiffness)
     free = sizes <= STILL**2 * np.max(sizes, initial=0.0)
     found = [Mode(0j, _scaled(shape)) for shape in shapes[free].astype(complex)]
     for value, vector in zip(values, vectors.T, strict=True):

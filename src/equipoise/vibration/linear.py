@@ -18,6 +18,7 @@ from typing import Literal
 
 import numpy as np
 
+from equipoise.decompositions import cond, lstsq
 from equipoise.errors import ModelError, ResponseError
 from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.dynamics.forces import Forces, forces
@@ -28,7 +29,7 @@ from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.planes import moments_across
 from equipoise.mechanism.parts.support import AXES, FREEDOMS, Gauge, Row
 from equipoise.quantities import Dimension, told
-from equipoise.signals import Array, Periodic, lstsq
+from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import (
     Body,
     Rest,
@@ -348,7 +349,7 @@ class Linear:
         size = np.abs(np.diagonal(self.stiffness)) + inertia
         size[0] = 1.0
         scaled = impedance / np.sqrt(size[:, :, None] * size[:, None, :])
-        return bool(np.max(np.linalg.cond(scaled)) > SINGULAR)
+        return bool(np.max(cond(scaled)) > SINGULAR)
 
     def _mean(self, load: Array) -> Array:
         scale = float(np.linalg.norm(self.excitation.weights[0][0])) + float(np.linalg.norm(load))

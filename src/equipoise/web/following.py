@@ -15,12 +15,12 @@ from itertools import combinations, count, product
 
 import numpy as np
 
+from equipoise.decompositions import lstsq
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.steps import Array, planar
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import clean_place
-from equipoise.signals import lstsq
 from equipoise.web.design import DRAGGED
 
 TOGETHER = 1e-9

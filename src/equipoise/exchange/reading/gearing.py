@@ -7,11 +7,11 @@ from itertools import permutations
 
 import numpy as np
 
+from equipoise.decompositions import lstsq
 from equipoise.errors import ModelError
 from equipoise.exchange.reading.spatial import Array, Space
 from equipoise.mechanism.kinematics.outline import Outline
 from equipoise.mechanism.parts.machine import FRAME, Gear
-from equipoise.signals import lstsq
 
 EXACT = 1e-9
 """Share of a factor by which another may differ from it: rounding."""

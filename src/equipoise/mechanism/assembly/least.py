@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from equipoise.decompositions import svd
 from equipoise.mechanism.assembly.steps import Array
 
 ROUNDING = 1e-11
@@ -49,7 +50,7 @@ def parts_of(matrix: Array) -> tuple[Array, Array]:
     """Least-squares inverse of matrices (N, n, m), and unknowns (N, m, k) that they make nothing
     of.
     """
-    left, sizes, right = np.linalg.svd(matrix, full_matrices=True)
+    left, sizes, right = svd(matrix, full_matrices=True)
     rank = sizes.shape[-1]
     kept = sizes > ROUNDING * sizes[:, :1]
     over = np.where(kept, 1 / np.where(kept, sizes, 1.0), 0.0)

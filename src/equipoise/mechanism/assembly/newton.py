@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.decompositions import singular_values
 from equipoise.errors import MotionError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.loops import Loop, Place, Pose, Poses
@@ -165,7 +166,7 @@ class LoopGroup:
         known = {body: pose.pick((..., 0)) for body, pose in poses_in(state, self.known).items()}
         _, matrix = self.slopes(known, np.asarray(self.start))
         matrix = matrix * np.where(self.turning, 1.0, self.size)
-        sizes = np.linalg.svd(matrix / np.linalg.norm(matrix, axis=0), compute_uv=False)
+        sizes = singular_values(matrix / np.linalg.norm(matrix, axis=0))
         return bool(sizes[-1] > LOOSE)
 
     def singular(self, state: State) -> float | None:

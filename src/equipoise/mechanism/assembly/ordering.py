@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.decompositions import lstsq
 from equipoise.errors import MobilityError, MotionError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly import groups
@@ -17,7 +18,6 @@ from equipoise.mechanism.assembly.joints import Structure, held_fast, subsets
 from equipoise.mechanism.assembly.newton import LoopGroup, poses_in
 from equipoise.mechanism.assembly.parallels import pointed
 from equipoise.mechanism.parts.machine import Position
-from equipoise.signals import lstsq
 
 
 def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group:

@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.decompositions import singular_values, svd
 from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.assembly.agreeing import agreeing
@@ -254,12 +255,12 @@ class Shared(LoopForces):
 
     def strength(self, state: State) -> Array:
         """How well the joints hold the machine (N,): 0 where a force in them has no bound."""
-        sizes = np.linalg.svd(self.unsensed(state), compute_uv=False)
+        sizes = singular_values(self.unsensed(state))
         return np.asarray(sizes[:, -1] / sizes[:, 0])
 
     def growing_joints(self, state: State) -> frozenset[str]:
         """Names of forces that grow without bound towards where the joints do not hold it."""
-        _, _, unknowns = np.linalg.svd(self.unsensed(state), full_matrices=False)
+        _, _, unknowns = svd(self.unsensed(state), full_matrices=False)
         return self.those(np.max(np.abs(unknowns[:, -1]), axis=0) > BESIDE)
 
     def unsensed(self, state: State) -> Array:

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.decompositions import lstsq
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.assembly.steps import Array, planar
 from equipoise.mechanism.dynamics.across import Across, exerted_in, needed_by_inertia
@@ -35,7 +36,6 @@ from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.machine import Link, Machine, Vector, unknown
 from equipoise.mechanism.parts.places import in_frame
 from equipoise.mechanism.parts.planes import moments_across
-from equipoise.signals import lstsq
 
 QUANTITIES = ("mass", "moment_x", "moment_y", "inertia")
 """Inertial parameters of a link: kg, kg m, kg m, kg m2; moments and inertia about its origin."""

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.decompositions import pinv
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.dynamics.reactions import PUSH
@@ -185,9 +186,9 @@ def statics(linkage: Any) -> Statics:
     held = np.any(signs[:, fixed] != 0, axis=1)
     found = np.zeros((len(bearing), len(links)))
     # first what links without a joint in the frame hand on, then what all others bear
-    found[np.ix_(~fixed, ~held)] = np.linalg.pinv(signs[np.ix_(~held, ~fixed)])
+    found[np.ix_(~fixed, ~held)] = pinv(signs[np.ix_(~held, ~fixed)])
     rest = np.eye(len(links)) - signs[:, ~fixed] @ found[~fixed]
-    found[fixed] = np.linalg.pinv(signs[np.ix_(held, fixed)]) @ rest[held]
+    found[fixed] = pinv(signs[np.ix_(held, fixed)]) @ rest[held]
     return Statics(machine, all_of, found, -found @ _signs(links, all_of))
 
 
