@@ -108,6 +108,30 @@ def test_what_needs_more_than_the_limit_is_refused_in_a_sentence() -> None:
     assert peak < 450
 
 
+@pytest.mark.parametrize(
+    ("example", "words", "message"),
+    [
+        (
+            "yamashita-1",
+            ("analyze", "--json", "--split"),
+            "forces by cause and link at 7200 crank angles, of 20 turns: needs 110 MiB of memory, "
+            'and 1.91 MiB may be used; ask for less, or set EQUIPOISE_MEMORY="1 GB"',
+        ),
+        (
+            "yamashita-rig",
+            ("respond", "--speed", "60 : 400 rpm", "--speeds", "100"),
+            r"1\d\d speeds of a cycle of 20 turns: needs .* MiB of memory, and 1.91 MiB may be",
+        ),
+    ],
+)
+def test_what_is_large_is_refused_before_it_begins(
+    example: str, words: tuple[str, ...], message: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With what follows from what was asked for, not when memory has run out."""
+    monkeypatch.setenv("EQUIPOISE_MEMORY", "2 MB")
+    assert re.search(message, refused(equipoise(words[0], turning(example, 20), *words[1:])))
+
+
 def test_a_limit_that_is_none() -> None:
     result, _ = peak_of("analyze", "yamashita-1", EQUIPOISE_MEMORY="much")
     assert result.status == 2

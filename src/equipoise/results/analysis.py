@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from equipoise.errors import MassError, UsageError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
+from equipoise.limits import check_memory
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dynamics.assessment import FourBar, four_bar, remarks
@@ -40,6 +41,10 @@ if TYPE_CHECKING:
 
 Values = dict[str, Any]
 
+SPLIT = 1000
+"""Bytes that forces by cause and link, and their text, take at a crank angle for the square of the
+number of links: as measured of four.
+"""
 LATERAL = ("roll_moment", "yaw_moment")
 """Moments about x and y, from linkages side by side."""
 ANGLES = 360
@@ -327,7 +332,16 @@ def order_values(analysis: Analysis, orders: int, zero: float) -> Values:
 
 
 def _split(found: Forces) -> Values:
-    """Every force by cause, and by link: output -> cause or link -> array, or x and y."""
+    """Every force by cause, and by link: output -> cause or link -> array, or x and y.
+
+    Raises
+    ------
+    UsageError : they take more memory than may be used.
+    """
+    motion = found.motion
+    count, links = len(motion.crank_angle), len(motion.machine.links)
+    split_of = to_say("forces by cause and link at {count} crank angles, of {turns} turns")
+    check_memory(SPLIT * links**2 * count, Note(split_of, count=count, turns=motion.turns))
     read = Found(found.motion, found.split)
     result: Values = {key: {"joints": {}, "gears": {}} for key in ("by_cause", "by_link")}
     for one in DECLARED.values():

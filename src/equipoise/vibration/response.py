@@ -268,6 +268,15 @@ class Response(Result):
     motion: Periodic | None = None
 
     @property
+    def nbytes(self) -> int:
+        """Bytes of its signals."""
+        signals = [self.drive.torque, *(mount.force for mount in self.mounts.values())]
+        for gauge in self.gauges.values():
+            signals += [gauge.displacement, gauge.velocity, gauge.acceleration]
+        signals += [] if self.motion is None else [self.motion]
+        return sum(signal.amplitudes.nbytes for signal in signals)
+
+    @property
     def stable(self) -> bool | None:
         """Whether small disturbances do not grow; None where no multipliers tell."""
         if self.multipliers is None or not self.multipliers.size:

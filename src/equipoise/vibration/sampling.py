@@ -7,6 +7,8 @@ from collections.abc import Callable, Iterable, Mapping
 import numpy as np
 
 from equipoise.errors import ResponseError
+from equipoise.i18n import Note, to_say
+from equipoise.limits import check_memory
 from equipoise.signals import Array
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.resonance import Resonance
@@ -53,6 +55,10 @@ def answered(
 
     respond : of a speed, whatever the others are.  progress : called with how many are done of how
     many that are known to be wanted.
+
+    Raises
+    ------
+    UsageError : all of them would take more memory than may be used.
     """
     answers: Answers = {}
     wanted = speeds.tolist()
@@ -60,9 +66,14 @@ def answered(
         total = len(answers) + len(wanted)
         for speed in wanted:
             try:
-                answers[speed] = respond(speed)
+                answer = respond(speed)
             except ResponseError:
-                answers[speed] = None
+                answer = None
+            answers[speed] = answer
+            if answer is not None:
+                speeds_of = to_say("{count} speeds of a cycle of {turns} turns")
+                what = Note(speeds_of, count=total, turns=answer.turns)
+                check_memory(answer.nbytes * total, what)
             progress(len(answers), total)
         answers = dict(sorted(answers.items(), key=lambda pair: abs(pair[0])))
         wanted = between(answers)
