@@ -156,8 +156,34 @@ class Excitation:
 
         Without the weight itself, which the mounts carry at rest.
         """
-        rows = rows_of(self.machine)
-        return reduce(add, (self._of_row(speed, row).shifted(row.phase) for row in rows))
+        if self._in_soil:
+            return self._of_rows(self._on_pivot(speed).amplitudes)
+        still, moving = self._by_square
+        return Periodic(still + speed**2 * moving, self.motion.turns)
+
+    def at_orders(self, speeds: Array, places: Array) -> Array:
+        """The same (6, S) at speeds (S,), rad/s, of one order each, by its place (S,) in `at`."""
+        if self._in_soil:
+            pairs = zip(speeds.tolist(), places.tolist(), strict=True)
+            columns = [self.at(speed).amplitudes[:, place] for speed, place in pairs]
+            return np.array(columns).reshape(-1, 6).T
+        still, moving = self._by_square
+        return np.asarray(still[:, places] + speeds**2 * moving[:, places])
+
+    @cached_property
+    def _by_square(self) -> tuple[Array, Array]:
+        """The wrench (6, K + 1) at rest, and what is added to it with the square of the speed."""
+        still, moving = (self._of_rows(part).amplitudes for part in self._parts)
+        return still, moving
+
+    def _of_rows(self, on_pivot: Array) -> Periodic:
+        """Wrench of all rows, of what one linkage does on its pivot (5, K + 1)."""
+        turns = self.motion.turns
+        rows = (
+            Periodic(self.about_reference(on_pivot, row), turns).shifted(row.phase)
+            for row in rows_of(self.machine)
+        )
+        return reduce(add, rows)
 
     def samples(self, theta: Array, speed: float) -> Array:
         """The same (6, P) at crank angles (P,), rad, not by orders."""
@@ -169,10 +195,7 @@ class Excitation:
 
     def of_one(self, speed: float) -> Periodic:
         """The same of one linkage alone, as the file has it."""
-        return self._of_row(speed, Row())
-
-    def _of_row(self, speed: float, row: Row) -> Periodic:
-        wrench = self.about_reference(self._on_pivot(speed).amplitudes, row)
+        wrench = self.about_reference(self._on_pivot(speed).amplitudes, Row())
         return Periodic(wrench, self.motion.turns)
 
     def about_reference(self, on_pivot: Array, row: Row) -> Array:

@@ -167,15 +167,15 @@ def _loudness(linear: Linear, found: list[tuple[float, float, int, Mode]]) -> li
     """Amplitude of each resonance at the gauge where it is loudest beside the others there."""
     rows = np.array([linear.body.row(g)[linear.body.free] for g in gauges_of(linear.body).values()])
     amplitudes = np.zeros((len(found), len(rows)))
-    for k, (speed, order, _, mode) in enumerate(found):
-        wrench = linear.wrench(speed)
-        n = round(order * wrench.turns)
-        if n < wrench.amplitudes.shape[1]:
-            force = abs(mode.shape @ wrench.amplitudes[:, n])
-            inertia = abs(mode.shape @ linear.mass @ mode.shape)
-            damping = max(abs(mode.damping_ratio), LEAST_DAMPING)
-            size = force / (2 * damping * mode.natural_frequency**2 * inertia)
-            amplitudes[k] = np.abs(rows @ mode.shape) * size
+    speeds, orders = np.array([(speed, order) for speed, order, _, _ in found]).reshape(-1, 2).T
+    places = np.rint(orders * linear.excitation.motion.turns).astype(int)
+    wrenches = linear.excitation.at_orders(speeds, places)[linear.body.free].T
+    for k, (wrench, (_, _, _, mode)) in enumerate(zip(wrenches, found, strict=True)):
+        force = abs(mode.shape @ wrench)
+        inertia = abs(mode.shape @ linear.mass @ mode.shape)
+        damping = max(abs(mode.damping_ratio), LEAST_DAMPING)
+        size = force / (2 * damping * mode.natural_frequency**2 * inertia)
+        amplitudes[k] = np.abs(rows @ mode.shape) * size
     largest = np.max(amplitudes, axis=0, initial=0.0)
     shares = np.divide(amplitudes, largest, out=np.zeros_like(amplitudes), where=largest > 0)
     return [float(share) for share in np.max(shares, axis=1, initial=0.0)]

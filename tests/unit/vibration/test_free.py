@@ -12,9 +12,10 @@ import equipoise as eq
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.support import Row
+from equipoise.signals import Periodic
 from equipoise.vibration.eigen import find_modes
 from equipoise.vibration.forced import respond
-from equipoise.vibration.linear import Linear
+from equipoise.vibration.linear import Excitation, Linear
 from equipoise.vibration.resonance import AMPLIFIED, Resonance, resonances
 from equipoise.vibration.response import Mode, Model
 from equipoise.vibration.sweep import sweep_speed
@@ -467,3 +468,24 @@ def test_a_sweep_needs_a_support() -> None:
     for drive in (False, True):
         with pytest.raises(ModelError, match="the machine stands on solid ground"):
             sweep_speed(machine, 3.0, 9.0, drive=drive)
+
+
+def test_resonances_take_one_order_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of some thousand that orders of many turns meet, whole wrenches would take minutes."""
+    linear = Linear.of(rig(), "moment")
+    speeds, places = np.array([3.0, -7.0, 40.0]), np.array([1, 4, 2])
+    wrenches = linear.excitation.at_orders(speeds, places)
+    for k, (speed, place) in enumerate(zip(speeds.tolist(), places.tolist(), strict=True)):
+        whole = linear.excitation.at(speed).amplitudes
+        size = np.max(np.abs(whole))
+        np.testing.assert_allclose(wrenches[:, k], whole[:, place], atol=1e-9 * size)
+    speeds_of_wrenches: list[float] = []
+    at = Excitation.at
+
+    def counted(self: Excitation, speed: float) -> Periodic:
+        speeds_of_wrenches.append(speed)
+        return at(self, speed)
+
+    monkeypatch.setattr(Excitation, "at", counted)
+    assert len(resonances(linear, 2.0, 40.0)) > 3
+    assert len(speeds_of_wrenches) == 1
