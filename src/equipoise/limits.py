@@ -91,6 +91,27 @@ def check_memory(size: float, what: Note) -> None:
         )
 
 
+def check_room(size: float, what: Note) -> None:
+    """Refuse what needs more memory at once than is left, for libraries that abort without it.
+
+    Parameters and errors as of `check_memory`.
+    """
+    check_memory(size + _in_use(), what)
+
+
+def _in_use() -> int:
+    """Bytes that count towards the limit of this process; 0 where it has none."""
+    if sys.platform != "linux":
+        return 0
+    import resource
+
+    if resource.getrlimit(resource.RLIMIT_DATA)[0] == resource.RLIM_INFINITY:
+        return 0
+    with open("/proc/self/status", encoding="ascii") as status:
+        data = re.search(r"VmData:\s+(\d+) kB", status.read())
+    return 0 if data is None else 1024 * int(data[1])
+
+
 def out_of_memory(error: MemoryError) -> UsageError:
     """What to say of an array that found no room."""
     shape: Any = getattr(error, "shape", None)

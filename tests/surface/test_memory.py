@@ -162,3 +162,29 @@ def test_a_spline_of_very_many_points(folder: Path) -> None:
     assert result.status == 2
     assert "a spline of 20000 points, of the layer '0': needs 8.94 GiB of memory" in result.err
     assert peak < 500
+
+
+CONES = """
+import sys
+import numpy as np
+from scipy import sparse
+from equipoise.balancing.cone_solver import clarabel_solver
+from equipoise.errors import UsageError
+from equipoise.limits import limit_process
+
+matrix = sparse.csc_matrix(np.random.default_rng(0).normal(size=(6000, 300)))
+limit_process()
+try:
+    clarabel_solver(np.ones(300), matrix, np.ones(6000), [("nonnegative", 6000)], 1e-8)
+except UsageError as error:
+    sys.exit(str(error))
+"""
+
+
+def test_a_program_beyond_the_limit_does_not_abort() -> None:
+    """Clarabel ends the whole process where it gets no memory."""
+    environment = {**os.environ, "EQUIPOISE_MEMORY": "270 MB"}
+    words = [sys.executable, "-c", CONES]
+    done = subprocess.run(words, capture_output=True, text=True, check=False, env=environment)
+    assert done.returncode == 1, done.stderr
+    assert done.stderr.startswith("a cone program of 6000 rows and 300 numbers: needs ")

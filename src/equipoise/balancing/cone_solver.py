@@ -15,6 +15,8 @@ from typing import Any, Literal, Protocol
 
 import numpy as np
 
+from equipoise.i18n import Note, to_say
+from equipoise.limits import check_room
 from equipoise.signals import Array
 
 Kind = Literal["zero", "nonnegative", "second-order"]
@@ -24,6 +26,8 @@ LOOSE = 1e-5
 """Relative accuracy with which a solution is still called almost solved."""
 MOST_STEPS, STEP = 100, 0.99
 """Iterations, and the share of the way to the boundary of the cones that is gone in each."""
+ENTRY = 120
+"""Bytes that Clarabel takes for each entry of the matrix: 75 to 90 were measured."""
 ROUNDS, REFINEMENTS = 8, 2
 """Of scaling rows and columns; of each solution of the linear equations."""
 REGULAR = 1e-13
@@ -63,7 +67,12 @@ class ConeSolver(Protocol):
 def clarabel_solver(
     cost: Array, matrix: Any, right: Array, cones: Sequence[tuple[Kind, int]], tolerance: float
 ) -> ConeSolution:
-    """Solve by Clarabel; arguments as of `ConeSolver`."""
+    """Solve by Clarabel; arguments as of `ConeSolver`.
+
+    Raises
+    ------
+    UsageError : memory is not enough, without which Clarabel aborts the process.
+    """
     import clarabel
     from scipy import sparse
 
@@ -75,6 +84,9 @@ def clarabel_solver(
     settings = clarabel.DefaultSettings()
     settings.verbose, settings.max_threads = False, 1
     settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = tolerance
+    program = to_say("a cone program of {rows} rows and {columns} numbers")
+    needed = ENTRY * matrix.nnz + 8 * len(cost) ** 2
+    check_room(needed, Note(program, rows=len(right), columns=len(cost)))
     nothing = sparse.csc_matrix((len(cost), len(cost)))
     made = [kinds[kind](size) for kind, size in cones]
     end = clarabel.DefaultSolver(nothing, cost, matrix, right, made, settings).solve()
