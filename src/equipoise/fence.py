@@ -193,6 +193,13 @@ def check_written(path: Path) -> None:
         raise UsageError(f"{path.name}: {OUTSIDE}")
 
 
+def check_link(path: Path) -> None:
+    """Raise `LinkError` where a path is a link that leads out of its folder."""
+    above = os.path.realpath(path.parent)
+    if path.is_symlink() and not Path(os.path.realpath(path)).is_relative_to(above):
+        raise LinkError(path.name, OUT)
+
+
 def _note_written(path: Path) -> None:
     """Note that a file or a folder is written, where it may be; errors as of `place_of`."""
     check_written(path)

@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from equipoise.errors import UsageError
-from equipoise.fence import check_written, place_of
+from equipoise.fence import check_link, check_written, place_of
 from equipoise.folders import Folder
 from equipoise.interrupts import check, held_back
 
@@ -134,10 +134,12 @@ def made(folder: str | os.PathLike[str]) -> None:
     Raises
     ------
     UsageError : it lies beyond the fence.
+    LinkError : it is a link that leads out of its folder.
     OSError : it cannot be made.
     """
     path, whole = Path(folder).absolute(), _waiting.get()
     check_written(path)
+    check_link(path)
     missing = [one for one in (path, *path.parents) if not one.exists()]
     os.makedirs(folder, exist_ok=True)
     if whole is not None:

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+import json
 import shutil
+import subprocess
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import pytest
+from websockets.sync.client import ClientConnection, connect
 
 from equipoise.cli.tools import tools
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.schema.documents import load
+from equipoise.web import server as served_files
 from equipoise.web.disk import on_disk
 from equipoise.web.stores import StoreDesk, stores_in
-from surface.running import equipoise, example_text, refused, succeeded
-from surface.studies import LENGTHS
+from surface.running import command, equipoise, example_text, refused, succeeded
+from surface.studies import LENGTHS, TOLERANCES
+from unit.web.pages import unpacked
 
 MODEL = example_text("yamashita-1")
 STORE, LOCK = Path("lengths.zarr"), ".lock"
@@ -178,9 +185,9 @@ def test_a_model_reads_no_table_through_a_link_that_leads_out(name: str, outside
     for place in ("load.csv", "sub/load.csv"):
         Path(place).symlink_to(outside.folder / "load.csv")
     Path("model.toml").write_text(MODEL + LOADS.format(name))
-    for command in COMMANDS:
-        more = ("-o", "out.xml") if command == "export" else ()
-        assert "leads out of its folder" in refused(equipoise(command, "model.toml", *more))
+    for word in COMMANDS:
+        more = ("-o", "out.xml") if word == "export" else ()
+        assert "leads out of its folder" in refused(equipoise(word, "model.toml", *more))
 
 
 def test_a_link_within_the_folder_of_a_model_is_followed(outside: Outside) -> None:
@@ -204,6 +211,7 @@ def test_a_study_reads_no_model_through_a_link_that_leads_out(outside: Outside) 
 
 # -- what is written -------------------------------------------------------------------------------
 
+SMALL = ("--population", "8", "--generations", "2")
 WRITING = {
     "analyze --csv": ("analyze", "mine.toml", "--csv", "{}"),
     "report": ("report", "mine.toml", "-o", "{}.html"),
@@ -215,7 +223,30 @@ WRITING = {
     "export of a store": ("export", str(STORE), "-o", "{}.csv"),
     "best": ("best", str(STORE), "--out", "{}.toml"),
     "sweep": ("sweep", "study.toml", "-o", "{}.zarr"),
+    "search": ("search", "search.toml", *SMALL, "--out", "{}.toml"),
+    "search --csv": ("search", "search.toml", *SMALL, "--csv", "{}.csv"),
+    "balance --csv": ("balance", "balance-crank", "--csv", "{}.csv"),
+    "respond --csv": ("respond", "yamashita-rig", "--speed", "60 : 70 rpm", "--csv", "{}.csv"),
+    "simulate --csv": ("simulate", "yamashita-rig", "0.1 s", "--csv", "{}.csv"),
+    "plant --csv": ("plant", "kim-chung-a", "--csv", "{}.csv"),
+    "tool --csv": ("tool", "nagamine-irie", "--modes", "--csv", "{}.csv"),
 }
+DRAWING = {
+    "plot": ("plot", "mine.toml", "-o", "pictures"),
+    "tolerance": ("tolerance", "study.toml", "--designs", "352", "--plot", "pictures"),
+    "search": ("search", "search.toml", *SMALL, "--plot", "pictures"),
+    "best": ("best", str(STORE), "--plot", "pictures"),
+    "exposure": ("exposure", "tasks.csv", "--plot", "pictures"),
+    "modes": ("modes", "yamashita-rig", "--plot", "pictures"),
+}
+
+
+def inputs() -> None:
+    """Files for each of these commands."""
+    Path("mine.toml").write_text(MODEL)
+    Path("study.toml").write_text(TOLERANCES)
+    Path("search.toml").write_text(LENGTHS)
+    Path("tasks.csv").write_text("task,acceleration [m/s^2],duration [h]\nbrush saw,4.6,2\n")
 
 
 @pytest.mark.parametrize("target", ["secret.txt", "nowhere", "folder"])
@@ -224,8 +255,7 @@ WRITING = {
 def test_what_is_written_goes_through_no_link_that_leads_out(
     words: tuple[str, ...], target: str, outside: Outside
 ) -> None:
-    Path("mine.toml").write_text(MODEL)
-    Path("study.toml").write_text(LENGTHS)
+    inputs()
     succeeded(equipoise("export", "mine.toml", "-o", "mine.mjcf.xml"))
     name = next(one for one in words if "{}" in one).format("out")
     Path(name).symlink_to(outside.folder / target)
@@ -234,14 +264,32 @@ def test_what_is_written_goes_through_no_link_that_leads_out(
 
 
 @pytest.mark.parametrize("kind", ["svg", "png"])
-def test_pictures_go_through_no_link_in_their_folder(kind: str, outside: Outside) -> None:
-    Path("mine.toml").write_text(MODEL)
-    succeeded(equipoise("plot", "mine.toml", "-o", "pictures", "--format", kind))
-    for picture in sorted(Path("pictures").iterdir())[::5]:
+@pytest.mark.parametrize("words", DRAWING.values(), ids=DRAWING)
+@pytest.mark.usefixtures("store")
+def test_pictures_go_through_no_link_in_their_folder(
+    words: tuple[str, ...], kind: str, outside: Outside
+) -> None:
+    inputs()
+    succeeded(equipoise(*words, "--format", kind))
+    first, *_, last = sorted(Path("pictures").iterdir()) * 2
+    for picture in {first, last}:
         planted(picture, outside.folder / "secret.txt")
-        said = refused(equipoise("plot", "mine.toml", "-o", "pictures", "--format", kind))
-        assert "leads out of its folder" in said
+        assert "leads out of its folder" in refused(equipoise(*words, "--format", kind))
         picture.unlink()
+    shutil.rmtree("pictures")
+    Path("pictures").symlink_to(outside.folder / "folder")
+    assert "leads out of its folder" in refused(equipoise(*words, "--format", kind))
+
+
+def test_recordings_that_are_links_are_read_and_no_others_written(outside: Outside) -> None:
+    """Whoever names a link by hand wants to read it; a program within its fence may not."""
+    (outside.folder / "tasks.csv").write_text("task,acceleration [m/s^2],duration [h]\nsaw,4,2\n")
+    Path("tasks.csv").symlink_to(outside.folder / "tasks.csv")
+    before = everything(outside.folder)
+    assert "saw" in succeeded(equipoise("exposure", "tasks.csv"))
+    assert "leads out of the folder" in in_agents_server("exposure", input=["tasks.csv"])
+    assert everything(outside.folder) == before
+    (outside.folder / "tasks.csv").unlink()
 
 
 def test_what_is_begun_beside_a_place_goes_through_no_link(
@@ -311,3 +359,62 @@ def test_a_file_that_was_opened_through_a_link_is_saved_where_it_is(folder: Path
     disk.save(disk.model)
     assert Path("mine.toml").is_symlink()
     assert load("real/mine.toml") == disk.model
+
+
+# -- the live page ---------------------------------------------------------------------------------
+
+
+@contextmanager
+def page_of(file: str) -> Iterator[ClientConnection]:
+    """The connection of a page that `equipoise serve` has opened for a file."""
+    words = command("serve", file, "--no-browser")
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as run:
+        assert run.stdout is not None
+        address = run.stdout.readline().decode().strip()
+        host, query = address.split("/")[2], address.rpartition("?")[2]
+        try:
+            with connect(
+                f"ws://{host}/live?{query}", origin=f"http://{host}", max_size=None  # type: ignore[arg-type]
+            ) as page:  # fmt: skip
+                yield page
+        finally:
+            run.kill()
+
+
+def asked(page: ClientConnection, kind: str, **given: object) -> dict[str, Any]:
+    """The first answer that tells how a message of the page has ended."""
+    page.send(json.dumps({"type": kind, "seq": 7, **given}))
+    while True:
+        data = page.recv(timeout=60)
+        assert isinstance(data, bytes)
+        answer: dict[str, Any] = unpacked(data)[0]
+        if answer["type"] in {"saved", "refused"}:
+            return answer
+
+
+def test_a_page_saves_through_no_link_that_was_put_in_the_place_of_its_file(
+    outside: Outside,
+) -> None:
+    if not (Path(served_files.__file__).parent / "static" / "equipoise.js").exists():
+        pytest.skip("the page is not bundled")
+    Path("mine.toml").write_text(MODEL)
+    change = {"set": "links.crank.mass", "text": "300 g"}
+    with page_of("mine.toml") as page:
+        page.send(json.dumps({"type": "edit", "seq": 1, "label": "mass", "edits": [change]}))
+        assert asked(page, "save")["type"] == "saved"
+        assert "300" in Path("mine.toml").read_text()
+        page.send(json.dumps({"type": "edit", "seq": 1, "label": "mass", "edits": [change]}))
+        planted(Path("mine.toml"), outside.folder / "model.toml")
+        assert "was changed" in asked(page, "save")["message"]
+        Path("mine.toml").unlink()
+        Path("mine.toml").symlink_to(outside.folder / "nowhere")
+        assert asked(page, "save")["type"] != "saved"
+
+
+@pytest.mark.usefixtures("store")
+def test_a_page_opens_no_store_through_a_link(outside: Outside, made: Path) -> None:
+    Path("mine.toml").write_text(MODEL)
+    Path("way.zarr").symlink_to(made)
+    with page_of("mine.toml") as page:
+        for name in ("way.zarr", "../made0/lengths.zarr", str(made)):
+            assert "message" in asked(page, "study", name=name)
