@@ -11,7 +11,7 @@ export type Edit =
   | { move: string; to: Pair; at: number; keep?: string[] }
   | { move_mass: string; to: Pair; at: number };
 
-export type FileKind = "model" | "csv" | "report" | "drawing" | "film" | "played";
+export type FileKind = "model" | "csv" | "report" | "drawing" | "film" | "played" | "interactive";
 
 /** An operation on a machine that is made, with what it needs. */
 export interface Made {

@@ -174,6 +174,7 @@ function downloads(commands: Commands): HTMLDetailsElement {
       item(say("Drawing as PNG"), "drawing", "png"),
       item(say("Motion as GIF"), "film"),
       item(say("Page that plays without a server"), "played"),
+      item(say("Page that computes without a server"), "interactive"),
       h("button", { type: "button", onclick: () => close(commands.link) }, say("Copy link")),
     ),
   );

@@ -84,3 +84,18 @@ def test_a_file_plays_without_a_server(
         page.set_viewport_size({"width": width, "height": 900})
         assert page.evaluate(FITS) and there.findings() == []
     assert [url for url in asked if not url.startswith(("data:", "blob:"))] == []
+
+
+def test_a_file_that_computes_shows_the_same(
+    live: Live, new_page: Callable[..., Page], tmp_path: Path
+) -> None:
+    live.type(live.field("crank mass"), "300 g")
+    live.settled()
+    figures = live.page.locator(".readings").first.locator(".value").all_inner_texts()
+    name, data = menu(live, "Page that computes without a server")
+    assert name == "yamashita-1-interactive.html"
+    page = new_page()
+    page.set_content(data.decode())
+    shown = page.locator(".readings .value").all_inner_texts()
+    assert {text.lstrip("−") for text in figures} <= {*shown}
+    assert Live(page).field("mass of the crank").input_value() == "300"

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from equipoise.errors import UsageError
-from equipoise.i18n import LANGUAGES
+from equipoise.i18n import LANGUAGES, speaking
 from equipoise.mechanism.checks import unknown
 from equipoise.schema.files import to_csv
 from equipoise.schema.models import taken_along
@@ -107,12 +107,24 @@ def _rendered(picture: Any, name: str, message: Message) -> Made:
     return f"-{FORBIDDEN.sub('-', name.replace('.', '-'))}.{kind}", data
 
 
+def _interactive(found: Solved, message: Message, stem: str) -> Made:
+    from equipoise.exchange.formats import Job
+    from equipoise.web.interactive import made
+
+    language = message.text("language", "en")
+    if language not in LANGUAGES:
+        raise UsageError(unknown(language, LANGUAGES, "language of pages"))
+    with speaking(language):
+        return "-interactive.html", made(Job(found.analysis.machine)).encode()
+
+
 FILES: dict[str, Callable[[Solved, Message, str], Made]] = {
     "csv": _csv,
     "report": _report,
     "drawing": _drawing,
     "chart": _chart,
     "film": _film,
+    "interactive": _interactive,
 }
 """What there is."""
 MODEL = "model"

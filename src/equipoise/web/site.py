@@ -38,6 +38,8 @@ LATER = ("scipy", "clarabel", "matplotlib", "jinja2")
 PURE = ("lazy-loader", "tomli-w")
 """Packages of pure Python that are imported from the beginning, besides this one."""
 PAGE = ("equipoise.js", "equipoise.css", "worker.js", "service.js", "THIRD-PARTY.txt")
+GIVEN = ("words.json", "interactive.js", "interactive.css")
+"""Files of the page that Python hands out: in its language, and as an interactive page."""
 EPOCH = (1980, 1, 1, 0, 0, 0)
 """Of files in wheels, so that the same sources give the same bytes."""
 POLICY = (
@@ -233,8 +235,8 @@ def _files_of(name: str, dist: Distribution) -> Iterable[tuple[str, bytes]]:
         files = {f.as_posix(): Path(str(dist.locate_file(f))) for f in dist.files or ()}
     for place, path in sorted(files.items()):
         left_out = "__pycache__" in place or place.startswith("equipoise/web/static/")
-        words = place == "equipoise/web/static/words.json"  # which the page's language needs
-        if path.is_file() and ".dist-info/" not in place and (words or not left_out):
+        given = place.rpartition("/static/")[2] in GIVEN
+        if path.is_file() and ".dist-info/" not in place and (given or not left_out):
             yield place, path.read_bytes()
 
 

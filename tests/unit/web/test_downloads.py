@@ -9,6 +9,8 @@ from xml.etree import ElementTree
 
 import pytest
 
+from equipoise.i18n import catalogue
+from equipoise.web import interactive as interactive_module
 from equipoise.web import played as played_module
 from equipoise.web.explained import CHARTS
 from equipoise.web.openings import titles
@@ -75,6 +77,25 @@ def test_a_page_that_plays_holds_all_that_was_told(monkeypatch: pytest.MonkeyPat
     state = told["replies"][2][0]
     assert {f"output.{one['name']}" for one in state["outputs"]} <= state["arrays"].keys()
     assert told["replies"][0][0]["language"] == "ko"
+
+
+def test_a_page_that_computes_is_that_of_export(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the machine as it has been changed; one of which there is no script is refused."""
+    monkeypatch.setattr(interactive_module, "asset", lambda name: f"/* {name} */ RMS")
+    session, _ = opened("yamashita-1")
+    edit = {"edits": [{"set": "links.crank.mass", "value": 0.5}], "commit": True, "label": "x"}
+    ask(session, "edit", seq=2, **edit)
+    (file,) = ask(session, "download", seq=3, kind="interactive", language="ko")
+    page = file.buffer.decode()
+    held = json.loads(re.search(r'id="equipoise-machine">(.*?)</script>', page, re.S)[1])  # type: ignore[index]
+    fields = {field["path"]: field for field in held["fields"]}
+    assert fields["links.crank.mass"]["value"] == 0.5
+    assert held["language"] == "ko" and held["words"]["RMS"] == catalogue("ko")["RMS"]
+    session, _ = opened("class-three")
+    said = refusal(ask(session, "download", seq=1, kind="interactive")[-1:])
+    assert "an interactive page computes in the browser" in said
+    said = refusal(ask(session, "download", seq=2, kind="interactive", language="xx")[-1:])
+    assert "language of pages" in said
 
 
 def test_a_model_comes_with_its_tables() -> None:
