@@ -16,7 +16,9 @@ import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, expect
 
 from browser.live import ROOT, SCREENSHOTS, Live
+from equipoise.web.site import Site, write_site
 from support.chromium import chromium, path_of_chromium, served
+from support.host import RUNTIME, WHEELS, hosting, lacks_runtime
 
 SECONDS = 15
 """The longest that anything may take on a busy machine."""
@@ -42,6 +44,21 @@ def server() -> Iterator[tuple[str, int]]:
 def address(server: tuple[str, int]) -> str:
     """The address of a server with a machine."""
     return server[0]
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Site:
+    """The page as a folder for any web host."""
+    if lacks_runtime():
+        pytest.skip("the runtime and its wheels could not be fetched: make test fetches them")
+    return write_site(tmp_path_factory.mktemp("host") / "site", RUNTIME, WHEELS)
+
+
+@pytest.fixture(scope="session")
+def host(site: Site) -> Iterator[str]:
+    """The address of a web host that has it."""
+    with hosting(site.folder) as address:
+        yield address
 
 
 @pytest.fixture(scope="module")  # longer, and Playwright's event loop would disturb other tests

@@ -3,44 +3,19 @@
 from __future__ import annotations
 
 import re
-import threading
 from collections.abc import Iterator
-from functools import partial
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, expect
 
-from browser.live import LONGEST, ROOT, Live
+from browser.live import LONGEST, Live
 from equipoise.errors import UsageError
 from equipoise.web.site import Site, write_site
+from support.host import RUNTIME, WHEELS
 
-WHEELS, RUNTIME = ROOT / "build" / "wheels", ROOT / "page" / "node_modules" / "pyodide"
 MOST = 12e6
 """Bytes of the first load, compressed."""
-
-
-class Quiet(SimpleHTTPRequestHandler):
-    def log_message(self, *_: object) -> None:
-        """Say nothing."""
-
-
-@pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Site:
-    if not RUNTIME.is_dir() or not any(WHEELS.glob("numpy-*.whl")):
-        pytest.skip("the runtime and its wheels could not be fetched: make test fetches them")
-    return write_site(tmp_path_factory.mktemp("host") / "site", RUNTIME, WHEELS)
-
-
-@pytest.fixture(scope="module")
-def host(site: Site) -> Iterator[str]:
-    """The address of a web host that knows nothing but files."""
-    handler = partial(Quiet, directory=str(site.folder))
-    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
-        yield f"http://127.0.0.1:{server.server_port}/"
-        server.shutdown()
 
 
 @pytest.fixture(scope="module")

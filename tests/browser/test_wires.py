@@ -1,0 +1,77 @@
+"""What one does with a machine, over each wire: a server's socket, and a worker of the browser."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+
+import equipoise as eq
+from browser.live import LONGEST, Live
+
+NAME = "balance-crank"
+
+
+@pytest.fixture(params=["socket", "worker"])
+def wired(request: pytest.FixtureRequest, browser: Browser) -> Iterator[Live]:
+    """The page with a machine, over a wire of each kind."""
+    fixture = {"socket": "address", "worker": "host"}[request.param]
+    address: str = request.getfixturevalue(fixture)
+    context = browser.new_context(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
+    context.set_default_timeout(LONGEST * 1000)
+    page, wrong = context.new_page(), list[str]()
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.goto(f"{address}#example={NAME}")
+    expect(example(page)).to_have_value(NAME, timeout=LONGEST * 1000)
+    live = Live(page)
+    live.settled()
+    yield live
+    context.close()
+    assert not wrong
+
+
+def example(page: Page):
+    return page.get_by_role("combobox", name="Example")
+
+
+def test_a_machine_is_changed_balanced_and_taken_along(wired: Live) -> None:
+    """To the same numbers as those that are computed without a page."""
+    page, own = wired.page, eq.load(NAME)
+    wired.type(wired.field("crank mass"), "0.3 kg")
+    assert wired.machine() == own.with_link("crank", mass=0.3)
+    before = wired.place(wired.joint("B"))
+    wired.drag(wired.joint("B"), (14, -9))
+    assert wired.place(wired.joint("B")) != before
+    moved = wired.machine().links["crank"].points["B"]
+    assert moved != own.links["crank"].points["B"]
+    wired.button("Undo").click()
+    wired.comes_to(wired.joint("B"), before, 0.01)
+    wired.button("Redo").click()
+    wired.settled()
+    assert wired.machine().links["crank"].points["B"] == moved
+    wired.button("Undo").click()
+    wired.settled()
+    wired.button("Undo").click()
+    wired.settled()
+    page.get_by_role("button", name="Balance", exact=True).click()
+    keep = page.get_by_role("button", name="Keep", exact=True)
+    expect(keep).to_be_visible(timeout=LONGEST * 1000)
+    keep.click()
+    expect(keep).to_be_hidden()
+    wired.settled()
+    made, found = wired.machine(), eq.balance(own).machine
+    assert made.balance == own.balance
+    for name, link in found.links.items():
+        assert made.links[name].mass == pytest.approx(link.mass, rel=1e-5)
+        assert made.links[name].center_of_mass == pytest.approx(link.center_of_mass, abs=1e-6)
+
+
+def test_what_cannot_be_is_told_and_the_last_good_state_stays(wired: Live) -> None:
+    field = wired.field("crank mass")
+    field.fill("3 mm")
+    field.press("Enter")
+    wired.settled()
+    expect(wired.page.get_by_text("mm is the unit of a length").first).to_be_visible()
+    field.press("Escape")
+    assert wired.machine() == eq.load(NAME)
