@@ -185,6 +185,7 @@ export class App {
       stage: this.stage,
       board: this.board.root,
       snaps: () => this.bench.snaps(),
+      tracing: () => this.bench.tracing(),
       begin: () => this.anew(),
       angle: () => this.player.angle,
       turn: (degrees) => this.turn(degrees),
@@ -286,6 +287,7 @@ export class App {
       turn: (by: number) => this.turn(this.player.angle + by),
       zoom: (factor: number) => this.stage.zoom(factor),
       fit: () => this.stage.fit(),
+      tool: (key: string) => this.tools.pick(key),
     };
     this.root.addEventListener("keydown", (event) => pressed(event, shortcuts));
     if (!this.full) return;

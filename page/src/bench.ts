@@ -43,6 +43,11 @@ export class Bench {
     return this.aids.underlay.snaps();
   }
 
+  /** Whether an underlay is seen, to be traced over. */
+  tracing(): boolean {
+    return this.aids.underlay.shown?.hidden === false;
+  }
+
   /** The machine is another, or may be. */
   follow(): void {
     this.parts.follow();

@@ -33,7 +33,7 @@ export class Chart {
   constructor(
     private data: ChartData,
     theme: Theme,
-    xAxis: boolean,
+    readonly xAxis: boolean,
     whole: { picked(degrees: number): void; chosen(): void },
   ) {
     const { x } = data;
@@ -90,6 +90,16 @@ export class Chart {
         : choice.unit;
     this.strip.show({ title: choice.label, x, unit, curves, least, log: choice.log });
     if (typeof this.data.x === "object") this.strip.point(this.data.x.at * this.data.x.factor, null);
+  }
+
+  /** Whether what it would draw of a source is nothing but zero. */
+  static idle(data: ChartData, { numbers, least = 0, before }: Source, whose: string): boolean {
+    if (data.chooser !== null) return false;
+    const choice = data.choices.find(({ of }) => of === null || of === whose);
+    const names = (choice?.curves ?? []).map(({ array }) => array);
+    const arrays = names.flatMap((name) => [name, ...(before ? [`before.${name}`] : [])]);
+    const seen = names.some((name) => numbers.names(`measured.${name}`).length > 0);
+    return !seen && arrays.every((name) => numbers.get(name)?.every((value) => Math.abs(value) <= least));
   }
 
   /** Where a chart over the crank angle is, at a share of the cycle. */

@@ -2,7 +2,7 @@
 
 import { Chart, type Source } from "./chart";
 import { chooser } from "./chooser";
-import { h, show } from "./dom";
+import { h, show, write } from "./dom";
 import { type Ask, explain } from "./explain";
 import { lengths } from "./format";
 import { Plane, type Trace } from "./plane";
@@ -31,6 +31,7 @@ export class Charts {
   private readonly path = new Plane(say("Path"), false, this.pathOf.label);
   private readonly forces = h("div", { class: "group" });
   private readonly answers = h("div", { class: "group" });
+  private readonly zeros = h("p", { class: "quiet zeros", hidden: true });
   private readonly outputs: Outputs;
   /** Those that the server declares, by name. */
   private readonly declared = new Map<string, Chart>();
@@ -60,12 +61,12 @@ export class Charts {
     wanted: (names: string[]) => void,
     private readonly ask: Ask,
   ) {
-    this.outputs = new Outputs(theme, picked, wanted, (strip, name) => {
+    this.outputs = new Outputs(theme, picked, wanted, (strip, { name, label }) => {
       this.watcher.observe(strip.root);
-      explain(strip.root, "output", ask, () => name);
+      explain(strip.root, capital(label), "output", ask, () => name);
     });
-    explain(this.polar.root, "polar", ask, () => "");
-    explain(this.path.root, "path", ask, () => "");
+    explain(this.polar.root, say("Shaking force, polar"), "polar", ask, () => "");
+    explain(this.path.root, say("Path"), "path", ask, () => "");
     this.squares.append(this.polar.root, this.path.root);
     this.root = h("div", { class: "charts" });
   }
@@ -217,15 +218,18 @@ export class Charts {
   }
 
   /** Draw charts in their order; those of before that are told no more are hidden. */
-  private draw(told: ChartData[], source: Source, within: HTMLElement, other: boolean): void {
+  private draw(all: ChartData[], source: Source, within: HTMLElement, other: boolean): void {
     const { rows } = this;
+    const idle = all.filter((data) => Chart.idle(data, source, rows));
+    const told = all.filter((data) => !idle.includes(data));
+    if (within === this.forces) this.tellIdle(idle);
     const names = told.map(({ name }) => name);
     for (const [name, { strip }] of this.declared)
       if (strip.root.parentElement === within && !names.includes(name)) strip.root.hidden = true;
     let leader: Chart | null = null;
     told.forEach((data, i) => {
       const shared = data.x === "angle" && data.chooser === null && told[i + 1]?.chooser === null;
-      const chart = this.declared.get(data.name) ?? this.made(data, !shared);
+      const chart = this.of(data, !shared);
       chart.offer(data, rows, other);
       chart.show(source, rows, data.chooser === null ? (leader?.chosen ?? "") : "");
       if (data.chooser !== null) leader = chart;
@@ -234,12 +238,33 @@ export class Charts {
     if (roots.some((root, i) => within.children[i] !== root)) within.prepend(...roots);
   }
 
+  /** What has no chart, as it would be a line along zero. */
+  private tellIdle(idle: ChartData[]): void {
+    const names = idle.map(({ choices }) => choices[0]?.label ?? "").join("; ");
+    write(this.zeros, names && say("Zero at every crank angle: {names}", { names }));
+    this.zeros.hidden = !names;
+    if (this.zeros.parentElement !== this.forces) this.forces.append(this.zeros);
+  }
+
+  /** The chart that is declared, with numbers below it or without. */
+  private of(data: ChartData, xAxis: boolean): Chart {
+    const known = this.declared.get(data.name);
+    if (known?.xAxis === xAxis) return known;
+    if (known) {
+      this.watcher.unobserve(known.strip.root);
+      known.strip.close();
+    }
+    return this.made(data, xAxis);
+  }
+
   private made(data: ChartData, xAxis: boolean): Chart {
     const { picked } = this;
     const chart = new Chart(data, this.theme, xAxis, { picked, chosen: () => this.chosen() });
     this.declared.set(data.name, chart);
     this.watcher.observe(chart.strip.root);
-    explain(chart.strip.root, data.name, this.ask, () => chart.chosen || (data.choices[0]?.name ?? ""));
+    const [first] = data.choices;
+    const title = data.chooser ?? first?.label ?? "";
+    explain(chart.strip.root, title, data.name, this.ask, () => chart.chosen || (first?.name ?? ""));
     chart.strip.resize(this.width);
     return chart;
   }

@@ -94,10 +94,37 @@ export class Designs {
     else this.ranges.delete(k);
   }
 
-  /** Designs within every range, the best first. */
+  /** Designs within every range, in the order of their numbers. */
   chosen(): number[] {
     const found: number[] = [];
     for (let i = 0; i < this.count; i++) if (this.within(i)) found.push(i);
     return found;
+  }
+
+  /**
+   * Some of these, the best first: those that keep every limit before others, and of each first
+   * those that no other beats in every aim, by the sum of what they lack of the best of each aim.
+   */
+  best(among: number[], most: number): number[] {
+    const aims = this.columns.filter(({ told }) => told.make);
+    const lack = aims.map(({ told, values }) => {
+      const [low, high] = extremes([among.map((i) => values[i] ?? NaN)]);
+      const from = told.make === "largest" ? high : low;
+      return (i: number) => Math.abs((values[i] ?? NaN) - from) / (high - low || 1);
+    });
+    const sum = (i: number) => lack.reduce((all, one) => all + one(i), 0);
+    const order: Kind[] = ["kept", "beyond", "failed"];
+    return order.flatMap((kind) => {
+      const sums = among.filter((i) => this.kind(i) === kind).map((i) => [i, sum(i)] as const);
+      const ranked = sums.sort(([, a], [, b]) => (a === b ? 0 : a - b || 0)).map(([i]) => i);
+      const front: number[] = [];
+      for (const i of ranked) {
+        if (front.length >= most) break;
+        const beaten = front.some((j) => lack.every((one) => one(j) <= one(i)) && sum(j) < sum(i));
+        if (!beaten) front.push(i);
+      }
+      const others = ranked.filter((i) => !front.includes(i));
+      return [...front, ...others];
+    }).slice(0, most);
   }
 }

@@ -6,8 +6,8 @@ import { explained, say } from "./words";
 
 export type Ask = (asked: Asked) => void;
 
-/** Put a "?" at the end of a chart's heading; `choice` tells what of it is shown. */
-export function explain(figure: HTMLElement, name: string, ask: Ask, choice: () => string): void {
+/** Put a "?" at the end of the heading of a chart of that title; `choice` tells what of it is shown. */
+export function explain(figure: HTMLElement, title: string, name: string, ask: Ask, choice: () => string): void {
   const heading = figure.querySelector("figcaption");
   if (!heading || heading.querySelector(".why")) return;
   const id = fresh("why");
@@ -32,7 +32,7 @@ export function explain(figure: HTMLElement, name: string, ask: Ask, choice: () 
     {
       type: "button",
       class: "why",
-      "aria-label": say("What does this chart show?"),
+      "aria-label": say("{chart}: what does it show?", { chart: title }),
       title: say("What does this chart show?"),
       "aria-expanded": "false",
       "aria-controls": id,

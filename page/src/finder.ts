@@ -11,6 +11,8 @@ export interface Entry {
 
 /** Entries that are listed at most. */
 const MOST = 60;
+/** Height of the list at most, and at least where it opens downward, pixels. */
+const [TALL, LEAST] = [260, 160];
 
 export class Finder {
   readonly root: HTMLElement;
@@ -27,7 +29,9 @@ export class Finder {
     private readonly chosen: (name: string) => void,
   ) {
     const id = fresh("found");
-    this.list = h("div", { class: "found", role: "listbox", id, "aria-label": name, hidden: true });
+    // What scrolls would be a stop of the Tab key of its own.
+    const list = { class: "found", role: "listbox", id, tabindex: -1, "aria-label": name, hidden: true };
+    this.list = h("div", list);
     this.input = h("input", {
       type: "search",
       role: "combobox",
@@ -67,10 +71,15 @@ export class Finder {
       const text = `${label} ${group} ${name}`.toLowerCase();
       return words.every((word) => text.includes(word));
     };
+    // Names of points are short: a word that stands there as a whole means more than a part of one.
+    const meant = ({ label }: Entry) => {
+      const there = new Set(label.toLowerCase().split(/[\s,]+/));
+      return words.filter((word) => there.has(word)).length;
+    };
     const whole = this.input.value.trim().toLowerCase();
     const begins = ({ label }: Entry) => Number(label.toLowerCase().startsWith(whole));
     const order = (a: Entry, b: Entry) =>
-      whole ? begins(b) - begins(a) || a.label.length - b.label.length : 0;
+      whole ? begins(b) - begins(a) || meant(b) - meant(a) || a.label.length - b.label.length : 0;
     this.found = this.entries.filter(hit).sort(order).slice(0, MOST);
     this.fill();
     this.show(true);
@@ -96,8 +105,20 @@ export class Finder {
 
   private show(open: boolean): void {
     this.list.hidden = !open;
+    if (open) this.fit();
     set(this.input, { "aria-expanded": String(open) });
     if (!open) this.go(-1);
+  }
+
+  /** Where there is room in the window, and in what scrolls: below the box, else above it. */
+  private fit(): void {
+    const box = this.input.getBoundingClientRect();
+    const within = this.root.closest(".side")?.getBoundingClientRect();
+    const below = Math.min(innerHeight, within?.bottom ?? Infinity) - box.bottom;
+    const above = box.top - Math.max(0, within?.top ?? 0);
+    const up = below < LEAST && above > below;
+    this.list.classList.toggle("up", up);
+    this.list.style.maxHeight = `${Math.max(Math.min(TALL, (up ? above : below) - 8), 60)}px`;
   }
 
   private go(at: number): void {

@@ -48,6 +48,7 @@ export function breakable(name: string): string {
 /** A number whose last digit stays where it is while the value changes. */
 export function steady(value: number, largest: number, digits = 3): string {
   if (!Number.isFinite(value)) return "–";
+  if (largest >= rules.most) return shown(value, digits);
   const size = largest > 0 ? Math.floor(Math.log10(largest)) : 0;
   return signed(value.toFixed(Math.min(Math.max(digits - 1 - size, 0), 8)));
 }
@@ -59,6 +60,7 @@ export function signed(text: string): string {
 
 /** A round number as it is: for marks of scales. */
 export function plain(value: number): string {
+  if (Math.abs(value) >= rules.most) return signed(String(Number(value.toPrecision(6)).toExponential()));
   return signed(String(Number(value.toPrecision(6))));
 }
 
@@ -96,10 +98,18 @@ export function multiples(step: number, low: number, high: number): number[] {
   return Array.from({ length: Math.max(last - first + 1, 0) }, (_, i) => (first + i) * step);
 }
 
-/** Limits of a scale: round, with zero inside, the same for values that differ a little. */
-export function limits(low: number, high: number): Pair {
+/** Share of the way from zero that values take up at least, or zero is left out; or are one value. */
+const [FAR, SAME] = [0.4, 1e-6];
+
+/**
+ * Limits of a scale: round, the same for values that differ a little, with zero inside, unless that
+ * would leave little of the scale to values that are far from it, such as the angle of a dwell.
+ */
+export function limits(low: number, high: number, zero = false): Pair {
   if (!Number.isFinite(low) || !Number.isFinite(high)) return [-1, 1];
-  const [from, to] = [Math.min(low, 0), Math.max(high, 0)];
+  const [span, reach] = [high - low, Math.max(Math.abs(low), Math.abs(high))];
+  const without = !zero && low * high > 0 && span < FAR * reach && span > SAME * reach;
+  const [from, to] = without ? [low, high] : [Math.min(low, 0), Math.max(high, 0)];
   if (to - from <= 0) return [-1, 1];
   const step = round((to - from) / 8);
   return [Math.floor(from / step - 1e-6) * step, Math.ceil(to / step + 1e-6) * step];

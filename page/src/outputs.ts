@@ -31,7 +31,7 @@ export class Outputs {
     private readonly theme: Theme,
     private readonly picked: (degrees: number) => void,
     private readonly wanted: (names: string[]) => void,
-    private readonly made: (strip: Strip, name: string) => void,
+    private readonly made: (strip: Strip, output: Output) => void,
   ) {
     this.finder = new Finder(
       say("Any output over crank angle"),
@@ -71,7 +71,7 @@ export class Outputs {
   private draw(state: State, output: Output): void {
     const found = column(state, `${PREFIX}${output.name}`, 1, 0, true, output.winds);
     if (!found) return;
-    const { strip, button } = this.drawn.get(output.name) ?? this.make(output.name);
+    const { strip, button } = this.drawn.get(output.name) ?? this.make(output);
     const title = capital(output.label);
     button.setAttribute("aria-label", say("Close chart of {output}", { output: output.label }));
     const model = { label: "", role: THIRD, ...scaled(found, output) };
@@ -81,7 +81,8 @@ export class Outputs {
     strip.show({ title, x, unit: output.unit, curves, log: wide(found.values) });
   }
 
-  private make(name: string): Drawn {
+  private make(output: Output): Drawn {
+    const { name } = output;
     const button = h(
       "button",
       { type: "button", class: "close", onclick: () => this.remove(name) },
@@ -95,7 +96,7 @@ export class Outputs {
     this.drawn.set(name, one);
     this.root.append(strip.root);
     strip.resize(this.width);
-    this.made(strip, name);
+    this.made(strip, output);
     return one;
   }
 

@@ -14,6 +14,8 @@ const SPREAD = 10;
 /** Steps of crank angles, degrees; and how many of them there are at most. */
 const STEPS = [90, 180, 360, 720, 1800, 3600, 7200, 18000];
 const MOST_STEPS = 6;
+/** Beyond, numbers on a scale are powers of ten. */
+const MOST_WHOLE = 1e6;
 
 export interface Scale {
   ends: Pair;
@@ -39,11 +41,14 @@ export function wide(values: ArrayLike<number>): boolean {
   return low > 0 && high >= WIDE * low && Number.isFinite(high);
 }
 
-/** The scale of some values; what is smaller than `least` is nothing; `log` where that is asked for. */
-export function scaleOf(every: ArrayLike<number>[], least: number, log: boolean): Scale {
+/**
+ * The scale of some values; what is smaller than `least` is nothing; `log` where that is asked for;
+ * `zero` where lengths from zero are compared.
+ */
+export function scaleOf(every: ArrayLike<number>[], least: number, log: boolean, zero = false): Scale {
   const [low, high] = extremes(every);
   if (Math.max(-low, high) < least) return { ends: [-1, 1], log: false };
-  if (!log || !(high > 0) || !Number.isFinite(high)) return { ends: limits(low, high), log: false };
+  if (!log || !(high > 0) || !Number.isFinite(high)) return { ends: limits(low, high, zero), log: false };
   let lowest = high;
   for (const values of every)
     for (let i = 0; i < values.length; i++) {
@@ -131,5 +136,6 @@ export function marked(value: number, { log }: Scale, all: number[]): string {
   const step = (all[1] ?? 1) - (all[0] ?? 0);
   const whole = (digits: number) => Math.abs(step * 10 ** digits - Math.round(step * 10 ** digits));
   const digits = [0, 1, 2, 3, 4, 5, 6, 7, 8].find((one) => whole(one) < 1e-6 && step * 10 ** one > 0.5);
-  return log || digits === undefined ? plain(value) : signed(value.toFixed(digits));
+  const large = Math.abs(value) >= MOST_WHOLE;
+  return log || large || digits === undefined ? plain(value) : signed(value.toFixed(digits));
 }

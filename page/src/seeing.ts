@@ -61,7 +61,7 @@ export class Seeing {
       this.told,
       this.record,
     );
-    stage.overlay(this.ghost, "paths");
+    stage.overlay(this.ghost, "signs");
     stage.overlay(this.arrows, "ghost");
   }
 

@@ -25,9 +25,10 @@ export function curve(
   let [d, x0, y0] = ["", 0, 0];
   for (let i = 0; i + 1 < points.length; i += step) {
     const [x, y] = px(points[i] as number, points[i + 1] as number);
+    if (!Number.isFinite(x + y)) continue; // more than a number of 32 bits holds
     const ends = !i || i + step + 1 >= points.length;
     if (!ends && (x - x0) ** 2 + (y - y0) ** 2 < NEAR ** 2) continue;
-    d += (i ? "L" : "M") + at([x, y]);
+    d += (d ? "L" : "M") + at([x, y]);
     [x0, y0] = [x, y];
   }
   return d && closed ? `${d}Z` : d;

@@ -11,6 +11,8 @@ export interface Shortcuts {
   turn(by: number): void;
   zoom(factor: number): void;
   fit(): void;
+  /** Take the tool of a key; tells whether there is one. */
+  tool(key: string): boolean;
 }
 
 export function pressed(event: KeyboardEvent, page: Shortcuts): void {
@@ -21,7 +23,10 @@ export function pressed(event: KeyboardEvent, page: Shortcuts): void {
     const own = typing && target.dataset.typed !== undefined;
     if (!own || event.key.toLowerCase() === "s") step(event, page);
   } else if (!typing && event.key === "?") page.help();
-  else if (!event.altKey && drawn(target, page.board)) draw(event, page);
+  else if (event.altKey) return;
+  else if (drawn(target, page.board)) draw(event, page);
+  else if (target instanceof HTMLButtonElement && !target.closest("dialog") && page.tool(event.key))
+    event.preventDefault(); // letters mean nothing to a button
 }
 
 /** Whether a key is meant for the drawing: it has the focus, or nothing has. */
@@ -49,6 +54,6 @@ function draw(event: KeyboardEvent, page: Shortcuts): void {
   else if (key === "+" || key === "=") page.zoom(1.25);
   else if (key === "-") page.zoom(0.8);
   else if (key === "0") page.fit();
-  else return;
+  else if (!page.tool(key)) return;
   event.preventDefault();
 }

@@ -9,7 +9,7 @@ const NEAR = 15;
 const LINE = 3;
 /** Pixels between two fine lines, about, and steps between them. */
 const APART = 14;
-const PARTS = 10;
+const [PARTS, TRACED] = [10, 200];
 /** Degrees between directions that Shift keeps. */
 const STEPS = 15;
 
@@ -27,6 +27,8 @@ export interface Snapping {
   state(): State | null;
   /** Further places to which others are drawn, m. */
   snaps(): Pair[];
+  /** Whether an underlay is traced over, whose lines count and not those of the sheet. */
+  tracing(): boolean;
 }
 
 /** What is meant at a pixel; `from` : where a line begins that Shift keeps in its direction. */
@@ -65,6 +67,7 @@ export function step(page: Snapping): number {
 
 /** On the fine lines where they are near, else a tenth of what is between them. */
 function rounded(page: Snapping, place: Pair): Pair {
+  if (page.tracing()) return fine(page, place);
   const apart = step(page);
   const most = LINE / page.stage.view.scale;
   return place.map((value) => {
@@ -73,8 +76,10 @@ function rounded(page: Snapping, place: Pair): Pair {
   }) as Pair;
 }
 
+/** In tenths of what is between the fine lines, or to a part of a pixel where an underlay is traced. */
 function fine(page: Snapping, place: Pair): Pair {
-  return place.map((value) => exact(near(value, step(page) / PARTS))) as Pair;
+  const parts = page.tracing() ? TRACED : PARTS;
+  return place.map((value) => exact(near(value, step(page) / parts))) as Pair;
 }
 
 function near(value: number, apart: number): number {

@@ -11,7 +11,7 @@ import { View } from "./view";
 import { say } from "./words";
 
 /** From below to above. */
-const LAYERS = ["far", "paths", "signs", "ghost", "grips", "labels"] as const;
+const LAYERS = ["far", "signs", "paths", "ghost", "grips", "labels"] as const;
 /** Those that the support carries as a whole. */
 const SWUNG = ["paths", "ghost", "grips", "labels"] as const;
 /** Pixels from a point to the middle of its name. */

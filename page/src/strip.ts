@@ -68,7 +68,7 @@ export class Strip {
   show(content: Content): void {
     this.content = content;
     const every = content.curves.flatMap(({ values, before }) => [values, before ?? NONE]);
-    this.scale = scaleOf(every, content.least ?? 0, content.log ?? false);
+    this.scale = scaleOf(every, content.least ?? 0, content.log ?? false, this.look.bars ?? false);
     this.levels = levels(this.scale, (this.look.height - BELOW) / LINE);
     write(this.unit, content.unit);
     write(this.title, content.title);

@@ -1,7 +1,7 @@
 /** A store of a study on the page: its designs in two pictures that are brushed together. */
 
 import { Parallel, Scatter, type Told } from "./cloud";
-import { Designs, type Kind } from "./designs";
+import { Designs } from "./designs";
 import { h, write } from "./dom";
 import { shown, unbroken } from "./format";
 import type { Asked, Numbers, Pair, StudyMessage } from "./protocol";
@@ -155,10 +155,9 @@ export class StudyView {
   private fill(designs: Designs, chosen: number[]): void {
     const best = designs.study.best.map((number) => designs.indexOf(number));
     const inside = new Set(chosen);
-    const good = best.filter((i) => i >= 0 && inside.has(i));
-    const others = (kind: Kind) =>
-      chosen.filter((i) => !good.includes(i) && designs.kind(i) === kind);
-    const rows = [...good, ...others("kept"), ...others("beyond")].slice(0, LISTED);
+    const good = designs.ranges.size ? [] : best.filter((i) => i >= 0 && inside.has(i));
+    const others = designs.best(chosen.filter((i) => !good.includes(i) && designs.kind(i) !== "failed"), LISTED);
+    const rows = [...good, ...others].slice(0, LISTED);
     const { columns } = designs;
     const head = ["", ...columns.map(({ told }) => `${capital(told.label)} ${told.unit}`)];
     const line = (i: number) => {

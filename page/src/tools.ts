@@ -88,6 +88,7 @@ export class Tools {
   anew(): void {
     this.later.length = 0;
     [this.pending, this.unheard] = [null, 0];
+    if (this.tool === "delete") this.take("select"); // which would take away of what is new
     this.choose(null);
     this.palette.show(this.tool, false);
     this.draw(null);
@@ -197,13 +198,16 @@ export class Tools {
     const { view } = this.page.stage;
     const [x, y] = hit ? view.px(...hit.place) : [-99, -99];
     set(this.target, { cx: x, cy: y, class: hit?.point ? "aim joint" : "aim" });
-    if (!hit || !this.pending) return set(this.rubber, { d: "" });
+    if (!hit || !this.pending) {
+      set(this.rubber, { d: "" });
+      return hit ? this.page.hint(where(hit)) : undefined;
+    }
     const from = this.pending.place;
     const [a, b] = view.px(...from);
     set(this.rubber, { d: `M${a} ${b}L${x} ${y}` });
     const [dx, dy] = [hit.place[0] - from[0], hit.place[1] - from[1]];
     const angle = signed(degrees(Math.atan2(dy, dx)).toFixed(1));
-    this.page.hint(`${length(Math.hypot(dx, dy))} ${lengths().unit} ∠ ${angle}°`);
+    this.page.hint(`${length(Math.hypot(dx, dy))} ${lengths().unit} ∠ ${angle}°; ${where(hit)}`);
   }
 
   // -- by keys -------------------------------------------------------------------------------------
@@ -211,7 +215,7 @@ export class Tools {
   private readonly key = (event: KeyboardEvent): void => {
     if (event.ctrlKey || event.metaKey || !this.onSheet(event)) return;
     const pressed = event.key === "Backspace" ? "delete" : event.key.toLowerCase();
-    const told = TOOLS.find(({ key }) => key.toLowerCase() === pressed);
+    const told = toolOf(pressed);
     if (pressed === "delete" && this.tool === "select" && this.chosen) {
       this.ask({ do: "delete", ...this.chosen });
     } else if (told && !event.altKey) this.soon(() => this.take(told.tool, true));
@@ -223,6 +227,14 @@ export class Tools {
     event.preventDefault();
     event.stopPropagation();
   };
+
+  /** Take a tool by its key, where something else than the drawing has the focus; tells whether there is one. */
+  pick(key: string): boolean {
+    const told = toolOf(key.toLowerCase());
+    if (!told || told.tool === "delete") return false;
+    this.soon(() => this.take(told.tool, true));
+    return true;
+  }
 
   private enter(event: KeyboardEvent): void {
     const { kind, name } = (event.target as SVGElement).closest<SVGElement>(".grip")?.dataset ?? {};
@@ -348,6 +360,16 @@ export class Tools {
       while (!this.unheard && this.later.length) this.later.shift()?.();
     });
   }
+}
+
+/** The place that is meant, as it is rounded. */
+function where({ point, place: [x, y] }: Hit): string {
+  const told = `${length(x)}, ${length(y)} ${lengths().unit}`;
+  return point ? say("{name}: {place}", { name: point, place: told }) : told;
+}
+
+function toolOf(key: string) {
+  return TOOLS.find((one) => one.key.toLowerCase() === key);
 }
 
 function spot(hit: Hit): object {

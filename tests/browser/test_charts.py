@@ -8,7 +8,7 @@ import numpy as np
 from playwright.sync_api import expect
 
 import equipoise as eq
-from browser.live import Live
+from browser.live import SCREENSHOTS, Live
 
 SHOWN = "yamashita-rig", "class-three", "transplanter", "stephenson-six-bar", "watt-six-bar"
 AXES = """() => {
@@ -34,6 +34,24 @@ CLIPPED = """() => [...document.querySelectorAll(".charts figcaption")]
     .filter((one) => one.checkVisibility() && one.scrollWidth > one.clientWidth)
     .map((one) => one.innerText)"""
 """Headings of charts for which there is no room."""
+
+
+ROUND = """schema = 1
+title = "Round"
+gravity = ["0 m/s^2", "0 m/s^2"]
+[frame]
+points.A = ["0 mm", "0 mm"]
+[links.crank]
+points.A = ["0 mm", "0 mm"]
+points.B = ["40 mm", "0 mm"]
+mass = "1 kg"
+center_of_mass = ["20 mm", "0 mm"]
+inertia = "1 kg mm^2"
+[drive]
+link = "crank"
+speed = "60 rpm"
+"""
+"""A crank alone: neither a moment about its pivot nor a torque."""
 
 
 def test_every_axis_has_three_numbers(live: Live) -> None:
@@ -71,6 +89,116 @@ def test_the_chart_against_speed_stays(live: Live) -> None:
     page.get_by_role("combobox", name="Compare with").select_option("as it was opened")
     live.settled()
     expect(chart).to_be_visible()
+
+
+INSIDE = """one => {
+    const box = one.getBoundingClientRect();
+    const side = one.closest(".side").getBoundingClientRect();
+    return box.top >= Math.max(0, side.top) - 1 && box.height > 50 &&
+        box.bottom <= Math.min(innerHeight, side.bottom) + 1;
+}"""
+"""Whether something is seen whole, in the window and in what scrolls there."""
+
+
+def test_outputs_are_listed_within_the_window(live: Live) -> None:
+    """Those that are meant first; and Tab goes on to what comes after the box."""
+    page = live.page
+    search = page.get_by_role("combobox", name="Any output over crank angle")
+    found = page.get_by_role("listbox", name="Any output over crank angle")
+    for block in ("end", "start"):
+        search.evaluate("(one, block) => { one.blur(); one.scrollIntoView({ block }); }", block)
+        search.focus()
+        expect(found).to_be_visible()
+        assert found.evaluate(INSIDE), block
+    search.fill("velocity P")
+    search.press("Enter")
+    expect(page.get_by_role("figure", name=re.compile("^Velocity of P:"))).to_be_visible()
+    search.focus()
+    search.press("Tab")
+    assert page.evaluate("document.activeElement.getAttribute('role')") != "listbox"
+    assert page.evaluate("document.activeElement.matches('button')")
+
+
+def test_every_chart_asks_what_it_shows_by_its_own_name(live: Live) -> None:
+    asks = live.page.locator(".charts figure:visible .why")
+    names = [one.get_attribute("aria-label") for one in asks.all()]
+    assert len(names) > 6 and len(set(names)) == len(names)
+    live.button("Shaking moment: what does it show?").click()
+    expect(live.page.locator(".explained:visible")).to_have_count(1)
+
+
+def test_a_dwell_fills_its_chart(live: Live) -> None:
+    """Its angle is far from zero, which is left out; bars and what comes near zero begin there."""
+    live.page.get_by_role("combobox", name="Example").select_option("stephenson-six-bar")
+    expect(live.page.get_by_role("figure", name=re.compile("^Angle of output:"))).to_be_visible()
+    live.settled()
+    angle = np.degrees(eq.analyze(eq.load("stephenson-six-bar")).motion.links["output"].angle)
+    ends = {}
+    for name in ("Angle of output", "Shaking force, by order"):
+        chart = live.page.get_by_role("figure", name=re.compile(f"^{name}:"))
+        texts = chart.locator(".numbers .y").all_inner_texts()
+        ends[name] = [float(text.replace("−", "-")) for text in texts]
+    low, high = min(ends["Angle of output"]), max(ends["Angle of output"])
+    assert np.ptp(angle) > 0.5 * (high - low)
+    assert np.min(np.abs(angle)) > 0.6 * np.max(np.abs(angle))
+    assert min(ends["Shaking force, by order"]) == 0
+
+
+def test_charts_of_nothing_but_zero_take_no_room(live: Live) -> None:
+    """They are named in a line; numbers of the crank angle stand below what is left."""
+    page = live.page
+    moment = page.get_by_role("figure", name=re.compile("^Shaking moment"))
+    torque = page.get_by_role("figure", name=re.compile("^Drive torque"))
+    expect(torque.locator(".numbers .x")).not_to_have_count(0)
+    expect(moment.locator(".numbers .x")).to_have_count(0)
+    live.drop("mass.toml", ROUND)
+    expect(page.get_by_role("heading", name="Round")).to_be_visible()
+    live.settled()
+    expect(page.get_by_text("Zero at every crank angle: Shaking moment")).to_be_visible()
+    expect(moment).to_be_hidden()
+    expect(torque).to_be_hidden()
+    force = page.get_by_role("figure", name=re.compile("^Shaking force: x"))
+    expect(force.locator(".numbers .x")).not_to_have_count(0)
+    page.get_by_role("combobox", name="Example").select_option("yamashita-1")
+    expect(moment).to_be_visible()
+    expect(page.get_by_text("Zero at every crank angle")).to_be_hidden()
+
+
+def test_a_record_leaves_headings_whole(live: Live) -> None:
+    whole, angle = eq.analyze(eq.load("yamashita-1")), np.arange(0.0, 360.0, 5.0)
+    force = whole.forces.shaking_force.value[::5]
+    rows = [f"{a},{f.real:.5f},{f.imag:.5f}" for a, f in zip(angle, force, strict=True)]
+    head = "crank_angle [deg],shaking_force.x [N],shaking_force.y [N]"
+    live.drop("run.csv", "\n".join([head, *rows]))
+    expect(live.page.get_by_text("Record run.csv")).to_be_visible()
+    for width in (1280, 400):
+        live.page.set_viewport_size({"width": width, "height": 900})
+        live.settled()
+        assert live.page.evaluate(CLIPPED) == [], width
+        chart = live.page.get_by_role("figure", name=re.compile("^Shaking force: x"))
+        assert chart.locator(".entry").count() == 4
+        chart.screenshot(path=SCREENSHOTS / f"record-{width}.png")
+
+
+def test_numbers_without_end_stay_in_their_places(live: Live) -> None:
+    """And what is more than the page's numbers hold is not drawn."""
+    live.type(live.field("crank mass"), "1e30 kg")
+    live.settled()
+    live.page.screenshot(path=SCREENSHOTS / "large.png")
+    paths = live.page.locator("svg path").evaluate_all(
+        "all => all.map(one => one.getAttribute('d'))"
+    )
+    assert not [one for one in paths if one and ("Infinity" in one or "NaN" in one)]
+    assert live.page.evaluate(CLIPPED) == []
+    texts = live.page.locator(
+        ".charts .numbers span, .charts .reading, .plane text"
+    ).all_text_contents()
+    assert max(map(len, texts)) < 14
+    live.type(live.field("crank mass"), "1e45 kg")
+    paths = live.page.locator("svg path").evaluate_all(
+        "all => all.map(one => one.getAttribute('d'))"
+    )
+    assert not [one for one in paths if one and ("Infinity" in one or "NaN" in one)]
 
 
 def test_numbers_of_the_scale_lie_over_the_soil(live: Live) -> None:

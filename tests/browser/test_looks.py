@@ -51,6 +51,20 @@ def test_the_page(live: Live) -> None:
         assert live.findings() == []
 
 
+@pytest.mark.parametrize(("width", "height"), [(600, 900), (400, 900), (400, 420), (1280, 380)])
+def test_the_menu_of_downloads_is_seen_whole(live: Live, width: int, height: int) -> None:
+    """Or it scrolls, where the window is too low for all of it."""
+    live.page.set_viewport_size({"width": width, "height": height})
+    live.page.get_by_title("Download", exact=True).click()
+    box = live.page.locator(".menu .sheet").bounding_box()
+    assert box and box["x"] >= 0 and box["x"] + box["width"] <= width
+    last = live.button("Copy link")
+    last.scroll_into_view_if_needed()
+    seen = last.bounding_box()
+    assert seen and seen["y"] + seen["height"] <= height
+    live.page.screenshot(path=SCREENSHOTS / f"menu-{width}-{height}.png")
+
+
 def test_a_side_view_is_as_dark_as_the_page(live: Live) -> None:
     live.page.get_by_role("combobox", name="Example").select_option("twin-engine")
     across = live.page.get_by_role("img", name="The planes of links")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -100,6 +101,66 @@ def sheet(live: Live) -> Sheet:
     sheet = Sheet(live)
     sheet.says("nothing moves yet")
     return sheet
+
+
+def test_a_new_machine_is_not_begun_with_delete(live: Live) -> None:
+    sheet = Sheet(live)
+    sheet.take("Delete")
+    live.button("New").click()
+    sheet.says("nothing moves yet")
+    pressed = live.page.locator(".tools [aria-pressed=true]")
+    expect(pressed).to_have_attribute("aria-label", "Select")
+
+
+def test_tools_have_their_keys_while_a_button_has_the_focus(sheet: Sheet) -> None:
+    page = sheet.live.page
+    pressed = page.locator(".tools [aria-pressed=true]")
+    sheet.live.button("Zoom in").focus()
+    page.keyboard.press("l")
+    expect(pressed).to_have_attribute("aria-label", "Link")
+    page.locator("body").evaluate("() => document.activeElement.blur()")
+    page.keyboard.press("p")
+    expect(pressed).to_have_attribute("aria-label", "Point")
+    sheet.live.page.get_by_role("combobox", name="Language", exact=True).focus()
+    page.keyboard.press("l")  # which a list takes for its own
+    expect(pressed).to_have_attribute("aria-label", "Point")
+
+
+def test_a_place_is_told_as_it_is_rounded(sheet: Sheet) -> None:
+    sheet.take("Point")
+    x, y = sheet.pixel(31.234, 7.891)
+    sheet.live.page.mouse.move(x, y)
+    hint = sheet.live.page.locator(".hint")
+    expect(hint).to_have_text(re.compile(r"^[\d.]+, [\d.]+ mm$"))
+    told = [float(one) for one in NUMBER.findall(hint.inner_text())]
+    sheet.live.page.mouse.click(x, y)
+    sheet.live.comes_to(sheet.live.joint("A"), (told[0], told[1]), 0.006)
+
+
+def test_what_is_traced_is_not_rounded_to_the_sheet(sheet: Sheet, tmp_path: Path) -> None:
+    """Where an underlay is seen, its lines count, and none of the sheet draws places to itself."""
+    picture = tmp_path / "photo.svg"
+    box = '<svg xmlns="http://www.w3.org/2000/svg" width="400" height="200"/>'
+    picture.write_text(box, encoding="utf-8")
+    page = sheet.live.page
+    sheet.take("Point")
+    x, y = map(round, sheet.pixel(31.234, 7.891))
+    hint = page.locator(".hint")
+
+    def told() -> complex:
+        page.mouse.move(x + 9, y)
+        page.mouse.move(x, y)
+        return complex(*(float(one) for one in NUMBER.findall(hint.inner_text())))
+
+    rounded = told()
+    page.get_by_label("Picture or DXF drawing").set_input_files(picture)
+    expect(page.locator(".underlay image")).to_have_count(1)
+    (x0, y0), (x1, _) = sheet.pixel(0, 0), sheet.pixel(100, 0)
+    exact = complex(x - x0, y0 - y) * 100 / (x1 - x0)
+    assert abs(told() - exact) < 0.02
+    assert abs(rounded - exact) > 0.05
+    page.get_by_label("Hidden").check()
+    assert told() == rounded
 
 
 def test_a_four_bar_is_made_by_mouse(sheet: Sheet) -> None:

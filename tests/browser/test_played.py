@@ -33,7 +33,7 @@ def test_pictures_and_a_film_are_kept(live: Live) -> None:
     film = Image.open(io.BytesIO(menu(live, "Motion as GIF")[1]))
     assert film.format == "GIF" and film.n_frames > 20
     chart = live.page.get_by_role("figure", name="Drive torque: from")
-    why = chart.get_by_role("button", name="What does this chart show?")
+    why = chart.get_by_role("button", name="Drive torque: what does it show?")
     why.click()
     expect(chart.get_by_text("keeps the crank at its speed")).to_be_visible()
     expect(why).to_have_attribute("aria-expanded", "true")

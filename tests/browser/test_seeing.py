@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 import equipoise as eq
-from browser.live import Live
+from browser.live import SCREENSHOTS, Live
 
 ENDS = """kind => [...document.querySelectorAll(`.linkage .arrows .${kind}`)].map(one => {
     const path = (part) => one.querySelector(part).getAttribute("d");
@@ -114,6 +114,14 @@ def test_a_support_moves_at_work_and_in_its_modes(live: Live) -> None:
     assert np.hypot(one[0] - other[0], one[1] - other[1]) > 2
     middle = (np.array(one) + np.array(other)) / 2
     assert middle == pytest.approx(at_rest, abs=2)
+
+
+def test_the_path_of_a_link_s_own_point_is_seen_on_the_link(live: Live) -> None:
+    """A path is drawn over the links, which are not transparent."""
+    order = "document.querySelector('.linkage .signs').compareDocumentPosition"
+    assert live.page.evaluate(f"{order}(document.querySelector('.linkage .paths'))") == 4
+    live.joint("P").focus()
+    live.page.locator(".board:visible").screenshot(path=SCREENSHOTS / "coupler-curve.png")
 
 
 def test_a_record_is_drawn_beside_the_model(live: Live) -> None:

@@ -62,6 +62,21 @@ def test_designs_are_brushed_and_opened(browser: Browser, store: str) -> None:
     typed.press("Enter")
     expect(points.locator(".range")).to_have_count(1)  # brushed in the other picture as well
     assert 0 < count(told) < first
+    page.get_by_role("button", name="All designs").click()
+    for name, end in (("^length A–B of the crank, to", "60"), ("^speed of the drive, from", "110")):
+        limit = page.get_by_role("textbox", name=re.compile(name, re.IGNORECASE))
+        limit.fill(end)
+        limit.press("Enter")
+    expect(told).to_contain_text("within the ranges")
+    rows = page.locator(".scrolled tbody tr")
+    listed = [
+        (one.get_attribute("class"), one.locator("td").last.inner_text()) for one in rows.all()
+    ]
+    kinds = [kind for kind, _ in listed]
+    assert len(listed) == 12 and kinds == sorted(kinds, key=["kept", "beyond"].index)
+    for kind in {*kinds}:
+        forces = [float(force) for one, force in listed if one == kind]
+        assert forces == sorted(forces)
     typed.fill("wide")
     typed.press("Enter")
     expect(page.get_by_text("got “wide”; give a number")).to_be_visible()

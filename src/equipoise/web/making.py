@@ -92,6 +92,14 @@ def _delete(sketch: Sketch, asked: Message) -> Sketch:
     return DELETED[what](sketch, asked.text("name"))
 
 
+def _drive(sketch: Sketch, asked: Message) -> Sketch:
+    """The crank; a bar that was drawn off the frame, and named after that, is called so too."""
+    link = asked.text("link")
+    driven = with_drive(sketch, link)
+    named_so = link == "coupler" and "crank" not in sketch.links
+    return renamed(driven, "link", link, "crank") if named_so else driven
+
+
 def _rename(sketch: Sketch, asked: Message) -> Sketch:
     what = asked.text("what")
     if what not in {"point", "link"}:
@@ -107,10 +115,7 @@ OPERATIONS: Mapping[str, tuple[str, Operation]] = {
     "belt": (to_say("add a belt"), _belt),
     "rack": (to_say("add a rack"), _rack),
     "cam": (to_say("add a cam"), _cam),
-    "drive": (
-        to_say("set the drive"),
-        lambda sketch, asked: with_drive(sketch, asked.text("link")),
-    ),
+    "drive": (to_say("set the drive"), _drive),
     "pin": (to_say("pin"), _pin),
     "separate": (to_say("separate"), _separate),
     "ground": (

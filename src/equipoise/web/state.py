@@ -193,15 +193,26 @@ def _orders(analysis: Analysis) -> list[float]:
 def first_of(machine: Machine) -> tuple[str, tuple[str, ...]]:
     """The charts that a page shows first, and the outputs that it draws: what a machine is for.
 
-    On mounts that is what its gauges read; of a planting finger, or of a machine that moves one
-    thing, its path and the shaking force; of one that moves one thing by way of another, such as a
-    six-bar with a dwell, the motion of its output.
+    On mounts that is what its gauges read; of a cam the motion of its follower; of a planting
+    finger, or of a machine that moves one thing, its path and the shaking force; of one that moves
+    one thing by way of another, such as a six-bar with a dwell, the motion of its output.
     """
+    lifts = tuple(dict.fromkeys(_motion_of(machine, cam.driven) for cam in machine.cams))
     moved = [link for link in pinned(machine) if len(machine.links[link].points) > 1]
     moved += guided(machine)
     if machine.support is not None and not forces_lack(machine):
-        return "answers", ()
-    if machine.planting is not None or len(moved) < 2:
-        return "squares", ()
+        return "answers", lifts
+    if machine.planting is not None:
+        return "squares", lifts
+    if len(moved) < 2:
+        return "output" if lifts else "squares", lifts
     slides = moved[-1] not in machine.links
-    return "output", (f"sliders.{moved[-1]}.travel" if slides else f"links.{moved[-1]}.angle",)
+    last = f"sliders.{moved[-1]}.travel" if slides else f"links.{moved[-1]}.angle"
+    return "output", tuple(dict.fromkeys((last, *lifts)))
+
+
+def _motion_of(machine: Machine, follower: str) -> str:
+    """The output that is the motion of a follower: along its guide, or about its pin."""
+    guides = (slider.name for slider in machine.sliders if slider.link == follower)
+    guide = next(guides, None)
+    return f"links.{follower}.angle" if guide is None else f"sliders.{guide}.travel"

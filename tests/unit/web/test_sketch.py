@@ -95,6 +95,20 @@ def four_bar() -> Maker:
     return page
 
 
+def test_a_first_bar_off_the_frame_is_the_crank_when_it_drives() -> None:
+    """Whatever it was called while it hung free; a name that somebody gave stays."""
+    for name, to in {"coupler": "crank", "arm": "arm"}.items():
+        page = Maker()
+        page.do("new")
+        page.do("link", **{"from": at(0j), "to": at(0.03 + 0j)})
+        assert [*page.session.base().design.links] == ["coupler"]
+        if name != "coupler":
+            page.do("rename", what="link", name="coupler", to=name)
+        page.do("ground", point="A")
+        page.do("drive", link=name)
+        assert [*page.machine.links] == [to] and page.machine.drive.link == to
+
+
 def test_four_bar_from_nothing_has_the_figures_of_its_file() -> None:
     page = four_bar()
     status = page.seen.content["status"]

@@ -254,6 +254,13 @@ def test_what_a_machine_is_for_comes_first(name: str, first: str, point: str) ->
     assert (shown.content["first"], shown.content["traced"][0]) == (first, point)
 
 
+def test_a_cam_comes_with_the_motion_of_its_follower() -> None:
+    _, shown = opened("cam-pusher")
+    assert shown.content["first"] == "output"
+    lift = eq.analyze(eq.load("cam-pusher")).outputs["sliders.pusher on arm.travel"].drawn
+    assert shown.array("output.sliders.pusher on arm.travel") == pytest.approx(lift, rel=1e-6)
+
+
 @pytest.mark.parametrize("name", [name for name in titles() if not name.startswith("drag")])
 def test_the_first_path_is_no_circle_of_the_crank(name: str) -> None:
     """Of every example where another point moves than those of the crank."""
