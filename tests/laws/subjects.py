@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cache
+from functools import cache, reduce
 from typing import Any
 
 import numpy as np
@@ -16,10 +16,12 @@ from numpy.typing import NDArray
 
 import equipoise as eq
 from equipoise.mechanism.parts.field import Soil, SoilTable
+from equipoise.mechanism.parts.machine import FRAME
 from support import machines_cams
 from support.loads import force_and_torque, has_soil, soil_force, tips_of
 from support.machines import KINDS, make
 from support.machines_redundant import REDUNDANT
+from support.machines_torsion import torque_of
 
 Array = NDArray[Any]
 IN_SOIL = "kim-chung-b in soil"
@@ -128,6 +130,13 @@ def spring_power(found: eq.mechanism.Forces) -> Array:
         length = np.abs(arm)
         growth = along(arm, point.velocity - to.velocity) / np.where(length > 0, length, 1.0)
         rows.append(-spring.stiffness * (length - spring.free_length) * growth)
+    for torsion in machine.torsion_springs:
+        ends = [motion.links[one] for one in torsion.bodies if one != FRAME]
+        turned, speed = (
+            reduce(np.subtract, (getattr(one, key) for one in ends))
+            for key in ("angle", "angular_velocity")
+        )
+        rows.append(torque_of(torsion, turned) * speed)
     return np.array(rows)
 
 

@@ -21,6 +21,7 @@ from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Vector
 from equipoise.mechanism.parts.objectives import quantity_of
 from equipoise.mechanism.parts.racks import Rack
+from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.quantities import SI
 
 Value = TypeVar("Value")
@@ -94,6 +95,10 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
             for cam in machine.cams
         ),
         loads=tuple(turned_load(load, angle) for load in machine.loads),
+        torsion_springs=tuple(
+            turned_torsion(spring, angle) if spring.on == FRAME else spring
+            for spring in machine.torsion_springs
+        ),
         position=None if machine.position is None else turned_position(machine.position, angle),
         planting=None,
     )
@@ -230,6 +235,7 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
         racks=tuple(replace(r, angle=-r.angle, side=flip[r.side]) for r in machine.racks),
         cams=tuple(mirrored_cam(cam) for cam in machine.cams),
         loads=tuple(mirrored_load(load) for load in machine.loads),
+        torsion_springs=tuple(mirrored_torsion(spring) for spring in machine.torsion_springs),
         gravity=vector(np.conj, machine.gravity),
         position=position,
     )  # fmt: skip
@@ -302,6 +308,26 @@ def mirrored_load(load: eq.Load) -> eq.Load:
     )
 
 
+def turned_torsion(spring: TorsionSpring, angle: float) -> TorsionSpring:
+    """A spring on a frame that is turned, or whose link is."""
+    rows, given = tuple(one + angle for one in spring.angles), spring.table
+    if given is not None:
+        given = replace(given, angle=tuple(one + angle for one in given.angle))
+    own = spring.angle + angle if spring.stiffness is not None else 0.0
+    return replace(spring, angle=own, angles=rows, table=given)
+
+
+def mirrored_torsion(spring: TorsionSpring) -> TorsionSpring:
+    def back(values: tuple[float, ...]) -> tuple[float, ...]:
+        return tuple(-one for one in values[::-1])
+
+    given = spring.table
+    if given is not None:
+        given = replace(given, angle=back(given.angle), torque=back(given.torque))
+    own = {"angle": -spring.angle, "preload": -spring.preload, "table": given}
+    return replace(spring, angles=back(spring.angles), torques=back(spring.torques), **own)
+
+
 @dataclass(frozen=True)
 class Units:
     """How many of the new units make one of the old, of length, mass and time."""
@@ -335,6 +361,7 @@ def _powers(unit: str) -> Mapping[str, float]:
 COLUMNS = {
     "SoilTable": {"depth": "m", "resistance": "N"},
     "MotorTable": {"speed": "rad/s", "torque": "N m"},
+    "TorsionTable": {"angle": "rad", "torque": "N m"},
 }
 """SI units of numbers in tables that stand in files of their own."""
 
@@ -448,6 +475,10 @@ def with_axes(machine: eq.Machine, link: str, angle: float, shift: complex) -> e
             )
             for cam in machine.cams
         ),
+        torsion_springs=tuple(
+            turned_torsion(s, angle * (int(s.link == link) - (s.on == link)))
+            for s in machine.torsion_springs
+        ),
         position=position,
     )
 
@@ -514,6 +545,10 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
             replace(load, link=body(load.link),
                     point=None if load.point is None else names(load.point))
             for load in machine.loads
+        ),
+        torsion_springs=tuple(
+            replace(spring, link=names(spring.link), on=body(spring.on))
+            for spring in machine.torsion_springs
         ),
         springs=tuple(
             replace(spring, link=body(spring.link), point=names(spring.point),

@@ -66,6 +66,10 @@ def plain_of(machine: Machine) -> Plain:
             {"base_radius": c.base_radius, "roller_radius": c.roller_radius, "normal": c.normal}
             for c in machine.cams
         ],
+        "torsion_springs": [
+            {key: getattr(s, key) for key in ("stiffness", "angle", "preload")}
+            for s in machine.torsion_springs
+        ],
         "springs": [
             {"stiffness": s.stiffness, "free_length": s.free_length} for s in machine.springs
         ],
@@ -92,7 +96,7 @@ def machine_of(base: Machine, plain: Plain) -> Machine:
             replace(value, **changes)
             for value, changes in zip(getattr(base, key), plain[key], strict=True)
         )
-        for key in ("sliders", "gears", "belts", "racks", "cams", "springs")
+        for key in ("sliders", "gears", "belts", "racks", "cams", "springs", "torsion_springs")
     }
     listed["gears"] = tuple(
         replace(gear, shape=shaped and replace(gear.shape, **shaped))
@@ -308,6 +312,10 @@ def _listed(machine: Machine) -> Iterator[Number]:
     for k, spring in enumerate(machine.springs):
         yield number("springs", k, "stiffness", _times(spring.stiffness))
         yield number("springs", k, "free_length", _times(spring.free_length))
+    for k, torsion in enumerate(machine.torsion_springs):
+        if torsion.stiffness is not None:
+            yield number("torsion_springs", k, "stiffness", _times(torsion.stiffness))
+            yield number("torsion_springs", k, "angle", _near(torsion.angle, 0.1))
 
 
 def _of_gears(machine: Machine) -> Iterator[Number]:

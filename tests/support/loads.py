@@ -12,6 +12,7 @@ from scipy.optimize import minimize_scalar
 import equipoise as eq
 from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.machine import FRAME, Load, LoadTable, Machine, Spring, Vector
+from support.machines_torsion import torsion_on_links
 from support.poses import Array, Poses, cross
 
 TURN = 2 * np.pi
@@ -154,7 +155,7 @@ def spring_force(spring: Spring, at: Array, to: Vector) -> Array:
 
 
 def springs_on_links(machine: Machine, poses: Poses) -> Iterator[tuple[str, Array, Array, Array]]:
-    """Yield link, point of attack, force and torque at every end of a spring on a link."""
+    """Yield link, point of attack, force and torque at every end of a spring of either kind."""
     for spring in machine.springs:
         at = poses.place(spring.link, machine.links[spring.link].points[spring.point])
         to = poses.place(spring.on, machine.points_of(spring.on)[spring.to])
@@ -162,6 +163,8 @@ def springs_on_links(machine: Machine, poses: Poses) -> Iterator[tuple[str, Arra
         yield spring.link, at, force, np.zeros(len(at))
         if spring.on != FRAME:
             yield spring.on, to, -force, np.zeros(len(at))
+    for link, torque in torsion_on_links(machine, poses):
+        yield link, poses.origin[link], np.zeros((len(torque), 2)), torque
 
 
 def work_per_crank_angle(machine: Machine, poses: Poses) -> Array:

@@ -28,6 +28,7 @@ from equipoise.mechanism.parts.machine import (
 )
 from support import machines_belts
 from support.machines_drives import moved, two_driven
+from support.machines_torsion import torsion_sprung
 from support.newton import Side, assembled
 from support.poses import Array, Poses, turned
 
@@ -720,6 +721,9 @@ def _more() -> Iterable[Callable[[np.random.Generator], Case]]:
 
 MOVED = [moved(maker) for maker in (slider_crank, watt, geared_counterweight)]
 MOVED.append(two_driven(geared_five_bar))
+TWISTED = [
+    torsion_sprung(maker) for maker in (crank_rocker, watt, slider_on_rocker, geared_coupler)
+]
 KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
     maker.__name__: maker
     for maker in (
@@ -744,6 +748,7 @@ KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
         guide_on_dyad,
         crossed_guides,
         *MOVED,
+        *TWISTED,
         *machines_belts.MAKERS,
     )
 }

@@ -276,6 +276,9 @@ def dress(chance: random.Random, document: Document) -> None:
     drive["speed"] = f"{chance.choice((1, -1)) * 10 ** chance.uniform(0.5, 3.5):.4g} rpm"
     _drive(chance, drive)
     _forces(chance, document)
+    twist = random.Random(len(str(document)))  # of its own, so that other draws stay as they are
+    if twist.random() < 0.3:
+        _twisted(twist, document)
     if chance.random() < 0.35:
         _carried(chance, document)
     if chance.random() < 0.15:
@@ -346,6 +349,22 @@ def _forces(chance: random.Random, document: Document) -> None:
         springs.append(spring | chance.choice([{}, {"free_length": "50 mm"}]))
 
 
+def _twisted(chance: random.Random, document: Document) -> None:
+    """Torsion springs and properties of joints, some of which no machine can have."""
+    bodies = [*document["links"], "frame"]
+    link, on = chance.choice(bodies[:-1]), chance.choice(bodies)
+    laws: list[Document] = [
+        {"stiffness": "3 N m/rad", "angle": deg(chance.uniform(-pi, pi)), "preload": "1 N m"},
+        {"angles": ["-40 deg", "5 deg", "60 deg"], "torques": ["9 N m", "0 N m", "-20 N m"]},
+    ]
+    spring = {"link": link} | ({} if on == "frame" else {"on": on}) | chance.choice(laws)
+    if link != on:
+        document["torsion_springs"] = [spring]
+    if chance.random() < 0.5:
+        point = chance.choice([*document["links"][link]["points"]])
+        document["joints"] = [{"joint": f"joints.{point}", "radius": "4 mm"}]
+
+
 def _carried(chance: random.Random, document: Document) -> None:
     stiffness = [f"{10 ** chance.uniform(3, 6):.4g} N/m" for _ in range(3)]
     mounts: Document = {
@@ -397,7 +416,8 @@ def of_kind(chance: random.Random) -> Document:
         make = machines_strokes.together if together else machines_strokes.stroked
         machine: Machine = make(kind, seed).machine
     else:
-        kinds = (machines.KINDS, machines_cams.ALL, machines_redundant.REDUNDANT)
+        plain_kinds = [kind for kind in machines.KINDS if not kind.startswith("torsion_")]
+        kinds = (plain_kinds, machines_cams.ALL, machines_redundant.REDUNDANT)
         machine = machines.make(chance.choice([*chance.choice(kinds)]), seed).machine
     plain = {load for load in machine.loads if load.table is not None}
     machine = replace(machine, loads=tuple(x for x in machine.loads if x not in plain))

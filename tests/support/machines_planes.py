@@ -158,7 +158,9 @@ def _of_loads(machine: Machine) -> list[float]:
 
 
 def _of_springs(machine: Machine) -> list[float]:
-    return [point_plane(machine, spring.link, spring.point) for spring in machine.springs]
+    planes = [point_plane(machine, spring.link, spring.point) for spring in machine.springs]
+    ends = [end for spring in machine.torsion_springs for end in spring.bodies if end != FRAME]
+    return [*planes, *[0.0] * len(ends)]  # of torques alone no plane counts
 
 
 def point_plane(machine: Machine, body: str, point: str) -> float:

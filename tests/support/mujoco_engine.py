@@ -15,6 +15,7 @@ import numpy as np
 from equipoise.exchange.formats import Job
 from equipoise.exchange.mjcf import made
 from equipoise.mechanism.parts.machine import FRAME, Machine, Spring, Vector
+from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from support.loads import work_per_crank_angle
 from support.poses import Array, Poses, cross, drive_pivot, quarter, turned
 
@@ -50,19 +51,25 @@ class Totals:
 
 def totals(machine: Machine, poses: Poses) -> Totals:
     """Return what MuJoCo finds for shaking force, shaking moment and drive torque."""
-    model = model_of(machine, machine.springs)
-    bare = demands(model if not machine.springs else model_of(machine), machine, poses, (0.0, 0.0))
+    linear = tuple(one for one in machine.torsion_springs if one.stiffness is not None)
+    others = tuple(one for one in machine.torsion_springs if one.stiffness is None)
+    model = model_of(machine, machine.springs, linear)
+    sprung = machine.springs or linear
+    bare = demands(model_of(machine) if sprung else model, machine, poses, (0.0, 0.0))
     work = demands(model, machine, poses, machine.gravity).work
-    loads = work_per_crank_angle(machine.with_springs(()), poses)
+    loads = work_per_crank_angle(replace(machine, springs=(), torsion_springs=others), poses)
     return Totals(-bare.base[:, :2], -bare.base[:, 2], work - loads, -bare.across)
 
 
-def model_of(machine: Machine, springs: Sequence[Spring] = ()) -> mujoco.MjModel:
+def model_of(
+    machine: Machine, springs: Sequence[Spring] = (), torsion: Sequence[TorsionSpring] = ()
+) -> mujoco.MjModel:
     """Return a machine with some springs as it is exported, in MuJoCo."""
     even = tuple(replace(gear, shape=None) for gear in machine.gears)  # the file has no other
     alone = replace(
-        machine, support=None, rows=(), balance=None, springs=tuple(springs), gears=even
-    )
+        machine, support=None, rows=(), balance=None, springs=tuple(springs), gears=even,
+        torsion_springs=tuple(torsion),
+    )  # fmt: skip
     model = mujoco.MjModel.from_xml_string(made(Job(alone)))
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
     for name, link in machine.links.items():  # what the file makes a little heavier than it is

@@ -45,7 +45,12 @@ def trace_across(trace: Trace, loads: Sequence[Any], springs: Sequence[Any]) -> 
     for load, force in acting:
         needed[load.link].append(force)
     ends: list[tuple[str, str, str | None]]
-    ends = [(link, link, point) for spring in machine.springs for link, point in spring.ends]
+    ends = [
+        (body, body, dict(element.points).get(body))
+        for *_, element in machine.force_elements
+        for body in element.bodies
+        if body != FRAME
+    ]
     strained = [belt for belt in machine.belts if belt.tension is not None]
     ends += [
         (link, belt.driven, None)

@@ -1,22 +1,29 @@
-"""What acts on links from outside, springs, and the tension of belts, in terms."""
+"""What acts on links from outside, force elements, and the tension of belts, in terms."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.terms import Pair
+from equipoise.codegen.terms import Pair, angle_of, rotation
 from equipoise.codegen.trace import Array, Trace
+from equipoise.keys import Frozen
+from equipoise.mechanism.assembly.family import with_fields
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import planar
+from equipoise.mechanism.assembly.steps import planar, u
 from equipoise.mechanism.dynamics.loads import load_at
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.machine import FRAME, Load, Spring
+from equipoise.mechanism.parts.force_kinds import ForceElement
+from equipoise.mechanism.parts.machine import FRAME, Load
 
+NEAR = 0.4
+"""Added to the cosine of an angle, which is watched as that of a running angle is: beyond 154 deg
+from its middle a design is computed by itself."""
 Held = tuple[str, Any, Any]
 """Link, and force and moment that hold something against it."""
 
@@ -36,24 +43,62 @@ def _part_of_load(load: Load, key: str, theta: Array) -> Array:
     return np.asarray({"x": force.real, "y": force.imag, "torque": torque}[key] + 0.0 * theta)
 
 
-def trace_spring(trace: Trace, number: int, spring: Spring) -> Iterator[Held]:
-    """What holds a spring at each of its ends on a link."""
-    pull = kernels.spring(*stretched(trace, number))
-    for (link, point), force in zip(spring.ends, (pull, -pull), strict=False):
-        yield _held(trace, link, point, force, 0.0)
+@dataclass(frozen=True)
+class TracedBodies:
+    """Bodies in terms, for what a force element exerts.
+
+    name : of the element.
+    """
+
+    trace: Trace
+    name: str
+
+    def point(self, body: str, point: str) -> Any:
+        """A point in the frame."""
+        on_frame = body == FRAME
+        return self.trace.state[f"p({point})"] if on_frame else self.trace.point(body, point)[0]
+
+    def angle(self, body: str, on: str, middle: Any) -> Any:
+        """Angle of a body from the x axis of another, within half a turn of `middle`."""
+        turn, other = (self.trace.state[u(one)[0]] for one in (body, on))
+        away = turn * other.conjugate() * rotation(middle).conjugate()
+        self.trace.running[f"{self.name}, {body} on {on}"] = away.real + NEAR
+        return middle + angle_of(away)
 
 
-def stretched(trace: Trace, number: int) -> tuple[Any, Any, Any, Any]:
-    """Both ends of a spring, its stiffness and its free length."""
-    spring = trace.machine.springs[number]
-    place, *_ = trace.point(spring.link, spring.point)
-    on_frame = spring.on == FRAME
-    to = trace.state[f"p({spring.to})"] if on_frame else trace.point(spring.on, spring.to)[0]
-    stiffness = trace.slot(
-        f"stiffness({number})", lambda one: one.machine.springs[number].stiffness
-    )
-    free = trace.slot(f"free({number})", lambda one: one.machine.springs[number].free_length)
-    return place, to, stiffness, free
+def trace_element(trace: Trace, table: str, number: int) -> Iterator[Held]:
+    """What holds a force element at each of its ends on a link.
+
+    table, number : its list in the file, and its place there from 0.
+    """
+    element, at = traced_element(trace, table, number)
+    for link, point, force, torque in element.on_links(at):
+        yield _held(trace, link, point, force, torque)
+
+
+def traced_element(trace: Trace, table: str, number: int) -> tuple[ForceElement, TracedBodies]:
+    """A force element with terms for its numbers, and the bodies between which it acts."""
+    name = f"{table}[{number}]"
+
+    def read(found: Linkage, steps: tuple[str | int, ...]) -> Any:
+        value = getattr(found.machine, table)[number]
+        for step in steps:
+            value = value[step] if isinstance(step, int) else getattr(value, step)
+        return value
+
+    def traced(value: Any, *steps: str | int) -> Any:
+        """A value whose numbers are slots."""
+        if isinstance(value, Frozen):
+            held = {key: traced(one, *steps, key) for key, one in vars(value).items()}
+            return with_fields(value, **held)
+        if isinstance(value, tuple):
+            return tuple(traced(one, *steps, k) for k, one in enumerate(value))
+        if not isinstance(value, float):
+            return value
+        return trace.slot(f"{name}{steps}", partial(read, steps=steps))
+
+    element: ForceElement = traced(getattr(trace.machine, table)[number])
+    return element, TracedBodies(trace, name)
 
 
 def trace_tension(trace: Trace, number: int) -> Iterator[Held]:

@@ -13,7 +13,7 @@ from functools import cached_property, partial
 from typing import Any
 
 from equipoise.codegen.across import bearing_force
-from equipoise.codegen.applied import stretched
+from equipoise.codegen.applied import traced_element
 from equipoise.codegen.figures import Figure, Gathered
 from equipoise.codegen.followers import can_trace_followers
 from equipoise.codegen.loops import can_trace
@@ -30,14 +30,17 @@ from equipoise.mechanism.assembly.steps import Reaction, planar
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.formulas.kernels import cross, length
 from equipoise.mechanism.outputs.declared import DECLARED, Declared, declared
+from equipoise.mechanism.parts.force_kinds import force_kinds
 from equipoise.mechanism.parts.joint_properties import JOINTS
 from equipoise.mechanism.parts.machine import Machine
 
 _OF_FORCES = re.compile(
-    r"drive\..+|gravity\..+|springs\[\d+\]\..+|links\..+\.(mass|inertia|center_of_mass\..+)"
+    r"drive\..+|gravity\..+|links\..+\.(mass|inertia|center_of_mass\..+)"
     r"|links\..+\.bodies\[\d+\]\..+"
 )
-"""Paths of numbers on which forces depend and the motion by crank angle does not."""
+"""Paths of numbers on which forces depend and the motion by crank angle does not; those of force
+elements beside them.
+"""
 PARTS: dict[str, Callable[[Any], Any]] = {
     "": lambda value: value,
     "size": length,
@@ -135,9 +138,9 @@ class Signals:
             return self.trace.rate(name)
         return self.demands[name] if name in self.demands else self.forces[name]
 
-    def of_member(self, item: str, name: str) -> Any:
+    def of_member(self, item: str, name: str, *more: str) -> Any:
         """A value of one of the members of a family."""
-        return OF_MEMBERS[name](self, item)
+        return OF_MEMBERS[name](self, item, *more)
 
     def position(self, item: str, order: int = 0) -> Any:
         """A point, or its first or second derivative by time."""
@@ -220,20 +223,16 @@ class Signals:
             mean = self.trace.slot(what, lambda found: found.machine.belts[number].tension)
         return mean + (-0.5 * side if belts[number].crossed else 0.5 * side) * pull
 
-    def spring(self, item: str) -> tuple[Any, Any, Any]:
-        """Length, stiffness and free length of a spring."""
+    def element_value(self, item: str, table: str, name: str) -> Any:
+        """An output of a force element, by its number from 1 in a list of the file."""
         number = int(item) - 1 if item.isdecimal() else -1
-        if not 0 <= number < len(self.machine.springs):
+        if not 0 <= number < len(getattr(self.machine, table)):
             raise _Missing
-        place, to, stiffness, free = stretched(self.trace, number)
-        return length(to - place), stiffness, free
-
-    def spring_pull(self, item: str) -> Any:
-        extended, stiffness, free = self.spring(item)
-        return stiffness * (extended - free)
+        element, at = traced_element(self.trace, table, number)
+        return element.values(at)[name]
 
 
-OF_MEMBERS: dict[str, Callable[[Signals, str], Any]] = {
+OF_MEMBERS: dict[str, Callable[..., Any]] = {
     "position": Signals.position,
     "velocity": lambda signals, item: signals.position(item, 1),
     "acceleration": lambda signals, item: signals.position(item, 2),
@@ -248,8 +247,7 @@ OF_MEMBERS: dict[str, Callable[[Signals, str], Any]] = {
     "belt pull": Signals.push,
     "belt left": lambda signals, item: signals.strand(item, 1),
     "belt right": lambda signals, item: signals.strand(item, -1),
-    "spring length": lambda signals, item: signals.spring(item)[0],
-    "spring pull": Signals.spring_pull,
+    "force element": Signals.element_value,
 }
 """Values of members of families, by the names that `declared` looks them up by."""
 
@@ -332,7 +330,9 @@ def emit(
 
 def moves_shared(linkage: Linkage, paths: Sequence[str]) -> bool:
     """Whether these numbers change the motion of a linkage whose lengths have to agree."""
-    return linkage.shared is not None and not all(map(_OF_FORCES.fullmatch, paths))
+    tables = force_kinds(type(linkage.machine))
+    lengths = (path for path in paths if path.partition("[")[0] not in tables)
+    return linkage.shared is not None and not all(map(_OF_FORCES.fullmatch, lengths))
 
 
 def can_compute(machine: Machine, paths: Sequence[str], figure: Figure) -> bool:

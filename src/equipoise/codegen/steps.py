@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.across import trace_across
-from equipoise.codegen.applied import Held, trace_load, trace_spring, trace_tension
+from equipoise.codegen.applied import Held, trace_element, trace_load, trace_tension
 from equipoise.codegen.coupled import trace_coupling, trace_rolled
 from equipoise.codegen.followers import trace_displacement, trace_swung
 from equipoise.codegen.laws import trace_law
@@ -131,7 +131,7 @@ def _parameter(steps: str, number: int, place: int) -> Read:
 
 
 def trace_demands(trace: Trace) -> None:
-    """What moves every link and what holds its weight, loads and springs.
+    """What moves every link and what holds its weight, loads and force elements.
 
     Then what the frame and the drive get, while the demands are still those of the links alone:
     ``shaking force``, ``shaking moment``, ``frame force``, ``frame moment`` and ``drive torque``.
@@ -146,7 +146,9 @@ def trace_demands(trace: Trace) -> None:
     moving, weights = _inertia(trace)
     loads = [trace_load(trace, k, load) for k, load in enumerate(machine.loads, 1)]
     springs = [
-        held for k, one in enumerate(machine.springs) for held in trace_spring(trace, k, one)
+        held
+        for table, number, _ in machine.force_elements
+        for held in trace_element(trace, table, number)
     ]
     springs += [held for k in range(len(machine.belts)) for held in trace_tension(trace, k)]
     if machine.has_planes:

@@ -106,6 +106,8 @@ def _row(model: Data, tree: Tree, job: Job, flywheel: float) -> None:
         ends = [_end(tree, spring.on, spring.to), _end(tree, spring.link, spring.point)]
         rates = {"stiffness": spring.stiffness, "length": spring.free_length}
         model["springs"].append({"ends": ends, **rates})
+    if machine.torsion_springs:
+        job.leave_out("the torsion springs")
     for _, load in constant_loads(job):
         end = _end(tree, load.link, load.point or next(iter(machine.links[load.link].points)))
         force = list(load.force or (0.0, 0.0))

@@ -62,7 +62,7 @@ def made(job: Job) -> str:
     for tree in drawn:
         _links(base, tree, job, machine.drive.flywheel if tree is drawn[0] else 0.0)
         _held(root, tree)
-        _springs(root, tree)
+        _springs(root, tree, job)
         _loads(root, world, tree, job)
     _shaft(root, drawn)
     if machine.support is not None:
@@ -244,13 +244,24 @@ def _kept(root: ET.Element, name: str, factors: Mapping[str, float]) -> None:
     ET.SubElement(_part(root, "equality"), "tendon", tendon1=name)
 
 
-def _springs(root: ET.Element, tree: Tree) -> None:
+def _springs(root: ET.Element, tree: Tree, job: Job) -> None:
     for spring in tree.machine.springs:
         rates = {"stiffness": repr(spring.stiffness), "springlength": repr(spring.free_length)}
         tendon = ET.SubElement(_part(root, "tendon"), "spatial", rates)
         plane = _plane(tree, spring.link, spring.point)
         for body, point in ((spring.link, spring.point), (spring.on, spring.to)):
             ET.SubElement(tendon, "site", site=_in_plane(root, tree, body, point, plane))
+    motion = move(tree.machine, [tree.crank_angle + tree.row.phase], acceleration=0.0)
+    for number, torsion in enumerate(tree.machine.torsion_springs):
+        if torsion.stiffness is None:
+            job.leave_out("torsion springs with a table")
+            continue
+        drawn = float(motion.element_values("torsion_springs", number)["angle"][0])
+        rest = torsion.angle + torsion.preload / torsion.stiffness - drawn
+        rates = {"stiffness": repr(torsion.stiffness), "springlength": _row((rest, rest))}
+        tendon = ET.SubElement(_part(root, "tendon"), "fixed", rates)
+        for joint, factor in tree.angle_between(torsion.link, torsion.on).items():
+            ET.SubElement(tendon, "joint", joint=f"{joint}{tree.suffix}", coef=repr(factor))
 
 
 def _loads(root: ET.Element, world: ET.Element, tree: Tree, job: Job) -> None:

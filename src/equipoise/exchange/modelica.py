@@ -198,12 +198,38 @@ def _forces(model: Flat, job: Job) -> None:
         model.push(spring.link, spring.point, force, "+")
         if spring.on != FRAME:
             model.push(spring.on, spring.to, force, "-")
+    _torsion_springs(model, job)
     for _, load in constant_loads(job):
         if load.force is not None and load.point is not None:
             fx, fy = map(_in_brackets, load.force)
             model.push(load.link, load.point, (fx, fy), "+")
         if load.torque is not None:
             model.turn(load.link, _in_brackets(load.torque))
+
+
+def _torsion_springs(model: Flat, job: Job) -> None:
+    """Torques by sums of ramps; each angle is counted on from where it is drawn."""
+    motion = move(model.machine, [job.crank_angle], acceleration=0.0)
+    for number, spring in enumerate(model.machine.torsion_springs):
+        angle, torque = f"A_{number + 1}", f"T_{number + 1}"
+        model.real(angle, torque)
+        ends = (spring.link, spring.on)
+        first, other = (0.0 if one == FRAME else motion.links[one].angle[0] for one in ends)
+        drawn = motion.element_values("torsion_springs", number)["angle"][0]
+        turned = _in_brackets(float(drawn - first + other))
+        model.equations.append(
+            f"{angle} = {model.angle(ends[0])} - {model.angle(ends[1])} + {turned};"
+        )
+        start, at_start, slope, changes = spring.pieces
+        terms = [
+            f"{_in_brackets(at_start)} + {_in_brackets(slope)} * ({angle} - {_in_brackets(start)})"
+        ]
+        for at, change in changes:
+            far = f"({angle} - {_in_brackets(at)})"
+            terms.append(f"{_in_brackets(change)} * 0.5 * ({far} + abs{far})")
+        model.equations.append(f"{torque} = {' + '.join(terms)};")
+        model.turn(ends[0], torque)
+        model.turn(ends[1], f"(-{torque})")
 
 
 def _drive(model: Flat, job: Job) -> None:

@@ -111,6 +111,14 @@ class Tree:
                 yield body
             body = link.parent
 
+    def angle_between(self, body: str, on: str) -> dict[str, float]:
+        """Link -> factor of its hinge in the angle of a body against another."""
+        factors = dict[str, float]()
+        for one, share in ((body, 1.0), (on, -1.0)):
+            for link in self.turning(one):
+                factors[link] = factors.get(link, 0.0) + share
+        return {link: one for link, one in factors.items() if one}
+
     @property
     def gears(self) -> Iterator[tuple[str, dict[str, float]]]:
         """Of each pair of gears its name, and link -> factor of its hinge in a sum that is 0."""

@@ -38,7 +38,7 @@ def made(job: Job) -> str:
                 f'--pin "{one} = {other}", equipoise import joins them'
             )
     missing = {
-        "springs": machine.springs,
+        "springs": [*machine.force_elements],
         "loads": machine.loads,
         "what the support stands on": machine.support,
         "the drive's speed": machine.drive.speed,

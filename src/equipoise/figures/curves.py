@@ -15,6 +15,7 @@ from equipoise.results.charts import Area, Bars, Cells, Curve, Panel, Rule
 from equipoise.symbols import looks
 from equipoise.symbols.carrier import gauge
 from equipoise.symbols.shapes import PIN, Shape, circle, mass, sign, zigzag
+from equipoise.symbols.torsion_springs import spiral
 
 SHADES = 4
 """Of cells in which something is."""
@@ -282,6 +283,7 @@ def sample_of(role: str) -> list[Shape]:
     signs |= {name: [circle(name, 0, grown=3.0)] for name in ("dot", "float", "pin")}
     spring = zigzag(-15, 15, 4)
     signs |= {name: [sign(name, 0, spring.places + spring.offsets)] for name in SPRINGS}
+    signs["spiral"] = [sign("spiral", 0, spiral() * 0.5)]
     if role in signs:
         return signs[role]
     box = np.array([-12 - 6j, 12 - 6j, 12 + 6j, -12 + 6j])

@@ -261,6 +261,8 @@ def keys_of(scene: Scene) -> Iterator[tuple[str, str]]:
         yield "cam", say("cams")
     if scene.springs:
         yield "spring", say("spring")
+    if any(mark.shape.role == "spiral" for mark in scene.marks):
+        yield "spiral", say("torsion spring")
     if scene.planned:
         yield "planned", say("spring to be found")
     if scene.carrier is not None:

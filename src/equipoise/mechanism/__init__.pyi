@@ -19,6 +19,7 @@ from .parts.field import Soil as Soil
 from .parts.field import SoilTable as SoilTable
 from .parts.force_elements import Motor as Motor
 from .parts.force_elements import MotorTable as MotorTable
+from .parts.joint_properties import JointProperties as JointProperties
 from .parts.machine import Cam as Cam
 from .parts.machine import Drive as Drive
 from .parts.machine import Gear as Gear
@@ -34,3 +35,5 @@ from .parts.support import Gauge as Gauge
 from .parts.support import Mount as Mount
 from .parts.support import Row as Row
 from .parts.support import Support as Support
+from .parts.torsion_springs import TorsionSpring as TorsionSpring
+from .parts.torsion_springs import TorsionTable as TorsionTable

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from equipoise.handheld.model import Both, Excitation, Hand, Operation, Station, Tool
     from equipoise.handheld.shaft import Shaft, Tube
     from equipoise.mechanism.assembly.linkage import Linkage
+    from equipoise.mechanism.kinematics.motion import Motion
     from equipoise.mechanism.parts.force_elements import Motor
     from equipoise.mechanism.parts.machine import Machine
     from equipoise.mechanism.parts.support import Gauge, Mount
@@ -42,7 +43,8 @@ if TYPE_CHECKING:
 def machine_blocks(machine: Machine) -> Iterator[Block]:
     """How the linkage is built up, and what to look at again."""
     linkage = assemble(machine)
-    cycle, drive = move(machine).linkage.cycle, machine.drive  # at the angles of an analysis
+    motion, drive = move(machine), machine.drive  # at the angles of an analysis
+    cycle = motion.linkage.cycle
     told = f"{drive.link} at {number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
     if not machine.has_crank:
         told = driven(machine, drive.speed)
@@ -58,7 +60,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     yield from bodies_tables(machine)
     parts = (
         *_joints(machine),
-        *_springs(machine),
+        *_force_elements(motion),
         *cams_told(machine, linkage.joints),
         *_drive_train(machine),
         *_support(machine),
@@ -129,18 +131,18 @@ def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
         yield place, what, *where, Value(work.largest, dimension=kind), Value(work.net, work.both)
 
 
+def _force_elements(motion: Motion) -> Iterator[str]:
+    """What each is; one that cannot act throughout the motion is refused."""
+    for table, place, element in motion.machine.force_elements:
+        motion.element_values(table, place)
+        yield element.summary()
+
+
 def _joints(machine: Machine) -> Iterator[str]:
     for one in machine.joints:
         radius = "" if one.radius is None else f", radius {_length(one.radius)}"
         stiff = "" if one.stiffness is None else f", {told(one.stiffness, 'stiffness', 'N/m')}"
         yield f"{one.joint}{radius}{stiff}"
-
-
-def _springs(machine: Machine) -> Iterator[str]:
-    for spring in machine.springs:
-        free = f", free at {_length(spring.free_length)}" if spring.free_length else ""
-        stiffness = told(spring.stiffness, "stiffness", "N/m")
-        yield f"spring: from {spring.point} of {spring.link} to {spring.to}, {stiffness}{free}"
 
 
 def _drive_train(machine: Machine) -> Iterator[str]:

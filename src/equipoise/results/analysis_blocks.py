@@ -21,7 +21,7 @@ from equipoise.results.belt_blocks import belt_blocks
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import cam_blocks
 from equipoise.results.drive_blocks import driven, drives_table
-from equipoise.results.joint_blocks import joint_blocks, springs_table
+from equipoise.results.joint_blocks import elements_tables, joint_blocks
 from equipoise.results.machine_blocks import (
     angles_told,
     four_bar_facts,
@@ -53,8 +53,7 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
     yield Text(f"{driven(machine, motion.speed)}; {angles_told(analysis)}")
     yield from motion_blocks(analysis)
     yield from cam_blocks(analysis)
-    if analysis.machine.springs:
-        yield springs_table(analysis)
+    yield from elements_tables(analysis)
     if analysis.solved is None:
         yield Notes((massless(machine), *questions(analysis.motion.linkage)))
         return
@@ -253,7 +252,7 @@ def shares(parts: Mapping[str, Array], motion: Motion) -> dict[str, float]:
 def _causes(analysis: Analysis) -> Table:
     drive, forces = analysis.machine.drive, analysis.resolved.forces
     scale = analysis.summary[drive.effort].peak
-    given = {"load": forces.loads, "spring": analysis.machine.springs}
+    given = {"load": forces.loads, "spring": [*analysis.machine.force_elements]}
     rows: list[tuple[Cell, ...]] = []
     for cause, values in forces.split.by_cause(drive.effort).items():
         if given.get(cause, True):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +10,9 @@ import numpy as np
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
 from equipoise.mechanism.dynamics.undecided import idle_told, undecided
+from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.mechanism.outputs.spoken import body_named, joint_named
+from equipoise.mechanism.parts.force_kinds import ForceElement, force_kinds
 from equipoise.quantities import Display, display
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest
@@ -32,19 +34,27 @@ def joint_blocks(analysis: Analysis) -> Iterator[Block]:
         yield Notes(tuple(told))
 
 
-def springs_table(analysis: Analysis) -> Table:
-    """How long every spring is, and what it pulls its ends together by."""
+def elements_tables(analysis: Analysis) -> Iterator[Table]:
+    """Outputs of force elements, smallest and largest, a table for each kind."""
+    for table, kind in force_kinds(type(analysis.machine)).items():
+        if elements := getattr(analysis.machine, table):
+            yield _elements_table(analysis, table, kind, elements)
+
+
+def _elements_table(
+    analysis: Analysis, table: str, kind: type[ForceElement], elements: Sequence[ForceElement]
+) -> Table:
     rows: list[tuple[Cell, ...]] = []
-    for number, one in analysis.motion.springs.items():
-        spring = analysis.machine.springs[int(number) - 1]
-        length, pull = map(analysis.motion.figures, (one.length, one.pull))
-        ends = f"{spring.point} → {spring.to}"
-        rows.append((number, ends, *(f(x) for x in (length, pull) for f in (smallest, largest))))
-    heads = (say("shortest"), say("longest")), (say("smallest pull"), say("largest"))
-    columns = ["", say("from → to"), *(Column(head, "length") for head in heads[0])]
-    columns += [Column(head, "force") for head in heads[1]]
-    title = say("Springs, each with its crank angle; below 0 they push their ends apart")
-    return Table.of(title, columns, rows)
+    for number, element in enumerate(elements):
+        values = analysis.motion.element_values(table, number)
+        figures = (analysis.motion.figures(values[name]) for name in kind.headings)
+        cells = (cell(one) for one in figures for cell in (smallest, largest))
+        rows.append((str(number + 1), " → ".join(element.route), *cells))
+    columns: list[str | Column] = ["", say("from → to")]
+    for name, heads in kind.headings.items():
+        dimension = DECLARED[f"{table}.{{}}.{name}"].dimension
+        columns += [Column(say(head), dimension) for head in heads]
+    return Table.of(say(kind.title), columns, rows)
 
 
 def contact_named(forces: Forces, name: str) -> str:

@@ -55,5 +55,5 @@ def where_lost(machine: Machine) -> tuple[Note, ...]:
 
 def lost_contacts(found: Forces) -> tuple[Note, ...]:
     """Where springs do not keep followers on their cams, at the speed analysed."""
-    sprung = bool(found.motion.machine.springs)
+    sprung = any(found.motion.machine.force_elements)
     return tuple(lost_told(one, sprung) for one in let_go(found) if one.ranges)

@@ -207,14 +207,7 @@ def _parts(machine: Machine) -> Iterator[str]:
             angle=angle(slider.direction),
         )
     yield from _couplings(machine)
-    for spring in machine.springs:
-        yield say(
-            "Spring: {stiffness} from {point} of {link} to {to}",
-            stiffness=told(spring.stiffness, "stiffness", "N/m"),
-            point=spring.point,
-            link=spring.link,
-            to=spring.to,
-        )
+    yield from (element.sentence().said() for *_, element in machine.force_elements)
     for load in machine.loads:
         if load.point is None:
             yield say("Load: a torque on {link}", link=load.link)

@@ -24,6 +24,7 @@ from equipoise.mechanism.parts.field import SoilTable
 from equipoise.mechanism.parts.force_elements import MotorTable
 from equipoise.mechanism.parts.laws import AngleTable, LengthTable
 from equipoise.mechanism.parts.machine import LoadTable
+from equipoise.mechanism.parts.torsion_springs import TorsionTable
 from equipoise.quantities import (
     FACTORS,
     HUGE,
@@ -211,13 +212,14 @@ def _is_number(cell: str) -> bool:
 
 # -- tables beside a model -------------------------------------------------------------------------
 
-Table = LoadTable | AngleTable | LengthTable | SoilTable | MotorTable | Impedance
+Table = LoadTable | AngleTable | LengthTable | SoilTable | MotorTable | TorsionTable | Impedance
 TABLES: dict[str, Any] = {
     "load": LoadTable,
     "angles": AngleTable,
     "lengths": LengthTable,
     "soil": SoilTable,
     "motor": MotorTable,
+    "torsion": TorsionTable,
     "impedance": Impedance,
 }
 """The class of each sort of table; but for a load's, its first fields are the columns."""
@@ -232,6 +234,7 @@ FORMS: dict[str, Forms] = {
     "lengths": (("crank_angle", "length"),),
     "soil": (("depth", "resistance"),),
     "motor": (("speed", "torque"),),
+    "torsion": (("angle", "torque"),),
     "impedance": (("frequency", "resistance", "reactance"), ("frequency", "magnitude", "phase")),
 }
 """Columns of each sort of table."""

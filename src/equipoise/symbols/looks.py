@@ -100,6 +100,7 @@ LOOKS = {
     "slot": Look("paper", "lines", 1.0),
     "block": Look("paper", "lines", 1.2),
     "spring": Look(None, "lines", 1.4),
+    "spiral": Look(None, "lines", 1.4),
     "room": Look(None, "main", 1.2, (3.0, 2.4)),
     "planned": Look(None, "main", 1.2, (3.0, 2.4)),
     "added": Look(None, "stress", 2.2),
@@ -129,6 +130,7 @@ LOOKS = {
 
 LAYERS = {
     "strand": {"springs": "strand"},
+    "spiral": {"springs": "spiral"},
     "groove": {"wheels": "groove", "springs": "cam-edge"},
     "cam": {"wheels": "cam", "springs": "cam-edge"},
     "rider": {"riders": "rider"},

@@ -145,6 +145,7 @@ SECTIONS = {
     "gears": to_say("gears"),
     "cams": to_say("cams"),
     "springs": to_say("springs"),
+    "torsion_springs": to_say("torsion springs"),
     "joints": to_say("joints"),
     "rows": to_say("rows"),
     "planting": to_say("planting"),
@@ -182,7 +183,18 @@ def _shown(value: float, unit: Display) -> str:
 
 def fields_of(design: Design) -> dict[str, Field]:
     """Every number by its path, in the order in which a page shows them."""
-    parts = (_drive, _links, _frame, _gears, _cams, _springs, _joints, _rows, _planting, _mounts)
+    parts = (
+        _drive,
+        _links,
+        _frame,
+        _gears,
+        _cams,
+        _force_elements,
+        _joints,
+        _rows,
+        _planting,
+        _mounts,
+    )
     found = [field for part in parts for field in part(design.own)]
     return {field.path: field for field in (*found, *_weights(design))}
 
@@ -283,15 +295,15 @@ def _cams(machine: Machine) -> Iterator[Field]:
         yield from _numbers(("cams", str(number)), "cams", cam.name, cam, without)
 
 
-def _springs(machine: Machine) -> Iterator[Field]:
-    for number, spring in enumerate(machine.springs, 1):
-        of = say("{point} to {other}", point=spring.point, other=spring.to)
-        yield from _numbers(("springs", str(number)), "springs", of, spring)
+def _force_elements(machine: Machine) -> Iterator[Field]:
+    for table, number, element in machine.force_elements:
+        place, of = (table, str(number + 1)), element.label.said()
+        yield from _numbers(place, table, of, element, element.idle_keys)
 
 
 def _joints(machine: Machine) -> Iterator[Field]:
     for number, joint in enumerate(machine.joints, 1):
-        yield from _numbers(("joints", str(number)), "joints", f"{joint.joint}, ", joint)
+        yield from _numbers(("joints", str(number)), "joints", joint.joint, joint)
 
 
 def _rows(machine: Machine) -> Iterator[Field]:

@@ -9,7 +9,8 @@ from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.cams import RIDES
-from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.force_kinds import force_kinds
+from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.web.adding import with_drive, with_link, with_point, with_slider
 from equipoise.web.camming import with_cam
 from equipoise.web.coupling import with_belt, with_gears, with_rack
@@ -29,7 +30,7 @@ from equipoise.web.remaking import (
 )
 from equipoise.web.sketch import Sketch
 
-LISTS = ("loads", "springs")
+LISTS = ("loads", *force_kinds(Machine))
 Operation = Callable[[Sketch, Message], Sketch]
 
 

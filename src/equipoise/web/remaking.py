@@ -13,6 +13,7 @@ from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.named_joints import joint_names
 from equipoise.mechanism.checks import Bodies, unknown
 from equipoise.mechanism.parts.balance import Balance
+from equipoise.mechanism.parts.force_kinds import ForceElement
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.web.adding import (
     check_body,
@@ -183,11 +184,12 @@ def _held(key: str, entry: Any, bodies: Bodies) -> bool:
     if key in COUPLED:
         there = {entry.driver, entry.driven, entry.carrier} <= bodies.keys()
         return there and (key != "cams" or entry.point in bodies[entry.driven])
+    if isinstance(entry, ForceElement):
+        ends = all(point in bodies.get(body, ()) for body, point in entry.points)
+        return ends and {*entry.bodies} <= bodies.keys()
     points = [(entry.link, entry.point)] if entry.point is not None else []
     if key == "sliders":
         points.append((entry.on, entry.through))
-    if key == "springs":
-        points.append((entry.on, entry.to))
     return entry.link in bodies and all(name in bodies.get(body, ()) for body, name in points)
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from equipoise.mechanism.kinematics.outline import COUPLED, STILL, Outline, Pose
+from equipoise.mechanism.parts.force_kinds import force_kinds
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector
 from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.quantities import clean_place
@@ -20,7 +21,7 @@ REST = tuple(
     )
 )
 """Fields of a machine that a sketch hands on as they are; sides and places follow from it."""
-LISTS = (*COUPLED, "loads", "springs", "joints")
+LISTS = (*COUPLED, "loads", *force_kinds(Machine), "joints")
 """Those of them that have names of links and points in them."""
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, MotionError
-from equipoise.mechanism.dynamics.acting import resistance, soil_force, spring_force
+from equipoise.mechanism.dynamics.acting import acting_elements, resistance, soil_force
 from equipoise.mechanism.dynamics.assessment import remarks
 from equipoise.mechanism.dynamics.parameters import spring_units
 from equipoise.mechanism.kinematics.tip import surface_of
@@ -245,7 +245,7 @@ def test_springs_leave_the_motion_as_it_is() -> None:
 def test_force_towards_the_frame() -> None:
     machine = sprung()
     motion = eq.move(machine, THETA)
-    force = spring_force(motion, machine.springs[0])
+    ((_, _, force, _),) = acting_elements(motion)
     along = complex(*FRAME["S"]) - motion.points["C"].place
     np.testing.assert_allclose(np.abs(force), 300 * np.abs(np.abs(along) - 0.7), rtol=1e-13)
     np.testing.assert_allclose(np.angle(force), np.angle(along), rtol=1e-13)
@@ -255,7 +255,8 @@ def test_a_spring_shorter_than_its_free_length_pushes() -> None:
     machine = sprung(free_length=9.0)
     motion = eq.move(machine, THETA)
     along = complex(*FRAME["S"]) - motion.points["C"].place
-    pull = (spring_force(motion, machine.springs[0]) / along).real
+    ((_, _, force, _),) = acting_elements(motion)
+    pull = (force / along).real
     assert np.all(pull < 0)
 
 

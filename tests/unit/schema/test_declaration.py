@@ -38,6 +38,7 @@ from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.machine import Frame, Machine, Position
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.mechanism.parts.springs import Spring
+from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.schema import finding, models, schemas
 from equipoise.schema.documents import dumps, loads
 from equipoise.schema.places import Context
@@ -62,7 +63,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         bodies.Body, bodies.Hole, sliders.Bearing, sliders.Slider, gears.Gear,
         joint_properties.JointProperties,
         gear_shapes.GearShape, Belt, Rack, cams.Cam,
-        force_elements.Load, Spring, Position, field.Planting, field.PlantingArm,
+        force_elements.Load, Spring, TorsionSpring, Position, field.Planting, field.PlantingArm,
         field.Soil, support.Support,
         mounts.Mount, support.Row, balance.Balance, weights.CenterMove,
         weights.AddedMass, weights.Weight, counterweights.GearedWeight,

@@ -11,7 +11,7 @@ refused for is here a design of which `refusing.wrong` is true.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -20,7 +20,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.keys import Frozen, changed, quantities_of
+from equipoise.keys import Frozen, Quantity, changed, innermost, keys_of, quantities_of
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.linkage import Linkage, ordered
 from equipoise.mechanism.assembly.steps import (
@@ -38,6 +38,7 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.rolling import beside
 from equipoise.mechanism.parts.bodies import Body
 from equipoise.mechanism.parts.body_checks import outlined_by_columns
+from equipoise.mechanism.parts.force_kinds import force_kinds
 from equipoise.mechanism.parts.machine import FRAME, Machine, Vector
 
 Triple = tuple[Array, Array, Array]
@@ -177,7 +178,9 @@ Columns = Mapping[str, Array]
 Value = TypeVar("Value")
 
 PAIR = {"x", "y", "distance", "direction"}
-HOLDERS = {
+
+
+HOLDERS: Mapping[str, Set[str] | None] = {
     r"(drive)": {"speed", "acceleration"},
     r"(gravity)": PAIR,
     r"(frame)\.(points)\.(.+)": PAIR,
@@ -195,19 +198,26 @@ HOLDERS = {
     r"(belts)\[([1-9]\d*)\]": {"start", "tension"},
     r"(racks)\[([1-9]\d*)\]": {"angle", "travel", "pressure_angle"},
     r"(cams)\[([1-9]\d*)\]": {"base_radius", "roller_radius", "normal"},
-    r"(springs)\[([1-9]\d*)\]": {"stiffness", "free_length"},
 }
 """What has numbers that may be columns, by its path in the model file, and their keys; None where
-these are names."""
+these are names.  All quantities of force elements may."""
 
 
 _LISTED = re.compile(r"\[[1-9]\d*\]$")
 """Place in a list of numbers."""
 
 
-def _holder(whole: str, parts: Set[str]) -> tuple[str, ...]:
+def _force_holders(of: type[Frozen]) -> Iterator[tuple[str, set[str]]]:
+    """As `HOLDERS`, of the force elements of a class of machines."""
+    for table, kind in force_kinds(of).items():
+        known = keys_of(kind).items()
+        names = {name for name, one in known if isinstance(innermost(one.kind), Quantity)}
+        yield rf"({table})\[([1-9]\d*)\]", names
+
+
+def _holder(whole: str, parts: Set[str], of: type[Frozen] = Machine) -> tuple[str, ...]:
     """The steps to what has these numbers; a `KeyError` where they may be no columns."""
-    for pattern, keys in HOLDERS.items():
+    for pattern, keys in (*HOLDERS.items(), *_force_holders(of)):
         found = re.fullmatch(pattern, whole)
         if found is not None and (
             keys is None or {_LISTED.sub("", part) for part in parts} <= keys
@@ -240,8 +250,8 @@ def with_columns(machine: Machine, columns: Columns) -> Machine:
         parts.setdefault(whole, {})[part] = column
     for whole, found in parts.items():
         try:
-            steps = _holder(whole, found.keys())
-            machine = changed(machine, steps, partial(_filled, found), _with)
+            steps = _holder(whole, found.keys(), type(machine))
+            machine = changed(machine, steps, partial(_filled, found), with_fields)
             _check_outlines(machine)
             _check_shapes(machine)
         except (KeyError, IndexError):
@@ -269,7 +279,7 @@ def _filled(parts: Mapping[str, Array], held: Any) -> Any:
         if place and int(place) > len(value):
             raise KeyError
         fields[name] = (*value[: int(place) - 1], column, *value[int(place) :]) if place else column
-    return _with(held, **held.following(fields))
+    return with_fields(held, **held.following(fields))
 
 
 def _check_outlines(machine: Machine) -> None:
@@ -301,7 +311,7 @@ def _pair(place: Vector, parts: Mapping[str, Array]) -> tuple[Any, Any]:
     return parts.get("x", x), parts.get("y", y)
 
 
-def _with(value: Value, **changes: Any) -> Value:
+def with_fields(value: Value, **changes: Any) -> Value:
     """A frozen value with fields changed, unchecked; what was kept with it is left behind."""
     result = object.__new__(type(value))
     kept = {key: item for key, item in vars(value).items() if not key.startswith("_")}

@@ -61,5 +61,5 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
         if pair.shape is not None and pair.shape.varies:
             yield can_roll(pair.shape, pair)
     yield from demands_across(machine)
-    for spring in machine.springs:
-        yield (spring.stiffness > 0) & (np.asarray(spring.free_length) >= 0)
+    for *_, element in machine.force_elements:
+        yield from element.demands()

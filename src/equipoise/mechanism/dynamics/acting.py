@@ -1,4 +1,4 @@
-"""What acts on links from outside of their joints: loads, soil, springs, the tension of belts."""
+"""What acts on links beside their joints: loads, soil, force elements, the tension of belts."""
 
 from __future__ import annotations
 
@@ -14,8 +14,7 @@ from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.loads import load_at
 from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
-from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
 from equipoise.mechanism.kinematics.tip import surface_of, tip_link
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.field import Soil
@@ -32,27 +31,28 @@ def load_demands(motion: Motion) -> dict[str, Demand]:
 
 
 def spring_demands(motion: Motion) -> dict[str, Demand]:
-    """What holds the springs and the tension of belts, for every link that has one.
+    """What holds force elements and the tension of belts, for every link that has one.
 
     Raises
     ------
-    ModelError : the ends of a spring with a free length meet.
+    ModelError : the ends of a spring with a free length meet, or a link turns beyond where the
+        torque of a torsion spring is known.
     """
     strands = (one for _, ends in acting_strands(motion) for one in ends)
-    return demands_of(motion, chain(acting_springs(motion), strands))
+    return demands_of(motion, chain(acting_elements(motion), strands))
 
 
-def acting_springs(motion: Motion) -> Iterator[Acting]:
-    """Link, point and force of each end of a spring on a link; they have no torque.
+def acting_elements(motion: Motion) -> Iterator[Acting]:
+    """Link, point, force and torque of each force element at each of its ends on a link.
 
     Raises
     ------
-    ModelError : the ends of a spring with a free length meet.
+    ModelError : as of `spring_demands`.
     """
-    for spring in motion.machine.springs:
-        force = spring_force(motion, spring)
-        for (link, point), pull in zip(spring.ends, (force, -force), strict=False):
-            yield link, point, pull, 0.0
+    for table, number, element in motion.machine.force_elements:
+        if isinstance(element, Spring) and element.free_length:
+            spring_direction(motion, element.link, element.point, element.to)
+        yield from element.on_links(PlacedBodies(motion, f"{table}[{number + 1}]"))
 
 
 def acting_strands(motion: Motion) -> Iterator[tuple[Belt, list[Acting]]]:
@@ -120,19 +120,6 @@ def resistance(soil: Soil, depth: Array, speed: Array) -> Array:
     if soil.table is not None:
         size = size + np.interp(depth, soil.table.depth, soil.table.resistance)
     return size
-
-
-def spring_force(motion: Motion, spring: Spring) -> Any:
-    """Force of a spring on its link's point (N,), N, complex; minus this on its other end.
-
-    Raises
-    ------
-    ModelError : its ends meet, so that a spring with a free length points nowhere.
-    """
-    if spring.free_length:
-        spring_direction(motion, spring.link, spring.point, spring.to)
-    place, to = motion.point(spring.point).place, motion.point(spring.to).place
-    return kernels.spring(place, to, spring.stiffness, spring.free_length)
 
 
 def spring_vector(motion: Motion, point: str, to: str) -> Any:

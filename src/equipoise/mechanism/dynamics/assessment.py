@@ -242,7 +242,8 @@ def questions(linkage: Linkage) -> Iterator[Note | str]:
     yield from _odd_lengths(linkage)
     yield from _turned_axes(machine)
     used = {slider.through for slider in machine.sliders if slider.on == FRAME}
-    used |= {spring.to for spring in machine.springs} | linkage.joints.pins.keys()
+    ends = (end for *_, element in machine.force_elements for end in element.points)
+    used |= {point for body, point in ends if body == FRAME} | linkage.joints.pins.keys()
     used |= {*(machine.drive.between or ())}
     used |= {spring.to for spring in machine.balance.springs} if machine.balance else set()
     for point in machine.frame:

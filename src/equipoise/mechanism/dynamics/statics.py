@@ -218,7 +218,8 @@ def _flat(machine: Any, link: str, joints: Sequence[Contact]) -> bool:
     planes = {one.plane for one in joints if link in (one.on, one.by)}
     planes |= {plane for mass, _, plane in masses_of(body) if mass}
     planes |= {body.plane_of(one.point) for one in machine.loads if one.link == link and one.point}
-    planes |= {body.plane_of(one.point) for one in machine.springs if one.link == link}
+    ends = (end for *_, element in machine.force_elements for end in element.points)
+    planes |= {body.plane_of(point) for on, point in ends if on == link}
     planting = machine.planting
     if planting is not None and planting.soil is not None:
         planes |= {body.plane_of(arm.tip) for arm in planting.every_arm if arm.tip in body.points}

@@ -7,23 +7,25 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from math import pi
+from math import degrees, pi
 from numbers import Real
 from typing import Any
 
 import numpy as np
 
 from equipoise import signals
-from equipoise.errors import ChangePointError, RangeError, UsageError
+from equipoise.errors import ChangePointError, ModelError, RangeError, UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.builder import Group
 from equipoise.mechanism.assembly.cam_fits import Fit, fits_of, pressure_angle
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.steps import Array, State, p, plain_angle, running_angle, u
 from equipoise.mechanism.checks import Named, Vector, bodies_at
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.kinematics.rates import LinkMotion, PointMotion, SliderMotion, SpringMotion
+from equipoise.mechanism.kinematics.rates import LinkMotion, PointMotion, SliderMotion
 from equipoise.mechanism.kinematics.swinging import middle_angle, solve_swinging
-from equipoise.mechanism.parts.machine import Drive, FurtherDrive, Machine, Slider, Spring
+from equipoise.mechanism.parts.force_kinds import ForceElement
+from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Machine, Slider
 from equipoise.quantities.units import HUGE
 from equipoise.signals import Figures, JumpSampling, Periodic
 
@@ -177,15 +179,18 @@ class Motion:
         ends = [links[body].angle if body in links else 0.0 for body in (cam.driver, cam.carrier)]
         return fit.shape(np.asarray(ends[0] - ends[1])).surface_curvature
 
-    @cached_property
-    def springs(self) -> Mapping[str, SpringMotion]:
-        """Length and pull of each spring, by its number from 1."""
-        found = enumerate(self.machine.springs, 1)
-        return Named("spring", ((str(number), self._stretched(one)) for number, one in found))
+    def element_values(self, table: str, number: int) -> Mapping[str, Array]:
+        """Outputs (N,) of a force element, by name.
 
-    def _stretched(self, spring: Spring) -> SpringMotion:
-        length = np.abs(self.points[spring.to].place - self.points[spring.point].place)
-        return SpringMotion(length, spring.stiffness * (length - spring.free_length))
+        table, number : its list in the file, and its place there from 0.
+        """
+        known = self.__dict__.setdefault("_element_values", {})
+        if (table, number) not in known:
+            element: ForceElement = getattr(self.machine, table)[number]
+            values = element.values(PlacedBodies(self, f"{table}[{number + 1}]"))
+            known[table, number] = {name: self._full(value) for name, value in values.items()}
+        found: Mapping[str, Array] = known[table, number]
+        return found
 
     def slider(self, slider: Slider) -> SliderMotion:
         """Motion of one of the sliding joints, likewise."""
@@ -278,6 +283,48 @@ class Motion:
         if isinstance(value, np.ndarray) and value.shape == self.crank_angle.shape:
             return value
         return np.full(self.crank_angle.shape, value, dtype=kind)
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedBodies:
+    """Bodies where a motion has them (N,), for what a force element exerts.
+
+    where : the element's place in the file.
+    """
+
+    motion: Motion
+    where: str
+
+    def point(self, body: str, point: str) -> Array:
+        """A point in the frame, complex, m."""
+        return self.motion.point(point).place
+
+    def angle(self, body: str, on: str, middle: float) -> Array:
+        """Angle of a body from the x axis of another, rad, within half a turn of `middle`.
+
+        Raises
+        ------
+        ModelError : it does not stay there.
+        """
+        turn, other = (self.motion.state[u(one)[0]] for one in (body, on))
+        away = turn * np.conjugate(other) * np.exp(-1j * middle)
+        angle: Array = middle + np.arctan2(away.imag, away.real)
+        links = self.motion.links
+        running = [0.0 if one == FRAME else links[one].angle for one in (body, on)]
+        turns = np.round((running[0] - running[1] - angle) / (2 * pi))
+        if np.ptp(turns):
+            raise ModelError(
+                self.where,
+                Note(
+                    "{body!r} turns against {on!r} beyond half a turn from {middle:.4g} deg, where "
+                    "its torque is not known; give another link, or rows or an angle in the middle "
+                    "of its range",
+                    body=body,
+                    on=on,
+                    middle=degrees(middle),
+                ),
+            )
+        return angle
 
 
 def move(

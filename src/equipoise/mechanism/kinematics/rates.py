@@ -110,14 +110,3 @@ class SliderMotion:
     def along_acceleration(self) -> Array:
         """m/s2, as seen from the guide."""
         return in_time(self.travel_1, self.travel_2, self.speed, self.acceleration)
-
-
-@dataclass(frozen=True, eq=False)
-class SpringMotion:
-    """Length of a spring, m, and what it pulls its ends together by, N; arrays (N,).
-
-    Less than 0 it pushes them apart.
-    """
-
-    length: Array
-    pull: Array

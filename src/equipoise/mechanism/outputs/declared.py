@@ -26,6 +26,7 @@ from equipoise.mechanism.outputs.declaring import (
 )
 from equipoise.mechanism.outputs.poles import advantage, guided, instant_center, pairs, pinned
 from equipoise.mechanism.outputs.spoken import joint_named, joint_names, pair_named, slider_names
+from equipoise.quantities import Dimension
 
 __all__ = ["DECLARED", "GROUPS", "Declared", "Found", "declared", "declaring", "matches", "output"]
 """What `declaring` has is had from here, where something is declared."""
@@ -342,12 +343,23 @@ of_shape("pressure_angle", "angle", to_say("pressure angle {name}"),
          loop=True,
          yardstick="pressure")  # fmt: skip
 of_shape("curvature", "per length", to_say("curvature of the cam {name}"))
-of_spring = alike(
-    "springs.{}.", lambda name, found, number: getattr(found.motion.springs[number], name),
-    members=lambda machine: [str(k + 1) for k in range(len(machine.springs))], needs="motion",
-)  # fmt: skip
-of_spring("pull", "force", to_say("pull of spring {name}"), loop=looked_up("spring pull"))
-of_spring("length", "length", to_say("length of spring {name}"), loop=looked_up("spring length"))
+
+
+def of_element(table: str, name: str, dimension: Dimension, label: str) -> None:
+    """Declare an output of the force elements of a list of the file."""
+    alike(
+        table + ".{}.",
+        lambda name, found, item: found.motion.element_values(table, int(item) - 1)[name],
+        members=lambda machine: [str(k + 1) for k in range(len(getattr(machine, table)))],
+        needs="motion",
+    )(name, dimension, label, loop=lambda value: value("force element", table, name))
+
+
+of_element("springs", "pull", "force", to_say("pull of spring {name}"))
+of_element("springs", "length", "length", to_say("length of spring {name}"))
+of_element("torsion_springs", "torque", "torque", to_say("torque of torsion spring {name}"))
+of_element("torsion_springs", "angle", "angle", to_say("angle of torsion spring {name}"))
+of_element("torsion_springs", "energy", "energy", to_say("energy of torsion spring {name}"))
 
 # -- rows and support ------------------------------------------------------------------------------
 

@@ -51,6 +51,7 @@ GROUPS = {
     "belts": to_say("belts"),
     "cams": to_say("cams"),
     "springs": to_say("springs"),
+    "torsion_springs": to_say("torsion springs"),
     "rows": to_say("all rows together"),
     "gauges": to_say("gauges"),
 }

@@ -6,7 +6,7 @@ with; what it cannot do (turn fully, close) is found by `mechanism.assembly.link
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -49,6 +49,7 @@ from equipoise.mechanism.parts.force_elements import (
     Load,
     LoadTable,
 )
+from equipoise.mechanism.parts.force_kinds import ForceElement, force_kinds
 from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.links import (
@@ -62,6 +63,7 @@ from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.mechanism.parts.sliders import Bearing, Slider
 from equipoise.mechanism.parts.springs import Spring
 from equipoise.mechanism.parts.support import Row, Support
+from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.mechanism.parts.whole import problems_of
 
 if TYPE_CHECKING:
@@ -90,8 +92,8 @@ MOVING = ("link", "motion", "between", "slider", "stroke", "start")
 """What of the drive sets how the links move."""
 BESIDE = ("bodies", "plane", "planes")
 """Keys of a link that change nothing about the motion, beside its mass."""
-STILL = {"planting", "support", "rows", "springs", "bearings"}
-"""Keys under which no number changes the motion."""
+STILL = {"planting", "support", "rows", "bearings"}
+"""Keys, beside those of force elements, under which no number changes the motion."""
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 
 
@@ -102,8 +104,8 @@ class Machine(Driven, Frozen):
     beside: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "description", "units", "gravity", "drive", "drives", "frame",
                   "links", "bearings", "assembly", "sliders", "gears", "belts", "racks", "cams",
-                  "loads", "springs", "joints", "position", "planting", "support", "rows",
-                  "balance")  # fmt: skip
+                  "loads", "springs", "torsion_springs", "joints", "position", "planting",
+                  "support", "rows", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(Table(Drive), "the link that is driven")
@@ -165,6 +167,9 @@ class Machine(Driven, Frozen):
     )
     belts: tuple[Belt, ...] = key(Tables(Table(Belt)), "toothed belts and chains", default=())
     racks: tuple[Rack, ...] = key(Tables(Table(Rack)), "racks with their pinions", default=())
+    torsion_springs: tuple[TorsionSpring, ...] = key(
+        Tables(Table(TorsionSpring)), "springs that turn links against each other", default=()
+    )
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Machine:
@@ -189,6 +194,13 @@ class Machine(Driven, Frozen):
     def couplings(self) -> tuple[Coupling, ...]:
         """Joints by which one body's angle tells another's, in the order of the file."""
         return (*self.gears, *self.belts, *self.racks, *self.cams)
+
+    @property
+    def force_elements(self) -> Iterator[tuple[str, int, ForceElement]]:
+        """What acts between bodies by where they are, with its list and its place from 0."""
+        for table in force_kinds(type(self)):
+            for number, one in enumerate(getattr(self, table)):
+                yield table, number, one
 
     @property
     def switches(self) -> bool:
@@ -252,7 +264,8 @@ class Machine(Driven, Frozen):
             return number
 
         massive = first == "links" and bool({*steps[2:3]} & {*MASS_FIELDS, *BESIDE})
-        same = massive or first in STILL or last == "speed"
+        still = first in STILL or first in force_kinds(type(self))
+        same = massive or still or last == "speed"
         if first == "links":
             found = self._with_link(steps[1], lambda link: changed(link, steps[2:], put))
         else:

@@ -1,21 +1,30 @@
-"""Springs, as frozen values with their checks."""
+"""Linear springs between two points, as frozen values with their checks."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Iterator, Mapping
+from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Frozen, Text, declared, key
+from equipoise.keys import Text, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unknown_link
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.parts.force_kinds import Action, ForceElement, Placed
+from equipoise.quantities import told
 
 
 @declared
-class Spring(Frozen):
+class Spring(ForceElement):
     """A linear spring without mass: it pulls `point` of `link` towards the point `to` of `on`."""
 
     called = to_say("{what} of spring {number}")
+
+    title = to_say("Springs, each with its crank angle; below 0 they push their ends apart")
+    headings: ClassVar[Mapping[str, tuple[str, str]]] = {
+        "length": (to_say("shortest"), to_say("longest")),
+        "pull": (to_say("smallest pull"), to_say("largest")),
+    }
 
     link: str = key(Text(of="link"), "the link that it pulls", example="rocker")
     point: str = key(
@@ -43,10 +52,64 @@ class Spring(Frozen):
     )
 
     @property
-    def ends(self) -> tuple[tuple[str, str], ...]:
-        """Link and point of each end that is on a link; it pulls the second the other way."""
-        first = (self.link, self.point)
-        return (first,) if self.on == FRAME else (first, (self.on, self.to))
+    def bodies(self) -> tuple[str, str]:
+        """The link and the body of its other point."""
+        return self.link, self.on
+
+    @property
+    def points(self) -> tuple[tuple[str, str], ...]:
+        """Both bodies, each with the point at which it is held."""
+        return (self.link, self.point), (self.on, self.to)
+
+    @property
+    def label(self) -> Note:
+        """Its two points, by which it is told from others."""
+        return Note("{point} to {other}", point=self.point, other=self.to)
+
+    def ends(self, at: Placed) -> tuple[Any, Any]:
+        """Places of both ends in the frame, complex, m."""
+        return at.point(self.link, self.point), at.point(self.on, self.to)
+
+    def actions(self, at: Placed) -> Iterator[Action]:
+        """Force on each end, N, complex; it has no torque."""
+        force = kernels.spring(*self.ends(at), self.stiffness, self.free_length)
+        yield self.link, self.point, force, 0.0
+        yield self.on, self.to, -force, 0.0
+
+    def values(self, at: Placed) -> Mapping[str, Any]:
+        """Its length, m, and its pull, N, less than 0 where it pushes."""
+        place, to = self.ends(at)
+        length = kernels.length(to - place)
+        return {"length": length, "pull": self.stiffness * (length - self.free_length)}
+
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with its ends in a machine of these bodies."""
+        return wrong_ends(where, self, bodies)
+
+    @property
+    def route(self) -> tuple[str, str]:
+        """Its two points."""
+        return self.point, self.to
+
+    def sentence(self) -> Note:
+        """Its stiffness and its ends, for a report."""
+        return Note(
+            "Spring: {stiffness} from {point} of {link} to {to}",
+            stiffness=told(self.stiffness, "stiffness", "N/m"),
+            point=self.point,
+            link=self.link,
+            to=self.to,
+        )
+
+    def summary(self) -> str:
+        """All its numbers, in a line of `check`."""
+        free = f", free at {told(self.free_length, 'length')}" if self.free_length else ""
+        stiffness = told(self.stiffness, "stiffness", "N/m")
+        return f"spring: from {self.point} of {self.link} to {self.to}, {stiffness}{free}"
+
+    def demands(self) -> Iterator[Any]:
+        """What has to be true of stiffness and free length, or of columns of them."""
+        yield (self.stiffness > 0) & (self.free_length >= 0)
 
 
 def wrong_ends(where: str, spring: Any, bodies: Bodies) -> Iterator[ModelError]:

@@ -1,0 +1,235 @@
+"""Torsion springs between two bodies, linear or by a table, as frozen values with their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from typing import Any, ClassVar
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import (
+    ROW,
+    Conditions,
+    File,
+    Frozen,
+    Listing,
+    Quantity,
+    Text,
+    declared,
+    inside,
+    key,
+    lacks,
+    needs,
+)
+from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
+from equipoise.mechanism.parts.force_kinds import Action, ForceElement, Placed
+from equipoise.quantities import told
+
+MOST_ROWS = 200
+"""Of a table, each of which is a term of the torque in compiled loops."""
+
+
+@declared
+class TorsionTable(Frozen):
+    """Torque of a torsion spring against its angle: linear between rows, and beyond them as between
+    the last two.
+
+    angle : rad, rising.  torque : N m, as long as `angle`.
+    file : name of the CSV file that it came from.
+    """
+
+    angle: tuple[float, ...] = inside(ROW)
+    torque: tuple[float, ...] = inside(ROW)
+    file: str = inside(Text(), default="", compare=False)
+
+
+@declared
+class TorsionSpring(ForceElement):
+    """A spring without mass that turns `link` against `on` by the angle between both."""
+
+    called = to_say("{what} of torsion spring {number}")
+    file_order = ("link", "on", "stiffness", "angle", "preload", "angles", "torques", "table")
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [
+            {**needs("stiffness"), **lacks("angles", "torques", "table")},
+            {**needs("table"), **lacks("stiffness", "angle", "preload", "angles", "torques")},
+            {**needs("angles", "torques"), **lacks("stiffness", "angle", "preload", "table")},
+        ]
+    }
+
+    title = to_say("Torsion springs, each with its crank angle; torques on the link")
+    headings: ClassVar[Mapping[str, tuple[str, str]]] = {
+        "angle": (to_say("smallest angle"), to_say("largest")),
+        "torque": (to_say("smallest torque"), to_say("largest")),
+    }
+
+    link: str = key(Text(of="link"), "the link that it turns", example="rocker")
+    on: str = key(
+        Text(of="body"),
+        "the body on which its other end is held",
+        default=FRAME,
+        word=to_say("other body"),
+    )
+    stiffness: float | None = key(
+        "torsional stiffness", "more than 0", default=None, example="2 N m/rad", above=0
+    )
+    angle: float = key(
+        "angle", "of the link from the x axis of `on`, at which it exerts `preload`", default=0.0
+    )
+    preload: float = key("torque", "on the link at `angle`, positive counterclockwise", default=0.0)
+    angles: tuple[float, ...] = key(
+        Listing(Quantity("angle"), right='a list such as ["-30 deg", "0 deg", "40 deg"]'),
+        "of the link from the x axis of `on`, rising, instead of a stiffness",
+        default=(),
+        example=["-30 deg", "0 deg", "40 deg"],
+    )
+    torques: tuple[float, ...] = key(
+        Listing(Quantity("torque"), right='a list such as ["3 N m", "0 N m", "-2 N m"]'),
+        "on the link at these angles; linear between them, and beyond them as between the last two",
+        default=(),
+        example=["3 N m", "0 N m", "-2 N m"],
+    )
+    table: TorsionTable | None = key(
+        File("torsion"),
+        "CSV file beside this one, instead of these lists: `angle [deg],torque [N m]`",
+        default=None,
+        example="spring.csv",
+    )
+
+    @property
+    def bodies(self) -> tuple[str, str]:
+        """The link and the body on which it is held."""
+        return self.link, self.on
+
+    @property
+    def idle_keys(self) -> tuple[str, ...]:
+        """Keys that count for nothing beside a table."""
+        return () if self.stiffness is not None else ("angle", "preload")
+
+    @property
+    def label(self) -> Note:
+        """Its bodies, by which it is told from others."""
+        return Note("{link} on {on}", link=self.link, on=self.on)
+
+    @property
+    def rows(self) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+        """Angles, rad, and torques, N m, of a table; empty of a linear spring."""
+        if self.table is not None:
+            return self.table.angle, self.table.torque
+        return self.angles, self.torques
+
+    @property
+    def middle(self) -> Any:
+        """Angle from which that of the link stays within half a turn, rad."""
+        angles, _ = self.rows
+        return 0.5 * (angles[0] + angles[-1]) if angles else self.angle
+
+    def actions(self, at: Placed) -> Iterator[Action]:
+        """Torque on the link, N m, and its opposite on the other body."""
+        torque = self._torque(at.angle(self.link, self.on, self.middle))
+        yield self.link, None, 0j, torque
+        yield self.on, None, 0j, -torque
+
+    def values(self, at: Placed) -> Mapping[str, Any]:
+        """Angle of the link, rad, torque on it, N m, and energy, J."""
+        angle = at.angle(self.link, self.on, self.middle)
+        return {"angle": angle, "torque": self._torque(angle), "energy": self._energy(angle)}
+
+    @property
+    def pieces(self) -> tuple[Any, Any, Any, tuple[tuple[Any, Any], ...]]:
+        """An angle (rad), torque (N m) and slope (N m/rad) there; then angles at which the slope
+        changes, and by how much.
+        """
+        if self.stiffness is not None:
+            return self.angle, self.preload, -self.stiffness, ()
+        angles, torques = self.rows
+        rows = pairwise(zip(angles, torques, strict=True))
+        slopes = [(t1 - t0) / (a1 - a0) for (a0, t0), (a1, t1) in rows]
+        changes = (after - before for before, after in pairwise(slopes))
+        return angles[0], torques[0], slopes[0], (*zip(angles[1:-1], changes, strict=True),)
+
+    def _torque(self, angle: Any) -> Any:
+        """Torque on the link, N m: a sum of ramps, which needs no branch."""
+        start, torque, slope, changes = self.pieces
+        ramps = (change * _beyond(angle, at) for at, change in changes)
+        return torque + slope * (angle - start) + sum(ramps)
+
+    def _energy(self, angle: Any) -> Any:
+        """What it stores more than at `angle`, or at the first row, J."""
+        start, torque, slope, changes = self.pieces
+        turned = angle - start
+        ramps = (0.5 * change * _beyond(angle, at) ** 2 for at, change in changes)
+        return -(turned * (torque + 0.5 * slope * turned) + sum(ramps))
+
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with it in a machine of these bodies."""
+        yield from unknown_link(f"{where}.link", self.link, bodies)
+        yield from unknown_body(f"{where}.on", self.on, bodies)
+        if self.link == self.on:
+            wrong = Note("{link!r} cannot be turned against itself", link=self.link)
+            yield ModelError(f"{where}.on", wrong)
+        listed = bool(self.angles or self.torques)
+        if [self.stiffness is not None, listed, self.table is not None].count(True) != 1:
+            wrong = Note("give exactly one of stiffness, angles with torques, and table")
+            yield ModelError(where, wrong)
+        elif self.stiffness is None:
+            yield from self._wrong_rows(where)
+
+    def _wrong_rows(self, where: str) -> Iterator[ModelError]:
+        angles, torques = self.rows
+        at = f"{where}.angles" if self.table is None else f"{where}.table"
+        for key_name in ("angle", "preload"):
+            if getattr(self, key_name):
+                wrong = Note("goes with a stiffness; the rows say it already, leave it out")
+                yield ModelError(f"{where}.{key_name}", wrong)
+        if len(angles) != len(torques):
+            wrong = Note(
+                "got {angles} angles and {torques} torques; give as many of both",
+                angles=len(angles),
+                torques=len(torques),
+            )
+            yield ModelError(at, wrong)
+        elif not 2 <= len(angles) <= MOST_ROWS:
+            wrong = Note("got {rows} rows; give 2 to {most}", rows=len(angles), most=MOST_ROWS)
+            yield ModelError(at, wrong)
+        elif any(after <= before for before, after in pairwise(angles)):
+            yield ModelError(at, Note("the angles must rise from row to row"))
+
+    def demands(self) -> Iterator[Any]:
+        """What has to be true of its stiffness and angles, or of columns of them."""
+        if self.stiffness is not None:
+            yield self.stiffness > 0
+        yield from (after > before for before, after in pairwise(self.rows[0]))
+
+    @property
+    def route(self) -> tuple[str, str]:
+        """From the body on which it is held to the link."""
+        return self.on, self.link
+
+    def sentence(self) -> Note:
+        """Its stiffness and its bodies, for a report."""
+        if self.stiffness is None:
+            return Note("Torsion spring: by a table, {link} on {on}", link=self.link, on=self.on)
+        return Note(
+            "Torsion spring: {stiffness}, {link} on {on}",
+            stiffness=told(self.stiffness, "torsional stiffness", "N m/rad"),
+            link=self.link,
+            on=self.on,
+        )
+
+    def summary(self) -> str:
+        """All its numbers, in a line of `check`."""
+        held = f"torsion spring: {self.link} on {self.on}"
+        if self.stiffness is None:
+            ends = " to ".join(
+                told(angle, "angle") for angle in self.rows[0][:: len(self.rows[0]) - 1]
+            )
+            return f"{held}, {len(self.rows[0])} rows from {ends}"
+        rate = told(self.stiffness, "torsional stiffness", "N m/rad")
+        return f"{held}, {rate}, {told(self.preload, 'torque')} at {told(self.angle, 'angle')}"
+
+
+def _beyond(angle: Any, start: Any) -> Any:
+    """How far an angle is beyond another, or 0."""
+    return 0.5 * (angle - start + abs(angle - start))

@@ -1,0 +1,29 @@
+"""Torsion springs as spirals about the pin that both of their bodies share."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from equipoise.mechanism.assembly.joints import Structure
+from equipoise.mechanism.checks import Bodies
+from equipoise.mechanism.parts.torsion_springs import TorsionSpring
+from equipoise.symbols.shapes import Array, Mark, sign
+
+INNER, OUTER, TURNS, CORNERS = 6.0, 17.0, 2.25, 64
+"""Radii of the spiral, units; its turns, and the corners of its line."""
+END = 6.0
+"""Units, of the straight end that holds on to the link."""
+
+
+def torsion_sign(spring: TorsionSpring, joints: Structure, bodies: Bodies) -> Mark:
+    """A spiral that turns with the link."""
+    shared = joints.pins_between(spring.link, spring.on)
+    point = shared[0] if shared else next(iter(bodies[spring.link]))
+    return Mark(spring.link, point, sign("spiral", 0j, spiral()))
+
+
+def spiral() -> Array:
+    """Corners of the line, complex, units."""
+    share = np.linspace(0.0, 1.0, CORNERS)
+    line = (INNER + (OUTER - INNER) * share) * np.exp(2j * np.pi * TURNS * share)
+    return np.append(line, line[-1] * (1 + END / OUTER))

@@ -1,0 +1,192 @@
+"""A kind of force element that this test declares, and then finds wherever force elements are."""
+
+from __future__ import annotations
+
+import shutil
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.figures import Figure
+from equipoise.codegen.javascript import javascript
+from equipoise.errors import ModelError
+from equipoise.i18n import Note
+from equipoise.keys import Table, Tables, Text, declared, key
+from equipoise.mechanism import Machine
+from equipoise.mechanism.checks import FRAME, Bodies, unknown_link
+from equipoise.mechanism.outputs.declared import declaring, of_element
+from equipoise.mechanism.parts.force_kinds import Action, ForceElement, Placed
+from equipoise.present.checks import machine_blocks
+from equipoise.schema.places import Context
+from equipoise.schema.reading import read_table
+from equipoise.schema.writing import Writer, toml_text
+from equipoise.symbols import force_signs
+from equipoise.symbols.pieces import pieces
+from equipoise.symbols.scene import Scene
+from equipoise.symbols.shapes import Mark, circle
+from equipoise.web.design import Design
+from equipoise.web.fields import fields_of
+from equipoise.web.tables import tables_of
+from secondroute.test_javascript import run
+
+
+@declared
+class Magnet(ForceElement):
+    """It draws a point of a link towards a point of the frame, by a force that falls with way."""
+
+    called = "{what} of magnet {number}"
+    title = "Magnets"
+    headings: ClassVar[Mapping[str, tuple[str, str]]] = {"attraction": ("least", "most")}
+
+    link: str = key(Text(of="link"), "the link that it draws", example="rocker")
+    point: str = key(Text(of="point", on="link"), "its point", example="C")
+    to: str = key(Text(of="point"), "the point of the frame that draws it", example="S")
+    attraction: float = key("force", "at the distance `reach`", example="5 N", above=0)
+    reach: float = key("length", "at which it has that", default=0.1, above=0)
+
+    @property
+    def bodies(self) -> tuple[str, str]:
+        return self.link, FRAME
+
+    @property
+    def points(self) -> tuple[tuple[str, str], ...]:
+        return (self.link, self.point), (FRAME, self.to)
+
+    @property
+    def label(self) -> Note:
+        return Note("{point} to {other}", point=self.point, other=self.to)
+
+    @property
+    def route(self) -> tuple[str, str]:
+        return self.point, self.to
+
+    def _way(self, at: Placed) -> Any:
+        return at.point(FRAME, self.to) - at.point(self.link, self.point)
+
+    def actions(self, at: Placed) -> Iterator[Action]:
+        way = self._way(at)
+        size2 = way.real * way.real + way.imag * way.imag
+        force = way * (self.attraction * self.reach**2 / (size2 * size2**0.5))
+        yield self.link, self.point, force, 0.0
+        yield FRAME, self.to, -force, 0.0
+
+    def values(self, at: Placed) -> Mapping[str, Any]:
+        way = self._way(at)
+        size2 = way.real * way.real + way.imag * way.imag
+        return {"attraction": self.attraction * self.reach**2 / size2}
+
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        return unknown_link(f"{where}.link", self.link, bodies)
+
+    def demands(self) -> Iterator[Any]:
+        yield self.attraction > 0
+
+    def sentence(self) -> Note:
+        return Note("Magnet at {point}", point=self.to)
+
+    def summary(self) -> str:
+        return f"magnet: {self.point} of {self.link} to {self.to}"
+
+
+@declared
+class Magnetic(Machine):
+    """A machine that may have magnets."""
+
+    magnets: tuple[Magnet, ...] = key(Tables(Table(Magnet)), "magnets", default=())
+
+
+def magnetic(*magnets: Magnet) -> Magnetic:
+    base = eq.load("spring-balanced-crank")
+    given = {one.name: getattr(base, one.name) for one in fields(Machine)}
+    return Magnetic(**{**given, "springs": (), "magnets": magnets})
+
+
+MAGNET = Magnet("rocker", "C", "S", 30.0)
+MACHINE = magnetic(MAGNET)
+
+
+@pytest.fixture(autouse=True)
+def outputs() -> Iterator[None]:
+    with declaring():
+        of_element("magnets", "attraction", "force", "attraction of magnet {name}")
+        yield
+
+
+def test_it_is_read_written_and_refused() -> None:
+    text = toml_text(Magnetic, Writer({}).content(Magnetic, MACHINE))
+    assert '[[magnets]]\nlink = "rocker"\npoint = "C"\nto = "S"\nattraction = "30 N"\n' in text
+    assert read_table(Magnetic, tomllib.loads(text), Context()) == MACHINE
+    wrong = text.replace('link = "rocker"\npoint = "C"\nto', 'link = "rockr"\npoint = "C"\nto')
+    with pytest.raises(ModelError, match=r"^magnets\[1\]\.link: .* did you mean 'rocker'"):
+        read_table(Magnetic, tomllib.loads(wrong), Context())
+    with pytest.raises(ModelError, match="give more than 0"):
+        magnetic(Magnet("rocker", "C", "S", -1.0))
+    with pytest.raises(ModelError, match=r"^magnets: got 201"):
+        magnetic(*[MAGNET] * 201)
+
+
+def test_analysis_has_its_force_and_its_outputs() -> None:
+    found, bare = (eq.analyze(one, 90) for one in (MACHINE, magnetic()))
+    way = found.motion.points["S"].place - found.motion.points["C"].place
+    force = way / np.abs(way) * 30.0 * (0.1 / np.abs(way)) ** 2
+    np.testing.assert_allclose(
+        found.outputs["magnets.1.attraction"].values, np.abs(force), rtol=1e-12
+    )
+    work = (np.conj(force) * found.motion.points["C"].place_1).real
+    more = found.forces.drive_torque - bare.forces.drive_torque
+    np.testing.assert_allclose(more, -work, atol=1e-9)
+    np.testing.assert_allclose(found.forces.frame_force.value, bare.forces.frame_force.value)
+    assert np.max(np.abs(found.forces.joints["C"].value - bare.forces.joints["C"].value)) > 1.0
+    told = " ".join(str(block) for block in machine_blocks(MACHINE))
+    assert "magnet: C of rocker to S" in told
+
+
+def test_compiled_loops_have_designs_by_its_numbers() -> None:
+    names = ("drive_torque", "joints.C", "magnets.1.attraction")
+    wanted = [Figure(name, "peak") for name in names]
+    batch = Batch(MACHINE, ["magnets[1].attraction", "magnets[1].reach"], wanted, angles=90)
+    figures, reason = batch(np.array([[30.0, 0.1], [50.0, 0.08], [-1.0, 0.1]]))
+    assert reason.astype(bool).tolist() == [False, False, True]
+    for row, sizes in zip(figures, ((30.0, 0.1), (50.0, 0.08)), strict=False):
+        summary = eq.analyze(magnetic(Magnet("rocker", "C", "S", *sizes)), 90).summary
+        np.testing.assert_allclose(row, [summary[name].peak for name in names], rtol=1e-9)
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="needs Node to run JavaScript")
+def test_scripts_have_it(tmp_path: Path) -> None:
+    linkage, names = eq.mechanism.assemble(MACHINE), ["drive_torque", "magnets.1.attraction"]
+    script, found = javascript(linkage, names), eq.analyze(MACHINE, 24)
+    got = run(script, script.numbers(linkage), found.motion.crank_angle, tmp_path)
+    for name, values in zip(names, got, strict=True):
+        wanted = found.outputs[name].values
+        np.testing.assert_allclose(values, wanted, atol=1e-12 * np.max(np.abs(wanted)))
+
+
+def test_drawings_have_its_sign(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where it is given one."""
+
+    def sign(one: Magnet, *_: Any) -> Mark:
+        return Mark(one.link, one.point, circle("spiral", 0j, 0.01))
+
+    monkeypatch.setitem(force_signs.SIGNS, Magnet, sign)  # type: ignore[call-overload]
+    scene = Scene.of(eq.analyze(MACHINE, 12).motion)
+    drawn = [shape for one in pieces(scene) for shape in one.shapes if shape.role == "spiral"]
+    assert [shape.radius for shape in drawn] == [0.01]
+
+
+def test_the_page_has_its_form_and_its_numbers() -> None:
+    tables = tables_of(MACHINE)
+    keys = [one["key"] for one in tables["forms"]["Magnet"]["controls"]]
+    assert keys == ["link", "point", "to", "attraction", "reach"]
+    (group,) = (one for one in tables["groups"] if one["place"] == ["magnets"])
+    assert len(group["entries"]) == 1
+    numbers = fields_of(Design("mine", MACHINE))
+    assert {"magnets.1.attraction", "magnets.1.reach"} <= numbers.keys()
+    assert numbers["magnets.1.attraction"].value == 30.0

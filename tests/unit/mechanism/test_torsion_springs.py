@@ -1,0 +1,207 @@
+"""Torsion springs: their law, what they do to drive, joints and frame, and where they are refused.
+
+Random machines with torsion springs are in all laws and second routes (`support.machines_torsion`).
+"""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.figures import Figure
+from equipoise.codegen.javascript import javascript
+from equipoise.errors import ModelError
+from equipoise.exchange import modelica
+from equipoise.exchange.formats import Job
+from equipoise.mechanism import TorsionSpring, TorsionTable
+from equipoise.present.checks import machine_blocks
+from equipoise.symbols.pieces import pieces
+from equipoise.symbols.scene import Scene
+from secondroute.test_javascript import run
+from support.machines_torsion import torque_of
+from surface.running import equipoise
+from unit.schema.samples import survives
+from unit.web.pages import ask, opened, refusal, state
+
+ROWS = (-2.1, -0.4, 0.3, 1.0), (3.0, 1.0, -0.5, -4.0)
+LINEAR = TorsionSpring("rocker", stiffness=4.0, angle=1.2, preload=0.5)
+TABLED = TorsionSpring("coupler", "rocker", angles=ROWS[0], torques=ROWS[1])
+
+
+def sprung(*springs: TorsionSpring, name: str = "spring-balanced-crank") -> eq.Machine:
+    return replace(eq.load(name), springs=(), torsion_springs=springs)
+
+
+MACHINE = sprung(LINEAR, TABLED)
+
+
+def test_a_file_has_all_that_they_are(tmp_path: Path) -> None:
+    text = survives(MACHINE)
+    assert '[[torsion_springs]]\nlink = "rocker"\nstiffness = "4 N m/rad"\n' in text
+    listed = replace(TABLED, angles=(), torques=(), table=TorsionTable(*ROWS, "spring.csv"))
+    eq.save(sprung(listed), tmp_path / "mine.toml")
+    (table,) = tmp_path.glob("*.csv")
+    assert table.read_text().startswith("angle [rad],torque [N m]\n")
+    again = eq.load(tmp_path / "mine.toml")
+    assert again.torsion_springs == (listed,)
+    told = equipoise("check", tmp_path / "mine.toml").out
+    assert "torsion spring: coupler on rocker, 4 rows from -120.3 deg to 57.30 deg" in told
+    values = [eq.analyze(one, 60).summary["drive_torque"].peak for one in (again, sprung(TABLED))]
+    assert values[0] == values[1]
+
+
+def test_torque_angle_and_energy() -> None:
+    """By straight lines between rows; power is what the energy loses, and none over the cycle."""
+    found = eq.analyze(MACHINE, 720)
+    motion = found.motion
+    for number, spring in enumerate(MACHINE.torsion_springs):
+        values = motion.element_values("torsion_springs", number)
+        turned = motion.links[spring.link].angle
+        rate = motion.links[spring.link].angle_1
+        if spring.on != "frame":
+            turned = turned - motion.links[spring.on].angle
+            rate = rate - motion.links[spring.on].angle_1
+        np.testing.assert_allclose(values["torque"], torque_of(spring, turned), atol=1e-12)
+        np.testing.assert_allclose(np.exp(1j * (values["angle"] - turned)), 1.0, atol=1e-12)
+        power = values["torque"] * rate
+        assert np.max(np.abs(motion.mean(power))) < 1e-4 * np.max(np.abs(power))
+        middle = (np.roll(values["energy"], -1) - np.roll(values["energy"], 1)) * 720 / (4 * np.pi)
+        assert np.max(np.abs(middle + power)) < 2e-3 * np.max(np.abs(power))
+    assert found.summary["torsion_springs.1.torque"].peak > 0.1
+
+
+def test_drive_torque_is_virtual_work() -> None:
+    """Of springs alone: links without masses, no gravity."""
+    bare = {name: replace(link, mass=0.0, inertia=0.0) for name, link in MACHINE.links.items()}
+    found = eq.analyze(replace(MACHINE, links=bare, gravity=(0.0, 0.0)), 90)
+    motion, needed = found.motion, 0.0
+    for number, spring in enumerate(MACHINE.torsion_springs):
+        rates = [motion.links[one].angle_1 for one in spring.bodies if one != "frame"]
+        rate = rates[0] - sum(rates[1:])
+        needed = needed - motion.element_values("torsion_springs", number)["torque"] * rate
+    np.testing.assert_allclose(found.forces.drive_torque, needed, atol=1e-12)
+    np.testing.assert_allclose(found.forces.frame_force.value, 0.0, atol=1e-12)
+    np.testing.assert_allclose(found.forces.frame_moment, 0.0, atol=1e-12)
+    by_cause = found.forces.split.by_cause("drive_torque")
+    np.testing.assert_allclose(by_cause["spring"], needed, atol=1e-12)
+
+
+def test_loops_know_designs_by_all_their_numbers() -> None:
+    names = ("drive_torque", "joints.C", "torsion_springs.1.torque", "torsion_springs.2.energy")
+    paths = ["torsion_springs[1].stiffness", "torsion_springs[1].angle",
+             "torsion_springs[2].torques[3]", "torsion_springs[2].angles[2]",
+             "links.rocker.points.C.x"]  # fmt: skip
+    size = eq.load("spring-balanced-crank").links["rocker"].points["C"][0]
+    values = np.array([[4.0, 1.2, -0.5, -0.4, size], [9.0, 1.5, 2.5, -0.6, 1.03 * size]])
+    batch = Batch(MACHINE, paths, [Figure(name, "peak") for name in names], angles=90)
+    figures, reason = batch(values)
+    assert not reason.any()
+    for row, (k, angle, torque, start, x) in zip(figures, values, strict=True):
+        first = replace(LINEAR, stiffness=k, angle=angle)
+        torques, angles = list(ROWS[1]), list(ROWS[0])
+        torques[2], angles[1] = torque, start
+        second = replace(TABLED, torques=tuple(torques), angles=tuple(angles))
+        design = sprung(first, second).with_number(("links", "rocker", "points", "C", "x"), x)
+        summary = eq.analyze(design, 90).summary
+        np.testing.assert_allclose(row, [summary[name].peak for name in names], rtol=1e-9)
+
+
+def test_a_design_without_stiffness_is_no_machine() -> None:
+    batch = Batch(MACHINE, ["torsion_springs[1].stiffness"], [Figure("drive_torque", "rms")], 24)
+    assert batch(np.array([[-1.0], [2.0]]))[1].astype(bool).tolist() == [True, False]
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="needs Node to run JavaScript")
+def test_scripts_have_them(tmp_path: Path) -> None:
+    names = ["drive_torque", "torsion_springs.1.torque", "torsion_springs.2.energy"]
+    linkage = eq.mechanism.assemble(MACHINE)
+    script = javascript(linkage, names)
+    found = eq.analyze(MACHINE, 24)
+    got = run(script, script.numbers(linkage), found.motion.crank_angle, tmp_path)
+    for name, values in zip(names, got, strict=True):
+        wanted = found.outputs[name].values
+        np.testing.assert_allclose(values, wanted, atol=1e-12 * np.max(np.abs(wanted)))
+
+
+WRONG: list[tuple[dict[str, Any], str]] = [
+    ({"link": "rockr"}, "[1].link: no link is called 'rockr'; did you mean 'rocker'?"),
+    ({"on": "rocker"}, "[1].on: 'rocker' cannot be turned against itself"),
+    ({"on": "ground"}, "[1].on: no link is called 'ground'"),
+    ({"stiffness": -1.0}, "[1].stiffness: got -1 N m/rad; give more than 0"),
+    ({"stiffness": None}, "[1]: give exactly one of stiffness, angles with torques, and table"),
+    ({"angles": (0.0, 1.0)}, "[1]: give exactly one of stiffness, angles with torques, and table"),
+    ({"stiffness": None, "angles": (0.0, 1.0), "torques": (1.0,)}, "[1].angle: goes with a"),
+]
+
+
+@pytest.mark.parametrize(("changes", "sentence"), WRONG)
+def test_what_is_wrong_is_told(changes: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        sprung(replace(LINEAR, **changes))
+    assert str(caught.value).startswith(f"torsion_springs{sentence}")
+
+
+@pytest.mark.parametrize(
+    ("angles", "torques", "sentence"),
+    [
+        ((0.0, 1.0), (1.0,), "got 2 angles and 1 torques; give as many of both"),
+        ((0.0,), (1.0,), "got 1 rows; give 2 to 200"),
+        ((0.0, 0.0), (1.0, 2.0), "the angles must rise from row to row"),
+    ],
+)
+def test_rows_that_are_none(angles: Any, torques: Any, sentence: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        sprung(replace(TABLED, angles=angles, torques=torques))
+    assert str(caught.value) == f"torsion_springs[1].angles: {sentence}"
+
+
+def test_a_link_that_turns_on_and_on_is_refused() -> None:
+    """By `check` too."""
+    turning = sprung(TorsionSpring("crank", stiffness=1.0))
+    sentence = r"^torsion_springs\[1\]: 'crank' turns against 'frame' beyond half a turn from 0 deg"
+    with pytest.raises(ModelError, match=sentence):
+        eq.analyze(turning, 60)
+    with pytest.raises(ModelError, match=sentence):
+        [*machine_blocks(turning)]
+
+
+def test_the_page_has_forms_and_numbers_of_them() -> None:
+    session, _ = opened("spring-balanced-crank")
+    values = {"link": "rocker", "stiffness": "2 N m/rad", "angle": "80 deg"}
+    told = ask(session, "entry", place=["torsion_springs", 0], values=values, seq=1)
+    content = state(told[0]).content
+    assert "torsion_springs.1.stiffness" in {one["path"] for one in content["fields"]}
+    assert session.shown.design.machine.torsion_springs[0].stiffness == 2.0
+    wrong = {"link": "rocker"}
+    told = ask(session, "entry", place=["torsion_springs", 1], values=wrong, seq=2)
+    assert "give exactly one of stiffness" in refusal(told)
+    state(ask(session, "make", do="rename", what="link", name="rocker", to="lever", at=0)[0])
+    assert session.shown.design.machine.torsion_springs[0].link == "lever"
+    told = ask(session, "make", do="delete", what="link", name="lever", at=0)
+    assert "[[torsion_springs]]" in str(state(told[0]).content)
+
+
+def test_its_sign_turns_with_its_link() -> None:
+    scene = Scene.of(eq.analyze(MACHINE, 12).motion)
+    spirals = [mark for mark in scene.marks if mark.shape.role == "spiral"]
+    assert [(one.body, one.point) for one in spirals] == [("rocker", "D"), ("coupler", "C")]
+    drawn = [one for one in pieces(scene) for shape in one.shapes if shape.role == "spiral"]
+    assert len(drawn) == 2
+
+
+def test_modelica_has_their_torque() -> None:
+    job = Job(MACHINE, 0.3)
+    text = modelica.made(job)
+    values = eq.move(MACHINE, [0.3]).element_values("torsion_springs", 1)
+    line = next(one for one in text.splitlines() if one.strip().startswith("T_2 = "))
+    law = line.partition("=")[2].rstrip(";")
+    torque = eval(law, {"A_2": float(values["angle"][0]), "abs": abs})
+    assert torque == pytest.approx(float(values["torque"][0]), rel=1e-12)
+    assert "table" not in " ".join(job.left_out)
