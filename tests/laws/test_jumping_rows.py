@@ -5,6 +5,7 @@ Second routes are sums at each row's own crank angles, differences, and searches
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -16,6 +17,7 @@ from equipoise.balancing.phasing import choose_phases
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.balance import Measure, Objective
+from equipoise.mechanism.parts.force_elements import Load, LoadTable
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
 
@@ -39,6 +41,56 @@ def test_extremes_of_rows_at_any_phases(measure: Measure) -> None:
         # between 0.01 deg and the jump, torque rises by up to that share of its slope
         assert dense * (1 - 1e-9) <= term.values(phases) <= dense * (1 + 5e-4)
         assert term.smoothed.values(phases) <= term.values(phases)
+
+
+ROWS_OF_TABLE = np.radians([33.3, 71.9, 80.2, 200.7, 263.1])
+TORQUES = np.array([3.0, -7.0, 5.0, 1.0, 2.0])
+
+
+def with_table() -> Machine:
+    """A crank without masses that bears a torque, linear from row to row, with nothing outside."""
+    machine = eq.load("slider-crank-engine")
+    links = {
+        name: replace(link, mass=0.0, center_of_mass=(0.0, 0.0), inertia=0.0)
+        for name, link in machine.links.items()
+    }
+    table = LoadTable(tuple(ROWS_OF_TABLE), (tuple(TORQUES),))
+    load = Load("crank", table=table, outside="zero")
+    return four_rows(replace(machine, links=links, loads=(load,)))
+
+
+def at_breaks(phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Crank angles at which any row of any table is, both sides of each, and the drive's torque:
+    between them it is linear.
+    """
+    at = np.mod(np.subtract.outer(ROWS_OF_TABLE, phases).ravel(), 2 * pi)
+    sides = np.sort(np.concatenate([[0.0, 2 * pi], at - 1e-9, at + 1e-9]))
+    each = np.mod(sides[:, None] + phases, 2 * pi)
+    return sides, -np.sum(np.interp(each, ROWS_OF_TABLE, TORQUES, 0.0, 0.0), axis=1)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_rows_of_tables_between_crank_angles(seed: int) -> None:
+    """Extremes lie at rows of tables, and squares are integrated from one to the next: in closed
+    form.
+    """
+    rows = Rows(with_table())
+    phases = np.random.default_rng(seed).uniform(0, 2 * pi, 4)
+    theta, torque = at_breaks(phases)
+    before, after = torque[:-1], torque[1:]
+    square = np.sum(np.diff(theta) * (before**2 + before * after + after**2) / 3) / (2 * pi)
+    mean = np.sum(np.diff(theta) * (before + after) / 2) / (2 * pi)
+    wanted: dict[Measure, float] = {
+        "peak": np.max(np.abs(torque)),
+        "peak_to_peak": np.ptp(torque),
+        "rms": np.sqrt(square),
+        "ripple": np.sqrt(square - mean**2),
+    }
+    for measure, value in wanted.items():
+        objective = Objective("drive_torque", measure)
+        found = Term(objective, rows.signals(objective)).value_at(phases)
+        # sides of jumps are taken 2e-8 rad away, over which the torque changes by 1e-7 of itself
+        assert found == pytest.approx(value, rel=2e-6), measure
 
 
 def test_slopes_at_tops_and_sides_of_jumps() -> None:

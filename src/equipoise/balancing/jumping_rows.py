@@ -1,8 +1,8 @@
 """Rows whose signals jump, as functions of the crank angle: their sum has no ringing.
 
-A row's signal is a cubic spline between its jumps.  The sum of rows at phases phi_k,
-sum_k f_k(theta + phi_k), is largest at a top between jumps, or on one side of a jump of some row,
-at theta = jump - phi_k; both are looked at.
+A row's signal is a cubic spline between its jumps, and between the rows of load tables, at which
+its slope jumps.  The sum of rows at phases phi_k, sum_k f_k(theta + phi_k), is largest at a top
+between these, or on one side of one of them, at theta = jump - phi_k; both are looked at.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.signals import Array, JumpSampling
+from equipoise.signals import STEPS_BETWEEN_BENDS, Array, JumpSampling
 
 SPACING = pi / 720
 """rad, between the nodes of splines, and between samples among which tops are looked for: values
@@ -35,19 +35,29 @@ class JumpingRows:
 
     curves : of each row a function of crank angles (...), rad, to values (..., C), and its slope.
     jumps : (J,) crank angles of one row, rad.  turns : of the crank in a cycle.
+    bends : (B,) crank angles of one row at which only slopes jump, rad.
     """
 
     curves: tuple[tuple[Any, Any], ...]
     jumps: Array
     turns: int
+    bends: Array
 
     @classmethod
-    def of(cls, read: Callable[[Array], Array], jumps: Array, turns: int) -> JumpingRows:
-        """From what gives values (m, C, N) of all rows at crank angles (N,), rad."""
+    def of(
+        cls, read: Callable[[Array], Array], jumps: Array, turns: int, bends: Array
+    ) -> JumpingRows:
+        """From what gives values (m, C, N) of all rows at crank angles (N,), rad.
+
+        So many bends are taken as lie 4 steps and more apart, on the average, as in `JumpSampling`.
+        """
         from scipy.interpolate import CubicSpline, PPoly
 
         period, beside = 2 * pi * turns, BESIDE * turns
-        starts = np.unique(np.append(jumps, 0.0))
+        if len(bends) * STEPS_BETWEEN_BENDS > period / SPACING:
+            bends = np.empty(0)
+        bends = bends[np.all(np.abs(np.subtract.outer(bends, jumps)) > 4 * beside, axis=1)]
+        starts = np.unique(np.concatenate([jumps, bends, [0.0]]))
         ends = np.append(starts[1:], period)
         pieces = [
             np.linspace(a, b, max(4, ceil((b - a) / SPACING)) + 1)
@@ -63,7 +73,7 @@ class JumpingRows:
         for row in range(coefficients.shape[2]):
             curve = PPoly(coefficients[:, :, row], places, extrapolate="periodic")
             curves.append((curve, curve.derivative()))
-        return cls(tuple(curves), jumps, turns)
+        return cls(tuple(curves), jumps, turns, bends)
 
     @property
     def period(self) -> float:
@@ -72,7 +82,7 @@ class JumpingRows:
 
     def alone(self, row: int) -> JumpingRows:
         """What one row does without the others."""
-        return JumpingRows(self.curves[row : row + 1], self.jumps, self.turns)
+        return JumpingRows(self.curves[row : row + 1], self.jumps, self.turns, self.bends)
 
     def each(self, phases: Array, theta: Array) -> Array:
         """Values (m, ..., P, C) of every row at phases (..., m) and crank angles (..., P)."""
@@ -85,8 +95,8 @@ class JumpingRows:
         return np.array([slope(theta + phase[..., None]) for (_, slope), phase in pairs])
 
     def edges(self, phases: Array) -> Array:
-        """Crank angles (..., 2 m J) beside the jumps of all rows at phases (..., m)."""
-        at = self.jumps - phases[..., None]
+        """Crank angles (..., 2 m (J + B)) beside jumps and bends of all rows at phases (..., m)."""
+        at = np.concatenate([self.jumps, self.bends]) - phases[..., None]
         sides = at[..., None] + BESIDE * self.turns * np.array([-1.0, 1.0])
         return sides.reshape(*phases.shape[:-1], -1)
 
@@ -107,8 +117,8 @@ class JumpingRows:
     def rms(self, phases: Array, about_mean: bool = False) -> float:
         """RMS of the sum of all rows at phases (m,), rad, or that about its mean."""
         grid = np.arange(round(self.period / SPACING)) * SPACING
-        edges = (self.jumps - phases[:, None]).ravel()
-        sampling = JumpSampling.of(grid, self.turns, edges)
+        jumps, bends = (np.subtract.outer(at, phases).ravel() for at in (self.jumps, self.bends))
+        sampling = JumpSampling.of(grid, self.turns, jumps, bends)
         total = np.sum(self.each(phases, sampling.crank_angle), axis=0)
         shares = sampling.shares[:, None]
         if about_mean:

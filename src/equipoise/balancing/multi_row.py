@@ -23,7 +23,7 @@ from equipoise.balancing.levers import lever, signals_of_row
 from equipoise.balancing.objectives import read_rows
 from equipoise.errors import UsageError
 from equipoise.mechanism.dynamics.forces import forces
-from equipoise.mechanism.kinematics.jumps import jumps_of
+from equipoise.mechanism.kinematics.jumps import bends_of, jumps_of
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.balance import Measure, Objective, cost_factor
 from equipoise.mechanism.parts.machine import Machine
@@ -134,7 +134,8 @@ class Rows:
                 def at(theta: Array) -> Array:
                     return np.asarray(levers @ read(move(self.machine, theta, acceleration=0.0)))
 
-                jumping = JumpingRows.of(at, jumps, signal.turns)
+                bends = bends_of(self.machine, signal.turns)
+                jumping = JumpingRows.of(at, jumps, signal.turns, bends)
             found = RowSignals(amplitudes, signal.turns, jumping)
         return found.kept(objective.orders)
 

@@ -60,15 +60,20 @@ def of_rows(machine: Machine, jumps: Array, turns: int) -> Array:
     return _within([np.subtract.outer(jumps, phases).ravel()], turns)
 
 
-def bends_of_rows(machine: Machine, turns: int) -> Array:
-    """Crank angles of the first row, rising, rad, at which the slope of a load's table in any row
-    may jump (B,).
-    """
+def bends_of(machine: Machine, turns: int) -> Array:
+    """Crank angles (B,) of one row, rising, rad, at which the slope of a load's table may jump."""
     every = [np.empty(0)]
     for table in (load.table for load in machine.loads if load.table is not None):
         again = 2 * pi * np.arange(0, turns, table.turns)
         every.append(np.add.outer(again, table.crank_angle).ravel())
-    return of_rows(machine, np.concatenate(every), turns)
+    return _within(every, turns)
+
+
+def bends_of_rows(machine: Machine, turns: int) -> Array:
+    """Crank angles (B,) of the first row, rising, rad, at which the slope of a load's table in any
+    row may jump.
+    """
+    return of_rows(machine, bends_of(machine, turns), turns)
 
 
 def may_jump(machine: Machine) -> bool:
