@@ -201,10 +201,11 @@ class JumpSampling:
         """Samples (..., N) by order."""
         weighted = samples * self.shares
         found = np.empty((*samples.shape[:-1], self.orders + 1), complex)
+        theta = -1j / self.turns * self.crank_angle
+        waves = np.exp(np.outer(theta, np.arange(min(ORDERS_AT_ONCE, self.orders + 1))))
         for begin in range(0, self.orders + 1, ORDERS_AT_ONCE):
-            some = np.arange(begin, min(begin + ORDERS_AT_ONCE, self.orders + 1))
-            waves = np.exp(np.outer(self.crank_angle, -1j / self.turns * some))
-            found[..., some] = weighted @ waves
+            some = (weighted * np.exp(begin * theta)) @ waves  # of order begin, and those after it
+            found[..., begin : begin + some.shape[-1]] = some[..., : self.orders + 1 - begin]
         found[..., 1:] *= 2
         return Periodic(found, self.turns)
 
