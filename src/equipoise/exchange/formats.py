@@ -56,8 +56,8 @@ FORMATS: Mapping[str, Format] = {
             "mjcf",
             ".xml",
             "MuJoCo (MJCF)",
-            "bodies, pins, sliders, gears, belts, springs, constant loads, rows, the support on "
-            "its mounts, the drive at constant speed",
+            "bodies, pins, sliders, gears, belts, springs, linear torsion springs, constant loads, "
+            "rows, the support on its mounts, the drive at constant speed",
             turns=True,
             lacks=(CAM, RACK, VARYING),
         ),
@@ -83,8 +83,8 @@ FORMATS: Mapping[str, Format] = {
             ".fmu",
             "co-simulation (FMI 2.0)",
             "motion and forces as outputs, speed and acceleration of the crank as inputs; gears, "
-            "belts, racks, springs, constant loads; C sources, and a library where a C compiler is "
-            "found",
+            "belts, racks, springs, torsion springs, constant loads; C sources, and a library "
+            "where a C compiler is found",
             turns=True,
             lacks=(CAM, VARYING),
         ),
@@ -93,7 +93,7 @@ FORMATS: Mapping[str, Format] = {
             ".mo",
             "Modelica",
             "one flat model: equations of motion of each link, pins, sliders, gears, belts, "
-            "springs, constant loads, the drive at constant speed",
+            "springs, torsion springs, constant loads, the drive at constant speed",
             turns=True,
             lacks=(CAM, RACK, VARYING),
         ),

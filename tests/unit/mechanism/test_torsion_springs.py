@@ -18,7 +18,7 @@ from equipoise.codegen.batch import Batch
 from equipoise.codegen.figures import Figure
 from equipoise.codegen.javascript import javascript
 from equipoise.errors import ModelError
-from equipoise.exchange import modelica
+from equipoise.exchange import exudyn, mjcf, modelica, urdf
 from equipoise.exchange.formats import Job
 from equipoise.mechanism import TorsionSpring, TorsionTable
 from equipoise.present.checks import machine_blocks
@@ -130,6 +130,18 @@ def test_scripts_have_them(tmp_path: Path) -> None:
         np.testing.assert_allclose(values, wanted, atol=1e-12 * np.max(np.abs(wanted)))
 
 
+@pytest.mark.skipif(shutil.which("node") is None, reason="needs Node to run JavaScript")
+def test_scripts_take_their_numbers(tmp_path: Path) -> None:
+    """By paths, as interactive pages have them."""
+    given = {"torsion_springs[1].stiffness": 4.0, "torsion_springs[2].torques[3]": -0.5}
+    script = javascript(eq.mechanism.assemble(MACHINE), ["drive_torque"], given)
+    torques = (*TABLED.torques[:2], 1.5, TABLED.torques[3])
+    changed = sprung(replace(LINEAR, stiffness=6.0), replace(TABLED, torques=torques))
+    found = eq.analyze(changed, 24)
+    got = run(script, np.array([6.0, 1.5]), found.motion.crank_angle, tmp_path)[0]
+    np.testing.assert_allclose(got, found.forces.drive_torque, atol=1e-12)
+
+
 WRONG: list[tuple[dict[str, Any], str]] = [
     ({"link": "rockr"}, "[1].link: no link is called 'rockr'; did you mean 'rocker'?"),
     ({"on": "rocker"}, "[1].on: 'rocker' cannot be turned against itself"),
@@ -194,6 +206,19 @@ def test_its_sign_turns_with_its_link() -> None:
     assert [(one.body, one.point) for one in spirals] == [("rocker", "D"), ("coupler", "C")]
     drawn = [one for one in pieces(scene) for shape in one.shapes if shape.role == "spiral"]
     assert len(drawn) == 2
+
+
+def test_formats_without_them_say_so() -> None:
+    """MuJoCo has linear ones, which `crosscheck` compares; others have none."""
+    told = {}
+    for module in (mjcf, urdf, exudyn):
+        job = Job(MACHINE, 0.3)
+        text = module.made(job)
+        told[module] = " and ".join(job.left_out)
+        if module is mjcf:
+            assert text.count("springlength") == 1
+    assert "torsion springs with a table" in told[mjcf]
+    assert "springs" in told[urdf] and "the torsion springs" in told[exudyn]
 
 
 def test_modelica_has_their_torque() -> None:
