@@ -217,6 +217,19 @@ def test_it_fits_every_width(open_file: Open, name: str, joint: str) -> None:
         expect(live.told("changed")).to_be_visible()
 
 
+def test_a_cam_is_left_out_where_its_numbers_are_others(open_file: Open) -> None:
+    """Nothing that is not computed is drawn, and what was there comes back."""
+    live = open_file("cam-pusher")
+    page = live.page
+    drawn = "all => all.map(one => one.getAttribute('d') ?? one.getAttribute('r')).join()"
+    before = page.locator(".piece *").evaluate_all(drawn)
+    drag(live, "R", 10, 10)
+    expect(live.told("changed: pusher")).to_be_visible()
+    assert page.locator(".piece *").evaluate_all(drawn) != before
+    live.button("Undo").click()
+    assert page.locator(".piece *").evaluate_all(drawn) == before
+
+
 def test_a_drawing_of_changed_numbers_is_that_of_the_changed_machine(open_file: Open) -> None:
     """Every joint, after another length, stands where the analysis has it."""
     live = open_file("slider-crank-engine")

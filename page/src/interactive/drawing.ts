@@ -48,7 +48,11 @@ export class Drawing {
   private readonly movable: string[];
   private readonly masses: string[];
 
-  constructor(private readonly machine: Machine) {
+  /** `tips` are places besides that are to be in sight, m. */
+  constructor(
+    private readonly machine: Machine,
+    private readonly tips: Pair[] = [],
+  ) {
     this.base = machine.solve(machine.base);
     this.movable = movable(machine);
     this.masses = massesMovable(machine);
@@ -70,11 +74,11 @@ export class Drawing {
   /** All that the original shows, and all places that points come to. */
   private box(solution: Solution): [number, number, number, number] {
     let [x0, y0, x1, y1] = this.machine.data.scene.box;
-    for (const name of pointsOf(this.machine.data.scene))
-      for (const at of this.machine.frames) {
-        const [x, y] = solution.point(name, at);
-        [x0, y0, x1, y1] = [Math.min(x0, x), Math.min(y0, y), Math.max(x1, x), Math.max(y1, y)];
-      }
+    const joints = pointsOf(this.machine.data.scene).flatMap((name) =>
+      this.machine.frames.map((at) => solution.point(name, at)),
+    );
+    for (const [x, y] of [...joints, ...this.tips])
+      [x0, y0, x1, y1] = [Math.min(x0, x), Math.min(y0, y), Math.max(x1, x), Math.max(y1, y)];
     return [x0, y0, x1, y1];
   }
 
@@ -88,7 +92,7 @@ export class Drawing {
   }
 
   private shape(shape: Shape, tie: Tie, body: string, solution: Solution): Shape {
-    if (tie.made_of) return this.kept(tie.made_of, solution) ? shape : nothing(shape);
+    if (tie.made_of && !this.kept(tie.made_of, solution)) return nothing(shape);
     if (tie.hull) return this.plate(shape, body, solution);
     if (tie.strand) return this.strand(shape, tie.strand, body, solution);
     if (tie.turned) return this.turned(shape, tie.turned, body, solution);
@@ -182,9 +186,9 @@ export class Drawing {
 }
 
 /** A shape of which nothing is seen, but that is still a circle or a line. */
-function nothing([role, closed, radius, grown]: Shape): Shape {
+function nothing([role, , radius, grown]: Shape): Shape {
   const round = radius + grown > 0;
-  return [role, closed, round ? 1e-12 : 0, 0, round ? [0, 0, 0, 0] : []];
+  return [role, false, round ? 1e-12 : 0, 0, round ? [0, 0, 0, 0] : []];
 }
 
 /** Corners of the smallest convex outline around places, counterclockwise. */

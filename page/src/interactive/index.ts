@@ -1,16 +1,14 @@
 /** An interactive file: a machine that is dragged and changed, and computes itself. */
 
-import { h, icon, s, set, write } from "../dom";
+import { h, icon, write } from "../dom";
 import { follow, measure } from "../format";
 import type { Attempts } from "../gesture";
 import { Hands } from "../hands";
-import type { Overlay } from "../overlay";
 import { Player } from "../player";
 import type { Drawable, Edit } from "../protocol";
 import { turnable } from "../rim";
 import { type Grip, Stage } from "../stage";
 import { TransportBar } from "../transport";
-import { type View } from "../view";
 import { say, speak } from "../words";
 import { changed, toml } from "./changes";
 import { Drawing } from "./drawing";
@@ -18,58 +16,13 @@ import { massMoved, moved, reaches } from "./edits";
 import { Machine, type Solution } from "./machine";
 import { Inputs, Readout } from "./numbers";
 import { Plots } from "./plot";
-import type { States, MachineData } from "./data";
+import { Shaking } from "./shaking";
+import type { MachineData, States } from "./data";
 
 export { toml } from "./changes";
 export { moved, outside, typed, withLength } from "./edits";
 export { Drawing } from "./drawing";
 export { Machine } from "./machine";
-
-/** The longest arrow of the shaking force, over the size of the drawing. */
-const LONGEST = 0.28;
-
-/** The shaking force, at the pivot of the crank. */
-class Shaking implements Overlay<Drawable> {
-  readonly element = s("g", { class: "arrows", "aria-hidden": "true" });
-  private readonly shaft = s("path", { class: "shaft" });
-  private readonly head = s("path", { class: "head" });
-  private solution: Solution | null = null;
-  private largest = 0;
-
-  constructor(
-    private readonly at: string,
-    private readonly force: string,
-  ) {
-    this.element.append(s("g", { class: "force" }, this.shaft, this.head));
-  }
-
-  /** The scale is that of the original, so that a smaller force is a shorter arrow. */
-  measure(original: Solution): void {
-    this.largest = original.figures(this.force)?.peak ?? 0;
-  }
-
-  take(solution: Solution): void {
-    this.solution = solution;
-  }
-
-  show(): void {
-    // what is drawn is taken before
-  }
-
-  pose(view: View, k: number): void {
-    const at = this.solution?.machine.frames[k];
-    if (!this.solution || at === undefined || !this.largest) return;
-    const [fx, fy] = this.solution.vector(this.force, at);
-    const [x, y] = view.px(...this.solution.point(this.at, at));
-    const scale = (LONGEST * Math.min(view.width, view.height)) / this.largest;
-    const [dx, dy] = [fx * scale, -fy * scale];
-    const long = Math.hypot(dx, dy);
-    const [ux, uy] = [dx / (long || 1), dy / (long || 1)];
-    const tip = (back: number, side: number) => `${(x + dx - back * ux - side * uy).toFixed(1)} ${(y + dy - back * uy + side * ux).toFixed(1)}`;
-    set(this.shaft, { d: long > 2 ? `M${x.toFixed(1)} ${y.toFixed(1)}L${tip(Math.min(8, long), 0)}` : "" });
-    set(this.head, { d: long > 2 ? `M${tip(0, 0)}L${tip(9, 3.6)}L${tip(9, -3.6)}Z` : "" });
-  }
-}
 
 class Page implements Attempts {
   readonly open: Attempts["open"] = new Set();
@@ -100,7 +53,8 @@ class Page implements Attempts {
     private readonly machine: Machine,
   ) {
     this.original = this.solution = this.settled = machine.solve(machine.base);
-    this.drawing = new Drawing(machine);
+    this.shaking = machine.place.has("shaking_force.x") ? new Shaking(this.original) : null;
+    this.drawing = new Drawing(machine, this.shaking?.tips());
     this.shown = this.drawing.of(this.solution);
     this.hands = new Hands<Drawable>(
       {
@@ -115,7 +69,7 @@ class Page implements Attempts {
       (dress) => new Stage<Drawable>(dress),
     );
     this.stage = this.hands.made;
-    this.shaking = machine.place.has("shaking_force.x") ? this.arrow() : null;
+    if (this.shaking) this.stage.overlay(this.shaking, "grips");
     this.transport = new TransportBar(this.player, () => this.toggle(), () => this.point());
     this.plots = new Plots(machine, (degrees) => this.turn(degrees));
     const attempt = (design: Float64Array) => this.commit(design);
@@ -133,15 +87,6 @@ class Page implements Attempts {
     );
     this.lay(root);
     this.begin();
-  }
-
-  private arrow(): Shaking {
-    const { crank, links, scene, rows } = this.machine.data;
-    const points = crank ? (links[crank]?.points ?? []) : [];
-    const shaking = new Shaking(points.find((name) => scene.frame.includes(name)) ?? (scene.frame[0] as string), rows.length ? "rows.shaking_force" : "shaking_force");
-    shaking.measure(this.original);
-    this.stage.overlay(shaking, "grips");
-    return shaking;
   }
 
   private lay(root: HTMLElement): void {

@@ -21,6 +21,8 @@ from equipoise.web.block import Values
 
 SAME = 1e-9
 """Over the size of the machine: how near a corner is to the point that it is."""
+RIDING = ("rider", "face", "rib")
+"""Roles of what rides on cams, and of their ribs, which no list of couplings is told by."""
 PLATES = ("edge", "body", "rod-edge", "rod")
 """Roles of shapes around all points of a link."""
 
@@ -52,7 +54,17 @@ def _tie(scene: Scene, motion: Motion, piece: Piece, shape: Shape) -> Values | N
         return _of_arrow(scene, body)
     if piece.part is not None and piece.part[0] != "slider":
         return _of_coupling(motion, piece, shape)
-    return _of_points(scene, piece, shape, body)
+    tie = _of_points(scene, piece, shape, body)
+    if shape.role in RIDING:
+        return {**(tie or {}), "made_of": ["cams", *_of_shape(motion, shape.role)]}
+    return tie
+
+
+def _of_shape(motion: Motion, role: str) -> Iterator[str]:
+    """Numbers besides those of cams from which ribs and faces are computed; none of rollers."""
+    if role != "rider":
+        yield from ("sliders", f"{FRAME}.points")
+        yield from (f"links.{link}.points" for link in motion.machine.links)
 
 
 def _of_coupling(motion: Motion, piece: Piece, shape: Shape) -> Values | None:
