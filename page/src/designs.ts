@@ -102,8 +102,8 @@ export class Designs {
   }
 
   /**
-   * Some of these, the best first: those that keep every limit before others, and of each first
-   * those that no other beats in every aim, by the sum of what they lack of the best of each aim.
+   * Some of these, the best first: of those that keep every limit first those that no other beats in
+   * every aim, by the sum of what they lack of the best of each aim; then those nearest to the limits.
    */
   best(among: number[], most: number): number[] {
     const aims = this.columns.filter(({ told }) => told.make);
@@ -113,18 +113,31 @@ export class Designs {
       return (i: number) => Math.abs((values[i] ?? NaN) - from) / (high - low || 1);
     });
     const sum = (i: number) => lack.reduce((all, one) => all + one(i), 0);
-    const order: Kind[] = ["kept", "beyond", "failed"];
-    return order.flatMap((kind) => {
-      const sums = among.filter((i) => this.kind(i) === kind).map((i) => [i, sum(i)] as const);
-      const ranked = sums.sort(([, a], [, b]) => (a === b ? 0 : a - b || 0)).map(([i]) => i);
-      const front: number[] = [];
-      for (const i of ranked) {
-        if (front.length >= most) break;
-        const beaten = front.some((j) => lack.every((one) => one(j) <= one(i)) && sum(j) < sum(i));
-        if (!beaten) front.push(i);
-      }
-      const others = ranked.filter((i) => !front.includes(i));
-      return [...front, ...others];
-    }).slice(0, most);
+    const ranked = (kind: Kind, rank: (i: number) => number) => {
+      const ranks = among.filter((i) => this.kind(i) === kind).map((i) => [i, rank(i)] as const);
+      return ranks.sort(([, a], [, b]) => a - b || 0).map(([i]) => i);
+    };
+    const kept = ranked("kept", sum);
+    const front: number[] = [];
+    for (const i of kept) {
+      if (front.length >= most) break;
+      const beaten = front.some((j) => lack.every((one) => one(j) <= one(i)) && sum(j) < sum(i));
+      if (!beaten) front.push(i);
+    }
+    const others = kept.filter((i) => !front.includes(i));
+    return [...front, ...others, ...ranked("beyond", (i) => this.beyond(i))].slice(0, most);
+  }
+
+  /** What a design lacks of all limits, each over that limit. */
+  private beyond(i: number): number {
+    let lacking = 0;
+    for (const { told, values } of this.columns) {
+      told.limits.forEach((limit, end) => {
+        if (limit === null) return;
+        const over = (values[i] ?? NaN) / told.factor - limit;
+        lacking += Math.max(end ? over : -over, 0) / (Math.abs(limit) || 1);
+      });
+    }
+    return lacking;
   }
 }

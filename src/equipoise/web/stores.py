@@ -170,9 +170,13 @@ class StoreDesk:
 
     @cached_property
     def _best(self) -> list[int]:
-        """Numbers of the best designs; none where the study makes nothing small or large."""
+        """Numbers of the best designs, or of those nearest to the limits where none keeps them all;
+        by the first figure where the study makes nothing small or large.
+        """
+        wishes = self.store.wishes
+        by = None if any(one.make for one in wishes) else {one.name: None for one in wishes[:1]}
         try:
-            return [int(one) for one in best(self.store, BEST).designs]
+            return [int(one) for one in best(self.store, BEST, by, nearest=True).designs]
         except UsageError:
             return []
 

@@ -85,6 +85,31 @@ def test_a_store_is_told_design_by_design(path) -> None:
     assert content["own"][2] == pytest.approx(rms, rel=1e-6)
 
 
+LIMITED = """
+[[outputs]]
+name = "moment"
+value = "shaking_moment.rms"
+at_most = "1 N mm"
+"""
+
+
+@pytest.mark.parametrize("aim", ['make = "smallest"', ""])
+def test_designs_nearest_to_limits_come_first_where_none_keeps_them_all(tmp_path, aim) -> None:
+    """Two limits, of which one cannot be kept; with an aim and without."""
+    text = STUDY.replace('make = "smallest"', aim).replace("designs = 64", "designs = 16")
+    run_study(eq.loads(text + LIMITED), tmp_path / "two.zarr", workers=1)
+    told = ask(begun(str(tmp_path / "two.zarr"))(), "ready")[1]
+    good = column(told, "reason") == 0
+    numbers = column(told, "number")[good]
+    assert not column(told, "kept").any()
+    over = {"force": 20.0, "moment": 1e-3}
+    lacking = sum(
+        np.maximum(column(told, f"column.{name}")[good] / most - 1, 0)
+        for name, most in over.items()
+    )
+    assert told.content["best"] == numbers[np.argsort(lacking)].tolist()
+
+
 def test_a_design_is_opened_as_a_machine_and_left_again(path) -> None:
     desk = begun(path)()
     chosen = ask(desk, "ready")[1].content["best"][0]
