@@ -83,7 +83,8 @@ def sources() -> dict[str, str]:
     """A digest of what each screenshot shows: the words of the report, the sources of the page."""
     words = " ".join(_Words(written("report", REPORTED)).found)
     files = sorted((ROOT / "page" / "src").rglob("*.*"))
-    page = "".join(file.read_text(encoding="utf-8") for file in files)
+    shown = (file for file in files if "interactive" not in file.parts)  # another page than this
+    page = "".join(file.read_text(encoding="utf-8") for file in shown)
     return {"report.png": _digest(words), "page.png": _digest(page)}
 
 
