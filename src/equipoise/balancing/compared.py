@@ -83,7 +83,9 @@ def worse_of(
             scale = old if old > SMALL * usual[unit] else usual[unit]
             weight = 0.0 if _is_part(one) else (new - old) / scale if scale else float("inf")
             found.append(Worse(one, _group_of(one.output), there, new, weight))
-    found.sort(key=lambda one: (IMPORTANT.index(one.group), -one.growth))
+    # to nine digits, so that rounding does not decide between figures that grew alike, as peak and
+    # peak to peak of a signal that reaches as far up as down
+    found.sort(key=lambda one: (IMPORTANT.index(one.group), -round(one.growth, 9)))
     seen: dict[tuple[str, tuple[float, ...], str | None], Worse] = {}
     for grown in found:
         aim = grown.objective
