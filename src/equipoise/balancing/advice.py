@@ -16,11 +16,12 @@ from dataclasses import replace
 from equipoise.balancing.balanced import Balanced, Price
 from equipoise.balancing.headlines import (
     Advice,
+    AssessedMachine,
+    Pairs,
     assessed,
     flywheel_for,
     headline_objectives,
     watched_of,
-    worse_headlines,
 )
 from equipoise.balancing.multi_row import Rows, Term
 from equipoise.balancing.objectives import unit_of
@@ -101,11 +102,13 @@ def beside(found: Balanced, machine: Machine) -> Balanced:
     before = dict(zip((one.name for one in aims), Problem.values_of(machine, aims), strict=True))
     objectives = {name: (before[name], after) for name, (_, after) in found.objectives.items()}
     judged = replace(found, original=machine, objectives=objectives)
-    _, figures = assessed(machine)
+    old, new = assessed(machine), assessed(found.machine)
     share = max(judged.added_mass, 0.0) / (machine.mass or 1.0)
-    worth = found.helps and bool(is_worth(judged.gain, share))
-    offered = worth and not worse_headlines(figures, advice.after)
-    return replace(judged, advice=replace(advice, before=figures, offered=offered))
+    worth, worse = found.helps and bool(is_worth(judged.gain, share)), old.worse_in(new)
+    offered = worth and not worse
+    return replace(
+        judged, advice=replace(advice, before=old.headline, worse=worse, offered=offered)
+    )
 
 
 class _Adviser:
@@ -116,19 +119,21 @@ class _Adviser:
 
     def __init__(self, machine: Machine, own: Balance, solve: Solve) -> None:
         self.machine, self.own, self.solve = machine, own, solve
-        self.analysis, self.before = assessed(machine)
+        self.before = assessed(machine)
         given = own.added_mass
         self.most_mass = MOST_ADDED * machine.mass if given is None else given
         self.known: dict[tuple[Objective, ...], list[float]] = {}
         values = self.values(tuple(one.objective for one in own.limits))
         limits = zip(own.limits, values, strict=True)
         self.watched = (
-            *watched_of(self.analysis, self.before),
+            *watched_of(self.before),
             *(HeadlineLimit((one.objective,), _most_of(one, value)) for one, value in limits),
         )
 
     def advised(self) -> Balanced:
-        """The remedy that is offered, else the best that was tried, else the machine as it is."""
+        """The remedy that is offered, else the best that was tried for the largest figure, else the
+        machine as it is.
+        """
         tried: list[Balanced] = []
         for objectives in self.aims():
             found = [*self.remedies(replace(self.own, objectives=objectives))]
@@ -139,7 +144,8 @@ class _Adviser:
                 return replace(best, tried=tuple(tried))
         if not tried:
             return self.unchanged()
-        return replace(max(tried, key=lambda one: one.gain), tried=tuple(tried))
+        first = [one for one in tried if one.plan.objectives == tried[0].plan.objectives]
+        return replace(max(first, key=lambda one: one.gain), tried=tuple(tried))
 
     def values(self, objectives: tuple[Objective, ...]) -> list[float]:
         """Values of the machine as it is."""
@@ -152,7 +158,7 @@ class _Adviser:
         if self.own.objectives:
             yield self.own.objectives
             return
-        large = [one for one in self.before if one.is_large and one.is_shaking]
+        large = [one for one in self.before.headline if one.is_large and one.is_shaking]
         gauges = [one for one in large if one.output.startswith(GAUGES)]
         if gauges and (aims := gauge_aims(self.machine)):
             yield aims
@@ -265,12 +271,17 @@ class _Adviser:
 
     def judged(self, found: Balanced) -> Balanced:
         """With what its figures are against their yardsticks, and whether it is offered."""
-        _, after = assessed(found.machine)
+        after = assessed(found.machine)
+        worse = self.before.worse_in(after)
         share = max(found.added_mass, 0.0) / (self.machine.mass or 1.0)
         enough = bool(is_worth(found.gain, share)) and self.keeps_limits(found)
-        offered = enough and not worse_headlines(self.before, after)
-        flywheel = flywheel_for(self.analysis, self.before)
-        return replace(found, advice=Advice(self.before, after, offered, flywheel))
+        return replace(found, advice=self.advice(after, worse, enough and not worse))
+
+    def advice(self, after: AssessedMachine, worse: Pairs = (), offered: bool = False) -> Advice:
+        """What a machine with a remedy is judged by."""
+        before = self.before.headline
+        flywheel = flywheel_for(self.before.analysis, before)
+        return Advice(before, after.headline, worse, offered, flywheel)
 
     def keeps_limits(self, found: Balanced) -> bool:
         """Whether the limits that the file gives are kept."""
@@ -278,11 +289,10 @@ class _Adviser:
 
     def unchanged(self) -> Balanced:
         """The machine as it is, where nothing that could be tried acts on what is large."""
-        objectives = next(self.aims(), headline_objectives(self.before))
+        objectives = next(self.aims(), headline_objectives(self.before.headline))
         plan = replace(self.own, objectives=objectives)
         found = self.result(self.machine, (), plan)
-        flywheel = flywheel_for(self.analysis, self.before)
-        return replace(found, advice=Advice(self.before, self.before, False, flywheel))
+        return replace(found, advice=self.advice(self.before))
 
 
 def _score(found: Balanced) -> float:

@@ -17,12 +17,13 @@ from equipoise.mechanism.parts.balance import Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, MEASURES
 from equipoise.results.analysis import Analysis, analyze
-from equipoise.results.yardsticks import FigureAssessment, assess
+from equipoise.results.yardsticks import FigureAssessment, assess, assess_parts
 from equipoise.vibration.forced import respond
 
-GROWTH, TRIFLE = 1.01, 0.1
-"""Times its value before, a headline figure may be after; share of its yardstick up to which a
-figure may grow."""
+GROWTH, GROWTH_OF_PART, TRIFLE = 1.01, 1.05, 0.1
+"""Times its value before, a headline figure may be after, and that of a single joint or component,
+of which the life of a bearing falls by a seventh; share of its yardstick up to which a figure may
+grow."""
 STEADY = 0.05
 """Share of its mean by which a crank's speed may swing where a flywheel is advised: between 0.02 of
 engines and 0.2 of presses and crushers (Norton, Design of Machinery, table 11-4)."""
@@ -30,6 +31,8 @@ DIGITS, LITTLE = 2, 0.1
 """Of a flywheel that is advised; share of it that nobody misses."""
 
 Assessment = tuple[FigureAssessment, ...]
+Pairs = tuple[tuple[FigureAssessment, FigureAssessment], ...]
+"""Figures before and after."""
 
 
 @dataclass(frozen=True)
@@ -37,24 +40,40 @@ class Advice:
     """What an advised machine is judged by.
 
     before, after : figures against their yardsticks, the largest first.
-    offered : whether the remedy gains enough for its mass, and leaves no headline figure worse.
+    worse : figures that are worse, before and after: headline figures, single joints, components.
+    offered : whether the remedy gains enough for its mass, and leaves no figure worse.
     flywheel : moment of inertia, kg m2, of one that would keep the crank's speed steady; None where
         the swing of the drive's torque is not what is large, or it is there already.
     """
 
     before: tuple[FigureAssessment, ...]
     after: tuple[FigureAssessment, ...]
+    worse: Pairs
     offered: bool
     flywheel: float | None = None
 
-    @property
-    def worse(self) -> tuple[tuple[FigureAssessment, FigureAssessment], ...]:
-        """Headline figures that are worse, before and after."""
-        return worse_headlines(self.before, self.after)
+
+@dataclass(frozen=True, eq=False)
+class AssessedMachine:
+    """A machine at constant speed, and its figures against their yardsticks.
+
+    headline : the largest of each family.  parts : single joints, and components of forces.
+    """
+
+    analysis: Analysis
+    headline: Assessment
+    parts: Assessment
+
+    def worse_in(self, after: AssessedMachine) -> Pairs:
+        """Figures that are worse in another machine, headline figures first."""
+        whole = worse_headlines(self.headline, after.headline)
+        known = {new.figure for _, new in whole}
+        parts = worse_parts(self.parts, after.parts)
+        return (*whole, *(pair for pair in parts if pair[1].figure not in known))
 
 
-def assessed(machine: Machine) -> tuple[Analysis, Assessment]:
-    """A machine at constant speed, and its figures against their yardsticks."""
+def assessed(machine: Machine) -> AssessedMachine:
+    """A machine at constant speed against its yardsticks."""
     analysis = analyze(machine, acceleration=0.0)
     readings = None
     if machine.support is not None and machine.support.gauges:
@@ -62,12 +81,10 @@ def assessed(machine: Machine) -> tuple[Analysis, Assessment]:
             readings = respond(machine).gauges
         except (ModelError, ResponseError):  # without a steady state gauges tell nothing
             readings = None
-    return analysis, assess(analysis, readings)
+    return AssessedMachine(analysis, assess(analysis, readings), assess_parts(analysis))
 
 
-def worse_headlines(
-    before: Assessment, after: Assessment
-) -> tuple[tuple[FigureAssessment, FigureAssessment], ...]:
+def worse_headlines(before: Assessment, after: Assessment) -> Pairs:
     """Figures of two assessments that grew by more than 1 %, each before and after.
 
     What stays below a tenth of its yardstick is no headline.  Yardsticks are those before, which
@@ -78,9 +95,20 @@ def worse_headlines(
     return tuple((was, new) for was, new in pairs if _ratio(was, new) > allowed_ratio(was))
 
 
-def allowed_ratio(was: FigureAssessment) -> float:
+def worse_parts(
+    before: Assessment, after: Assessment
+) -> Iterator[tuple[FigureAssessment, FigureAssessment]]:
+    """Single joints and components that grew by more than 5 %, each before and after."""
+    old = {one.figure: one for one in before}
+    for new in after:
+        was = old.get(new.figure)
+        if was is not None and _ratio(was, new) > allowed_ratio(was, GROWTH_OF_PART):
+            yield was, new
+
+
+def allowed_ratio(was: FigureAssessment, growth: float = GROWTH) -> float:
     """The ratio that a figure may have after a change."""
-    return max(GROWTH * was.ratio, TRIFLE)
+    return max(growth * was.ratio, TRIFLE)
 
 
 def _ratio(was: FigureAssessment, new: FigureAssessment) -> float:
@@ -89,23 +117,25 @@ def _ratio(was: FigureAssessment, new: FigureAssessment) -> float:
     return was.ratio * abs(new.value / was.value) if by_value else new.ratio
 
 
-def watched_of(analysis: Analysis, entries: Assessment) -> Iterator[HeadlineLimit]:
-    """Headline figures that masses change, and the most that they may become."""
-    for one in entries:
+def watched_of(found: AssessedMachine) -> Iterator[HeadlineLimit]:
+    """Figures that masses change, and the most that they may become."""
+    for one in found.headline:
         if one.output.startswith(GAUGES):
-            yield from _watched_gauge(analysis.machine, one)
+            yield from _watched_gauge(found.analysis.machine, one)
             continue
-        family, measure = one.family
-        known = declared(one.output)
-        if known is None or known[0].reason or measure not in MEASURES:
-            continue
-        members = [
-            out.name.removeprefix("rows.")
-            for out in analysis.outputs
-            if out.declared.name == family
-        ]
-        objectives = tuple(Objective(name, measure) for name in members)
-        yield HeadlineLimit(objectives, allowed_ratio(one) * abs(one.value) / one.ratio)
+        members = [out.name for out in found.analysis.outputs if out.declared.name == one.family[0]]
+        yield from _watched(one, members, GROWTH)
+    for one in found.parts:
+        yield from _watched(one, [one.output], GROWTH_OF_PART)
+
+
+def _watched(one: FigureAssessment, outputs: list[str], growth: float) -> Iterator[HeadlineLimit]:
+    """What the largest of some outputs may become; nothing where masses do not change it."""
+    known, measure = declared(one.output), one.family[1]
+    if known is None or known[0].reason or measure not in MEASURES:
+        return
+    objectives = tuple(Objective(name.removeprefix("rows."), measure) for name in outputs)
+    yield HeadlineLimit(objectives, allowed_ratio(one, growth) * abs(one.value) / one.ratio)
 
 
 def _watched_gauge(machine: Machine, one: FigureAssessment) -> Iterator[HeadlineLimit]:

@@ -220,7 +220,8 @@ def _asking_for_more(found: Balanced) -> Iterator[str]:
         yield say(
             "A change is offered that takes away at least {least} % of its aim, and as large a "
             "share of it as it adds to the mass of the moving links, and that makes no headline "
-            "figure worse by more than 1 %.",
+            "figure worse by more than 1 %, and no force in a single joint and no component of the "
+            "shaking force by more than 5 %.",
             least=percent(LEAST_GAIN, 0),
         )
     of_one = to_say(

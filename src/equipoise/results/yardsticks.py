@@ -163,19 +163,45 @@ def assess(
     ----------
     readings : of gauges by name, as in `Response.gauges`; gauges are left out where not given.
     """
-    scales = _Scales(analysis)
     worst: dict[str, FigureAssessment] = {}
-    for output in analysis.outputs:
-        if not output.declared.yardstick or _is_of_one_row_or_drive(output):
-            continue
-        found = OF_OUTPUT[output.declared.yardstick](scales, output)
-        family = output.declared.name
-        if found is not None and (family not in worst or found.ratio > worst[family].ratio):
+    for found in _of_outputs(analysis):
+        family = found.family[0]
+        if family not in worst or found.ratio > worst[family].ratio:
             worst[family] = found
     entries = [*worst.values(), *_of_cams(analysis)]
     for name, reading in (readings or {}).items():
         entries += _of_gauge(analysis.machine, name, reading)
     return tuple(sorted(entries, key=lambda entry: -entry.ratio))
+
+
+def assess_parts(analysis: Analysis) -> tuple[FigureAssessment, ...]:
+    """Each member of a family, such as every joint, and both components of the force that shakes
+    the frame, against the yardstick of the whole; the largest ratio first.
+    """
+    scales = _Scales(analysis)
+    components = [
+        _weight(scales, output)
+        for output in analysis.outputs
+        if _yardstick_of_whole(output) == "weight" and not _is_of_one_row_or_drive(output)
+    ]
+    entries = [*filter(None, components), *(one for one in _of_outputs(analysis) if one.item)]
+    return tuple(sorted(entries, key=lambda entry: -entry.ratio))
+
+
+def _of_outputs(analysis: Analysis) -> Iterator[FigureAssessment]:
+    """Every output that has a yardstick; of several rows those of all rows together."""
+    scales = _Scales(analysis)
+    for output in analysis.outputs:
+        if output.declared.yardstick and not _is_of_one_row_or_drive(output):
+            found = OF_OUTPUT[output.declared.yardstick](scales, output)
+            if found is not None:
+                yield found
+
+
+def _yardstick_of_whole(output: Output) -> str:
+    """The yardstick of the vector that an output is a component of; empty of what is none."""
+    whole = DECLARED.get(output.name.rpartition(".")[0])
+    return "" if whole is None or output.declared.part not in ("x", "y") else whole.yardstick
 
 
 def verdict(entries: tuple[FigureAssessment, ...]) -> FigureAssessment | None:
@@ -370,8 +396,8 @@ def _extent(places: list[Any]) -> float:
 def _entry(
     output: Output, measure: str, yardstick: float, against: Note, ratio: float | None = None
 ) -> FigureAssessment | None:
-    """A figure of the summary; None where there is no yardstick, or it is nothing beside that."""
-    figures = output.analysis.summary[output.name]
+    """A figure of an output; None where there is no yardstick, or it is nothing beside that."""
+    figures = output.figures
     value = float(getattr(figures, measure))
     assert output.dimension is not None
     if ratio is None:
