@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import floor, log10
 
 import numpy as np
@@ -87,12 +87,18 @@ def assessed(machine: Machine) -> AssessedMachine:
 def worse_headlines(before: Assessment, after: Assessment) -> Pairs:
     """Figures of two assessments that grew by more than 1 %, each before and after.
 
-    What stays below a tenth of its yardstick is no headline.  Yardsticks are those before, which
-    the change itself may have moved.
+    What stays below a tenth of its yardstick is no headline.  What was nothing is worse where it
+    becomes large.  Yardsticks are those before, which the change itself may have moved.
     """
     old = {one.family: one for one in before}
-    pairs = ((old[new.family], new) for new in after if new.family in old)
-    return tuple((was, new) for was, new in pairs if _ratio(was, new) > allowed_ratio(was))
+    pairs = ((old.get(new.family, replace(new, value=0.0, ratio=0.0)), new) for new in after)
+    return tuple((was, new) for was, new in pairs if _is_worse(was, new))
+
+
+def _is_worse(was: FigureAssessment, new: FigureAssessment) -> bool:
+    if not was.ratio:
+        return new.is_large
+    return _ratio(was, new) > allowed_ratio(was)
 
 
 def worse_parts(

@@ -291,6 +291,16 @@ def test_a_trifle_may_grow() -> None:
     assert not worse_headlines((one,), (replace(one, value=1.005 * one.value),))
 
 
+def test_what_was_nothing_may_not_become_large() -> None:
+    """Other phases of rows may bring a couple where there was none."""
+    found = advise(bare("balance-shafts"))
+    assert found.advice is not None
+    (one, *_) = found.advice.before
+    ((was, new),) = worse_headlines((), (replace(one, ratio=1.1),))
+    assert was.value == 0 and new.value == one.value
+    assert not worse_headlines((), (replace(one, ratio=0.9),))
+
+
 # -- mass taken off --------------------------------------------------------------------------------
 
 
