@@ -3,7 +3,8 @@
 One half grows dyad by dyad, gear by gear: any body may carry the next, so that inner joints share
 points, cranks stop and sides change.  The other half begins with a random machine of a kind of its
 own (`machines`, `machines_cams`, `machines_redundant`, `machines_strokes`).  Both are given drives,
-motions, motors, loads, springs, supports, rows, further gears whose cycle is long, and a balance.
+motions, motors, loads, springs, soils, supports, rows, bearings, further gears whose cycle is long,
+and a balance; what may stand in a table is read from a file now and then.
 Most can be analysed; what cannot has to be refused in a sentence.
 """
 
@@ -20,9 +21,11 @@ import numpy as np
 
 import equipoise as eq
 from equipoise.mechanism.parts.machine import Machine
-from support import machines, machines_cams, machines_redundant
+from support import machines, machines_cams, machines_planes, machines_redundant
 
 Document = dict[str, Any]
+Files = dict[str, str]
+"""Text by name."""
 LAWS = ("modified sine", "cycloidal", "3-4-5", "harmonic", "s-curve")
 
 
@@ -270,18 +273,22 @@ class Growing:
 # -- what any machine is given ---------------------------------------------------------------------
 
 
-def dress(chance: random.Random, document: Document) -> None:
-    """Give a linkage a drive, forces and what carries it."""
+def dress(chance: random.Random, document: Document, wanted: str) -> Files:
+    """Give a linkage a drive, forces and what carries it; returns the tables that it names."""
     drive = document["drive"]
+    likely = {word: chance.random() < 0.9 for word in wanted.split()}
     drive["speed"] = f"{chance.choice((1, -1)) * 10 ** chance.uniform(0.5, 3.5):.4g} rpm"
-    _drive(chance, drive)
-    _forces(chance, document)
+    tables = _drive(chance, drive, wanted) | _forces(chance, document)
     twist = random.Random(len(str(document)))  # of its own, so that other draws stay as they are
     if twist.random() < 0.3:
         _twisted(twist, document)
-    if chance.random() < 0.35:
+    if chance.random() < 0.3 or likely.get("planting"):
+        tables |= _planting(chance, document)
+    if chance.random() < 0.35 or likely.get("support"):
         _carried(chance, document)
-    if chance.random() < 0.15:
+    if chance.random() < 0.1 or likely.get("rows"):
+        document["rows"] = [{}, {"phase": f"{chance.uniform(0, 360):.4g} deg"}]
+    if chance.random() < 0.08:
         _long_cycle(chance, document)
     if chance.random() < 0.3:
         link = chance.choice([*document["links"]])
@@ -290,17 +297,39 @@ def dress(chance: random.Random, document: Document) -> None:
             "masses": [{"link": link, "at": at, "radius": "80 mm", "mass": "3 kg"}],
             "objectives": [{"output": "shaking_force.y", "measure": "rms"}],
         }
+    return tables
 
 
-def _drive(chance: random.Random, drive: Document) -> None:
+def columns(
+    chance: random.Random, header: str, end: float, *, rises: bool = True, **size: float
+) -> str:
+    """A CSV file of the columns of its header: the first rises, or falls, the others are random.
+
+    end : of the first column.  size : by the place of a column, ``c1``, about how large it is.
+    """
+    count, others = chance.choice((2, 3, 4, 7, 7, 40)), header.count(",")
+    first = sorted(chance.uniform(0, end) for _ in range(count))
+    rows = [
+        [at, *(size.get(f"c{k}", 1.0) * chance.uniform(-1, 1) for k in range(1, others + 1))]
+        for at in (first if rises else first[::-1])
+    ]
+    lines = [",".join(f"{cell:.6g}" for cell in row) for row in rows]
+    return "\n".join([header, *lines]) + "\n"
+
+
+LIKELY = {"even": "plain", "motor": "motor"}
+"""Kinds of drives by what is wanted."""
+
+
+def _drive(chance: random.Random, drive: Document, wanted: str) -> Files:
     pushes = drive.keys() & {"motion", "stroke", "between", "slider"}
     if chance.random() < 0.3:
         drive["acceleration"] = f"{chance.uniform(-20, 20):.4g} rad/s^2"
     if pushes:
-        return
-    match chance.choice(
-        ("plain", "plain", "plain", "motor", "flywheel", "sine", "segments", "spline")
-    ):
+        return {}
+    kinds = ["plain", "plain", "plain", "motor", "flywheel", "sine", "segments", "spline", "motion"]
+    likely = [kind for word, kind in LIKELY.items() if word in wanted]
+    match chance.choice(likely if likely and chance.random() < 0.8 else [*kinds, "curve"]):
         case "motor":
             table = {"no_load_speed": f"{10 ** chance.uniform(2, 4):.4g} rpm",
                      "stall_torque": f"{10 ** chance.uniform(-2, 2):.4g} N m",
@@ -323,10 +352,36 @@ def _drive(chance: random.Random, drive: Document) -> None:
             values = [f"{chance.uniform(-30, 30):.4g} deg" for _ in range(4)]
             angles = ["0 deg", "80 deg", "170 deg", "260 deg"]
             drive["motion"] = {"crank_angles": angles, "values": values}
+        case "motion":
+            turns = chance.choice((1, 1, 2, 5))
+            splines = ("cubic", "quintic")
+            drive["motion"] = {
+                "table": "motion.csv", "turns": turns, "spline": chance.choice(splines)
+            }  # fmt: skip
+            header = "crank_angle [deg],angle [deg]"
+            return {"motion.csv": columns(chance, header, 359.0 * turns, c1=40.0)}
+        case "curve":
+            drive["motor"] = {"table": "motor.csv", "ratio": 5}
+            return {"motor.csv": columns(chance, "speed [rpm],torque [N m]", 3000.0, c1=5.0)}
+    return {}
 
 
-def _forces(chance: random.Random, document: Document) -> None:
-    loads = document.setdefault("loads", [])
+LAID = "crank_angle [deg],force_x [N],force_y [N]", "crank_angle [deg],torque [N m]"
+
+
+def _forces(chance: random.Random, document: Document) -> Files:
+    loads, tables = document.setdefault("loads", []), Files()
+    if chance.random() < 0.25:
+        link = chance.choice([*document["links"]])
+        point = chance.choice([*document["links"][link]["points"]])
+        load: Document = {"link": link, "table": "load.csv", "outside": chance.choice(
+            ["zero", "hold", "wrap"])}  # fmt: skip
+        header = chance.choice(LAID)
+        loads.append(load | ({"point": point} if "force" in header else {}))
+        end = 360.0 * chance.choice((1, 1, 2, 3, 12))
+        tables["load.csv"] = columns(
+            chance, header, end, rises=chance.random() < 0.95, c1=300.0, c2=90.0
+        )
     for _ in range(chance.choice((0, 0, 1, 2))):
         link = chance.choice([*document["links"]])
         point = chance.choice([*document["links"][link]["points"]])
@@ -340,13 +395,37 @@ def _forces(chance: random.Random, document: Document) -> None:
             load |= {"from": f"{start:.5g} deg", "to": f"{start + chance.uniform(1, 359):.5g} deg"}
         loads.append(load)
     springs = document.setdefault("springs", [])
-    if chance.random() < 0.25:
-        link = chance.choice([*document["links"]])
-        point = chance.choice([*document["links"][link]["points"]])
+    fixed = {*document["frame"]["points"]}
+    moving = [
+        (link, point)
+        for link, part in document["links"].items()
+        for point in part["points"]
+        if point not in fixed or chance.random() < 0.02  # where a spring does nothing
+    ]
+    if moving and chance.random() < 0.25:
+        link, point = chance.choice(moving)
         hook = f"S{len(springs)}"
         document["frame"]["points"][hook] = pair(rect(300, chance.uniform(-pi, pi)))
         spring = {"link": link, "point": point, "to": hook, "stiffness": "2 N/mm"}
         springs.append(spring | chance.choice([{}, {"free_length": "50 mm"}]))
+    return tables
+
+
+def _planting(chance: random.Random, document: Document) -> Files:
+    """A tip in the field, above soil whose resistance may stand in a table."""
+    ends = {name: [*link["points"]] for name, link in document["links"].items()}
+    tip = chance.choice([point for points in ends.values() for point in points])
+    planting: Document = {"tip": tip, "depth": f"{10 ** chance.uniform(0, 2):.4g} mm"}
+    planting |= chance.choice(
+        [{"forward_speed": "0.4 m/s"}, {"hill_spacing": "15 cm"}, {"forward_speed": "0 m/s"}]
+    )
+    planting |= chance.choice([{}, {"release": "200 deg", "travel": "backward"}])
+    parts = {"resistance": "5 N", "per_depth": "300 N/m", "per_speed": "2 N s/m",
+             "table": "soil.csv"}  # fmt: skip
+    planting["soil"] = dict(chance.sample([*parts.items()], chance.choice((1, 2, 4))))
+    document["planting"] = planting
+    deep = columns(chance, "depth [mm],resistance [N]", 80.0, c1=30.0)
+    return {"soil.csv": deep.replace(",-", ",")} if "table" in planting["soil"] else {}
 
 
 def _twisted(chance: random.Random, document: Document) -> None:
@@ -384,8 +463,6 @@ def _carried(chance: random.Random, document: Document) -> None:
         "mounts": mounts,
         "gauges": {"handle": {"point": ["-900 mm", "700 mm"]}},
     }
-    if chance.random() < 0.3:
-        document["rows"] = [{}, {"phase": f"{chance.uniform(0, 360):.4g} deg"}]
 
 
 def _long_cycle(chance: random.Random, document: Document) -> None:
@@ -409,24 +486,33 @@ def of_kind(chance: random.Random) -> Document:
     """A machine of a kind, as its file."""
     seed = chance.randrange(2**31)
     if chance.randrange(STROKED) == 0:
-        from support import machines_strokes
+        from support import machines_strokes as strokes
 
-        kind = chance.choice([*machines_strokes.TOGETHER, *machines_strokes.TURNING])
-        together = kind in machines_strokes.TOGETHER
-        make = machines_strokes.together if together else machines_strokes.stroked
-        machine: Machine = make(kind, seed).machine
+        kind = chance.choice([*strokes.TOGETHER, *strokes.TURNING, *strokes.SLIDING])
+        if kind in strokes.TOGETHER:
+            machine: Machine = strokes.together(kind, seed).machine
+        else:
+            machine = strokes.stroked(
+                kind, seed, chance.random() < 0.5 and kind in strokes.SLIDING
+            ).machine
     else:
         plain_kinds = [kind for kind in machines.KINDS if not kind.startswith("torsion_")]
         kinds = (plain_kinds, machines_cams.ALL, machines_redundant.REDUNDANT)
         machine = machines.make(chance.choice([*chance.choice(kinds)]), seed).machine
     plain = {load for load in machine.loads if load.table is not None}
     machine = replace(machine, loads=tuple(x for x in machine.loads if x not in plain))
+    if chance.random() < 0.2:
+        machine = machines_planes.set_apart(machine, np.random.default_rng(seed))
     return tomllib.loads(eq.dumps(machine))
 
 
-def document(seed: int) -> Document:
-    """The model file of a machine, the same at every call."""
+def files(seed: int, wanted: str = "") -> tuple[Document, Files]:
+    """The model file of a machine and the tables that it names, the same at every call.
+
+    wanted : words for what it most likely has: ``motor``, ``planting``, ``rows``, ``support``, or
+        a crank that turns ``even``ly.
+    """
     chance = random.Random(seed)
-    found = Growing(chance).grown() if chance.random() < 0.6 else of_kind(chance)
-    dress(chance, found)
-    return {"schema": 1, "title": f"Machine {seed}"} | found
+    document = Growing(chance).grown() if chance.random() < 0.6 else of_kind(chance)
+    tables = dress(chance, document, wanted)
+    return {"schema": 1, "title": f"Machine {seed}"} | document, tables

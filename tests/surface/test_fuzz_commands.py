@@ -13,11 +13,15 @@ import json
 import os
 import random
 import re
+import shlex
 import shutil
 import signal
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from copy import deepcopy
+from dataclasses import asdict
+from itertools import chain
+from math import exp, sin
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -25,6 +29,8 @@ from typing import Any
 import pytest
 import tomli_w
 
+from equipoise.cli.worker import Call, reply_to
+from equipoise.exchange.formats import FORMATS
 from equipoise.web.messages import read
 from equipoise.web.replies import packed
 from equipoise.web.session import Session
@@ -39,6 +45,7 @@ from surface.running import (
     no_constant,
     refused,
 )
+from surface.test_commands import OPTIONS
 from surface.test_fuzz import NUMBERS, OF_UNIT, UNITS, WORDS, places
 
 SEARCH = int(os.environ.get("EQUIPOISE_FUZZ", "0"))
@@ -54,12 +61,12 @@ OF_EACH = {
         "analyze --json --split",
         "analyze --csv a.csv",
         "respond --json --csv r.csv",
-        "respond --speed 60:400rpm --speeds 9 --json",
+        "respond --speed '60 : 400 rpm' --speeds 9 --json",
         "modes --json",
-        "simulate 0.2/s --json",
+        "simulate '0.2 s' --json",
         "plant --csv p.csv",
         "balance --json",
-        "balance --crank-counterweight --objective peak/shaking_moment -o new.toml",
+        "balance --crank-counterweight --objective 'peak shaking_moment' -o new.toml",
         "balance --crank-counterweight --objective shaking_force --csv b.csv --plot pictures",
         "balance conditions",
         "balance sensitivities shaking_force --json",
@@ -71,66 +78,111 @@ OF_EACH = {
         "check",
         "tool --modes --json",
         "tool --modes --number 4",
-        "tool --respond 1000:9000rpm --csv t.csv --plot pictures",
+        "tool --respond '1000 : 9000 rpm' --csv t.csv --plot pictures",
         "tool --exposure --json",
         "tool sensitivities --json",
         "tool design -o better.toml",
+        "tool vary 'harness position = 0 mm : 410 mm' --json",
         "plot -o pictures",
         "report -o page.html",
     ),
     "study": ("check", "sweep -o designs.zarr --json", "tolerance --designs 40 --json"),
 }
-"""Commands, with / for a space within a word."""
 KINDS = {"linkage": EXAMPLES, "tool": TOOLS, "study": STUDIES}
 FACTORS = (-1, 0, 1e-30, 1e-9, 1e-3, 0.5, 0.999999, 1.5, 10, 1e3, 1e9, 1e20, 1e30)
 
 
 OF_MACHINES = {
-    "check": 8,
-    "analyze": 6,
-    "analyze --json --split": 4,
-    "analyze --csv a.csv --acceleration 20/rad/s^2": 3,
-    "analyze --orders 6 --dwell 0.5/mm": 3,
-    "analyze --angles 30/deg,77/deg --json": 3,
-    "plot --only linkage -o pictures": 2,
-    "plot -o pictures": 1,
-    "animate -o moving.svg": 2,
-    "report -o page.html": 1,
-    "respond --json": 5,
-    "respond --drive": 3,
-    "respond --speed 60:400rpm --speeds 5 --csv r.csv": 2,
-    "modes": 3,
-    "simulate 0.2/s --json": 3,
-    "simulate 0.5/s --drive": 3,
-    "balance --json": 1,
-    "balance --crank-counterweight --objective peak/shaking_moment -o new.toml": 1,
-    "balance conditions": 3,
-    "balance sensitivities shaking_force.y --json": 2,
-    "plant": 1,
-    "export -o out.xml": 2,
-    "export -o out.urdf": 2,
-    "export -o out.dxf": 1,
-    "export -o out.svg": 1,
-    "export -o out.xlsx": 1,
-    "serve": 6,
-    "check study.toml": 2,
-    "tolerance study.toml --designs 6": 1,
+    "check model.toml": 8,
+    "analyze model.toml": 6,
+    "analyze model.toml --json --split": 4,
+    "analyze model.toml --csv a.csv --acceleration '20 rad/s^2'": 3,
+    "analyze model.toml --orders 6 --dwell '0.5 mm'": 3,
+    "analyze model.toml --angles '30 deg, 77 deg' --json": 3,
+    "plot model.toml --only linkage -o pictures": 2,
+    "plot model.toml -o pictures": 1,
+    "plot map model.toml 'links.LINK.mass = 1 kg : 2 kg' 'drive.speed = 60 rpm : 90 rpm' "
+    "'rms shaking_force.y' --points 5 -o pictures": 2,
+    "animate model.toml -o moving.svg": 2,
+    "animate model.toml -o moving.gif --width 100": 1,
+    "animate model.toml -o moving.mp4 --width 100 --turns 1": 1,
+    "report model.toml -o page.html": 1,
+    "report model.toml -o page.pdf --pdf --language ja": 1,
+    "respond model.toml --json": 5,
+    "respond model.toml --drive": 3,
+    "respond model.toml --speed '60 : 400 rpm' --speeds 5 --csv r.csv": 2,
+    "modes model.toml": 3,
+    "simulate model.toml '0.2 s' --json": 3,
+    "simulate model.toml '0.5 s' --drive": 3,
+    "balance model.toml --json": 1,
+    "balance model.toml --crank-counterweight --objective 'peak shaking_moment' -o new.toml; "
+    "analyze new.toml": 1,
+    "balance model.toml --phases --objective shaking_force.y": 1,
+    "balance trade-off model.toml shaking_force.y drive_torque --crank-counterweight --points 3": 1,
+    "balance arrangements model.toml 3": 1,
+    "balance conditions model.toml": 3,
+    "balance sensitivities model.toml shaking_force.y --json": 2,
+    "plant model.toml": 3,
+    "plant model.toml --csv p.csv --plot pictures": 2,
+    "plant fit model.toml fit.toml -o better.toml; plant better.toml": 1,
+    "export model.toml -o out.xml; import out.xml -o back.toml; check back.toml": 3,
+    "export model.toml -o out.urdf; import out.urdf -o back.toml": 3,
+    "export model.toml -o out.dxf; import out.dxf -o back.toml": 2,
+    "export model.toml -o out.svg; import out.svg -o back.toml": 2,
+    "export model.toml -o out.xlsx": 1,
+    "export model.toml -o out.py": 1,
+    "export model.toml -o out.fmu": 1,
+    "export model.toml -o out.mo --balanced": 1,
+    "export model.toml -o out.mat": 1,
+    "serve model.toml": 6,
+    "mcp analyze": 1,
+    "mcp balance_conditions": 1,
+    "check study.toml; sweep study.toml -o a.zarr; best a.zarr -o best.toml; check best.toml": 2,
+    "sweep study.toml -o a.zarr; resume a.zarr; export a.zarr -o all.csv; best a.zarr --json": 2,
+    "sweep study.toml -o a.zarr; export a.zarr -o all.parquet --kept": 1,
+    "tolerance tolerances.toml --designs 256": 2,
+    "search search.toml --population 8 --generations 2 -o best.toml; analyze best.toml": 2,
+    "exposure signal.csv --duration '2 h' --periodic --json": 1,
+    "simulate model.toml '0.3 s' --csv s.csv; exposure s.csv --periodic --duration '1 h'": 1,
+    "decay signal.csv --stiffness '2 N/mm' --json": 1,
 }
-"""Commands for a machine from nothing, each with how often it gets one."""
-STUDY = """schema = 1
-model = "model.toml"
-vary = [{ path = "drive.speed", range = ["60 rpm", "120 rpm"], steps = 3 }]
-tolerances = [{ path = "links.LINK.mass", range = "1 g" }]
-outputs = [{ value = "shaking_force.rms" }]
-sampling = { method = "grid" }
+"""Commands for a machine from nothing, each with how often it gets one; those behind a semicolon
+go on with what was written.
 """
+WITHOUT_MACHINE = {"completion", "examples", "new", "schema", "site", "tool", "mcp", "serve"}
+"""Commands that have none, or wait for others; `tool` has files of its own."""
+BESIDE = {
+    "study.toml": {
+        "vary": [{"path": "drive.speed", "range": ["60 rpm", "120 rpm"], "steps": 3}],
+        "sampling": {"method": "grid"},
+    },
+    "search.toml": {
+        "vary": [{"path": "drive.speed", "range": ["60 rpm", "120 rpm"]},
+                 {"path": "links.LINK.mass", "range": ["1 kg", "2 kg"]}],
+        "sampling": {"method": "sobol", "designs": 16},
+    },
+    "tolerances.toml": {
+        "vary": [{"path": "links.LINK.mass", "normal": {"deviation": "10 g"}},
+                 {"path": "drive.speed", "uniform": {"half_width": "1 rpm"}}],
+        "sampling": {"method": "monte-carlo", "designs": 16},
+    },
+}  # fmt: skip
+"""Studies beside a machine."""
+OUTPUTS = ("shaking_force.rms", "drive_torque.peak", "joints.A.rms", "points.B.y.peak_to_peak")
+FIT = """schema = 1
+search = { generations = 2, population = 10 }
+goals = [{ figure = "curve.height", at_least = "25 cm" }]
+"""
+WANTED = {
+    "modes": "support", "plant": "planting", "respond": "support", "simulate": "support",
+    "--drive": "motor", "--phases": "rows", "export": "even",
+}  # fmt: skip
+"""What a command needs of a machine."""
 
 
 def words_of(line: str, file: str) -> list[str]:
     """A command with its file behind the name of the command."""
-    words = [word.replace("/", " ") for word in line.split()]
-    if "study.toml" in words:
-        return words
+    words = shlex.split(line)
     plain = next((k for k, word in enumerate(words) if word.startswith("-")), len(words))
     name = 2 if words[0] in {"balance", "tool"} and plain > 1 else 1
     return [*words[:name], file, *words[name:]]
@@ -195,20 +247,38 @@ def tried(seed: int) -> None:
     document = deepcopy(example(chance.choice(KINDS[kind])))
     for _ in range(chance.choice((1, 1, 1, 2, 3))):
         mutate(chance, document)
-    run_through(seed, {"model.toml": tomli_w.dumps(document)}, chance.choice(OF_EACH[kind]))
+    words = words_of(chance.choice(OF_EACH[kind]), "model.toml")
+    run_through(seed, {"model.toml": tomli_w.dumps(document)}, [words])
+
+
+def machine_of(seed: int) -> tuple[dict[str, str], list[list[str]]]:
+    """Files of a machine from nothing, and the commands that it goes through."""
+    chance = random.Random(seed)
+    line = chance.choices([*OF_MACHINES], [*OF_MACHINES.values()])[0]
+    wanted = " ".join(part for word, part in WANTED.items() if word in line.split())
+    document, tables = machines_any.files(seed, wanted)
+    if not SEARCH and "rows" in document and line.startswith("balance model"):  # takes long
+        line = "balance conditions model.toml"
+    link = next(iter(document["links"]))
+    swing = [30 * exp(-k / 200) * sin(k / 20) for k in range(800)]
+    rows = (f"{k / 500:g},{at + chance.gauss(0, 0.3):.6g}" for k, at in enumerate(swing))
+    signal = "\n".join([chance.choice(["time [s],x [m/s^2]", "time [s],displacement [mm]"]), *rows])
+    output = {"value": chance.choice(OUTPUTS), "make": "smallest"}
+    common = {"schema": 1, "model": "model.toml", "outputs": [output]}
+    studies = {
+        name: tomli_w.dumps(common | study).replace("LINK", link) for name, study in BESIDE.items()
+    }
+    model = {"model.toml": tomli_w.dumps(document), "signal.csv": signal, "fit.toml": FIT}
+    files = model | tables | studies
+    return files, [shlex.split(part.replace("LINK", link)) for part in line.split(";")]
 
 
 def machine_tried(seed: int) -> None:
-    """One machine from nothing through one command."""
-    found = machines_any.document(seed)
-    line = random.Random(seed).choices([*OF_MACHINES], [*OF_MACHINES.values()])[0]
-    if not SEARCH and "rows" in found and line.startswith("balance -"):  # takes long
-        line = "balance conditions"
-    study = STUDY.replace("LINK", next(iter(found["links"])))
-    run_through(seed, {"model.toml": tomli_w.dumps(found), "study.toml": study}, line, stop=True)
+    """One machine from nothing through one command, or some that go on with what it wrote."""
+    run_through(seed, *machine_of(seed), stop=True)
 
 
-def open_page(file: str) -> Result:
+def open_page(file: str) -> None:
     """What `serve` does of a file: open it, drag a point, and balance."""
     session = Session()
     opened, *_ = session.receive(read(json.dumps(
@@ -220,44 +290,65 @@ def open_page(file: str) -> Result:
     edit = {"type": "edit", "seq": 2, "edits": [move], "label": "move"}
     for reply in session.receive(read(json.dumps(edit))):
         assert packed(reply)
-    return Result(0, "", "")
 
 
-def run_through(seed: int, files: dict[str, str], line: str, stop: bool = False) -> None:
-    """Files through one command, in a folder that has nothing else.
+def as_tool(name: str) -> None:
+    """What the agents' server answers."""
+    reply = reply_to(Call(name, {"file": "model.toml"}, str(Path.cwd())))
+    assert json.dumps(asdict(reply), allow_nan=False)
+    assert "Traceback" not in reply.text
 
-    stop : whether it may take long, as long as it says so and can be stopped.
+
+def run_through(
+    seed: int, files: dict[str, str], commands: list[list[str]], stop: bool = False
+) -> None:
+    """Files through commands, in a folder that has nothing else, up to the first that is refused.
+
+    stop : whether they may take long, as long as they say so and can be stopped.
     """
     folder = Path("fuzz")
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     os.chdir(folder)
-    words, result = [""], Result(0, "", "")
     PROCESS.joinpath("clear_refs").write_text("5", encoding="ascii")  # other tests took memory too
-    before = _memory("VmRSS")
+    before, words = _memory("VmRSS"), [""]
     try:
         for name, text in files.items():
             Path(name).write_text(text, encoding="utf-8")
-        words = words_of(line, "model.toml")
-        with in_time(stop):
-            result = open_page("model.toml") if words[0] == "serve" else equipoise(*words)
-        err = re.sub("^still computing.*\n", "", result.err, flags=re.MULTILINE)
-        told, result = result.err != err, Result(result.status, result.out, err)
-        if result.status == 130:
-            assert stop and told, "nothing was said in a minute"
-        elif result.status:
-            assert len(refused(result)) < 3000
-            assert set(os.listdir()) == {*files}, "something was written and the rest refused"
-        elif "--json" in words:
-            json.loads(result.out, parse_constant=no_constant)
+        for words in commands:
+            if run_one(words, stop) != 0:
+                break
     except BaseException as error:
-        raise AssertionError(
-            f"seed {seed}: {' '.join(words)}: {error!r}; {result.err[:300]}"
-        ) from error
+        raise AssertionError(f"seed {seed}: {shlex.join(words)}: {error!r}") from error
     finally:
         os.chdir("..")
     taken = _memory("VmHWM") - before
-    assert taken < BYTES, f"seed {seed}: {taken / 2**20:.0f} MiB"
+    assert taken < BYTES, f"seed {seed}: {shlex.join(words)}: {taken / 2**20:.0f} MiB"
+
+
+def run_one(words: list[str], stop: bool) -> int:
+    """One command, here; returns its status."""
+    there, result = set(os.listdir()), Result(0, "", "")
+    with in_time(stop):
+        match words:
+            case ["serve", file]:
+                with suppress(KeyboardInterrupt):  # a page says itself that it waits
+                    open_page(file)
+            case ["mcp", name]:
+                as_tool(name)
+            case _:
+                result = equipoise(*words)
+    progress, refusal, sentence = result.err.partition("equipoise: ")
+    result = Result(result.status, result.out, refusal + sentence)
+    if result.status == 130:
+        assert stop and progress, "nothing was said in a minute"
+    elif result.status:
+        assert result.status == 2, result
+        assert len(refused(result)) < 3000, result.err[:300]
+        assert set(os.listdir()) == there, "something was written and the rest refused"
+    elif "--json" in words:
+        json.loads(result.out, parse_constant=no_constant)
+    return result.status
 
 
 def _memory(of: str) -> int:
@@ -274,8 +365,22 @@ def test_every_command_on_every_kind_of_file(part: int) -> None:
         tried(seed)
 
 
+@pytest.mark.usefixtures("with_progress")
 @pytest.mark.parametrize("part", range(8))
 def test_every_command_on_machines_from_nothing(part: int) -> None:
     first = random.randrange(2**40) if SEARCH else 0
     for seed in range(first + part, first + MACHINES, 8):
         machine_tried(seed)
+
+
+def test_every_command_is_tried() -> None:
+    """A new command joins the fuzz, or says why not."""
+    lines = [
+        part.strip()
+        for line in (*OF_MACHINES, *chain(*OF_EACH.values()))
+        for part in line.split(";")
+    ]
+    tried_names = {name for name in OPTIONS for line in lines if f"{line} ".startswith(f"{name} ")}
+    assert {*OPTIONS} - tried_names == WITHOUT_MACHINE - tried_names
+    ends = {one.ending for one in FORMATS.values()}
+    assert ends == {f".{end}" for end in re.findall(r"export \S+ -o \w+\.(\w+)", "\n".join(lines))}

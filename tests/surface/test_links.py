@@ -393,7 +393,7 @@ def asked(page: ClientConnection, kind: str, **given: object) -> dict[str, Any]:
 
 
 def test_a_page_saves_through_no_link_that_was_put_in_the_place_of_its_file(
-    outside: Outside,
+    outside: Outside, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     if not (Path(served_files.__file__).parent / "static" / "equipoise.js").exists():
         pytest.skip("the page is not bundled")
@@ -404,8 +404,12 @@ def test_a_page_saves_through_no_link_that_was_put_in_the_place_of_its_file(
         assert asked(page, "save")["type"] == "saved"
         assert "300" in Path("mine.toml").read_text()
         page.send(json.dumps({"type": "edit", "seq": 1, "label": "mass", "edits": [change]}))
-        planted(Path("mine.toml"), outside.folder / "model.toml")
-        assert "was changed" in asked(page, "save")["message"]
+        copy = tmp_path_factory.mktemp("elsewhere") / "copy.toml"
+        shutil.copy("mine.toml", copy)
+        text = copy.read_text()
+        planted(Path("mine.toml"), copy)  # with the same content, so that the link alone is wrong
+        assert asked(page, "save")["type"] == "refused"
+        assert copy.read_text() == text and Path("mine.toml").is_symlink()
         Path("mine.toml").unlink()
         Path("mine.toml").symlink_to(outside.folder / "nowhere")
         assert asked(page, "save")["type"] != "saved"
