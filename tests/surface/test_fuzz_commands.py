@@ -13,6 +13,7 @@ import json
 import os
 import random
 import re
+import resource
 import shlex
 import shutil
 import signal
@@ -315,15 +316,27 @@ def run_through(
     try:
         for name, text in files.items():
             Path(name).write_text(text, encoding="utf-8")
-        for words in commands:
-            if run_one(words, stop) != 0:
-                break
+        with limited():
+            for words in commands:
+                if run_one(words, stop) != 0:
+                    break
     except BaseException as error:
         raise AssertionError(f"seed {seed}: {shlex.join(words)}: {error!r}") from error
     finally:
         os.chdir("..")
     taken = _memory("VmHWM") - before
     assert taken < BYTES, f"seed {seed}: {shlex.join(words)}: {taken / 2**20:.0f} MiB"
+
+
+@contextmanager
+def limited() -> Iterator[None]:
+    """Commands within the memory that a process of their own may take."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
+    resource.setrlimit(resource.RLIMIT_DATA, (_memory("VmData") + BYTES, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_DATA, (soft, hard))
 
 
 def run_one(words: list[str], stop: bool) -> int:
@@ -352,7 +365,9 @@ def run_one(words: list[str], stop: bool) -> int:
 
 
 def _memory(of: str) -> int:
-    """Bytes of this process: VmRSS what it holds, VmHWM the most since that was set back."""
+    """Bytes of this process: VmRSS what it holds, VmHWM the most since that was set back, VmData
+    what counts towards its limit.
+    """
     found = re.search(rf"{of}:\s+(\d+) kB", PROCESS.joinpath("status").read_text(encoding="ascii"))
     assert found is not None
     return 1024 * int(found[1])
