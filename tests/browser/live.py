@@ -115,6 +115,7 @@ class Live:
 
     def drag(self, handle: Locator, *ways: tuple[float, float]) -> None:
         """Drag a handle with the mouse by each of the ways from where it was, and let it go."""
+        handle.scroll_into_view_if_needed()
         x, y = self.spot(handle)
         mouse = self.page.mouse
         mouse.move(x, y)

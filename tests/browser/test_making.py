@@ -402,6 +402,8 @@ def test_parts_are_joined_renamed_and_deleted(live: Live) -> None:
     page = live.page
     page.get_by_role("combobox", name="Example").select_option("slider-crank-engine")
     page.get_by_role("dialog", name="Question").get_by_role("button", name="Open").click()
+    title = eq.load("slider-crank-engine").title
+    expect(page.get_by_role("heading", name=title)).to_be_visible()  # what opens gives Delete up
     sheet.says(TURNS)
     sheet.take("Delete")
     page.mouse.click(*live.spot(page.locator(".signs [data-what=slider]").last))  # its block
