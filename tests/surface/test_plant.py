@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.field import Soil
 from equipoise.planting.summary import plant
 from surface.running import (
@@ -324,3 +325,11 @@ def test_a_tip_that_dwells(tmp_path: Path) -> None:
     file = tmp_path / "dwelling.toml"
     file.write_text(example_text("class-three") + DWELLING, encoding="utf-8")
     assert cells(succeeded(equipoise("plant", file)), "depth in the soil") == ["1.000"]
+
+
+def test_a_crank_angle_that_is_no_number_has_no_pose() -> None:
+    """Such as where a tip enters the soil that it never reaches; a table has no such place."""
+    cycle = assemble(eq.load("class-three")).cycle
+    for name in cycle.tables:
+        values = cycle.reference(name, np.array([np.nan, 1.0]))
+        assert np.all(np.isnan(values[..., 0])) and np.all(np.isfinite(values[..., 1]))

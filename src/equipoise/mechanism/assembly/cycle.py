@@ -63,7 +63,7 @@ class Cycle:
         cycles = np.floor(theta / period)
         intervals = table.shape[-1] - 1
         place = (theta - cycles * period) * (intervals / period)
-        left = np.minimum(place.astype(int), intervals - 1)
+        left = np.minimum(np.nan_to_num(place).astype(int), intervals - 1)  # NaN stays NaN
         share = place - left
         value = table[..., left] * (1 - share) + table[..., left + 1] * share
         rise = np.asarray(table[..., -1] - table[..., 0])
