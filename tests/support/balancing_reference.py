@@ -26,6 +26,8 @@ from equipoise.mechanism.parts.machine import Gear, Link, Machine
 from support.poses import Array, drive_pivot
 
 SAMPLES = 720
+BESIDE = 1e-7
+"""Way before a jump at which a signal is read, rad: beyond what loads round their angles to."""
 NEGLIGIBLE = 1e-9
 """Share of a limit by which it may be passed."""
 Output = tuple[str, str | None, tuple[float, ...]]
@@ -95,8 +97,10 @@ def measured(machine: Machine, objective: eq.balancing.Objective) -> float:
 
 
 def measured_exactly(machine: Machine, objective: eq.balancing.Objective) -> float:
-    """Return what an objective is in a machine; mean squares piece by piece where loads jump."""
-    if objective.measure not in ("rms", "ripple") or not loads_jump(machine):
+    """Return what an objective is in a machine; where loads jump, mean squares and orders piece by
+    piece, and peaks at both sides of the jumps too.
+    """
+    if objective.measure == "area" or not loads_jump(machine):
         return measured(machine, objective)
     return _measured_in_pieces(machine, objective)
 
@@ -110,20 +114,35 @@ def _measured_in_pieces(machine: Machine, objective: eq.balancing.Objective) -> 
     """Integrate by Gauss's rule between the crank angles at which loads jump or bend."""
     output, about, orders = output_of(objective)
     turns = eq.move(machine, SAMPLES).turns
-    edges = [np.linspace(0, 2 * pi, 181)]
+    edges = []
     for load in machine.loads:
         of_table = () if load.table is None else load.table.crank_angle
         steps = (one for one in (load.start, load.stop) if one is not None)
-        edges.append(np.mod([*steps, *of_table], 2 * pi))
-    ends = np.unique(np.add.outer(2 * pi * np.arange(turns), np.concatenate(edges)))
+        edges += np.mod([*steps, *of_table], 2 * pi).tolist()
+    sides = np.add.outer(2 * pi * np.arange(turns), edges)
+    grid = np.add.outer(2 * pi * np.arange(turns), np.linspace(0, 2 * pi, 181))
+    ends = np.unique(np.concatenate([grid.ravel(), sides.ravel()]))
     nodes, weights = np.polynomial.legendre.leggauss(9)
     theta = (ends[:-1, None] + np.diff(ends)[:, None] * (1 + nodes) / 2).ravel()
     shares = (np.diff(ends)[:, None] * weights).ravel() / (4 * pi * turns)
-    analysis = eq.analyze(machine, theta, acceleration=0.0, about=about)
-    signal = signal_of(analysis, output)
+
+    def signal_at(angles: Array) -> Array:
+        return signal_of(eq.analyze(machine, angles, acceleration=0.0, about=about), output)
+
+    signal, shown = signal_at(theta), theta
+    if objective.measure.startswith("peak"):
+        even = 2 * pi * np.arange(SAMPLES * turns) / SAMPLES
+        shown = np.concatenate(
+            [even, sides.ravel(), np.mod(sides.ravel() - BESIDE, 2 * pi * turns)]
+        )
     if orders:
-        waves = np.exp(1j * np.outer(orders, theta))
-        signal = 2 * ((signal * shares) @ waves.conj().T @ waves).real
+        rates = np.array(orders)
+        amplitudes = (signal * shares) @ np.exp(-1j * np.outer(theta, rates))
+        signal = 2 * (amplitudes @ np.exp(1j * np.outer(rates, shown))).real
+    elif shown is not theta:
+        signal = signal_at(shown)
+    if shown is not theta:
+        return float(value_of(objective.measure, signal))
     if objective.measure == "ripple":
         signal = signal - np.sum(signal * shares)
     return float(np.sqrt(np.sum(signal**2 * shares)))
