@@ -15,6 +15,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
@@ -236,8 +237,39 @@ def meant(given: str, names: Sequence[str]) -> str:
     from difflib import get_close_matches
 
     by_form = {form_of(name): name for name in reversed(names)}
-    near = get_close_matches(form_of(given), by_form, 1)
+    form = form_of(given)
+    near = [name for name in get_close_matches(form, by_form, 5, 0.5) if _is_misspelt(form, name)]
     return Note("did you mean {name!r}?", name=by_form[near[0]]) if near else ""
+
+
+LETTERS_RIGHT = 4
+"""Letters for each that may be wrong: `friction` and `direction`, which share six of theirs in
+order, are words of their own."""
+
+
+def _is_misspelt(given: str, name: str) -> bool:
+    """Whether a name is another with few letters wrong, or with words left out or added."""
+    words, known = (set(re.split(r"[\W_]+", text)) - {""} for text in (given, name))
+    if words <= known or known <= words or name.startswith(given) or given.startswith(name):
+        return True
+    return _edits(given, name) <= max(1, len(name) // LETTERS_RIGHT)
+
+
+def _edits(one: str, other: str) -> int:
+    """Letters to insert, delete, replace or swap with the next to make one text of another: the
+    restricted distance of Damerau, "A technique for computer detection and correction of spelling
+    errors", 1964.
+    """
+    before: list[int] = []
+    row = [*range(len(other) + 1)]
+    for i, letter in enumerate(one, 1):
+        earlier, before, row = before, row, [i]
+        for j, wanted in enumerate(other, 1):
+            cost = min(before[j] + 1, row[-1] + 1, before[j - 1] + (letter != wanted))
+            if i > 1 and j > 1 and one[i - 2 : i] == wanted + other[j - 2]:
+                cost = min(cost, earlier[j - 2] + 1)
+            row.append(cost)
+    return row[-1]
 
 
 def form_of(name: str) -> str:

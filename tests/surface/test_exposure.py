@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+import equipoise as eq
+from equipoise.exposure.spectra import weigh_orders
 from equipoise.exposure.weighting import NOMINAL, factor
 from surface.running import command_lines, equipoise, read, refused, refuses, succeeded
 
@@ -154,6 +156,39 @@ def test_a_periodic_signal() -> None:
     assert "nothing above half its sampling rate, 200 Hz" in file["notes"][0]
 
 
+def test_a_response_is_weighed() -> None:
+    """What `respond --csv` writes, against the orders of the response itself; its rows are a whole
+    period, so that both have the same lines.
+    """
+    succeeded(equipoise("respond", "yamashita-rig", "--csv", "r.csv"))
+    by_file = found("r.csv", "--periodic")["measured"][0]
+    response = eq.respond(eq.load("yamashita-rig"))
+    orders = response.gauges["gauge"].acceleration.amplitudes[1:]
+    speed = eq.load("yamashita-rig").drive.speed
+    by_orders = weigh_orders(speed, np.arange(1, len(orders) + 1), orders)
+    # 360 samples fold orders above 180 back, which are below a millionth of the first here
+    assert by_file["a_hv"] == pytest.approx(by_orders.a_hv, rel=1e-6)
+    assert found("r.csv", "--periodic", "--gauge", "gauge")["measured"][0] == by_file
+    assert "no gauge is called 'guage'; did you mean 'gauge'?" in refused(
+        equipoise("exposure", "r.csv", "--periodic", "--gauge", "guage")
+    )
+
+
+def test_gauges_of_a_response_are_axes_where_they_are_named() -> None:
+    rows = np.arange(100) / 4000.0, np.sin(np.arange(100)), np.cos(np.arange(100))
+    heads = "time [s],gauges.a b.acceleration [m/s^2],gauges.c.acceleration [m/s^2]"
+    Path("r.csv").write_text(columns(heads, *rows), encoding="utf-8")
+    several = refused(equipoise("exposure", "r.csv", "--periodic"))
+    assert "there are the gauges 'a b', 'c'; name that of the hand" in several
+    both = found("r.csv", "--periodic", "--gauge", "c", "--gauge", "a b")["measured"][0]
+    Path("x.csv").write_text(columns("time [s],y [m/s^2],x [m/s^2]", *rows), encoding="utf-8")
+    axes = found("x.csv", "--periodic")["measured"][0]
+    assert both["a_hv"] == pytest.approx(axes["a_hv"], rel=1e-12)
+    Path("r.csv").write_text(f"{heads}\n0,1,2\n0.1,2\n", encoding="utf-8")
+    short = refused(equipoise("exposure", "r.csv", "--gauge", "c"))
+    assert short.startswith("r.csv, line 3: got 2 values; the header has 3 columns")
+
+
 def test_a_spectrum_of_nothing() -> None:
     Path("still.csv").write_text("frequency [Hz],x [gn]\n50,0\n", encoding="utf-8")
     shown = succeeded(equipoise("exposure", "still.csv", "--duration", "1 h"))
@@ -185,6 +220,10 @@ def test_odd_names() -> None:
 CONTENTS = {
     "empty": ("", "x.csv, line 1: got no column; the header is time [s],x [m/s^2]"),
     "misspelt": (SIGNAL.replace("x [", "xx ["), "x.csv, line 1: got the column 'xx [m/s^2]'"),
+    "over speeds": (
+        "speed [rad/s],gauges.a.acceleration_rms [m/s^2]\n1,1\n",
+        "x.csv, line 1: there are gauges, but none with accelerations over time, which `equip",
+    ),
     "wrong unit": (SIGNAL.replace("[s]", "[m]"), "x.csv, line 1, column time: got '0 m'; m is the"),
     "nan": (f"{SIGNAL}8.0,nan,1,1\n", "x.csv, line 32002, column x: got 'nan'; give a finite"),
     "gap": (f"{SIGNAL}9.0,1,1,1\n", "x.csv, line 32001, column time: 7.99975 s is not where equal"),
@@ -246,6 +285,8 @@ WORDS = {
         "tasks.csv --weighted": "--weighted belongs to a signal or a spectrum; give",
         "signal.csv --single-axis": "--single-axis belongs to a signal or",
         "lines.csv --periodic": "--periodic belongs to a signal; give one, or leave",
+        "'3 m/s^2 for 1 h' --gauge x": "--gauge belongs to a response of gauges; give one",
+        "signal.csv --gauge x": "signal.csv, line 1: no gauge is called 'x'; there are none",
         "tasks.csv --hours 3": "Unknown option: --hours",
         "tasks.csv --format png": "--format belongs to --plot; give both",
         "tasks.csv --plot ''": "--plot: got ''; give the name of a folder",

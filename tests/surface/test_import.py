@@ -18,6 +18,7 @@ REFUSED = {
         "no.dxf --unit parsec": "--unit: got 'parsec'; give a unit such as mm",
         "no.dxf --unit '-3 mm'": "--unit: got '-3 mm'; give a unit such as mm",
         "no.dxf --tolerance '0 mm'": "--tolerance: got '0 mm'; give more than 0",
+        "no.dxf --speed '0 rpm'": "--speed: a crank that stands still moves nothing",
     },
 }
 
@@ -46,5 +47,8 @@ def test_a_drawing_becomes_a_model_that_passes_check(
     assert "no link is called 'crnk'; did you mean 'crank'" in refused(
         equipoise("import", "four-bar.svg", "-o", "b.toml", "--crank", "crnk")
     )
-    assert "there is no such folder" in refused(equipoise("import", "four-bar.svg", "-o", "no/b"))
+    away = equipoise("import", "four-bar.svg", "-o", "no/b.toml")
+    assert "there is no such folder" in refused(away)
+    named = equipoise("import", "four-bar.svg", "-o", "b.txt")
+    assert "--out: got 'b.txt'; give a name that ends in .toml" in refused(named)
     assert sorted(one.name for one in Path().iterdir()) == ["four-bar.svg", "four-bar.toml"]

@@ -127,6 +127,8 @@ REFUSED = {
         "--units 'mm, cm'": "--units: got 'mm' and 'cm', both units of length",
     },
     "respond": {
+        "yamashita-rig --speed '100-300 rpm'": "--speed: got '100-300 rpm'; give a speed, "
+        '"193 rpm", or a range: "20 rpm : 400 rpm"',
         "yamashita-1": "yamashita-1: support: the machine stands on solid ground; ad",
         "yamashita-1 --speed '20:300 rpm'": "stands on solid ground; add ",
         "nothing.toml": "nothing.toml: there is no such file; give a path, or the name",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from equipoise.cli.options import count, file_named, naming
-from equipoise.cli.outputs import Shown, wrote
+from equipoise.cli.outputs import Shown, check_model_name, wrote
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
@@ -117,6 +117,7 @@ def new(
     name, usual, command = STARTS[_kind(tool, study)]
     start = files("equipoise").joinpath("schema", name).read_text(encoding="utf-8")
     path = usual if file is None else file
+    check_model_name(path, "FILE")
     write(path, start, replace=False)
     wrote(f"{path}; next: {command.format(path)}")
 

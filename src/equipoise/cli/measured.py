@@ -13,6 +13,7 @@ from equipoise.cli.options import (
     EXAMPLES,
     SIGNED,
     Many,
+    Names,
     blaming,
     check_belonging,
     quantity,
@@ -25,7 +26,7 @@ from equipoise.cli.outputs import Drawn
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from equipoise.exposure.daily import Exposure
     from equipoise.exposure.weighting import Weighted
@@ -166,6 +167,7 @@ def exposure(
     weighted: bool = False,
     single_axis: bool = False,
     periodic: bool = False,
+    gauge: Names = None,
     outputs: Drawn = Drawn(),
 ) -> None:
     """Hand-arm vibration: weighted acceleration, a day's exposure, and how long one may work.
@@ -175,7 +177,7 @@ def exposure(
     inputs
         Values such as "7.4 m/s^2 for 2.5 h" or "mowing: 4.6 m/s^2 for 2 h", and paths of CSV files:
         signals (columns "time [s]" and "x [m/s^2]", y, z), spectra ("frequency [Hz]" and the
-        same), tasks ("task", "acceleration [m/s^2]", "duration [h]").
+        same), tasks ("task", "acceleration [m/s^2]", "duration [h]"), responses of gauges.
     duration
         Time of exposure a day of a signal, a spectrum, or --idle and --racing.  One for all of
         them, or repeated for each.
@@ -192,6 +194,9 @@ def exposure(
     periodic
         The signals are whole periods of a steady vibration, with nothing above half the sampling
         rate, as simulated ones; any rate and duration will do then.
+    gauge
+        Of what "equipoise respond --csv" writes: the gauge of the hand, if there are several.
+        Repeated for up to three of one place, along x, y and z.
     """
     from equipoise.exposure.daily import equivalent
 
@@ -203,12 +208,14 @@ def exposure(
         "bands": bands,
         "periodic": periodic,
     }
-    told = [each for text in inputs for each in _told(text, options)]
+    told = [each for text in inputs for each in _told(text, options, gauge or ())]
     if idle is not None and racing is not None:
         told.append(Told("idling and racing", equivalent(idle, racing)))
     if not told:
         raise UsageError('give a value, "7.4 m/s^2 for 2.5 h", or the path of a CSV file')
     _check_options(told, options)
+    if gauge and not any(each.weighted for each in told):
+        raise UsageError("--gauge belongs to a response of gauges; give one, or leave it out")
     _give(_timed(told, duration or []), outputs)
 
 
@@ -246,7 +253,7 @@ def _values(
     return {"measured": files, "tasks": tasks, "a_hv": a_hv, "a8": None}
 
 
-def _told(text: str, options: Mapping[str, bool]) -> list[Told]:
+def _told(text: str, options: Mapping[str, bool], gauges: Sequence[str]) -> list[Told]:
     """Tasks that an argument stands for: one value, one file of accelerations, or one of tasks."""
     from equipoise.schema.records import Accelerations, read_accelerations
 
@@ -259,7 +266,7 @@ def _told(text: str, options: Mapping[str, bool]) -> list[Told]:
             return [Told(match["name"] or match["a_hv"], a_hv, duration)]
         if LOOKS_LIKE_A_VALUE.fullmatch(text):
             raise UsageError(f'got {text!r}; say for how long a day, as in "7.4 m/s^2 for 2.5 h"')
-    found = read_accelerations(text)
+    found = read_accelerations(text, gauges)
     if isinstance(found, Accelerations):
         weighted = _weighted(text, found, options)
         return [Told(os.path.basename(text), weighted.a_hv, None, weighted)]

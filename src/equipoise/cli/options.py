@@ -156,10 +156,13 @@ def time_a_day(option: str, text: str) -> float:
 def ends_of_range(text: str) -> list[str]:
     """Parts of a range such as ``20 : 400 rpm``, whose unit may stand after the second only.
 
-    One part where there is no colon; none where a part is empty or there are more than two.
+    One part where there is no colon; none where a part is empty, there are more than two, or the
+    text is a range with another sign than a colon.
     """
+    from equipoise.quantities.reading import start_of_range
+
     parts = [part.strip() for part in text.split(":")]
-    if len(parts) > 2 or not all(parts):
+    if len(parts) > 2 or not all(parts) or (len(parts) == 1 and start_of_range(text)):
         return []
     if len(parts) == 2 and " " not in parts[0] and " " in parts[1]:
         parts[0] = f"{parts[0]} {parts[1].split(' ', 1)[1]}"

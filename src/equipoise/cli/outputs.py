@@ -338,12 +338,21 @@ def _check_place(option: str, path: str) -> None:
         raise UsageError(f"{shown}: there is no such folder; make it, or choose another")
 
 
+def check_model_name(path: str, option: str = "--out") -> None:
+    """The name of a new model file says that it is one."""
+    from equipoise.schema.files import printable
+
+    if path and not path.endswith(".toml"):
+        raise UsageError(f"{option}: got {printable(path)!r}; give a name that ends in .toml")
+
+
 def check_new(model: Machine | Tool, path: str) -> None:
     """A new model file, and what lies beside it, must have a place to go and take no other's."""
     from equipoise.schema.files import printable
     from equipoise.schema.models import files_of
 
     _check_place("--out", path)
+    check_model_name(path)
     for file in files_of(model, path):
         if os.path.lexists(file) and not may_be_replaced():
             raise UsageError(f"{printable(file)}: is there already; choose another name by --out")

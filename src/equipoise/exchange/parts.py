@@ -86,11 +86,26 @@ def _of_links(job: Job) -> Iterator[Part]:
     for name, link in job.machine.links.items():
         for number, body in enumerate(link.bodies, 1):
             edges = tuple(_edges(body, link.points))
-            if edges:
+            if section := _drawn_section(body):
+                job.leave_out(f"body {number} of {name!r}, {section}, which no plate gives")
+            elif edges:
                 label = f"{name}, {body.shape} {number}"
-                yield Part(label, name, body.thickness or body.outer_diameter, edges)
+                yield Part(label, name, body.thickness, edges)
             elif body.shape != "point" or not job.changes:  # those are told with what was changed
                 job.leave_out(f"body {number} of {name!r}, a {body.shape} without an outline")
+
+
+def _drawn_section(body: Body) -> str:
+    """The section of a bar that is cut to length from a tube or rod; empty of what is a plate."""
+    if body.outer_diameter is not None:
+        outer = told(body.outer_diameter, "length")
+        if not body.inner_diameter:
+            return f"a rod of {outer}"
+        return f"a tube of {outer} with a bore of {told(body.inner_diameter, 'length')}"
+    if body.wall is None or body.width is None:
+        return ""
+    sides = [told(side, "length") for side in (body.width, body.thickness) if side is not None]
+    return f"a tube of {' x '.join(sides)} with walls of {told(body.wall, 'length')}"
 
 
 def _edges(body: Body, points: Points) -> Iterator[tuple[Edge, ...]]:

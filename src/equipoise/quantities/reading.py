@@ -13,7 +13,7 @@ from functools import cache
 from math import isfinite
 
 from equipoise.errors import UsageError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 from equipoise.quantities.numbers import chosen_unit
 from equipoise.quantities.units import FACTORS, HUGE, KINDS, TINY, Dimension, Kind
 
@@ -45,25 +45,42 @@ def plain_unit(unit: str) -> str:
 
 _NAMES = {
     "\N{DEGREE SIGN}": "deg",
-    "degree": "deg",
-    "degrees": "deg",
-    "radian": "rad",
-    "radians": "rad",
-    "inch": "in",
-    "inches": "in",
     '"': "in",
-    "feet": "ft",
-    "foot": "ft",
-    "lbs": "lb",
-    "1/min": "rpm",
-    "r/min": "rpm",
-    "rev/min": "rpm",
-    "rev/s": "turn/s",
+    **dict.fromkeys(
+        ("1/min", "min^-1", "min-1", "r/min", "rev/min", "rot/min", "tr/min", "u/min", "upm",
+         "rev per min", "revolutions per minute"), "rpm"),
+    **dict.fromkeys(("rps", "r/s", "rev/s", "u/s"), "turn/s"),
     "\N{MICRO SIGN}m": "um",
     "\N{GREEK SMALL LETTER MU}m": "um",
     "kp": "kgf",
+    "kph": "km/h",
+}  # fmt: skip
+_WORDS = {
+    word: symbol
+    for symbol, words in {
+        "deg": "degree degrees", "rad": "radian radians", "turn": "turns rev revs revolutions",
+        "in": "inch inches", "ft": "feet foot", "lb": "lbs pound pounds", "g": "gram grams gramm",
+        "kg": "kgs kilo kilos kilogram kilograms kilogramm", "t": "ton tons tonne tonnes",
+        "m": "meter meters metre metres", "N": "newton newtons", "s": "sec secs second seconds",
+        "mm": "millimeter millimeters millimetre millimetres", "min": "mins minute minutes",
+        "cm": "centimeter centimeters centimetre centimetres", "h": "hr hrs hour hours",
+    }.items()
+    for word in words.split()
+}  # fmt: skip
+"""Other spellings of units, and of the parts of such, only to suggest the right one."""
+_POINTED = {
+    **dict.fromkeys(("up", "upward", "upwards", "vertical"), "90"),
+    **dict.fromkeys(("down", "downward", "downwards"), "-90"),
+    **dict.fromkeys(("right", "forward", "horizontal"), "0"),
+    **dict.fromkeys(("left", "backward"), "180"),
 }
-"""Other spellings, only to suggest the right one."""
+"""Directions in words, and the angle of each from the x axis, deg."""
+_RANGE = re.compile(
+    rf"(?P<low>{NUMBER})(?: *(?P<own>[^\W\d_]\S*?))??"
+    r" *(?:\.{2,3}|[-\N{EN DASH}\N{EM DASH}~:]| to | bis | and ) *"
+    rf"{NUMBER} *(?P<unit>[^\W\d_].*)"
+)
+"""Two quantities, of which the first may leave its unit to the second."""
 
 
 def described(given: object) -> str:
@@ -154,7 +171,7 @@ def separators_told(number: str, unit: str = "") -> str:
 
 def usual_unit(unit: str, dimension: Dimension) -> str:
     """A unit as the lists have it where it is another spelling of one, such as a degree sign."""
-    other = _NAMES.get(unit.strip().lower(), unit)
+    other = _spelled(unit)
     return other if other in KINDS[dimension].units else unit
 
 
@@ -171,6 +188,9 @@ def got(given: object, right: str) -> str:
 def _right(text: str, dimension: Dimension) -> str:
     """What to give instead of a text outside the grammar of its dimension."""
     kind = KINDS[dimension]
+    if low := start_of_range(text):
+        noun = Note(kind.noun)
+        return Note('{noun} is wanted, not a range; give one such as "{low}"', noun=noun, low=low)
     parts = re.fullmatch(r"(.*[0-9.,]) *([^\s0-9.,].*)", text)
     known = parts is not None and plain_unit(parts[2]) in kind.units
     if parts is not None and known and (told := separators_told(*parts.groups())):
@@ -190,23 +210,47 @@ def _right(text: str, dimension: Dimension) -> str:
     return _unit_complaint(unit, number, dimension)
 
 
+def start_of_range(text: str) -> str:
+    """The first quantity of what is written as a range, such as ``100-300 rpm``; empty where text
+    is none.  A unit after the second quantity stands for both.
+    """
+    match = _RANGE.fullmatch(text.strip())
+    if match is None:
+        return ""
+    unit = plain_unit(_spelled(match["own"] or match["unit"]))
+    return f"{match['low']} {unit}" if _known(unit) else ""
+
+
 def _number_complaint(text: str, kind: Kind) -> str:
     such = Note('such as "{example}"', example=kind.example)
-    if not text.strip():
-        return Note("give number and unit, {such}", such=such)
+    if kind is KINDS["angle"] and (angle := _POINTED.get(text.strip().lower())):
+        return Note('did you mean "{number} {unit}"?', number=angle, unit="deg")
     if re.fullmatch(NUMBER, text.strip()):
         return Note("the unit is missing; give {noun}, {such}", noun=Note(kind.noun), such=such)
-    if text != text.strip():
-        return Note("leave out the space before or after it, {such}", such=such)
-    if re.match(r"[+-]?[0-9]+,[0-9]+", text):
-        return Note("the decimal sign is a point, not a comma, {such}", such=such)
+    if re.match(r"[+-]?[0-9]+,[0-9]+", text.strip()):
+        return _comma_complaint(text.strip(), kind)
+    return Note(_number_slip(text), such=such)
+
+
+def _number_slip(text: str) -> str:
+    """What is wrong with a text that has no number as it should be; ``such`` follows."""
     if re.match(r"[+-]?(nan|inf)", text, re.IGNORECASE):
-        return Note("give a finite number and a unit, {such}", such=such)
-    return Note(
+        return to_say("give a finite number and a unit, {such}")
+    if not re.search(r"\d", text):
+        return to_say("give number and unit, {such}")
+    if text != text.strip():
+        return to_say("leave out the space before or after it, {such}")
+    return to_say(
         "write the number with the digits 0 to 9, a decimal point and at most an exponent, then a "
-        "space and the unit, {such}",
-        such=such,
+        "space and the unit, {such}"
     )
+
+
+def _comma_complaint(text: str, kind: Kind) -> str:
+    such = kind.example
+    if pointed := readings(text)[0]:
+        such = f"{pointed} {kind.example.partition(' ')[2]}"
+    return Note('write it with a decimal point and a unit, such as "{such}"', such=such)
 
 
 def _unit_complaint(unit: str, number: str, dimension: Dimension) -> str:
@@ -219,20 +263,30 @@ def _unit_complaint(unit: str, number: str, dimension: Dimension) -> str:
         return Note('write "{number} {unit}"', number=number, unit=plain)
     if meant := unit_meant(unit, dimension):
         return Note('did you mean "{number} {unit}"?', number=number, unit=meant)
-    other = _known(plain)
+    other = _known(plain) or next((KINDS[one] for one in KINDS if unit_meant(unit, one)), None)
     if other is not None:
         of = Note(other.noun)
-        return Note("{unit} is the unit of {of}; {wanted}", unit=plain, of=of, wanted=wanted)
+        shown = plain if plain in other.units else _quoted(unit)
+        return Note("{unit} is the unit of {of}; {wanted}", unit=shown, of=of, wanted=wanted)
     return Note("there is no unit {unit} here; {wanted}", unit=_quoted(unit), wanted=wanted)
 
 
 def unit_meant(unit: str, dimension: Dimension) -> str:
     """The unit of a dimension that another spelling of it means; nothing where none does."""
     units = KINDS[dimension].units
-    name, bare = _NAMES.get(unit.strip().lower(), ""), _bare(unit)
+    name = _spelled(unit)
+    bare = _bare(name)
     if name in units:
         return name
     return next((known for known in units if bare and _bare(known) == bare), "")
+
+
+def _spelled(unit: str) -> str:
+    """A unit with symbols for words, such as ``m/s`` for ``metres/sec``."""
+    plain = unit.strip().lower()
+    if plain in _NAMES:
+        return _NAMES[plain]
+    return re.sub(r"[^\W\d_]+", lambda word: _WORDS.get(word[0].lower(), word[0]), unit.strip())
 
 
 def _known(unit: str) -> Kind | None:

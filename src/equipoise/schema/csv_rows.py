@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from equipoise.errors import ModelError
 from equipoise.quantities.reading import DECIMAL_COMMA, readings
@@ -30,11 +30,28 @@ def wrong(line: int, what: str, column: str = "") -> ModelError:
     return ModelError("", f"line {line}{column and f', column {column}'}: {what}")
 
 
-def rows_of(text: str) -> Iterator[Row]:
+def rows_of(text: str, columns: Mapping[str, str] | None = None) -> Iterator[Row]:
     """Rows that are neither blank nor comments; decimal commas as points where they are certain.
 
     The first is the header, which may be a comment right above the numbers.
+
+    columns : heads of the columns that are taken, and the heads that they get; all as they are
+        where not given.
     """
+    rows = _rows(text)
+    return rows if columns is None else _taken(rows, columns)
+
+
+def _taken(rows: Iterator[Row], columns: Mapping[str, str]) -> Iterator[Row]:
+    line, header = next(rows)
+    places = [header.index(head) for head in columns]
+    yield line, [*columns.values()]
+    for line, row in rows:
+        check_width(line, row, len(header))
+        yield line, [row[place] for place in places]
+
+
+def _rows(text: str) -> Iterator[Row]:
     at, header = _header(text)
     separator = _separator(at + 1, header)
     rows = _separated(text, at, header, separator)

@@ -17,7 +17,8 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.keys import SCHEMA_VERSION, Frozen, Wording
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities.reading import described
-from equipoise.schema.files import LARGEST, FileError, printable, quoted, read_text, written_key
+from equipoise.schema.files import LARGEST, FileError, printable, read_text
+from equipoise.schema.toml_slips import syntax_error
 
 Kind = Literal["linkage", "tool"]
 FileKind = Literal["linkage", "tool", "study"]
@@ -42,8 +43,6 @@ MIGRATIONS: dict[int, Callable[[dict[str, Any]], dict[str, Any]]] = {}
 _ENDLESS_KEY = re.compile(r"""(?<![\w-])(?:["']?[\w-]++["']?[ \t]*+\.[ \t]*+){50}""")
 
 
-LONGEST_LINE = 1000
-"""Of those in which missing quotes are looked for."""
 Folder = str | os.PathLike[str] | None
 
 
@@ -218,52 +217,8 @@ def _toml(text: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        raise ModelError("", _syntax(str(error), text)) from error
+        raise ModelError("", syntax_error(str(error), text)) from error
     except RecursionError as error:
         raise ModelError("", "lists or tables are nested too deeply for a model file") from error
     except ValueError as error:  # an integer of thousands of digits
         raise ModelError("", "a number has thousands of digits; give a usual one") from error
-
-
-_PART = r"""(?:"[^"]*"|'[^']*'|[^"'.,=\[\]{}#]+)"""
-_DOTTED = rf"{_PART}(?:\.{_PART})*"
-_KEYS = re.compile(rf"(?:^\s*|[{{,])(?:({_DOTTED})=|(\[\[?)({_DOTTED})\])")
-"""Keys before an equals sign, and those of a table in brackets, whatever their signs."""
-_VALUE = re.compile(r"=\s*([^\s\"'\[\]{},#=][^\"'\[\]{}#=]*?)\s*(?:#.*)?$")
-"""A text without quotes up to the end of the line."""
-_PLAIN = re.compile(r"[+-]?[0-9][0-9_.,eE+-]*|true|false|nan|inf", re.IGNORECASE)
-"""What may have been meant for a number, or for true or false."""
-
-
-def _unquoted(line: str, column: int) -> str:
-    """Say what lacks quotes about a column of a line; empty where nothing does."""
-    for match in _KEYS.finditer(line):
-        key, opening, table = match.groups()
-        parts = [one.strip() for one in re.findall(_PART, key or table)]
-        mended = ".".join(one if one[:1] in "\"'" else written_key(one) for one in parts)
-        if match.start() <= column <= match.end() and mended.count('"') > (key or table).count('"'):
-            shown = f"{opening}{mended}{']' * len(opening)}" if opening else f"{mended} ="
-            return (
-                f"put the name in quotes: {shown}; without them it has letters A to Z, digits, "
-                "- and _ only"
-            )
-    value = _VALUE.search(line)
-    if value is None or _PLAIN.fullmatch(value[1].replace(" ", "")) or column < value.start():
-        return ""
-    bare = value[1].strip("“”„‟«»‘’‚＂")
-    return f"put text in quotes: {line[: value.start()].strip()} = {quoted(bare)}"
-
-
-def _syntax(message: str, text: str) -> str:
-    """Put the place in front of tomllib's message, or of what it comes from."""
-    found = re.fullmatch(r"(.*) \(at (.*)\)", message, re.DOTALL)
-    what, where = found.groups() if found else (message, "")
-    if place := re.fullmatch(r"line ([0-9]+), column ([0-9]+)", where):
-        line = text.replace("\r\n", "\n").split("\n")[int(place[1]) - 1]
-        if len(line) <= LONGEST_LINE and (hint := _unquoted(line, int(place[2]) - 1)):
-            return f"{where}: {hint}"
-    what = "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in what)
-    what = what if len(what) <= 200 else f"{what[:197]}..."
-    if what.startswith(("Cannot overwrite", "Cannot declare", "Cannot mutate")):
-        what += ", a key or table is given twice"
-    return f"{where}: {what[:1].lower()}{what[1:]}; give valid TOML".removeprefix(": ")

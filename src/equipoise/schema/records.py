@@ -10,26 +10,43 @@
 from __future__ import annotations
 
 import os
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any, Literal
 
 import numpy as np
 
-from equipoise.errors import ModelError, UsageError
+from equipoise.errors import ModelError, UsageError, unknown
 from equipoise.exposure.daily import Task
 from equipoise.exposure.spectra import UNEVEN_STEPS, uneven
 from equipoise.exposure.weighting import AXES
 from equipoise.measured.record import Record
 from equipoise.schema.csv_rows import check_width, rows_of, shortened, wrong
 from equipoise.schema.files import read_text
-from equipoise.schema.tables import Forms, arrays_of, header_of, in_table, told_forms, value_of
+from equipoise.schema.tables import (
+    Forms,
+    Taken,
+    arrays_of,
+    header_of,
+    in_table,
+    told_forms,
+    value_of,
+)
 
 Array = np.ndarray[Any, Any]
 
 LARGEST, LARGEST_SIGNAL = 100_000_000, 300_000_000
 """Bytes of a decay, and of accelerations: some millions of rows."""
 _RECORD: Forms = (("time", "displacement"), ("time", "angle"))
+ACCELERATION = "m/s^2"
+_GAUGE = re.compile(rf"gauges\.(?P<name>.+)\.acceleration \[{re.escape(ACCELERATION)}\]")
+"""The column of a gauge's acceleration in a response over time."""
+SWEPT = (
+    "there are gauges, but none with accelerations over time, which `equipoise respond FILE "
+    "--csv` writes at one speed"
+)
 _TASKS: Forms = (("acceleration", "duration"),)
 _SIGNAL: Forms = (("time", *AXES),)
 _SPECTRUM: Forms = (("frequency", *AXES),)
@@ -71,15 +88,28 @@ class Accelerations:
     values: Array
 
 
-def read_accelerations(path: str | os.PathLike[str]) -> Accelerations | tuple[Task, ...]:
-    """Read a signal, a spectrum or the tasks of a day from a CSV file; errors as `read_record`."""
+def read_accelerations(
+    path: str | os.PathLike[str], gauges: Sequence[str] = ()
+) -> Accelerations | tuple[Task, ...]:
+    """Read a signal, a spectrum or the tasks of a day from a CSV file; errors as `read_record`.
+
+    gauges : of a response as `respond` writes it, up to three gauges of one place, whose
+        accelerations are the axes x, y and z; all of the file where none is given.
+    """
     with in_table(path):
-        return parse_accelerations(read_text(path, LARGEST_SIGNAL))
+        return parse_accelerations(read_text(path, LARGEST_SIGNAL), gauges)
 
 
-def parse_accelerations(text: str) -> Accelerations | tuple[Task, ...]:
-    """Read the text of such a file; errors begin with the number of the line."""
+def parse_accelerations(text: str, gauges: Sequence[str] = ()) -> Accelerations | tuple[Task, ...]:
+    """Read the text of a file of accelerations; errors begin with the number of the line.
+
+    gauges : as of `read_accelerations`.
+    """
     number, header = next(rows_of(text), (1, []))
+    if gauges or any(map(_GAUGE.fullmatch, header)):
+        return _of_gauges(text, number, header, gauges)
+    if any(cell.startswith("gauges.") for cell in header):
+        raise wrong(number, SWEPT)
     names = [cell.split("[")[0].strip() for cell in header]
     if "time" in names:
         return _signal(text, names)
@@ -92,8 +122,28 @@ def parse_accelerations(text: str) -> Accelerations | tuple[Task, ...]:
     raise wrong(number, f"got {given}; {right}")
 
 
-def _signal(text: str, names: list[str]) -> Accelerations:
-    axes, columns = _axes(text, "time", names)
+def _of_gauges(text: str, line: int, header: list[str], gauges: Sequence[str]) -> Accelerations:
+    """Accelerations of gauges in what `respond` writes, as those of axes."""
+    known = {match["name"]: cell for cell in header if (match := _GAUGE.fullmatch(cell))}
+    for name in gauges:
+        if name not in known:
+            raise wrong(line, unknown(name, known, "gauge"))
+    chosen = [*dict.fromkeys(gauges or known)]
+    if len(chosen) > (len(AXES) if gauges else 1):
+        names = ", ".join(map(repr, known))
+        raise wrong(line, f"there are the gauges {names}; name that of the hand, or up to three of "
+                          "one place, along x, y and z (gauge)")  # fmt: skip
+    times = [cell for cell in header if cell.startswith("time ")]
+    if not times:
+        raise wrong(line, "a column such as time [s] is missing")
+    heads = {
+        known[name]: f"{axis} [{ACCELERATION}]" for name, axis in zip(chosen, AXES, strict=False)
+    }
+    return _signal(text, [*AXES[: len(chosen)]], {times[0]: times[0], **heads})
+
+
+def _signal(text: str, names: list[str], taken: Taken = None) -> Accelerations:
+    axes, columns = _axes(text, "time", names, taken)
     time = columns["time"]
     worst = uneven(time) if len(time) > 1 else None
     if worst is not None:
@@ -112,10 +162,12 @@ def _spectrum(text: str, names: list[str]) -> Accelerations:
     return Accelerations("frequency", columns["frequency"], axes, values)
 
 
-def _axes(text: str, first: str, names: list[str]) -> tuple[tuple[str, ...], dict[str, Array]]:
+def _axes(
+    text: str, first: str, names: list[str], taken: Taken = None
+) -> tuple[tuple[str, ...], dict[str, Array]]:
     """Axes that a file has, and its columns; one that has none is told of all three."""
     axes = tuple(axis for axis in AXES if axis in names) or AXES
-    return axes, arrays_of(text, ((first, *axes),))
+    return axes, arrays_of(text, ((first, *axes),), taken)
 
 
 def _line(text: str, row: int) -> int:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import fields
 from math import isfinite
@@ -36,7 +36,7 @@ from equipoise.quantities import (
     plain_unit,
 )
 from equipoise.quantities.reading import separators_told, usual_unit
-from equipoise.schema.csv_rows import check_width, rows_of, shortened, wrong
+from equipoise.schema.csv_rows import Row, check_width, rows_of, shortened, wrong
 from equipoise.schema.files import FileError, printable, read_text
 from equipoise.schema.numbers import from_polar
 
@@ -47,6 +47,7 @@ Array: TypeAlias = "np.ndarray[Any, Any]"
 Columns = dict[str, tuple[float, ...]]
 Forms = tuple[tuple[str, ...], ...]
 """Columns of each form of a table; the first must rise from row to row."""
+Taken = Mapping[str, str] | None
 
 COLUMNS: dict[str, tuple[Dimension, str]] = {
     # name: what it is, unit that a header is shown with
@@ -108,9 +109,9 @@ def told_forms(forms: Forms) -> str:
 # -- reading ---------------------------------------------------------------------------------------
 
 
-def columns_of(text: str, forms: Forms) -> Columns:
-    """Columns of a table by name, in SI units and radians."""
-    rows = rows_of(text)
+def columns_of(text: str, forms: Forms, taken: Taken = None) -> Columns:
+    """Columns of a table by name, in SI units and radians; `taken` as of `rows_of`."""
+    rows = rows_of(text, taken)
     number, header = next(rows, (1, []))
     names, unit_of = header_of(number, header, forms)
     columns: list[list[float]] = [[] for _ in names]
@@ -132,21 +133,23 @@ def columns_of(text: str, forms: Forms) -> Columns:
     return by_name
 
 
-def arrays_of(text: str, forms: Forms) -> dict[str, Array]:
-    """The same as arrays (N,), for files of a million rows: cell by cell only to tell a mistake."""
+def arrays_of(text: str, forms: Forms, taken: Taken = None) -> dict[str, Array]:
+    """Columns of a table as arrays (N,), for files of a million rows: cell by cell only to tell a
+    mistake.
+    """
     import numpy as np
 
-    found = _whole(text, forms)
+    found = _whole(rows_of(text, taken), forms)
     if found is None:
-        found = {name: np.array(column) for name, column in columns_of(text, forms).items()}
+        columns = columns_of(text, forms, taken)
+        found = {name: np.array(column) for name, column in columns.items()}
     return found
 
 
-def _whole(text: str, forms: Forms) -> dict[str, Array] | None:
+def _whole(lines: Iterator[Row], forms: Forms) -> dict[str, Array] | None:
     """All columns together; None where a row or cell is not what it should be."""
     import numpy as np
 
-    lines = rows_of(text)
     names, unit_of = header_of(*next(lines, (1, [])), forms)
     cells = [row for _, row in lines]
     if not cells or any(len(row) != len(names) for row in cells):

@@ -160,6 +160,27 @@ def test_links_made_of_bodies_and_their_holes(tmp_path: Path) -> None:
     assert len(svg(machine, tmp_path / "x.svg").findall("{*}g")) == 1
 
 
+@pytest.mark.parametrize(
+    ("section", "words"),
+    [
+        ({"outer_diameter": 0.026, "inner_diameter": 0.023}, "a tube of 26.00 mm with a bore of"),
+        ({"outer_diameter": 0.012}, "a rod of 12.00 mm"),
+        ({"width": 0.03, "thickness": 0.02, "wall": 0.002}, "a tube of 30.00 mm x 20.00 mm with"),
+    ],
+)
+def test_what_is_cut_to_length_is_no_plate(
+    section: dict[str, float], words: str, tmp_path: Path
+) -> None:
+    """A laser would cut a plate as thick as the tube is wide."""
+    bar = eq.mechanism.Body("bar", between=("A", "B"), density=STEEL, **section)  # type: ignore[arg-type]
+    disc = eq.mechanism.Body("disc", at="A", radius=0.06, thickness=0.01, density=STEEL)
+    machine = eq.load("yamashita-1").with_link("crank", bodies=(bar, disc))
+    notes = eq.export(machine, tmp_path / "x.svg")
+    assert any(f"body 1 of 'crank', {words}" in note for note in notes)
+    (part,) = ET.parse(tmp_path / "x.svg").getroot().findall("{*}g")
+    assert part.get("id") == "crank, disc 2"
+
+
 def test_a_model_without_outlines_has_no_parts(tmp_path: Path) -> None:
     with pytest.raises(eq.EquipoiseError, match="tells no outline of anything; give a link bodies"):
         eq.export(eq.load("lee-kim-a"), tmp_path / "x.svg")

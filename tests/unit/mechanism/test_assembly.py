@@ -348,6 +348,25 @@ def test_where_nothing_tells_both_sides_are_listed_with_their_places(name: str) 
         assert complex(x, y) == pytest.approx(place, rel=1e-3, abs=1e-3)
 
 
+def test_places_of_a_pushed_machine_are_those_of_the_pose_that_is_named() -> None:
+    """What its stroke makes of crank angle 0 is another pose; a crank at the boom's angle tells."""
+    machine = eq.load("hydraulic-loader")
+    sides = dict(machine.assembly)
+    del sides["E"]
+    with pytest.raises(ModelError) as caught:
+        eq.mechanism.assemble(replace(machine, assembly=sides))
+    told = re.findall(
+        r'E = "(\w+)"  # at \((.*), (.*)\) mm with boom at (.*) deg', str(caught.value)
+    )
+    assert [words[0] for words in told] == ["parallel", "antiparallel"]
+    crank = replace(machine, drive=eq.Drive("boom", 1.0), loads=())
+    for side, x, y, degrees in told:
+        turned = replace(crank, assembly={**sides, "E": side})
+        place = eq.move(turned, np.radians([float(degrees)])).points["E"]
+        # four digits of some 2000 mm
+        assert [place.x[0], place.y[0]] == pytest.approx([float(x) / 1e3, float(y) / 1e3], abs=1e-3)
+
+
 def test_places_that_hang_on_a_side_before_name_it() -> None:
     """With the other side of C, D is elsewhere."""
     sieve = eq.load("sieve")

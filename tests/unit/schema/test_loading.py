@@ -74,7 +74,11 @@ def test_right_angles_are_exact() -> None:
     ("old", "new", "said"),
     [
         ('mass = "199 g"', 'mass = "1 g"\nmass = "2 g"', "line 16, column 13: cannot overwrite"),
-        ("[assembly]", "[assembly", "line 27, column 10: expected ']'"),
+        (
+            "[assembly]",
+            "[assembly",
+            "line 27, column 10: put the name of a table in brackets: [assembly]",
+        ),
         ("[assembly]", "x = " + "[" * 10**5, "nested too deeply"),
         ("[assembly]", "x = " + "9" * 5000, "thousands of digits"),
         (

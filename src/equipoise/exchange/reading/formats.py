@@ -98,7 +98,7 @@ def import_machine(
     path : of a drawing (DXF, SVG), a model (MJCF, URDF), or a file of Linkage or PMKS+; which it
         is, its content and its ending tell.
     crank : name of the driven link; where nobody tells, one that turns fully.
-    speed : of the crank, rad/s.
+    speed : of the crank, rad/s, other than 0.
     frame : names of layers, colours or groups of a drawing, or of bodies of a model, that stand
         still.
     guide : those of lines on which ends of links slide.
@@ -117,6 +117,8 @@ def import_machine(
     ModelError, UsageError : one sentence: what of the file cannot be read, or which argument.
     """
     source = printable(path) or "''"
+    if speed == 0:
+        raise UsageError("--speed: a crank that stands still moves nothing; give such as 250 rpm")
     bodies = Bodies(tuple(frame), tuple(pin))
     told = Told(Marks(tuple(frame), tuple(guide), tuple(link), tolerance), bodies, unit)
     try:

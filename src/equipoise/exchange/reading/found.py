@@ -140,7 +140,7 @@ def finished(read: Read, crank: str = "", speed: float | None = None) -> Importe
     missing: list[str] = []
     _check(outline)
     name, why = _crank(outline, crank, read.crank)
-    given = speed if speed is not None else read.speed
+    given = speed or read.speed or None  # a drawing's motor that is switched off tells none
     if name:
         outline = replace(outline, drive=Drive(name, USUAL_SPEED if given is None else given))
         if given is None:

@@ -140,13 +140,24 @@ def _given_by(builder: Builder, group: Group, state: State, theta: float) -> str
     assert group.margin is not None
     if not state[group.margin] > STRETCHED:
         return ""
-    at = f"at crank angle {number(degrees(theta))} deg"
+    at = _pose(builder.machine, theta)
     name = f"p({group.joint})"
     if name in group.motion[-1].outputs:  # type: ignore[attr-defined]
         x, y = (number(1e3 * part, SMALL * 1e3 * builder.size()) for part in _parts(state[name]))
         return f"at ({x}, {y}) mm {at}"
     turn = degrees(np.angle(state[f"u({group.links[-1]})"]))
     return f"{group.links[-1]} at {number(turn, 360.0)} deg {at}"
+
+
+def _pose(machine: Machine, theta: float) -> str:
+    """What poses the driven links: of those that are pushed the angle at which they are looked at,
+    since what their strokes make of it is known only once the linkage is assembled.
+    """
+    if machine.turning is None:
+        return f"at crank angle {number(degrees(theta))} deg"
+    angles = {link: float(angle) for link, (angle, *_) in machine.turning.moved(theta).items()}
+    posed = (f"{link} at {number(degrees(angle), 360.0)} deg" for link, angle in angles.items())
+    return f"with {', '.join(posed)}"
 
 
 def _parts(place: complex) -> tuple[float, float]:

@@ -11,8 +11,8 @@ from itertools import combinations
 from math import pi
 from typing import Any, ClassVar, Literal
 
-from equipoise.errors import ModelError
-from equipoise.i18n import to_say
+from equipoise.errors import ModelError, unknown
+from equipoise.i18n import Note, to_say
 from equipoise.keys import (
     NO_INERTIA,
     Conditions,
@@ -84,11 +84,12 @@ def with_density(given: dict[str, Any], prefix: str = "") -> dict[str, Any]:
         raise ModelError("", f"give either {prefix}material or {prefix}density")
     if material not in MATERIALS:
         shown = material if len(material) <= 60 else f"{material[:57]}..."
+        sentence = unknown(shown, MATERIALS, "material")
         raise ModelError(
             f"{prefix}material",
-            f"no material is called {shown!r}; there are {', '.join(map(repr, MATERIALS))}, or "
-            f"give {prefix}density",
-        )
+            Note("{sentence} ({density} stands for any other)", sentence=sentence,
+                 density=f"{prefix}density"),
+        )  # fmt: skip
     return {**given, f"{prefix}density": MATERIALS[material]}
 
 
