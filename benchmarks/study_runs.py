@@ -24,7 +24,7 @@ from equipoise.codegen.batch import Batch, all_angles, designs_of, grid_of
 from equipoise.codegen.figures import Figure
 from equipoise.schema.template import Template
 from equipoise.studies.design_space import Output, Range, Sampling, Vary
-from equipoise.studies.run import run_study
+from equipoise.studies.run import sweep
 from equipoise.studies.sampling import samples
 from equipoise.studies.store import open_store
 from equipoise.studies.study import Study
@@ -127,7 +127,7 @@ def stored(table: Table) -> None:
         path = Path(place, "store")
         tasks = {
             "bare": bare,
-            "sweep": lambda: run_study(study, path, workers=2),
+            "sweep": lambda: sweep(study, path, workers=2),
             "clearing up": lambda: shutil.rmtree(path),
         }
         tasks["sweep"]()
@@ -158,7 +158,7 @@ def measure_memory() -> None:
 
     with tempfile.TemporaryDirectory() as place:
         begin = time.perf_counter()
-        run_study(study_of(MANY), Path(place, "store"))
+        sweep(study_of(MANY), Path(place, "store"))
         seconds = time.perf_counter() - begin
     peak = getrusage(RUSAGE_SELF).ru_maxrss / 1024
     print(json.dumps({"seconds": seconds, "peak": peak}))
@@ -184,7 +184,7 @@ def cluster(table: Table) -> None:
 
             def task() -> None:
                 before = [processor_time(one) for one in processes]
-                run_study(study, place / "store", cluster=address)
+                sweep(study, place / "store", cluster=address)
                 after = [processor_time(one) for one in processes]
                 busy[count].append(max(b - a for a, b in zip(before, after, strict=True)))
                 shutil.rmtree(place / "store")

@@ -34,6 +34,9 @@ from .schema.documents import load as load
 from .schema.documents import loads as loads
 from .schema.documents import save as save
 from .schema.opening import examples as examples
+from .studies.run import sweep as sweep
+from .studies.searching import search as search
+from .studies.tolerances import tolerance as tolerance
 from .vibration.forced import respond as respond
 from .vibration.free import modes as modes
 from .vibration.transient import simulate as simulate

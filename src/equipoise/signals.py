@@ -13,9 +13,15 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.displays import Brief
 from equipoise.errors import UsageError
 
 __all__ = ["Figures", "Periodic", "harmonics"]
+
+
+def __dir__() -> list[str]:
+    return __all__
+
 
 Array = np.ndarray[Any, Any]
 
@@ -255,8 +261,8 @@ def _folded_samples(amplitudes: Array, count: int) -> Array:
     return values
 
 
-@dataclass(frozen=True, eq=False)
-class Periodic:
+@dataclass(frozen=True, eq=False, repr=False)
+class Periodic(Brief):
     """A periodic signal of the crank angle by its orders; one, or an array of them.
 
     amplitudes : complex (..., K + 1), Y_0 ... Y_K; Y_k belongs to order k / turns.

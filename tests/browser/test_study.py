@@ -12,7 +12,7 @@ from playwright.sync_api import Browser, Locator, expect
 
 import equipoise as eq
 from browser.live import AXE, SCREENSHOTS, Live
-from equipoise.studies import run_study
+from equipoise.studies import sweep
 from support.chromium import serving
 from unit.web.test_stores import STUDY
 
@@ -23,7 +23,7 @@ LONG = f"{'a_name_that_cannot_be_broken_' * 3}.zarr"
 def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """The address of a server with a store."""
     path: Path = tmp_path_factory.mktemp("studies") / "lengths.zarr"
-    run_study(eq.loads(STUDY), path, workers=1)
+    sweep(eq.loads(STUDY), path, workers=1)
     long = path.with_name(LONG)
     long.mkdir()
     shutil.copy(path / "zarr.json", long)

@@ -13,7 +13,7 @@ from scipy.stats import norm, sobol_indices, uniform
 from equipoise.studies.design_space import Correlation, Normal, Output, Range, Uniform, Vary
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Evaluator, Outcome
-from equipoise.studies.search import search_designs
+from equipoise.studies.searching import search
 from equipoise.studies.study import Study
 from equipoise.studies.tolerances import Tolerances, tolerance
 from equipoise.studies.variance import effects, tables
@@ -201,7 +201,7 @@ def zdt1(*numbers: Array) -> Array:
 def test_the_front_of_a_known_problem() -> None:
     outputs = tuple(Output(name, value="a.b", make="smallest") for name in ("f", "g"))
     some = replace(of(*[Range(0.0, 1.0)] * 5), outputs=outputs)
-    found = search_designs(some, compute=formula(zdt1), population=60, generations=120)
+    found = search(some, compute=formula(zdt1), population=60, generations=120)
     first, second = found.figures.T
     beyond = second - (1 - np.sqrt(first))
     assert np.all(beyond >= -1e-12)  # nothing is better than the front
@@ -223,7 +223,7 @@ def test_the_front_within_a_limit(seed: int) -> None:
     def squares(x: Array, y: Array) -> Array:
         return np.stack([(x - 0.2) ** 2 + y**2, (x - 0.8) ** 2 + y**2, x], axis=1)
 
-    found = search_designs(some, compute=formula(squares), population=40, generations=60, seed=seed)
+    found = search(some, compute=formula(squares), population=40, generations=60, seed=seed)
     x, y = found.values.T
     assert np.max(np.abs(y)) < 0.02
     assert np.min(x) == pytest.approx(0.2, abs=0.02)

@@ -166,7 +166,7 @@ def main(command: str, path: str) -> None:
     """In a process that is going to be killed: a sweep of the short study, or its resumption."""
     run.evaluator = lambda study, threads: Formulas(pause=0.02)
     if command == "sweep":
-        run.run_study(short_study(), path, workers=2)
+        run.sweep(short_study(), path, workers=2)
     else:
         run.resume(path, restore, workers=1)
 

@@ -29,8 +29,7 @@ from equipoise.measured import fits
 from equipoise.planting import search, variables
 from equipoise.planting.figures import SAMPLES_OF_TURN
 from equipoise.schema.files import LARGEST
-from equipoise.studies import cloud, outcomes, study, tolerances, variance
-from equipoise.studies import search as searching
+from equipoise.studies import cloud, outcomes, searching, study, tolerances, variance
 from equipoise.vibration import collocation, coupled, steady, transient
 from equipoise.web import stores, variants
 from surface.running import example_text, read, written

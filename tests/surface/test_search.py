@@ -33,9 +33,7 @@ def test_json_is_what_python_has() -> None:
     result = equipoise("search", study, *QUICK, "--seed", "5", "--json")
     assert result.out.count("\n") == 1
     found = json.loads(succeeded(result))
-    own = eq.studies.search_designs(
-        eq.schema.load_study(study), population=12, generations=8, seed=5
-    )
+    own = eq.studies.search(eq.schema.load_study(study), population=12, generations=8, seed=5)
     expected = own.to_dict()
     assert found == expected
     line = result.err.splitlines()[-1]
@@ -54,7 +52,7 @@ def test_the_front_as_a_table() -> None:
     """Beside the model itself, in the units of the files."""
     study = eq.schema.load_study(written(FRONT))
     shown = succeeded(equipoise("search", "study.toml", *QUICK))
-    own = eq.studies.search_designs(study, population=12, generations=8)
+    own = eq.studies.search(study, population=12, generations=8)
     assert shown.startswith(f"Lengths of type I\n{own.computed} designs in 8 generations, seed 1")
     assert "Limits: vertical at most 13000 mN" in shown
     assert f"{own.front} designs that no other beats; vertical smallest, torque largest" in shown
@@ -84,7 +82,7 @@ def test_files() -> None:
     with Path("front.csv").open(newline="", encoding="utf-8") as file:
         head, *rows = csv.reader(file)
     assert head[:2] == ["design", "links.coupler.points.C.x [m]"]
-    own = eq.studies.search_designs(eq.schema.load_study(study), population=12, generations=8)
+    own = eq.studies.search(eq.schema.load_study(study), population=12, generations=8)
     assert np.array(rows, float)[:, 1:3].tolist() == own.values.tolist()
     made = eq.load("new.toml")
     assert made.links == own.machine(1).links

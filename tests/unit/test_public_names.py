@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 import equipoise as eq
+from equipoise import cli
 
 PAGE = Path(__file__).parents[2] / "docs" / "python.md"
 HEAVY = ("numpy", "pandas", "xarray", "pint", "pydantic", "rich", "scipy", "numba", "cyclopts")
@@ -64,7 +65,18 @@ def test_a_name_means_one_thing() -> None:
     found: dict[str, Any] = {}
     for name, one in NAMES.items():
         assert found.setdefault(name.rpartition(".")[2], one) is one, name
-    assert len(eq.__all__) <= 40
+
+
+COMMANDS = ("analyze", "balance", "export", "modes", "plant", "report", "respond", "search",
+            "simulate", "sweep", "tolerance")  # fmt: skip
+
+
+def test_what_a_command_does_is_found_under_its_name() -> None:
+    """Who knows the command line looks for it at the top, and for nothing but that: what is there
+    beside are files, and the parts of a machine.
+    """
+    assert {*COMMANDS} <= {*cli.COMMANDS}
+    assert {*COMMANDS} <= {*eq.__all__}
 
 
 @pytest.mark.parametrize("name", ROOMS)
@@ -153,12 +165,20 @@ WRONG: dict[str, tuple[Callable[[], object], str]] = {
     ),
     "too few": (eq.analyze, "analyze: missing a required argument: 'machine'; it takes machine,"),
     "text for number": (
-        lambda: eq.simulate(MODEL, "1 s"),  # type: ignore[arg-type]
-        "simulate: duration: got '1 s'; give a number in SI units",
+        lambda: eq.mechanism.Gear("a", "b", "3"),  # type: ignore[arg-type]
+        "ratio: got '3'; give a number",
+    ),
+    "unit of another kind": (
+        lambda: eq.simulate(MODEL, "1 kg"),
+        "duration: got '1 kg'; kg is the unit of a mass; a time is wanted: s, ms, min, h",
+    ),
+    "unit of a key": (
+        lambda: MODEL.with_link("crank", mass="1 mm"),
+        "links.crank.mass: got '1 mm'; mm is the unit of a length; a mass is wanted",
     ),
     "machine for study": (
-        lambda: eq.studies.run_study(MODEL, "x"),  # type: ignore[arg-type]
-        "run_study: study: got one of the type Machine; give a Study",
+        lambda: eq.studies.sweep(MODEL, "x"),  # type: ignore[arg-type]
+        "sweep: study: got one of the type Machine; give a Study",
     ),
     "swapped": (lambda: eq.save("a.toml", MODEL), "save: model: got 'a.toml'; give a Machine or"),  # type: ignore[arg-type]
     "no list": (lambda: MODEL.with_springs(5), "with_springs: springs: got 5; give a list"),  # type: ignore[arg-type]

@@ -27,7 +27,7 @@ from equipoise.mechanism.parts.balance import Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import OF_ROWS
 from equipoise.mechanism.parts.support import Row
-from equipoise.quantities import display, fixed, told
+from equipoise.quantities import display, fixed, in_si, told
 from equipoise.results.blocks import Block, Cell, Column, Table, Text, Value
 from equipoise.results.outputs import output_named
 from equipoise.signals import Array
@@ -179,16 +179,18 @@ def pattern_named(name: str) -> Pattern:
     return known[name]
 
 
-def arranged(machine: Machine, pattern: str | Pattern, spacing: float) -> Machine:
+def arranged(machine: Machine, pattern: str | Pattern, spacing: float | str) -> Machine:
     """The machine with rows side by side in a pattern, about the plane of the file.
 
-    spacing : from row to row, m.  An offset of the machine's first row is kept.
+    spacing : from row to row, m, or a text such as ``"300 mm"``.  An offset of the first row is
+        kept.
 
     Raises
     ------
     UsageError : there is no such pattern, or the spacing is not above 0.
     """
     chosen = pattern_named(pattern) if isinstance(pattern, str) else pattern
+    spacing = in_si(spacing, "length", "spacing")
     if not 0 < spacing < float("inf"):
         raise UsageError(f"got a spacing of {spacing:g} m; give more than 0")
     offset = machine.rows[0].offset if machine.rows else (0.0, 0.0)

@@ -109,7 +109,7 @@ def search(
     from equipoise.schema.studies import load_study
     from equipoise.schema.study_units import units_of
     from equipoise.studies.blocks import columns_of
-    from equipoise.studies.search import search_designs, search_size
+    from equipoise.studies.searching import search, search_size
 
     asked = load_study(study)
     outputs.check([study], [chosen.out])
@@ -119,7 +119,7 @@ def search(
         size, turns = search_size(asked, population, generations)
         units = units_of(asked)
         with swept(units) as told, Watched(asked, told, workers) as watched:
-            found = search_designs(
+            found = search(
                 asked,
                 population=size,
                 generations=turns,

@@ -75,13 +75,13 @@ def sweep(
     """
     from equipoise.schema.studies import load_study
     from equipoise.schema.study_units import units_of
-    from equipoise.studies.run import run_study
+    from equipoise.studies.run import sweep
 
     asked = load_study(study)
     if not out:
         raise UsageError("--out: missing; say where the store is to be, such as -o designs.zarr")
     with naming(study), outputs.showing(asked):
-        work = partial(run_study, asked, out, **vars(computers))
+        work = partial(sweep, asked, out, **vars(computers))
         _compute(work, out, units_of(asked), outputs)
 
 

@@ -8,13 +8,14 @@ from equipoise.errors import UsageError
 from equipoise.results.charts import Chart
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 Kind = Literal["svg", "png", "pdf"]
 Picture = Chart
 """What can be drawn."""
 
-__all__ = ["Kind", "Picture", "drawn", "figure", "plot", "render", "unwritten"]
+__all__ = ["Kind", "Picture", "drawn", "plot", "render", "unwritten"]
 
 
 def render(picture: Chart, kind: Kind = "svg") -> bytes:
@@ -52,28 +53,23 @@ def drawn(picture: Chart) -> tuple[str, bool]:
     return svg_of(lay_out(picture, WIDE if wide else HALF, headed=False)), wide
 
 
-def figure(picture: Chart) -> Figure:
-    """The picture as a figure of Matplotlib."""
-    from equipoise.figures.layout import lay_out
-    from equipoise.figures.paint import figure_of
+def plot(result: Any, name: str = "", ax: Axes | None = None) -> Figure:
+    """A picture of a result as a figure of Matplotlib, which a notebook shows.
 
-    return figure_of(lay_out(picture))
-
-
-def plot(result: Any, *names: str) -> Figure | dict[str, Figure]:
-    """Pictures of a result by name: the one that is named, or all by their names.
+    name : of the picture; the first that the result has where not given.
+    ax : axes in which it is drawn, as large as they are; those of a new figure where not given.
 
     Raises
     ------
     UsageError : there is no such picture.
     """
+    from equipoise.figures.layout import lay_out
+    from equipoise.figures.paint import figure_of, paint_in
     from equipoise.figures.pictures import pictures_of
     from equipoise.mechanism.checks import unknown
 
     found = pictures_of(result)
-    for name in names:
-        if name not in found:
-            raise UsageError(unknown(name, found, "picture"))
-    if len(names) == 1:
-        return figure(found[names[0]])
-    return {name: figure(found[name]) for name in names or found}
+    if name and name not in found:
+        raise UsageError(unknown(name, found, "picture"))
+    sheet = lay_out(found[name or next(iter(found))])
+    return figure_of(sheet) if ax is None else paint_in(ax, sheet)

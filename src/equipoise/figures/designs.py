@@ -32,7 +32,7 @@ from equipoise.studies.blocks import unit_in
 from equipoise.studies.cloud import Cloud
 
 if TYPE_CHECKING:
-    from equipoise.studies.search import Searched
+    from equipoise.studies.searching import Searched
     from equipoise.studies.selection import Best
     from equipoise.studies.store import Store
 

@@ -135,32 +135,64 @@ def settings(sheet: Sheet | None = None) -> Iterator[None]:
         yield
 
 
+class ShownFigure(Figure):
+    """A figure that a notebook shows without pyplot, as it is when the cell ends."""
+
+    def _repr_png_(self) -> bytes:
+        return _saved(self, "png")
+
+
 def figure_of(sheet: Sheet) -> Figure:
     """A sheet as a figure, one unit of whose axes is a point."""
     with settings(sheet):
-        figure = Figure(figsize=(sheet.width / 72, sheet.height / 72), facecolor=PAPER)
+        figure = ShownFigure(figsize=(sheet.width / 72, sheet.height / 72), facecolor=PAPER)
         FigureCanvasAgg(figure)
-        axes = figure.add_axes((0, 0, 1, 1))
-        axes.set_axis_off()
-        axes.set_xlim(0, sheet.width)
-        axes.set_ylim(sheet.height, 0)
-        for order, item in enumerate(sheet.items):
-            _paint(axes, item, order)
+        _paint_all(figure.add_axes((0, 0, 1, 1)), sheet, 1.0)
     return figure
+
+
+def paint_in(axes: Axes, sheet: Sheet) -> Figure:
+    """A sheet in axes that are there, as large as fits; the figure that these belong to."""
+    figure = axes.get_figure(root=True)
+    assert isinstance(figure, Figure)
+    box = axes.get_window_extent()
+    wide, high = (72 * length / figure.dpi for length in (box.width, box.height))
+    with settings(sheet):
+        axes.clear()
+        axes.set_aspect("equal", anchor="NW")
+        _paint_all(axes, sheet, min(wide / sheet.width, high / sheet.height))
+    return figure
+
+
+def _paint_all(axes: Axes, sheet: Sheet, scale: float) -> None:
+    """All of a sheet in axes whose unit is a point of it.
+
+    scale : points of the figure in one of the sheet.
+    """
+    axes.set_axis_off()
+    axes.set_xlim(0, sheet.width)
+    axes.set_ylim(sheet.height, 0)
+    for order, item in enumerate(sheet.items):
+        _paint(axes, item, order, scale)
 
 
 def painted(sheet: Sheet, kind: Kind) -> bytes:
     """A sheet as a file of Matplotlib."""
-    figure, file = figure_of(sheet), BytesIO()
+    return _saved(figure_of(sheet), kind, sheet)
+
+
+def _saved(figure: Figure, kind: Kind, sheet: Sheet | None = None) -> bytes:
+    file = BytesIO()
     with settings(sheet):
         figure.savefig(file, format=kind, metadata=METADATA[kind])
     return file.getvalue()
 
 
-def _paint(axes: Axes, item: Item, order: int) -> None:
+def _paint(axes: Axes, item: Item, order: int, scale: float) -> None:
+    """An item; its widths and letters are points, its places units of the axes."""
     artist: Any
     if isinstance(item, Words):
-        _write(axes, item, order)
+        _write(axes, item, order, scale)
         return
     if isinstance(item, Signs) and item.shape in SHAPES:
         outlines = tuple(place + item.size * np.array(SHAPES[item.shape]) for place in item.places)
@@ -168,12 +200,12 @@ def _paint(axes: Axes, item: Item, order: int) -> None:
     if isinstance(item, Signs):
         artist = Line2D(*item.places.T, linestyle="none", marker=item.shape, zorder=order)
         wide = 2 * item.size if item.shape == "." else item.size
-        artist.set(markersize=wide, markeredgecolor=item.edge, markerfacecolor=item.face)
-        artist.set(markeredgewidth=0 if item.shape == "." else item.width)
+        artist.set(markersize=scale * wide, markeredgecolor=item.edge, markerfacecolor=item.face)
+        artist.set(markeredgewidth=0 if item.shape == "." else scale * item.width)
     else:
         look: Any = {"facecolor": item.fill or "none", "edgecolor": item.color or "none"}
-        look |= {"linewidth": item.width if item.color else 0.0, "joinstyle": "round"}
-        look |= {"linestyle": (0, item.dashes)} if item.dashes else {}
+        look |= {"linewidth": scale * item.width if item.color else 0.0, "joinstyle": "round"}
+        look |= {"linestyle": (0, [scale * one for one in item.dashes])} if item.dashes else {}
         look |= {"alpha": item.opacity} if item.opacity < 1 else {}
         cap: Any = "round" if item.round else "butt"
         artist = PathPatch(_path(item), capstyle=cap, zorder=order, **look)
@@ -198,7 +230,7 @@ def _path(stroke: Stroke) -> Path:
     return Path.make_compound_path(*parts)
 
 
-def _write(axes: Axes, words: Words, order: int) -> None:
+def _write(axes: Axes, words: Words, order: int, scale: float) -> None:
     if words.backed:
         left, top, right, bottom = box_of(words)
         look: Any = {"facecolor": PAPER, "alpha": BACK, "linewidth": 0, "zorder": order}
@@ -211,5 +243,5 @@ def _write(axes: Axes, words: Words, order: int) -> None:
         place = {"ha": "right", "va": upright[words.anchor], "rotation": 90}
         x += 0.22 * words.size
     weight = "bold" if words.bold else "normal"
-    place |= {"fontsize": words.size, "color": words.color, "fontweight": weight}
+    place |= {"fontsize": scale * words.size, "color": words.color, "fontweight": weight}
     axes.text(x, words.y, words.text, zorder=order + 0.5, **place)

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, ClassVar, Literal
 
+from equipoise.displays import Displayed
 from equipoise.errors import ModelError
 from equipoise.handheld.design_plan import SPEEDS, DesignPlan, unknown_station, wrong_design
 from equipoise.handheld.shaft import Shaft
@@ -206,7 +207,7 @@ class ShaftTable(Frozen):
 
 
 @declared
-class Tool(Frozen):
+class Tool(Displayed, Frozen):
     """A hand-held tool: a shaft in bending, what sits on it and what shakes it."""
 
     beside: ClassVar[Keys] = {"schema": VERSION}
@@ -227,6 +228,14 @@ class Tool(Frozen):
     units: ShownUnits | None = key(
         Table(ShownUnits), "in which values are shown, as by `--units`", default=None
     )
+
+    def __repr__(self) -> str:  # its own, so that dataclass makes none
+        return Displayed.__repr__(self)
+
+    @property
+    def caption(self) -> str:
+        """Its title, for a line."""
+        return repr(str(self.title))
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Tool:

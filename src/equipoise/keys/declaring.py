@@ -9,7 +9,7 @@ from math import degrees
 from types import MappingProxyType
 from typing import Any, ClassVar, Self, TypeVar, dataclass_transform
 
-from equipoise.errors import ModelError
+from equipoise.errors import ModelError, UsageError
 from equipoise.guarding import keyworded
 from equipoise.i18n import Note
 from equipoise.keys.base import Kind, Record
@@ -144,7 +144,8 @@ def once(compute: Callable[[type[Frozen]], Result]) -> Callable[[type[Frozen]], 
 
 class Frozen(Record):
     """Base of the frozen dataclasses of a model: numbers as floats, lists as tuples, mappings
-    read-only, each checked by its kind when the object is made.
+    read-only, each checked by its kind when the object is made.  A quantity may be given as the
+    text that a file has, such as ``"300 rpm"``.
 
     beside : keys of the file that are no fields, by name; `from_table` and `to_table` translate.
     file_order : names of keys in the order of the file, where it is not that of the fields.
@@ -170,6 +171,8 @@ class Frozen(Record):
                 text = repr(value)
                 shown = text if len(text) <= 60 else f"{text[:57]}..."
                 raise ModelError(one.field, f"got {shown}; give {one.kind.wanted}") from None
+            except UsageError as error:
+                raise ModelError(one.field, error.note) from None
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Any:

@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from equipoise.i18n import LANGUAGES, Note, Worded
 from equipoise.keys.base import Kind, Record
-from equipoise.quantities import Dimension
+from equipoise.quantities import Dimension, in_si
 
 MOST_WHOLE = 1_000_000
 
@@ -75,9 +75,12 @@ class Number(Kind):
 
 @dataclass(frozen=True)
 class Quantity(Number):
-    """A number with a unit in the file, in SI units in Python."""
+    """A number with a unit in the file, in SI units in Python, where the text of a file will do."""
 
     dimension: Dimension = "length"
+
+    def check(self, value: Any) -> float:
+        return super().check(in_si(value, self.dimension))
 
 
 @dataclass(frozen=True)
@@ -191,7 +194,7 @@ class Point(Kind):
     def check(self, value: Any) -> Any:
         if self.named and isinstance(value, str):
             return value
-        row = tuple(map(Number().check, items_of(value)))
+        row = tuple(map(Quantity(dimension="length").check, items_of(value)))
         row = (*row, 0.0) if self.space and len(row) == 2 else row
         if len(row) != (3 if self.space else 2):
             raise ValueError
@@ -205,8 +208,8 @@ class Direction(Kind):
     wanted = "an angle, or three numbers"
 
     def check(self, value: Any) -> float | tuple[float, ...]:
-        if isinstance(value, Real):
-            return Number().check(value)
+        if isinstance(value, Real | str):
+            return Quantity(dimension="angle").check(value)
         if len(row := tuple(map(Number().check, items_of(value)))) != 3:
             raise ValueError
         return row

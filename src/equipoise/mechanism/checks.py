@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import pi
 from typing import Any, TypeVar
 
+from equipoise.displays import brief, names_of
 from equipoise.errors import ModelError, form_of, meant, unknown
 from equipoise.i18n import Note, Worded
 
@@ -57,6 +58,9 @@ class Named(dict[str, Value]):
     def __init__(self, kind: str, items: Iterable[tuple[str, Value]]) -> None:
         super().__init__(items)
         self.kind = kind
+
+    def __repr__(self) -> str:
+        return f"{{{names_of(f'{name!r}: {brief(value)}' for name, value in self.items())}}}"
 
     def __missing__(self, name: str) -> Value:
         raise KeyError(unknown(name, self, self.kind))

@@ -165,13 +165,14 @@ def _nest(result: dict[str, Any], name: str, value: float) -> None:
     result[last] = value
 
 
-def plant(machine: Machine, speed: float | None = None) -> PlantingFigures:
+def plant(machine: Machine, speed: float | str | None = None) -> PlantingFigures:
     """Read the planting figures off a machine.
 
     Parameters
     ----------
     machine : with a `planting`.
-    speed : of the crank, rad/s; that of the machine where not given.
+    speed : of the crank, rad/s, or a text such as ``"300 rpm"``; that of the machine where not
+        given.
 
     Raises
     ------

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from equipoise.displays import Displayed
     from equipoise.quantities import Dimension
     from equipoise.results.blocks import Block, Section
     from equipoise.results.result import Result
@@ -44,8 +45,8 @@ def show_blocks(
     print_blocks(title, blocks, width)
 
 
-def html_of(result: Result) -> str:
-    """What a result shows as a part of a page; a notebook asks for it."""
-    from equipoise.present import pages
+def html_of(value: Displayed) -> str:
+    """What a notebook shows of a result, a machine, its motion or its forces: a part of a page."""
+    from equipoise.present import notebook
 
-    return pages.html_of(result)
+    return notebook.html_of(value)

@@ -17,7 +17,7 @@ from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Evaluator, Outcome, estimated
 from equipoise.studies.run import Route
 from equipoise.studies.sampling import samples
-from equipoise.studies.search import LEAST_POPULATION, breeding_time, search_size
+from equipoise.studies.searching import LEAST_POPULATION, breeding_time, search_size
 from equipoise.studies.study import SLOW_CHUNK
 from equipoise.studies.tolerances import machines_of
 

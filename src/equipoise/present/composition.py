@@ -13,7 +13,9 @@ from equipoise.balancing.outcome import nothing_told
 from equipoise.errors import UsageError
 from equipoise.handheld import blocks as of_tools
 from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
+from equipoise.handheld.model import Tool
 from equipoise.i18n import LANGUAGES, Note, said, say, speaking, to_say
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.planting.blocks import planting_blocks
 from equipoise.present.drawing import drawings
@@ -213,8 +215,10 @@ def _sections(
             sections.append(Section(name, title, tuple(short), seen.get(name, "")))
         if long:
             appendix.append(Section(name, title, tuple(long)))
-    listing = Listing(found.file, found.text)
-    return tuple(sections), (*appendix, Section("file", say(TITLES["file"]), (listing,)))
+    if found.text:
+        listing = Listing(found.file, found.text)
+        appendix.append(Section("file", say(TITLES["file"]), (listing,)))
+    return tuple(sections), tuple(appendix)
 
 
 def parted(blocks: Iterable[Block | Section]) -> tuple[list[Block | Section], list[Block]]:
@@ -283,19 +287,21 @@ def kind_of(out: str | os.PathLike[str]) -> str:
 
 
 def report(
-    path_or_name: str | os.PathLike[str],
+    model: str | os.PathLike[str] | Machine | Tool,
     *outs: str | os.PathLike[str],
     language: str = "en",
-    speed: float | None = None,
+    speed: float | str | None = None,
     command: str = "",
 ) -> None:
-    """Write a report of a model file, or of a bundled example by its name.
+    """Write a report of a machine or a tool.
 
     Parameters
     ----------
+    model : the machine or tool, the path of its file, or the name of a bundled example.
     outs : files to write, pages as ``.html`` or PDF as ``.pdf`` by the ends of their names.
     language : ``en``, ``ja`` or ``ko``.
-    speed : of the crank, or of the tool's engine, rad/s; the file's where not given.
+    speed : of the crank, or of the tool's engine, rad/s, or a text such as ``"300 rpm"``; the
+        model's where not given.
     command : that makes the report again, told at its end.
 
     Raises
@@ -305,7 +311,9 @@ def report(
     EquipoiseError : a PDF is wanted, and Typst is not installed.
     """
     check(outs, language)
-    found = find(path_or_name, speed=speed)
+    if not outs:
+        raise UsageError("report: no file is named; give one such as 'report.html'")
+    found = find(model, speed=speed)
     write_document(build(found, language, command, together=True), outs)
 
 

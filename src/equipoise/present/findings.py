@@ -8,8 +8,11 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, wraps
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
-from equipoise.errors import EquipoiseError, UsageError, at_place
-from equipoise.i18n import Note, in_each, say, to_say
+from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
+from equipoise.handheld.model import Tool
+from equipoise.i18n import Note, in_each, said, say, to_say
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.quantities import in_si
 from equipoise.results.analysis import ANGLES
 
 if TYPE_CHECKING:
@@ -18,10 +21,8 @@ if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.handheld.design import ToolDesign
     from equipoise.handheld.exposed import ToolExposure
-    from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
     from equipoise.handheld.sweep import ToolSweep, Transmissions
-    from equipoise.mechanism.parts.machine import Machine
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
     from equipoise.vibration.free import FreeVibration
@@ -219,16 +220,17 @@ SHOWN_SWINGING = to_say(", swinging as its crank cannot turn fully")
 
 
 def find(
-    path_or_name: str | os.PathLike[str],
+    model: str | os.PathLike[str] | Machine | Tool,
     *,
     angles: int = ANGLES,
-    speed: float | None = None,
+    speed: float | str | None = None,
     swings: bool = False,
 ) -> Findings | ToolFindings:
-    """Everything that can be told of a model file, or of a bundled example by its name.
+    """Everything that can be told of a machine or a tool.
 
+    model : the machine or tool, the path of its file, or the name of a bundled example.
     angles : crank angles in a turn.
-    speed : of the crank, or of the tool's engine, rad/s; the file's where not given.
+    speed : of the crank, or of the tool's engine, rad/s or a text; the model's where not given.
     swings : whether a crank that cannot turn is shown swinging, which the title then says.
 
     Raises
@@ -237,23 +239,38 @@ def find(
     UsageError : the tool has no speed that could be another.
     """
     from equipoise.mechanism.kinematics.swings import swing
-    from equipoise.schema.files import printable
-    from equipoise.schema.models import loads_linkage, loads_tool
-    from equipoise.schema.opening import kind_of_text, opened
 
-    file = opened(path_or_name)
-    name = printable(os.path.basename(path_or_name))
-    if kind_of_text(file.text) == "tool":
-        tool = loads_tool(file.text, file.source, file.folder)
-        return ToolFindings(_at_speed(tool, speed), file.text, name)
-    machine = loads_linkage(file.text, file.source, file.folder)
-    if speed is not None:
-        machine = machine.with_drive(speed=speed)
+    given, text, name = _with_text(model)
+    speed = in_si(speed, "angular speed", "speed")
+    if isinstance(given, Tool):
+        return ToolFindings(_at_speed(given, speed), text, name)
+    machine = given if speed is None else given.with_drive(speed=speed)
     found = swing(machine) if swings else None
     if found is None:
-        return Findings(machine, file.text, name, angles)
+        return Findings(machine, text, name, angles)
     title = in_each(machine.title, lambda own: f"{own}{say(SHOWN_SWINGING)}")
-    return Findings(replace(found.machine, title=title), file.text, name, angles, found.note)
+    return Findings(replace(found.machine, title=title), text, name, angles, found.note)
+
+
+def _with_text(
+    model: str | os.PathLike[str] | Machine | Tool,
+) -> tuple[Machine | Tool, str, str]:
+    """A machine or a tool, the text of its file, and the name of that; without a file its title,
+    and no text where it has what no file can hold.
+    """
+    from equipoise.schema.files import printable
+    from equipoise.schema.models import dumped, loads_linkage, loads_tool
+    from equipoise.schema.opening import kind_of_text, opened
+
+    if isinstance(model, Machine | Tool):
+        try:
+            return model, dumped(model), said(model.title)
+        except ModelError:
+            return model, "", said(model.title)
+    file = opened(model)
+    read = loads_tool if kind_of_text(file.text) == "tool" else loads_linkage
+    name = printable(os.path.basename(model))
+    return read(file.text, file.source, file.folder), file.text, name
 
 
 def _at_speed(tool: Tool, speed: float | None) -> Tool:

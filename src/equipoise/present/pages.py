@@ -5,6 +5,7 @@ and as PDF set by Typst.
 from __future__ import annotations
 
 import re
+from base64 import b64encode
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -19,7 +20,7 @@ from markupsafe import Markup
 
 import equipoise
 from equipoise.errors import EquipoiseError
-from equipoise.i18n import said, say, speaking, spoken
+from equipoise.i18n import say, speaking, spoken
 from equipoise.present.cells import Grid, Head, Text, grid, noted, printed, sign_of
 from equipoise.present.colors import colored, colors
 from equipoise.present.fonts import boxes, check_pdf, families, installed
@@ -27,7 +28,6 @@ from equipoise.present.layout import Looks
 from equipoise.quantities import Units, showing
 from equipoise.results.blocks import Block, Drawn, Emphasis, Section, Table
 from equipoise.results.blocks import Text as RunningText
-from equipoise.results.result import Result
 from equipoise.symbols.looks import LIGHT
 
 
@@ -130,11 +130,14 @@ def inlined(svg: str, name: str, title: str) -> str:
     return _SPACE.sub(" ", f"{opening}{body}").strip()
 
 
-def html_of(result: Result) -> str:
-    """What a result shows as a part of a page; a notebook asks for it."""
+def part_of_page(title: str, blocks: Iterable[Block | Section], picture: str = "") -> str:
+    """Blocks below a title as a part of a page that has no style of its own.
+
+    picture : SVG above them, as an image, so that its names meet no other picture's.
+    """
     template = _environment().get_template("notebook.html.j2")
-    blocks = (*result.headline(), *result.blocks())
-    return template.render(language=spoken(), title=said(result.title), blocks=blocks)
+    image = b64encode(picture.encode()).decode()
+    return template.render(language=spoken(), title=title, blocks=(*blocks,), image=image)
 
 
 def page(document: Document) -> str:

@@ -19,6 +19,7 @@ from equipoise.quantities.numbers import chosen_units as chosen_units
 from equipoise.quantities.numbers import display as display
 from equipoise.quantities.numbers import display_rules as display_rules
 from equipoise.quantities.numbers import fixed as fixed
+from equipoise.quantities.numbers import headed as headed
 from equipoise.quantities.numbers import in_unit as in_unit
 from equipoise.quantities.numbers import number as number
 from equipoise.quantities.numbers import percent as percent
@@ -30,6 +31,7 @@ from equipoise.quantities.numbers import typeset as typeset
 from equipoise.quantities.reading import NUMBER as NUMBER
 from equipoise.quantities.reading import described as described
 from equipoise.quantities.reading import format_exact as format_exact
+from equipoise.quantities.reading import in_si as in_si
 from equipoise.quantities.reading import parse as parse
 from equipoise.quantities.reading import pattern as pattern
 from equipoise.quantities.reading import plain_unit as plain_unit

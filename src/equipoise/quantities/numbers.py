@@ -339,3 +339,8 @@ def display_rules() -> Mapping[str, Any]:
     units = sorted({*FACTORS, *_MORE, "%"}, key=lambda unit: (-len(unit), unit))
     lengths = {unit: float(FACTORS[unit]) for unit in KINDS["length"].units}
     return {"least": LEAST, "most": MOST, "units": units, "lengths": lengths}
+
+
+def headed(name: str, unit: str) -> str:
+    """The head of a column of numbers: its name, and its unit where it has one."""
+    return f"{name} [{unit}]" if unit else name

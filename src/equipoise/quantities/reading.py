@@ -11,8 +11,9 @@ import re
 from decimal import Decimal, localcontext
 from functools import cache
 from math import isfinite
+from typing import overload
 
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, at_place
 from equipoise.i18n import Note, to_say
 from equipoise.quantities.numbers import chosen_unit
 from equipoise.quantities.units import FACTORS, HUGE, KINDS, TINY, Dimension, Kind
@@ -334,6 +335,27 @@ def parse(text: object, dimension: Dimension) -> float:
     if not isfinite(value) or abs(value) > HUGE or 0 < abs(value) < TINY:
         raise UsageError(too_far(text))
     return value
+
+
+@overload
+def in_si(value: float | str, dimension: Dimension, name: str = "") -> float: ...
+
+
+@overload
+def in_si(value: None, dimension: Dimension, name: str = "") -> None: ...
+
+
+def in_si(value: float | str | None, dimension: Dimension, name: str = "") -> float | None:
+    """A quantity in SI units, of a text such as ``"300 rpm"`` or of the number that it is already.
+
+    name : of the argument, for the error of `parse`.
+    """
+    if not isinstance(value, str):
+        return value
+    try:
+        return parse(value, dimension)
+    except UsageError as error:
+        raise UsageError(at_place(name, error.note) if name else error.note) from None
 
 
 def format_exact(value: float, dimension: Dimension) -> str:

@@ -29,7 +29,7 @@ from equipoise.mechanism.outputs.declared import DECLARED, Found
 from equipoise.mechanism.parts.machine import Machine, Vector
 from equipoise.mechanism.parts.places import in_frame
 from equipoise.mechanism.parts.support import idle_parts
-from equipoise.quantities import Dimension
+from equipoise.quantities import Dimension, headed
 from equipoise.results.lost_contacts import lost_contacts
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
@@ -294,11 +294,14 @@ class Analysis(Result):
         return xarray.Dataset(arrays, coordinate, attrs=self._heading)
 
     def to_frame(self) -> pandas.DataFrame:
-        """Every array as a column of a `pandas.DataFrame` over crank angle; loads pandas."""
+        """Every array as a column of a `pandas.DataFrame` over crank angle, by name and SI unit
+        such as ``drive_torque [N m]``; loads pandas.
+        """
         import pandas
 
-        index = pandas.Index(self.crank_angle, name="crank_angle")
-        return pandas.DataFrame({one.name: one.values for one in self.outputs.arrays}, index=index)
+        index = pandas.Index(self.crank_angle, name=headed("crank_angle", "rad"))
+        columns = {headed(one.name, one.unit): one.values for one in self.outputs.arrays}
+        return pandas.DataFrame(columns, index=index)
 
 
 def _of_one_row(found: Forces) -> Array:
@@ -387,8 +390,8 @@ def _parts(values: Array) -> Any:
 def analyze(
     machine: Machine,
     angles: int | Sequence[float] | np.ndarray[Any, Any] = ANGLES,
-    speed: float | None = None,
-    acceleration: float | None = None,
+    speed: float | str | None = None,
+    acceleration: float | str | None = None,
     about: str | Vector | complex | None = None,
 ) -> Analysis:
     """Motion and forces of a machine.
@@ -397,7 +400,8 @@ def analyze(
     ----------
     angles : number of crank angles in each turn, equally spaced from 0 over the whole cycle (which
         takes several turns where gears or loops need them), or the crank angles themselves, rad.
-    speed, acceleration : of the crank, rad/s and rad/s2; those of the machine where not given.
+    speed, acceleration : of the crank, rad/s and rad/s2, or texts such as ``"300 rpm"``; those of
+        the machine where not given.
     about : point about which moments are taken, a name or (x, y) in m; the drive pivot if None.
 
     Returns

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import fields
-from importlib import import_module
 from numbers import Number
 from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 
+from equipoise.displays import Displayed, room
 from equipoise.mechanism.parts.shown_units import units_of
-from equipoise.quantities import showing_by_default
+from equipoise.quantities import headed, showing_by_default
 from equipoise.signals import Array
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ ABSCISSAE |= {"orders": "", "values": ""}
 beside what it stands in."""
 
 
-class Result:
+class Result(Displayed):
     """Base of all results.
 
     A result has `to_dict`, its machine-readable output in SI units, and `blocks`, what it shows;
@@ -81,7 +81,7 @@ class Result:
         """What it shows, in the language that is spoken."""
         module = self.shown_in or f"{type(self).__module__.split('.')[1]}.blocks"
         with self.in_own_units():
-            return tuple(_room(module).SHOWS[type(self).__name__](self, **options))
+            return tuple(room(module).SHOWS[type(self).__name__](self, **options))
 
     headline_in: ClassVar[str] = ""
     """Module and function that tell what stands first of it, such as
@@ -97,7 +97,7 @@ class Result:
         if not function:
             return ()
         with self.in_own_units():
-            return tuple(getattr(_room(module), function)(self, alone))
+            return tuple(getattr(room(module), function)(self, alone))
 
     @property
     def summary(self) -> Mapping[str, Any]:
@@ -126,7 +126,8 @@ class Result:
         return xarray.Dataset(found, ticks, attrs=attributes)
 
     def to_frame(self) -> pandas.DataFrame:
-        """The columns of its CSV file where it has one, over the first of them; loads pandas.
+        """The columns of its CSV file where it has one, over the first of them, by name and SI unit
+        such as ``drive_torque [N m]``; loads pandas.
 
         Else a row for each of its records, or for each place along what all is told along, with
         columns by dotted path, those of a table (N, K) by its path and a number.  What is told
@@ -136,9 +137,9 @@ class Result:
 
         columns = self.columns()
         if columns and not self.records:
-            (first, _, index), *rest = columns
-            frame = {name: values for name, _, values in rest}
-            return pandas.DataFrame(frame, pandas.Index(index, name=first))
+            (first, unit, index), *rest = columns
+            frame = {headed(name, one): values for name, one, values in rest}
+            return pandas.DataFrame(frame, pandas.Index(index, name=headed(first, unit)))
         arrays, attributes = _split(self)
         along = self.records or next((name for name in ABSCISSAE if name in arrays), "")
         flat = {
@@ -148,30 +149,40 @@ class Result:
             for name, values in _flat(path, np.moveaxis(table, axes.index(along), 0))
         }
         if along in arrays:
-            return pandas.DataFrame(flat, pandas.Index(arrays[along][1], name=along))
+            head = headed(along, ABSCISSAE.get(along, ""))
+            return pandas.DataFrame(flat, pandas.Index(arrays[along][1], name=head))
         if flat:
             return pandas.DataFrame(flat)
         row = {path: value for path, value in attributes.items() if not isinstance(value, list)}
         return pandas.DataFrame([row])
 
-    def plot(self, *names: str) -> Any:
-        """Its pictures by name, all if none is named, as `matplotlib.figure.Figure`s."""
+    @property
+    def pictures(self) -> tuple[str, ...]:
+        """Names of its pictures, the first of which is the one that `plot` draws unasked."""
         with self.in_own_units():
-            return _room("figures").plot(self, *names)
+            return tuple(room("figures.pictures").pictures_of(self))
 
-    def __repr__(self) -> str:
-        title = f" {self.title!r}" if self.title else ""
-        return f"<{type(self).__name__}{title}>"
+    def plot(self, name: str = "", *, ax: Any = None) -> Any:
+        """Draw one of its pictures; a notebook shows what comes back.
 
-    def _repr_html_(self) -> str:
-        """What a notebook shows."""
+        name : of `pictures`; the first of them where not given.
+        ax : axes of Matplotlib in which it is drawn, as large as these are; a new figure where not
+            given.
+
+        Returns
+        -------
+        matplotlib.figure.Figure, to which `ax` belongs where that is given.
+
+        Raises
+        ------
+        UsageError : there is no such picture.
+        """
         with self.in_own_units():
-            return str(_room("present").html_of(self))
+            return room("figures").plot(self, name, ax)
 
-
-def _room(name: str) -> Any:
-    """A room above this one, by name and only when it is wanted: results know no renderer."""
-    return import_module(f"equipoise.{name}")
+    @property
+    def caption(self) -> str:
+        return repr(self.title) if self.title else ""
 
 
 def _flat(path: str, values: Array) -> Iterator[tuple[str, Array]]:

@@ -8,9 +8,9 @@ from .design_space import Uniform as Uniform
 from .design_space import Vary as Vary
 from .objective_map import Landscape as Landscape
 from .objective_map import landscape as landscape
-from .run import run_study as run_study
-from .search import Searched as Searched
-from .search import search_designs as search_designs
+from .run import sweep as sweep
+from .searching import Searched as Searched
+from .searching import search as search
 from .selection import Best as Best
 from .selection import best as best
 from .store import Store as Store

@@ -20,7 +20,7 @@ from equipoise.studies.outcomes import far_apart, signs_of
 if TYPE_CHECKING:
     from equipoise.studies.design_space import Make, Output, Spread
     from equipoise.studies.objective_map import Landscape
-    from equipoise.studies.search import Searched
+    from equipoise.studies.searching import Searched
     from equipoise.studies.selection import Best
     from equipoise.studies.store import Store
 

@@ -65,7 +65,7 @@ LEAST_CHUNK = 8192
 """Compiled designs, fewer of which cost more time each."""
 
 
-def run_study(
+def sweep(
     study: Study,
     path: str | os.PathLike[str],
     *,
@@ -111,11 +111,11 @@ def resume(
     Parameters
     ----------
     restore : makes the study of its texts; `equipoise.schema.studies.restore`.
-    workers, cluster, progress : as in `run_study`.
+    workers, cluster, progress : as in `sweep`.
 
     Raises
     ------
-    UsageError : there is no store, or other versions made it; or as in `run_study`.
+    UsageError : there is no store, or other versions made it; or as in `sweep`.
     """
     store = open_store(path)
     study = restore(store.texts)

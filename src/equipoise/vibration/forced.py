@@ -17,7 +17,7 @@ from equipoise.i18n import Note, to_say
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import idle_parts
-from equipoise.quantities.units import HUGE
+from equipoise.quantities import HUGE, in_si
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.linear import DEFAULT_EXCITATION_MODEL, ExcitationModel, Linear
@@ -91,13 +91,14 @@ def check_moving(machine: Machine) -> None:
         raise UsageError(Note("a crank that stands still shakes nothing; give the drive a speed"))
 
 
-def steady_speed(machine: Machine, speed: float | None, drive: bool) -> float:
+def steady_speed(machine: Machine, speed: float | str | None, drive: bool) -> float:
     """Speed of the crank asked for, rad/s; refused where it cannot be had.
 
     Raises
     ------
     ModelError, UsageError : it is 0, or the motor sets it.
     """
+    speed = in_si(speed, "angular speed", "speed")
     if speed is not None and not abs(speed) < HUGE:
         raise UsageError(
             Note("got {speed!r} for speed; give a finite number in SI units", speed=speed)
@@ -266,13 +267,17 @@ def _ratio(first: Response | None, second: Response | None) -> float:
 
 
 def respond(
-    machine: Machine, speed: float | None = None, model: Model | None = None, drive: bool = False
+    machine: Machine,
+    speed: float | str | None = None,
+    model: Model | None = None,
+    drive: bool = False,
 ) -> Response:
     """Steady vibration of a machine on its support, at one speed.
 
     Parameters
     ----------
-    speed : of the crank, rad/s; that of the machine where not given.
+    speed : of the crank, rad/s, or a text such as ``"300 rpm"``; that of the machine where not
+        given.
     model : one of `MODELS`; where not given, ``moment``, or ``exact`` with `drive`.
     drive : whether the crank's speed follows from the motor instead of being constant.
 

@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from equipoise.displays import Brief
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.results.analysis import analyze
@@ -118,8 +119,8 @@ def by_order(signal: Periodic) -> Values:
     }
 
 
-@dataclass(frozen=True, eq=False)
-class GaugeSignals:
+@dataclass(frozen=True, eq=False, repr=False)
+class GaugeSignals(Brief):
     """What a gauge reads over a period: m, m/s and m/s2, or rad, rad/s and rad/s2."""
 
     displacement: Periodic

@@ -14,6 +14,7 @@ from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.quantities import in_si
 from equipoise.results.result import Result
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import MISSING
@@ -157,8 +158,8 @@ def _plain(values: Array) -> list[Any]:
 
 def sweep_speed(
     machine: Machine,
-    slowest: float,
-    fastest: float,
+    slowest: float | str,
+    fastest: float | str,
     model: Model | None = None,
     drive: bool = False,
     speeds: int = SPEEDS,
@@ -168,7 +169,7 @@ def sweep_speed(
 
     Parameters
     ----------
-    slowest, fastest : of the crank, rad/s, of the same sign.
+    slowest, fastest : of the crank, rad/s, or texts such as ``"300 rpm"``, of the same sign.
     model, drive : as in `respond`.
     speeds : how many, equally spaced; more are added about each resonance and where curves bend.
     progress : called with the number of speeds that are done, and of all that are wanted so far.
@@ -177,6 +178,8 @@ def sweep_speed(
     ------
     As `respond`.
     """
+    slowest = in_si(slowest, "angular speed", "slowest")
+    fastest = in_si(fastest, "angular speed", "fastest")
     model = chosen_model(machine, model, drive)
     if missing := massless(machine):
         raise MassError(missing)

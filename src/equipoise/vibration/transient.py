@@ -13,6 +13,7 @@ import numpy as np
 from equipoise.errors import MassError, ResponseError, UsageError
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.quantities import in_si
 from equipoise.results.result import Result
 from equipoise.signals import Array
 from equipoise.vibration.body import Body, Reading
@@ -96,8 +97,8 @@ class Transient(Result):
 
 def simulate(
     machine: Machine,
-    duration: float,
-    speed: float | None = None,
+    duration: float | str,
+    speed: float | str | None = None,
     drive: bool = False,
     samples: int | None = None,
 ) -> Transient:
@@ -105,15 +106,16 @@ def simulate(
 
     Parameters
     ----------
-    duration : s.
-    speed : of the crank, rad/s, which it has at once; with `drive` it stands still at first, and
-        the motor brings it up.
+    duration : s, or a text such as ``"2 s"``.
+    speed : of the crank, rad/s, or a text such as ``"300 rpm"``, which it has at once; with
+        `drive` it stands still at first, and the motor brings it up.
     samples : number of instants that are told; 72 in each turn, and 2000 at least, if None.
 
     Raises
     ------
     ModelError, UsageError, ResponseError.
     """
+    duration = in_si(duration, "time", "duration")
     chosen_model(machine, "exact", drive)
     if missing := massless(machine):
         raise MassError(missing)

@@ -24,7 +24,7 @@ from equipoise.schema.template import Template
 from equipoise.studies.cloud import MOST, SOME
 from equipoise.studies.objective_map import Landscape, landscape
 from equipoise.studies.outcomes import Block, Outcome
-from equipoise.studies.search import Searched, search_designs
+from equipoise.studies.searching import Searched, search
 from equipoise.studies.selection import Best
 from equipoise.studies.tolerances import Tolerances, tolerance
 from unit.figures.checks import check
@@ -51,7 +51,7 @@ def of_tolerances() -> dict[str, Chart]:
 def searched() -> Searched:
     pytest.importorskip("pymoo")
     study = replace(load_study("study-of-balance"), angles=90)
-    return search_designs(study, population=12, generations=3)
+    return search(study, population=12, generations=3)
 
 
 @cache

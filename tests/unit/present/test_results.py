@@ -149,13 +149,16 @@ def test_every_result_is_a_dataset_and_a_frame(name: str) -> None:
             np.testing.assert_array_equal(dataset[path], value)
         elif isinstance(value, int | float | str) and not isinstance(found, Analysis):
             assert dataset.attrs[path] == value
-    index = frame.index.name
-    if index is None:
+    if frame.index.name is None:
         return
+    index = frame.index.name.partition(" [")[0]
     assert dataset[index].dims == (index,)
-    for column in set(frame.columns) & set(dataset.data_vars):
-        assert dataset[column].dims == (index,)
-        np.testing.assert_array_equal(dataset[column], frame[column])
+    heads = {str(column).partition(" [")[0]: column for column in frame.columns}
+    for name in heads.keys() & set(dataset.data_vars):
+        assert dataset[name].dims == (index,)
+        np.testing.assert_array_equal(dataset[name], frame[heads[name]])
+        if unit := dataset[name].attrs.get("units"):
+            assert heads[name] == f"{name} [{unit}]"
 
 
 def leaves(values: Any, path: str = "") -> Any:
@@ -169,15 +172,20 @@ def leaves(values: Any, path: str = "") -> Any:
 @pytest.mark.parametrize(
     ("name", "index", "rows", "columns"),
     [
-        ("sweep", "speed", None, ["gauges.gauge.rms", "mounts.spring.transmissibility"]),
-        ("transient", "time", 2001, ["crank_angle", "gauges.gauge.displacement"]),
-        ("response", "time", 360, ["crank_angle", "gauges.roll.displacement"]),
+        (
+            "sweep",
+            "speed [rad/s]",
+            None,
+            ["gauges.gauge.rms [m]", "mounts.spring.transmissibility [1]"],
+        ),
+        ("transient", "time [s]", 2001, ["crank_angle [rad]", "gauges.gauge.displacement [m]"]),
+        ("response", "time [s]", 360, ["crank_angle [rad]", "gauges.roll.displacement [rad]"]),
         ("free vibration", None, 6, ["natural_frequency"]),
         ("front", None, 4, ["first", "second", "added_mass"]),
         ("conditions", None, 4, ["condition", "residual"]),
-        ("tool modes", "places", 401, ["planes.vertical.shapes.4"]),
-        ("tool sweep", "speed", 12, ["engine.moment", "belt.phase_vertical"]),
-        ("sensitivities", "crank_angle", 720, ["sensitivities.crank.mass.values"]),
+        ("tool modes", "places [m]", 401, ["planes.vertical.shapes.4"]),
+        ("tool sweep", "speed [rad/s]", 12, ["engine.moment [N m]", "belt.phase_vertical [rad]"]),
+        ("sensitivities", "crank_angle [rad]", 720, ["sensitivities.crank.mass.values"]),
         ("variation", "values", 4, ["natural_frequencies.0", "natural_frequencies.3"]),
         ("exposure", None, 2, ["name", "a_hv"]),
         ("planting", None, 1, ["curve.height", "max_speed.value"]),

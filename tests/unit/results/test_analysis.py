@@ -195,10 +195,11 @@ def test_frame_of_pandas(name: str) -> None:
     found = analysis(name)
     frame = found.to_frame()
     assert isinstance(frame, pandas.DataFrame)
-    assert frame.index.name == "crank_angle"
+    assert frame.index.name == "crank_angle [rad]"
     np.testing.assert_array_equal(frame.index, found.crank_angle)
-    assert list(frame.columns) == [one.name for one in found.outputs.arrays]
-    np.testing.assert_array_equal(frame["drive_torque"], found.forces.drive_torque)
+    heads = [f"{one.name} [{one.unit}]" for one in found.outputs.arrays]
+    assert [str(one) for one in frame.columns] == [one.removesuffix(" []") for one in heads]
+    np.testing.assert_array_equal(frame["drive_torque [N m]"], found.forces.drive_torque)
 
 
 @pytest.mark.parametrize("name", ["geared-counterweight", "quick-return", "class-three"])

@@ -78,7 +78,7 @@ def test_it_stands_among_plain_data(power: None) -> None:
 def test_it_stands_in_tables(power: None) -> None:
     pytest.importorskip("pandas"), pytest.importorskip("xarray")
     found = found_with()
-    np.testing.assert_array_equal(found.to_frame()[POWER], found.forces.power)
+    np.testing.assert_array_equal(found.to_frame()[f"{POWER} [W]"], found.forces.power)
     array = found.to_dataset()[POWER]
     assert array.attrs == {"units": "W", "long_name": "drive power"}
 

@@ -11,9 +11,10 @@ import equipoise as eq
 from equipoise.cli import run
 from equipoise.handheld.exposed import expose_tool
 from equipoise.i18n import LANGUAGES, speaking
+from equipoise.present import html_of
 from equipoise.present.composition import build
 from equipoise.present.findings import find
-from equipoise.present.pages import html_of, page
+from equipoise.present.pages import page
 from equipoise.results.blocks import Facts, Text
 from equipoise.results.yardsticks import assess, verdict
 from support.found import found as found_of

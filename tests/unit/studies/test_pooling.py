@@ -15,7 +15,7 @@ from equipoise.studies.design_space import Output
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.pooling import PooledEvaluator
 from equipoise.studies.sampling import samples
-from equipoise.studies.search import search_designs
+from equipoise.studies.searching import search
 from equipoise.studies.study import Study
 from equipoise.studies.tolerances import tolerance
 
@@ -75,7 +75,7 @@ def test_loops_share_out_nothing(at_once: list[Any]) -> None:
 
 def test_a_search_is_the_same_with_any_number_of_workers(at_once: list[Any]) -> None:
     some = slow("study-of-balance", 64)
-    results = [search_designs(some, population=8, generations=2, workers=k) for k in (1, 2)]
+    results = [search(some, population=8, generations=2, workers=k) for k in (1, 2)]
     assert results[0].to_dict() == results[1].to_dict()
     assert at_once
 

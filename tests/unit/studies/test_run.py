@@ -21,7 +21,7 @@ from equipoise.studies import run
 from equipoise.studies import store as storing
 from equipoise.studies.design_space import Output
 from equipoise.studies.outcomes import Progress, Tally
-from equipoise.studies.run import chunk_of, resume, run_study
+from equipoise.studies.run import chunk_of, resume, sweep
 from equipoise.studies.sampling import samples
 from equipoise.studies.store import Store, open_store
 from equipoise.studies.study import Study
@@ -44,7 +44,7 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run, "evaluator", lambda study, threads: Formulas())
         run._loaded.cache_clear()
-        run_study(STUDY, path, workers=1)
+        sweep(STUDY, path, workers=1)
     return contents(path)
 
 
@@ -66,7 +66,7 @@ def stop() -> None:
 
 
 def test_all_designs_are_computed_and_stored(tmp_path: Path) -> None:
-    store = run_study(STUDY, tmp_path / "s", workers=2)
+    store = sweep(STUDY, tmp_path / "s", workers=2)
     values = samples(STUDY, 0, STUDY.size)
     (_, block), *_ = open_store(store.path).in_blocks()
     np.testing.assert_array_equal(block.values, values)
@@ -78,7 +78,7 @@ def test_all_designs_are_computed_and_stored(tmp_path: Path) -> None:
 def test_any_number_of_threads_gives_the_same_bytes(
     tmp_path: Path, undisturbed: dict[str, bytes], workers: int
 ) -> None:
-    run_study(STUDY, tmp_path / "s", workers=workers)
+    sweep(STUDY, tmp_path / "s", workers=workers)
     assert contents(tmp_path / "s") == undisturbed
 
 
@@ -86,7 +86,7 @@ def test_an_interrupted_sweep_keeps_its_chunks_and_goes_on_to_the_same_bytes(
     tmp_path: Path, undisturbed: dict[str, bytes]
 ) -> None:
     with pytest.raises(KeyboardInterrupt):
-        run_study(STUDY, tmp_path / "s", workers=2, progress=after(4, stop))
+        sweep(STUDY, tmp_path / "s", workers=2, progress=after(4, stop))
     kept = contents(tmp_path / "s")
     assert len(open_store(tmp_path / "s").missing()) == 6
     told: list[Progress] = []
@@ -156,7 +156,7 @@ def test_the_end_may_come_at_any_file_of_a_chunk(
     with monkeypatch.context() as patch:
         patch.setattr(storing, "_put", put_or_end)
         with pytest.raises(Killed):
-            run_study(STUDY, tmp_path / "s", workers=1)
+            sweep(STUDY, tmp_path / "s", workers=1)
     whole = 3 if end is killed_after_replacing and file == 6 else 2
     assert len(open_store(tmp_path / "s").missing()) == 10 - whole
     resume(tmp_path / "s", restore, workers=1)
@@ -166,7 +166,7 @@ def test_the_end_may_come_at_any_file_of_a_chunk(
 def test_a_finished_store_is_left_alone(
     tmp_path: Path, undisturbed: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run_study(STUDY, tmp_path / "s")
+    sweep(STUDY, tmp_path / "s")
     monkeypatch.delattr(run, "evaluator")  # nothing is computed
     told: list[Progress] = []
     resume(tmp_path / "s", restore, progress=told.append)
@@ -200,7 +200,7 @@ def test_a_full_disk_is_told_and_nothing_is_lost(
     with small_disk(tmp_path / "disk", "400k") as disk:
         (disk / "ballast").write_bytes(bytes(200_000))
         with pytest.raises(UsageError, match="no space left on device") as caught:
-            run_study(STUDY, disk / "s", workers=2)
+            sweep(STUDY, disk / "s", workers=2)
         kept = contents(disk / "s")
         stored = 10 - len(open_store(disk / "s").missing())
         assert 0 < stored < 10
@@ -225,7 +225,7 @@ def test_a_file_that_the_system_refuses_is_told(
 
     try:
         with pytest.raises(UsageError, match=r"\(file too large\).*; 300 of 1000 designs are st"):
-            run_study(STUDY, tmp_path / "s", workers=1, progress=after(3, refuse))
+            sweep(STUDY, tmp_path / "s", workers=1, progress=after(3, refuse))
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     resume(tmp_path / "s", restore)
@@ -237,20 +237,20 @@ def test_a_folder_that_goes_is_told_and_not_made_again(tmp_path: Path) -> None:
         shutil.rmtree(tmp_path / "s")
 
     with pytest.raises(UsageError, match="the folder has gone, and what was stored with it"):
-        run_study(STUDY, tmp_path / "s", progress=after(2, remove))
+        sweep(STUDY, tmp_path / "s", progress=after(2, remove))
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_store_is_not_overwritten_and_nothing_is_computed_for_it(tmp_path: Path) -> None:
     (tmp_path / "s").write_text("mine")
     with pytest.raises(UsageError, match=f"is there already; .*: equipoise resume {tmp_path}/s"):
-        run_study(STUDY, tmp_path / "s")
+        sweep(STUDY, tmp_path / "s")
     assert (tmp_path / "s").read_text() == "mine"
 
 
 def begun(path: Path) -> Store:
     with pytest.raises(KeyboardInterrupt):
-        run_study(STUDY, path, progress=after(1, stop))
+        sweep(STUDY, path, progress=after(1, stop))
     return open_store(path)
 
 
@@ -280,7 +280,7 @@ def test_another_engine_does_not_go_on(tmp_path: Path, monkeypatch: pytest.Monke
 )
 def test_what_cannot_be_asked_makes_no_store(tmp_path: Path, given, told: str) -> None:
     with pytest.raises(UsageError, match=told):
-        run_study(STUDY, tmp_path / "s", **given)
+        sweep(STUDY, tmp_path / "s", **given)
     assert not (tmp_path / "s").exists()
 
 
@@ -306,7 +306,7 @@ def test_slow_designs_have_small_chunks(study: Study, compiled: bool, chunk: int
 
 def test_progress_tells_failures_and_the_best_that_keeps_the_limits(tmp_path: Path) -> None:
     told: list[Progress] = []
-    run_study(STUDY, tmp_path / "s", progress=told.append)
+    sweep(STUDY, tmp_path / "s", progress=told.append)
     outcome = Formulas()(samples(STUDY, 0, 1000))
     area, _, energy = outcome.figures[(outcome.reason == 0) & (outcome.figures[:, 0] >= 0.0045)].T
     last = told[-1]
@@ -324,7 +324,7 @@ def test_rate_and_time_left_are_those_of_the_last_minute(
 ) -> None:
     now = 0.0
     monkeypatch.setattr("equipoise.studies.outcomes.monotonic", lambda: now)
-    run_study(STUDY, tmp_path / "s")
+    sweep(STUDY, tmp_path / "s")
     chunk = open_store(tmp_path / "s").read(range(100))
     tally = Tally(STUDY.outputs, 1_000_000)
     tally.add(chunk, computed=False)

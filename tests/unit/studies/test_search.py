@@ -13,11 +13,11 @@ import pytest
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_MACHINE
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.studies import search
+from equipoise.studies import searching
 from equipoise.studies.design_space import Choices, Correlation, Make, Normal, Output, Range, Vary
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Evaluator, Outcome, kept, non_dominated
-from equipoise.studies.search import search_designs, search_size
+from equipoise.studies.searching import search, search_size
 from equipoise.studies.study import Study
 from unit.studies.samples import LENGTH, MASS, PATHS, study
 
@@ -55,7 +55,7 @@ def formula(function: Any, failing: Any = None) -> Evaluator:
 def searched(outputs: tuple[Output, ...], function: Any, failing: Any = None, **given: Any) -> Any:
     """The search of a study of these outputs over the unit cube, or other spreads."""
     some = of(*outputs, spreads=given.pop("spreads", UNIT))
-    return search_designs(some, compute=formula(function, failing), **given)
+    return search(some, compute=formula(function, failing), **given)
 
 
 def bowl(x: Array, y: Array, z: Array) -> list[Array]:
@@ -176,7 +176,7 @@ def test_nothing_is_computed_twice(capfd: pytest.CaptureFixture[str]) -> None:
         return formula(two_bowls)(values)
 
     spreads = (Choices(tuple(np.linspace(0, 1, 4).tolist())),) * 3
-    found = search_designs(of(*made("f", "g"), spreads=spreads), compute=compute, population=12)
+    found = search(of(*made("f", "g"), spreads=spreads), compute=compute, population=12)
     assert len(seen) == len(set(seen)) == found.computed <= 4**3
     assert capfd.readouterr() == ("", "")
 
@@ -197,7 +197,7 @@ def test_nothing_is_computed_twice(capfd: pytest.CaptureFixture[str]) -> None:
 )  # fmt: skip
 def test_what_cannot_be_searched(some: Study, told: str) -> None:
     with pytest.raises(ModelError, match=f"^{re.escape(told)}"):
-        search_designs(some, compute=formula(bowl))
+        search(some, compute=formula(bowl))
 
 
 @pytest.mark.parametrize(
@@ -224,7 +224,7 @@ def test_nothing_can_be_computed() -> None:
         return Outcome(np.full((count, 1), np.nan), np.full(count, NO_MACHINE, np.uint8))
 
     with pytest.raises(UsageError, match=r"^no design has figures \(not a machine: \d+\)"):
-        search_designs(of(*made("f")), compute=failing, population=8, generations=3)
+        search(of(*made("f")), compute=failing, population=8, generations=3)
 
 
 # -- a machine -------------------------------------------------------------------------------------
@@ -248,7 +248,7 @@ def test_a_four_bar_against_every_design() -> None:
     wanted = good[non_dominated(outcome.figures[good, :2] * (1, -1))]
     assert 3 < len(wanted) < len(good) < len(every)
 
-    found = search_designs(some, compute=compute, population=20)
+    found = search(some, compute=compute, population=20)
     assert {*map(tuple, found.values)} == {*map(tuple, every[wanted])}
     assert found.stood_still  # there was nothing else to compute
     machine = found.machine(0)
@@ -256,9 +256,7 @@ def test_a_four_bar_against_every_design() -> None:
     assert machine.links["rocker"].points["C"][0] == found.values[0, 1]
 
     ranges = (Vary(LENGTH, Range(0.05, 0.1)), Vary(rocker, Range(0.05, 0.1)))
-    between = search_designs(
-        replace(some, vary=ranges), compute=compute, population=24, generations=12
-    )
+    between = search(replace(some, vary=ranges), compute=compute, population=24, generations=12)
     best_of_grid = np.min(outcome.figures[wanted, 0])
     assert np.min(between.figures[:, 0]) < best_of_grid
     for number in (0, len(between.values) - 1):
@@ -298,13 +296,13 @@ def test_no_more_designs_are_computed_than_the_study_has() -> None:
         return formula(two_bowls)(values)
 
     some = of(*made("f", "g"), sampling=replace(study().sampling, designs=150))
-    assert search_designs(some, compute=counting).computed == computed <= 150
+    assert search(some, compute=counting).computed == computed <= 150
 
 
 def test_too_few_designs_for_a_search() -> None:
     some = of(*made("f"), sampling=replace(study().sampling, designs=5))
     with pytest.raises(ModelError, match=r"^sampling.designs: got 5 designs; give 8 or more"):
-        search_designs(some, compute=formula(bowl))
+        search(some, compute=formula(bowl))
 
 
 def test_the_time_to_breed_is_measured_without_computing() -> None:
@@ -313,5 +311,5 @@ def test_the_time_to_breed_is_measured_without_computing() -> None:
 
     outputs = (*made("f", "g"), Output("x", value="a.c", at_least=2.0, at_most=3.0))
     some = of(*outputs)
-    with mock.patch.object(search, "PooledEvaluator", failing):
-        assert search.breeding_time(some, 10) > 0
+    with mock.patch.object(searching, "PooledEvaluator", failing):
+        assert searching.breeding_time(some, 10) > 0

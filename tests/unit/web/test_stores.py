@@ -11,7 +11,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.schema.study_units import machine_of
-from equipoise.studies import best, open_store, run_study
+from equipoise.studies import best, open_store, sweep
 from equipoise.web import stores
 from equipoise.web.desk import begun
 from equipoise.web.messages import message_of
@@ -47,7 +47,7 @@ at_most = "20 N"
 def path(tmp_path_factory):
     folder = tmp_path_factory.mktemp("studies")
     study = eq.loads(STUDY)
-    run_study(study, folder / "lengths.zarr", workers=1)
+    sweep(study, folder / "lengths.zarr", workers=1)
     return str(folder / "lengths.zarr")
 
 
@@ -97,7 +97,7 @@ at_most = "1 N mm"
 def test_designs_nearest_to_limits_come_first_where_none_keeps_them_all(tmp_path, aim) -> None:
     """Two limits, of which one cannot be kept; with an aim and without."""
     text = STUDY.replace('make = "smallest"', aim).replace("designs = 64", "designs = 16")
-    run_study(eq.loads(text + LIMITED), tmp_path / "two.zarr", workers=1)
+    sweep(eq.loads(text + LIMITED), tmp_path / "two.zarr", workers=1)
     told = ask(begun(str(tmp_path / "two.zarr"))(), "ready")[1]
     good = column(told, "reason") == 0
     numbers = column(told, "number")[good]

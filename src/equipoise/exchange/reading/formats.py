@@ -16,6 +16,7 @@ from equipoise.exchange.reading.found import Imported, Read, finished
 from equipoise.exchange.reading.markup import tree_of
 from equipoise.exchange.reading.spatial import Told as Bodies
 from equipoise.exchange.reading.strokes import Marks
+from equipoise.quantities import in_si
 from equipoise.schema.files import FileError, printable, read_bytes, read_text
 
 SMALL, LARGE = 2_000_000, 20_000_000
@@ -83,13 +84,13 @@ def import_machine(
     path: str | os.PathLike[str],
     *,
     crank: str = "",
-    speed: float | None = None,
+    speed: float | str | None = None,
     frame: Iterable[str] = (),
     guide: Iterable[str] = (),
     link: Iterable[str] = (),
     pin: Iterable[str] = (),
-    tolerance: float = 0.0,
-    unit: float | None = None,
+    tolerance: float | str = 0.0,
+    unit: float | str | None = None,
 ) -> Imported:
     """Read a machine from a file of another program.
 
@@ -98,14 +99,15 @@ def import_machine(
     path : of a drawing (DXF, SVG), a model (MJCF, URDF), or a file of Linkage or PMKS+; which it
         is, its content and its ending tell.
     crank : name of the driven link; where nobody tells, one that turns fully.
-    speed : of the crank, rad/s, other than 0.
+    speed : of the crank, rad/s, or a text such as ``"300 rpm"``; other than 0.
     frame : names of layers, colours or groups of a drawing, or of bodies of a model, that stand
         still.
     guide : those of lines on which ends of links slide.
     link : names; what is drawn under each of them is one link.
     pin : two bodies or sites each that a pin joins, as ``A = B``, where a model closes no loops.
-    tolerance : distance below which ends of lines meet, m; 0 for a millionth of the drawing.
-    unit : m in a unit of the drawing, instead of what it tells.
+    tolerance : distance below which ends of lines meet, m, or a text such as ``"0.1 mm"``; 0 for a
+        millionth of the drawing.
+    unit : m in a unit of the drawing, or a text such as ``"1 in"``, instead of what it tells.
 
     Returns
     -------
@@ -117,6 +119,8 @@ def import_machine(
     ModelError, UsageError : one sentence: what of the file cannot be read, or which argument.
     """
     source = printable(path) or "''"
+    speed = in_si(speed, "angular speed", "speed")
+    tolerance, unit = in_si(tolerance, "length", "tolerance"), in_si(unit, "length", "unit")
     if speed == 0:
         raise UsageError("--speed: a crank that stands still moves nothing; give such as 250 rpm")
     bodies = Bodies(tuple(frame), tuple(pin))

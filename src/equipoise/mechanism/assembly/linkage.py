@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.displays import Brief
 from equipoise.errors import ChangePointError, ModelError, RangeError
 from equipoise.i18n import Note
 from equipoise.keys.kinds import choice
@@ -55,8 +56,8 @@ DECIDED = Note("statics decides all joint forces of this linkage; leave the stif
 NOTHING: Mapping[str, Any] = {}
 
 
-@dataclass(frozen=True)
-class Linkage:
+@dataclass(frozen=True, repr=False)
+class Linkage(Brief):
     """A machine in the order in which it is computed.
 
     pivot : the drive link's point in the frame.

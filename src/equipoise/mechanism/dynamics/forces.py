@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.displays import Displayed
 from equipoise.errors import MassError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.steps import Array, p, planar, u
@@ -45,8 +46,8 @@ from equipoise.mechanism.parts.machine import Link, Machine, Vector
 from equipoise.mechanism.parts.places import in_frame
 
 
-@dataclass(frozen=True, eq=False)
-class Forces(Exerted):
+@dataclass(frozen=True, eq=False, repr=False)
+class Forces(Exerted, Displayed):
     """Forces of a machine in motion; arrays (N,), one value for each crank angle.
 
     motion : what they belong to.
@@ -63,6 +64,11 @@ class Forces(Exerted):
     loads: Mapping[str, Demand]
     springs: Mapping[str, Demand] = field(default_factory=dict)
     inner: Mapping[str, Demand] = field(default_factory=dict)
+
+    @property
+    def caption(self) -> str:
+        """Of which machine, at how many crank angles, how fast."""
+        return self.motion.caption
 
     @cached_property
     def shaking_force(self) -> VectorSignal:
@@ -167,7 +173,9 @@ class Forces(Exerted):
         """Every output by cause and by link."""
         return split(self)
 
-    def at(self, speed: float | None = None, acceleration: float | None = None) -> Forces:
+    def at(
+        self, speed: float | str | None = None, acceleration: float | str | None = None
+    ) -> Forces:
         """The same at another speed (rad/s) or acceleration (rad/s2), no position solved again."""
         return forces(self.motion.at(speed, acceleration), self.about)
 

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.decompositions import lstsq
+from equipoise.displays import Brief
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.assembly.steps import Array, planar
 from equipoise.mechanism.dynamics.across import Across, exerted_in, needed_by_inertia
@@ -43,7 +44,7 @@ ACROSS = ("moment_z", "product_zx", "product_yz")
 """More of them, which matter to what links do across the plane: kg m, kg m2, kg m2."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Regressor(Shares):
     """Derivative of every output by every inertial parameter.
 
@@ -56,8 +57,8 @@ class Regressor(Shares):
     values: Array
 
 
-@dataclass(frozen=True, eq=False)
-class BaseParameters:
+@dataclass(frozen=True, eq=False, repr=False)
+class BaseParameters(Brief):
     """The combinations of inertial parameters that the outputs can tell apart.
 
     parameters : P pairs of link and quantity.

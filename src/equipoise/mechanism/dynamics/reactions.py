@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.displays import Brief
 from equipoise.mechanism.assembly.steps import Array, Reaction, State, demand_names, run
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dynamics.undecided import hidden
@@ -31,8 +32,8 @@ Demand = tuple[Any, Any]
 """Force (complex) and moment about a link's anchor, each (..., N) or the same at all angles."""
 
 
-@dataclass(frozen=True, eq=False)
-class VectorSignal:
+@dataclass(frozen=True, eq=False, repr=False)
+class VectorSignal(Brief):
     """A planar vector against crank angle; `value` is complex, x + i y, (..., N)."""
 
     value: Array
@@ -56,7 +57,7 @@ class VectorSignal:
         return np.angle(self.value)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class JointForce(VectorSignal):
     """Force in a pin, N: exerted on body `on` by body `by`."""
 
@@ -64,7 +65,7 @@ class JointForce(VectorSignal):
     by: str
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SliderForce(JointForce):
     """Force in a sliding joint, N.
 
@@ -76,7 +77,7 @@ class SliderForce(JointForce):
     moment: Array
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class MeshForce(JointForce):
     """Force between teeth, N, along the line of action at the pitch point.
 
@@ -89,8 +90,8 @@ class MeshForce(JointForce):
     radial: Array
 
 
-@dataclass(frozen=True, eq=False)
-class BeltForce:
+@dataclass(frozen=True, eq=False, repr=False)
+class BeltForce(Brief):
     """What a belt does to its driven link `on`; arrays (..., N), N.
 
     pull : what turns the link, at the pitch radius; positive counterclockwise.
@@ -105,7 +106,7 @@ class BeltForce:
     right: Array
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class CamForce(JointForce):
     """Force of a cam on its follower, N, along their common normal.
 

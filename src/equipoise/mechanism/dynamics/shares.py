@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, fields
 
 import numpy as np
 
+from equipoise.displays import Brief
 from equipoise.errors import UsageError
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.checks import unknown
@@ -24,8 +25,8 @@ CAUSES = ("translation", "rotation", "weight", "load", "spring")
 springs and the tension of belts."""
 
 
-@dataclass(frozen=True, eq=False)
-class Shares:
+@dataclass(frozen=True, eq=False, repr=False)
+class Shares(Brief):
     """Outputs told apart: arrays (..., N), whose first axes are what they are shares of.
 
     drives : link -> torque of its drive, N m, of which `drive_torque` is the first.
@@ -58,7 +59,7 @@ class Shares:
         return {name: value for name, value in known.items() if isinstance(value, np.ndarray)}
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Split(Shares):
     """Outputs by cause and link: arrays (5, L, N), causes as in `CAUSES`, links in file order.
 

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from equipoise import signals
+from equipoise.displays import Displayed
 from equipoise.errors import ChangePointError, ModelError, RangeError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.builder import Group
@@ -26,7 +27,7 @@ from equipoise.mechanism.kinematics.rates import LinkMotion, PointMotion, Slider
 from equipoise.mechanism.kinematics.swinging import middle_angle, solve_swinging
 from equipoise.mechanism.parts.force_kinds import ForceElement
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Machine, Slider
-from equipoise.quantities.units import HUGE
+from equipoise.quantities import HUGE, Dimension, in_si, told
 from equipoise.signals import Figures, JumpSampling, Periodic
 
 MOST_ANGLES = 400_000
@@ -35,8 +36,8 @@ MOST_KEPT = 4096
 """Crank angles up to which poses of the last few linkages are kept: some megabytes each."""
 
 
-@dataclass(frozen=True, eq=False)
-class Motion:
+@dataclass(frozen=True, eq=False, repr=False)
+class Motion(Displayed):
     """Motion of a machine at N crank angles.
 
     crank_angle : (N,) rad.
@@ -58,6 +59,12 @@ class Motion:
     @property
     def machine(self) -> Machine:
         return self.linkage.machine
+
+    @property
+    def caption(self) -> str:
+        """Of which machine, at how many crank angles, how fast."""
+        count, speed = len(self.crank_angle), told(self.speed, "angular speed", "rpm")
+        return f"of {str(self.machine.title)!r} at {count} crank angles, {speed}"
 
     @property
     def turns(self) -> int:
@@ -97,8 +104,10 @@ class Motion:
             return Periodic.of(values, self.turns)
         return self.sampling.periodic(values)
 
-    def at(self, speed: float | None = None, acceleration: float | None = None) -> Motion:
-        """The same positions at another speed (rad/s) or acceleration (rad/s2) of the crank."""
+    def at(
+        self, speed: float | str | None = None, acceleration: float | str | None = None
+    ) -> Motion:
+        """The same positions at another speed or acceleration of the crank, as of `move`."""
         w, a = _rates(self, speed, acceleration)
         return replace(self, speed=w, acceleration=a)
 
@@ -330,8 +339,8 @@ class PlacedBodies:
 def move(
     machine: Machine,
     angles: int | Sequence[float] | Array = 360,
-    speed: float | None = None,
-    acceleration: float | None = None,
+    speed: float | str | None = None,
+    acceleration: float | str | None = None,
 ) -> Motion:
     """Solve the motion of a machine.
 
@@ -339,7 +348,8 @@ def move(
     ----------
     angles : number of crank angles in each turn, equally spaced from 0 over the whole cycle (which
         takes several turns where gears or loops need them), or the crank angles themselves, rad.
-    speed, acceleration : of the crank, rad/s and rad/s2; those of the file where not given.
+    speed, acceleration : of the crank, rad/s and rad/s2, or texts such as ``"300 rpm"``; those of
+        the file where not given.
 
     Raises
     ------
@@ -419,11 +429,14 @@ def _given_angles(angles: Any) -> Array:
     return theta
 
 
-def _rates(usual: Drive | Motion, *given: float | None) -> tuple[float, float]:
+RATES: dict[str, Dimension] = {"speed": "angular speed", "acceleration": "angular acceleration"}
+
+
+def _rates(usual: Drive | Motion, *given: float | str | None) -> tuple[float, float]:
     """Speed and acceleration of the crank, the usual ones where they are not given."""
     rates = []
-    for name, value in zip(("speed", "acceleration"), given, strict=True):
-        rate = getattr(usual, name) if value is None else value
+    for (name, dimension), value in zip(RATES.items(), given, strict=True):
+        rate = getattr(usual, name) if value is None else in_si(value, dimension, name)
         if not isinstance(rate, float | Real) or not abs(rate) < HUGE:  # type: ignore[operator]
             raise UsageError(f"got {rate!r} for {name}; give a finite number in SI units")
         rates.append(float(rate))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from equipoise.displays import Brief
 from equipoise.mechanism.assembly.steps import Array
 
 
@@ -13,8 +14,8 @@ def in_time(first: Array, second: Array, speed: float, acceleration: float) -> A
     return steady + first * acceleration if acceleration else steady
 
 
-@dataclass(frozen=True, eq=False)
-class LinkMotion:
+@dataclass(frozen=True, eq=False, repr=False)
+class LinkMotion(Brief):
     """Motion of one link; every array (N,).
 
     angle : rad, counted on through the turns.
@@ -38,8 +39,8 @@ class LinkMotion:
         return in_time(self.angle_1, self.angle_2, self.speed, self.acceleration)
 
 
-@dataclass(frozen=True, eq=False)
-class PointMotion:
+@dataclass(frozen=True, eq=False, repr=False)
+class PointMotion(Brief):
     """Motion of one point; complex arrays (N,), x + i y.
 
     place : m.  place_1, place_2 : first and second derivative by crank angle, m.  The parts x and
@@ -87,8 +88,8 @@ class PointMotion:
         return self.acceleration_vector.imag
 
 
-@dataclass(frozen=True, eq=False)
-class SliderMotion:
+@dataclass(frozen=True, eq=False, repr=False)
+class SliderMotion(Brief):
     """Motion along the guide of a sliding joint; arrays (N,).
 
     travel : m, of the slider's point from the guide's point along the guide's direction.

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from equipoise.displays import Displayed
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.keys import (
@@ -65,6 +66,7 @@ from equipoise.mechanism.parts.springs import Spring
 from equipoise.mechanism.parts.support import Row, Support
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.mechanism.parts.whole import problems_of
+from equipoise.quantities import told
 
 if TYPE_CHECKING:
     from equipoise.mechanism.parts.balance import Balance
@@ -98,7 +100,7 @@ STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 
 
 @declared
-class Machine(Driven, Frozen):
+class Machine(Driven, Displayed, Frozen):
     """A planar linkage with its drive, loads, springs and gravity."""
 
     beside: ClassVar[Keys] = {"schema": VERSION}
@@ -184,6 +186,17 @@ class Machine(Driven, Frozen):
         super().__post_init__()
         for problem in problems_of(self):
             raise problem
+
+    def __repr__(self) -> str:  # its own, so that dataclass makes none
+        return Displayed.__repr__(self)
+
+    @property
+    def caption(self) -> str:
+        """Title and drive, for a line."""
+        count = len(self.links)
+        links = f"{count} moving link{'s' * (count != 1)}"
+        speed = told(self.drive.speed, "angular speed", "rpm")
+        return f"{str(self.title)!r}, {links}, {self.drive.link} at {speed}"
 
     @property
     def bodies(self) -> Bodies:

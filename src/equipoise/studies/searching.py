@@ -114,7 +114,7 @@ class Searched(Result):
         }
 
 
-def search_designs(
+def search(
     study: Study,
     *,
     population: int | None = None,
@@ -218,7 +218,7 @@ def breeding_time(study: Study, population: int) -> float:
     def note(*_: int) -> None:
         moments.append(perf_counter())
 
-    search_designs(study, population=population, generations=TIMED, progress=note, compute=drawn)
+    search(study, population=population, generations=TIMED, progress=note, compute=drawn)
     return (moments[-1] - moments[0]) / max(len(moments) - 1, 1)
 
 

@@ -1,0 +1,67 @@
+"""How values are shown on a Python prompt and in a notebook: a line, and a picture with tables.
+
+Pictures and tables are made by rooms above, which are found by name and only when they are wanted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import fields, is_dataclass
+from importlib import import_module
+from typing import Any, cast
+
+MOST_NAMES = 8
+"""Names in a line."""
+LONGEST = 40
+"""Letters of a value in a line."""
+
+
+def room(name: str) -> Any:
+    """A room above the one that asks, such as ``figures``."""
+    return import_module(f"equipoise.{name}")
+
+
+def names_of(names: Iterable[Any]) -> str:
+    """The first of some names, and that there are more."""
+    listed = [*map(str, names)]
+    more = ["..."] if len(listed) > MOST_NAMES else []
+    return ", ".join([*listed[:MOST_NAMES], *more])
+
+
+def brief(value: Any) -> str:
+    """A value in few letters: an array by its shape, a mapping by its names, an object by its
+    class.
+    """
+    if shape := getattr(value, "shape", ()):
+        return f"array{shape}"
+    if isinstance(value, Mapping):
+        return f"{{{names_of(map(repr, value))}}}"
+    if is_dataclass(value):
+        return type(value).__name__
+    text = repr(value)
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
+
+
+class Brief:
+    """Base of dataclasses of arrays and other large values, whose `repr` is one line."""
+
+    def __repr__(self) -> str:
+        own = (one.name for one in fields(cast("Any", self)) if one.repr)
+        told = ", ".join(f"{name}={brief(getattr(self, name))}" for name in own)
+        return f"{type(self).__name__}({told})"
+
+
+class Displayed(Brief):
+    """Base of values that a notebook shows by a picture or tables."""
+
+    @property
+    def caption(self) -> str:
+        """What it is, behind the name of its class."""
+        return ""
+
+    def __repr__(self) -> str:
+        return f"<{' '.join(filter(None, (type(self).__name__, self.caption)))}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        return str(room("present").html_of(self))

@@ -1,0 +1,69 @@
+"""What a notebook shows: of a result its verdict and tables; of a machine, its motion and its
+forces the linkage as it is drawn, and tables.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from equipoise.displays import Displayed
+from equipoise.errors import EquipoiseError
+from equipoise.figures import drawn
+from equipoise.figures.linkage import linkage
+from equipoise.handheld.blocks import model_blocks as tool_blocks
+from equipoise.handheld.model import Tool
+from equipoise.i18n import said
+from equipoise.mechanism.dynamics.forces import Forces
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.kinematics.swings import swing
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.shown_units import units_of
+from equipoise.present.pages import part_of_page
+from equipoise.quantities import showing_by_default
+from equipoise.results.analysis import ANGLES, Analysis
+from equipoise.results.analysis_blocks import force_blocks, motion_blocks
+from equipoise.results.blocks import Block, Text
+from equipoise.results.joint_blocks import joint_blocks
+from equipoise.results.machine_blocks import model_blocks
+from equipoise.results.result import Result
+
+
+def html_of(value: Displayed) -> str:
+    """A value as a part of a page, in the units of its file."""
+    owner = _owner(value)
+    with showing_by_default(units_of(owner)):
+        if isinstance(value, Result):
+            return part_of_page(said(value.title), (*value.headline(), *value.blocks()))
+        title = said(owner.title)
+        if isinstance(value, Machine):
+            picture, trouble = _pose(value)
+            return part_of_page(title, (*trouble, *model_blocks(value)), picture)
+        if isinstance(value, Motion):
+            analysis = Analysis(value, None)
+            return part_of_page(title, motion_blocks(analysis), _drawn(analysis))
+        if isinstance(value, Forces):
+            analysis = Analysis(value.motion, value)
+            return part_of_page(title, (*force_blocks(analysis), *joint_blocks(analysis)))
+        assert isinstance(value, Tool)
+        return part_of_page(title, tool_blocks(value))
+
+
+def _owner(value: Any) -> Any:
+    """The machine, tool or study whose title and units a value has."""
+    if isinstance(value, Result):
+        return value.owner
+    motion = value.motion if isinstance(value, Forces) else value
+    return motion.machine if isinstance(motion, Motion) else motion
+
+
+def _pose(machine: Machine) -> tuple[str, tuple[Block, ...]]:
+    """The linkage as it moves, and why there is no picture where it cannot."""
+    try:
+        seen = swing(machine)
+        return _drawn(Analysis(move(machine if seen is None else seen.machine, ANGLES), None)), ()
+    except EquipoiseError as error:
+        return "", (Text(error.told()),)
+
+
+def _drawn(analysis: Analysis) -> str:
+    return drawn(linkage(analysis, None))[0]
