@@ -260,8 +260,9 @@ def _edits(one: str, other: str) -> int:
     restricted distance of Damerau, "A technique for computer detection and correction of spelling
     errors", 1964.
     """
+    earlier: list[int] = []
     before: list[int] = []
-    row = [*range(len(other) + 1)]
+    row: list[int] = [*range(len(other) + 1)]
     for i, letter in enumerate(one, 1):
         earlier, before, row = before, row, [i]
         for j, wanted in enumerate(other, 1):

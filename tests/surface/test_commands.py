@@ -84,7 +84,7 @@ def test_outputs_and_dwells_are_told_by_name(tmp_path: Path) -> None:
     [
         (
             ("--output", "centers.rod/frame"),
-            "--output: no output is called 'centers.rod/frame'; did you mean",
+            "--output: no output is called 'centers.rod/frame'; there are 'links.crank.angle'",
         ),
         (("--dwell", "3 kg"), "--dwell: got '3 kg'; give a length of more than 0, such as"),
         (("--dwell", "-1 mm"), "--dwell: got '-1 mm'; give a length of more than 0, such as"),
@@ -159,7 +159,7 @@ OPTIONS = {
     "export": ["FILE", "--out", "--format", "--at", "--balanced", "--kept"],
     "exposure": [
         *["INPUT", "--duration", "--idle", "--racing", "--bands", "--weighted", "--single-axis"],
-        *["--periodic", *DRAWN],
+        *["--periodic", "--gauge", *DRAWN],
     ],
     "import": [
         *["FILE", "--out", "--crank", "--speed", "--frame", "--guide", "--link", "--unit", "--pin"],

@@ -111,7 +111,8 @@ BAD = {
                    " 'brush-cutter-engine'? or give a path"),
     "itself": ('force = "100 N"', 'linkage = "mine.toml"',
                "excitations[1].linkage: mine.toml: this is the file of a tool"),
-    "duplicate": ("[[excitations]]", "[shaft]\n[[excitations]]", "line 19, column 7: cannot"),
+    "duplicate": ("[[excitations]]", "[shaft]\n[[excitations]]",
+                  "line 19, column 7: a table of this name is there"),
 }  # fmt: skip
 
 

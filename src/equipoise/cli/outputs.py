@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -339,10 +340,10 @@ def _check_place(option: str, path: str) -> None:
 
 
 def check_model_name(path: str, option: str = "--out") -> None:
-    """The name of a new model file says that it is one."""
+    """The name of a new model file has no ending that says it is something else."""
     from equipoise.schema.files import printable
 
-    if path and not path.endswith(".toml"):
+    if re.search(r"\.[A-Za-z][A-Za-z0-9]{1,4}$", path) and not path.endswith(".toml"):
         raise UsageError(f"{option}: got {printable(path)!r}; give a name that ends in .toml")
 
 

@@ -13,7 +13,8 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
-from equipoise.errors import ModelError, UsageError
+from equipoise.errors import ModelError, UsageError, meant
+from equipoise.i18n import Note
 from equipoise.keys import SCHEMA_VERSION, Frozen, Wording
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities.reading import described
@@ -106,10 +107,24 @@ def bundled() -> dict[str, Traversable]:
 
 
 def _known_examples(name: str) -> str:
+    if near := _file_meant(name):
+        return near
     bare = os.path.basename(name).removesuffix(".toml")
     hint = unknown(printable(bare), bundled(), "example").split("; ")[-1]
     near = f"{hint} or " if hint.startswith("did") else ""
     return f"{near}give a path, or the name of an example: run `equipoise examples`"
+
+
+def _file_meant(name: str) -> str:
+    """Ask whether a file beside is meant whose name is spelt alike, or lacks its ending here."""
+    folder, base = os.path.split(name)
+    try:
+        beside = [one for one in os.listdir(folder or ".") if one.endswith(".toml")]
+    except OSError:
+        return ""
+    if f"{base}.toml" in beside:
+        return Note("did you mean {name!r}?", name=os.path.join(folder, f"{base}.toml"))
+    return meant(name, [printable(os.path.join(folder, one)) for one in sorted(beside)])
 
 
 # -- what is in it ---------------------------------------------------------------------------------

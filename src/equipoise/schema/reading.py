@@ -15,7 +15,7 @@ from math import isfinite
 from typing import Any
 
 from equipoise import keys
-from equipoise.errors import ModelError, UsageError
+from equipoise.errors import ModelError, UsageError, meant
 from equipoise.i18n import LANGUAGES, Note, Worded
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import KINDS, parse
@@ -67,13 +67,41 @@ def _table(kind: keys.Table, given: Any, place: Place, context: Context) -> Any:
     known = keys.all_keys(of)
     for name in given:
         if name not in known:
-            return context.say((*place, name), unknown(name, known, "key"))
+            wrong = unknown(name, known, "key")
+            if path := _meant_below(name, given[name], known):
+                hint = Note("did you mean {name!r}?", name=path)
+                what = Note("no {kind} is called {given!r}; {hint}", kind=Note("key"), given=name,
+                            hint=hint)  # fmt: skip
+                return context.say((*place, name), what)
+            return context.say((*place, name), wrong)
     for name, one in known.items():
         if one.required and name not in given:
             return context.say(
                 (*place, name), Note("missing; add {example}", example=_example(one))
             )
     return Values(of, place, _values(of, given, place, context))
+
+
+def _meant_below(name: str, value: Any, known: Mapping[str, keys.Key]) -> str:
+    """Where a key belongs whose table was forgotten, such as ``points.A`` or ``links.rod``: below
+    the only one here that has names of the user's, for what looks like its value; else nothing.
+    """
+    if meant(name, [*known]):
+        return ""
+    fitting = [
+        one.name
+        for one in known.values()
+        if isinstance(one.kind, keys.Named) and _looks_like(one.kind.item, value)
+    ]
+    return f"{fitting[0]}.{name}" if len(fitting) == 1 else ""
+
+
+def _looks_like(kind: keys.Kind, value: Any) -> bool:
+    if isinstance(kind, keys.Point):
+        return isinstance(value, list) and len(value) == (3 if kind.space else 2)
+    if not isinstance(kind, keys.Table) or not isinstance(value, dict) or not value:
+        return False
+    return value.keys() <= keys.all_keys(kind.type).keys()
 
 
 def _values(
@@ -161,6 +189,8 @@ def _quantity(kind: keys.Quantity, given: Any, place: Place, context: Context) -
 def _text(kind: keys.Text, given: Any, place: Place, context: Context) -> Any:
     if kind.names:
         right = Note("give {what}", what=keys.choice(kind.names))
+        if isinstance(given, str):
+            right = meant(given, kind.names) or right
         return given if given in kind.names else context.wrong(place, given, right)
     return (
         given
@@ -225,7 +255,7 @@ def _listing(kind: keys.Listing, given: Any, place: Place, context: Context) -> 
         if not isinstance(given, list) or len(given) not in counts:
             return context.wrong(place, given, f"give {kind.right}")
     elif not isinstance(given, list):
-        return context.wrong(place, given, Note("give a list of two values in brackets"))
+        return context.wrong(place, given, _two_of(kind.item))
     read, item = READERS[type(kind.item)], kind.item
     values = tuple(read(item, one, (*place, n), context) for n, one in enumerate(given))
     if kind.right or len(given) == 2:
@@ -233,6 +263,15 @@ def _listing(kind: keys.Listing, given: Any, place: Place, context: Context) -> 
     for _ in range(max(2 - len(given), 1)):
         context.wrong(place, given, Note("give a list of two values"))
     return WRONG
+
+
+def _two_of(item: keys.Kind) -> Note:
+    """What to give instead of a list of two values."""
+    if not isinstance(item, keys.Quantity):
+        return Note("give a list of two values in brackets")
+    one = KINDS[item.dimension]
+    example = quoted([f"0 {one.example.partition(' ')[2]}", one.example])
+    return Note("give a list of two values in brackets, such as {example}", example=example)
 
 
 _LENGTH = keys.Quantity(dimension="length")

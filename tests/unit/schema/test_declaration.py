@@ -137,8 +137,9 @@ def test_what_is_missing_is_told_with_an_example() -> None:
 
 
 def test_values_of_python_are_checked_by_the_same_declaration() -> None:
-    with pytest.raises(ModelError, match=r"^torque: got '2 N m'; give a number$"):
-        Brake("crank", "2 N m")  # type: ignore[arg-type]
+    assert Brake("crank", "2 N m") == Brake("crank", 2.0)  # type: ignore[arg-type]
+    with pytest.raises(ModelError, match=r"^torque: got '2 kg'; kg is the unit of a mass; "):
+        Brake("crank", "2 kg")  # type: ignore[arg-type]
 
 
 def test_its_rows_in_the_documentation() -> None:

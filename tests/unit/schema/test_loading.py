@@ -211,3 +211,16 @@ def test_any_value_anywhere_is_refused_in_one_sentence(value: object, data: st.D
     except (TypeError, ValueError):  # what TOML cannot hold
         return
     assert "\n" not in complaint(text)
+
+
+def test_a_file_beside_that_is_spelt_alike_is_suggested(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Or one that lacks its ending only; before an example that is spelt alike."""
+    monkeypatch.chdir(tmp_path)
+    Path("sieve-2.toml").write_text(FOUR_BAR, encoding="utf-8")
+    for name in ("sieve-2", "siev-2.toml"):
+        with pytest.raises(ModelError, match=r"did you mean 'sieve-2\.toml'"):
+            load(name)
+    with pytest.raises(ModelError, match="there is no such file; give a path, or the name of an"):
+        load("nothing-at-all")
