@@ -79,7 +79,7 @@ VALUES = {
     "a link without a name": ("[links.rocker]", "[links.'']", "", "another name"),
     "a link without points": ('points.A = ["0 mm", "0 mm"]\npoints.B = ["33.5 mm", "0 mm"]\n',
                               "points = {}\n", f"{CRANK}.points", "give at least one"),
-    "unknown side": ('C = "left"', 'C = "leftt"', "assembly.C", "give 'left', 'right'"),
+    "unknown side": ('C = "left"', 'C = "leftt"', "assembly.C", "did you mean 'left'?"),
     "unknown joint": ('C = "left"', 'C = "left"\nQ = "left"', "assembly.Q", "meet at C"),
     "missing assembly": ('[assembly]\nC = "left"', "", "assembly.C", '"left" or "right"'),
     "text for a table": ("[assembly]", 'assembly = "left"\n[links.more]', "", ""),
@@ -158,7 +158,8 @@ inertia = "4 kg m^2"
 MOUNT = '[support.mounts.front]\npoint = ["0 mm", "0 mm"]\n'
 MOTOR = "[drive.motor]\n"
 SUPPORTS = {
-    "freedom": (f'{SUPPORT}freedoms = ["pich"]', "support.freedoms[1]", "got 'pich'; give 'surge'"),
+    "freedom": (f'{SUPPORT}freedoms = ["pich"]', "support.freedoms[1]",
+                "got 'pich'; did you mean 'pitch'?"),
     "no place": (f'{SUPPORT}[support.mounts.front]\nstiffness = "1 kN/m"', "support.mounts.front",
                  "give either point or axis"),
     "wrong kind": (f'{SUPPORT}{MOUNT}torsional_stiffness = "1 N m/rad"',

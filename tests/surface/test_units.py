@@ -195,7 +195,7 @@ def test_tools_studies_and_records_follow() -> None:
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [
-        ('units = { length = "inch" }', "units.length: got 'inch'; give 'm', 'mm', "),
+        ('units = { length = "inch" }', "units.length: got 'inch'; did you mean 'in'?"),
         (
             'units = { lenght = "in" }',
             "units.lenght: no key is called 'lenght'; did you mean 'length'?",

@@ -188,7 +188,7 @@ def _quantity(kind: keys.Quantity, given: Any, place: Place, context: Context) -
 
 def _text(kind: keys.Text, given: Any, place: Place, context: Context) -> Any:
     if kind.names:
-        right = Note("give {what}", what=keys.choice(kind.names))
+        right: Note | str = Note("give {what}", what=keys.choice(kind.names))
         if isinstance(given, str):
             right = meant(given, kind.names) or right
         return given if given in kind.names else context.wrong(place, given, right)

@@ -305,7 +305,7 @@ def test_numbers_of_any_kind_become_floats() -> None:
 @pytest.mark.parametrize(
     ("changes", "where", "wanted"),
     [
-        ({"mass": "5"}, "mass", "a number"),
+        ({"mass": "5"}, "mass", "a mass, such as"),
         ({"mass": True}, "mass", "a number"),
         ({"inertia": 10**400}, "inertia", "a number"),
         ({"center_of_mass": (1, 2, 3)}, "center_of_mass", "two numbers"),

@@ -239,7 +239,7 @@ OF_SUPPORTS: Refusals = {
     "no freedom": (INERTIA, f"{INERTIA}\nfreedoms = []", "support.freedoms",
                    "got a list of 0; give a list such as"),
     "unknown freedom": (INERTIA, f'{INERTIA}\nfreedoms = ["pitch", "rol"]', "support.freedoms[2]",
-                        "got 'rol'; give 'surge', 'heave', 'sway', 'roll', 'yaw' or 'pitch'"),
+                        "got 'rol'; did you mean 'roll'?"),
     "freedom twice": (INERTIA, f'{INERTIA}\nfreedoms = ["pitch", "pitch"]', "support.freedoms[2]",
                       "'pitch' is given twice"),
     "mounts as a list": ("[support.mounts.m]", "[[support.mounts]]", "support.mounts",
