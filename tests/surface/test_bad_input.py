@@ -201,6 +201,7 @@ TEXTS = {
     "open bracket": ("[links.crank\n", "put the name of a table in brackets: [links.crank]"),
     "missing bracket": ("sliders]]\n", "put the name of a table in brackets: [[sliders]]"),
     "missing comma": ('x = ["1 mm" "2 mm"]', "a comma is missing before this, or ] at the end"),
+    "table of values without units": ("t,x\n1,2\n", "this is a table of values (CSV), not a mo"),
     "table of values": ("time [s],x [m]\n1,2\n", "this is a table of values (CSV), not a model"),
     "two numbers": ("schema = 1 2", "line 1, column 12: expected newline"),
     "space in a name": (

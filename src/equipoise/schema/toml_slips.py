@@ -30,8 +30,8 @@ _ASSIGNED = re.compile(r"(?P<key>[A-Za-z0-9_.-]+)(?P<sign>\s*:\s*|\s+)(?P<value>
 """A key and a value without an equals sign between them."""
 _HEADER = re.compile(r"(?P<open>\[\[?)?(?P<name>[A-Za-z0-9_.-]+)(?P<close>\]\]?)?")
 """The name of a table, some of whose brackets may be missing."""
-_COLUMN = re.compile(r'\s*"?\w[\w. ]*\[[^\]]*\]"?\s*([,;\t]|$)')
-"""The first column in the header of a CSV file, with its unit."""
+_COLUMN = re.compile(r'\s*"?\w[\w. ]*(?:\[[^\]]*\]"?\s*(?:[,;\t]|$)|"?\s*[,;\t])')
+"""The first column in the header of a CSV file, with its unit or with another column behind it."""
 
 
 def syntax_error(message: str, text: str) -> str:
