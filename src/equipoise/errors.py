@@ -242,6 +242,8 @@ def meant(given: str, names: Sequence[str]) -> str:
     return Note("did you mean {name!r}?", name=by_form[near[0]]) if near else ""
 
 
+SHORTEST = 2
+"""Letters up to which a name, such as `B1`, is another where one is wrong."""
 LETTERS_RIGHT = 4
 """Letters for each that may be wrong: `friction` and `direction`, which share six of theirs in
 order, are words of their own."""
@@ -252,7 +254,8 @@ def _is_misspelt(given: str, name: str) -> bool:
     words, known = (set(re.split(r"[\W_]+", text)) - {""} for text in (given, name))
     if words <= known or known <= words or name.startswith(given) or given.startswith(name):
         return True
-    return _edits(given, name) <= max(1, len(name) // LETTERS_RIGHT)
+    few = 1 if len(name) > SHORTEST else 0
+    return _edits(given, name) <= max(few, len(name) // LETTERS_RIGHT)
 
 
 def _edits(one: str, other: str) -> int:

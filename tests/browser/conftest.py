@@ -47,7 +47,7 @@ def address(server: tuple[str, int]) -> str:
 
 
 @pytest.fixture(scope="session")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Site:
+def hosted(tmp_path_factory: pytest.TempPathFactory) -> Site:
     """The page as a folder for any web host."""
     if lacks_runtime():
         pytest.skip("the runtime and its wheels could not be fetched: make test fetches them")
@@ -55,9 +55,9 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Site:
 
 
 @pytest.fixture(scope="session")
-def host(site: Site) -> Iterator[str]:
+def host(hosted: Site) -> Iterator[str]:
     """The address of a web host that has it."""
-    with hosting(site.folder) as address:
+    with hosting(hosted.folder) as address:
         yield address
 
 

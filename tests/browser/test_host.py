@@ -36,8 +36,8 @@ def opened(page: Page, address: str, name: str) -> Live:
     return live
 
 
-def test_the_first_load_is_small(site: Site) -> None:
-    assert site.first <= MOST
+def test_the_first_load_is_small(hosted: Site) -> None:
+    assert hosted.first <= MOST
 
 
 def test_a_machine_is_changed_and_balanced_without_a_server(

@@ -28,7 +28,7 @@ SOUGHT = {
     "counterweight": "Balancing",
     "カウンタウェイト": "最初の1時間",
     "固有振動": "最初の1時間",
-    "카운터웨이트": "처음 한 시간",
+    "균형추": "처음 한 시간",
 }
 """Words, and a page on which each is found."""
 

@@ -124,7 +124,11 @@ def _file_meant(name: str) -> str:
         return ""
     if f"{base}.toml" in beside:
         return Note("did you mean {name!r}?", name=os.path.join(folder, f"{base}.toml"))
-    return meant(name, [printable(os.path.join(folder, one)) for one in sorted(beside)])
+    near = meant(base, sorted(beside))  # folders are not compared, which would be alike
+    if not isinstance(near, Note):
+        return ""
+    path = printable(os.path.join(folder, near.values["name"]))
+    return Note("did you mean {name!r}?", name=path)
 
 
 # -- what is in it ---------------------------------------------------------------------------------

@@ -213,5 +213,7 @@ def test_forces_within_a_row_have_no_phase(output: str) -> None:
 
 
 def test_what_another_kind_of_drive_exerts_is_no_output() -> None:
-    with pytest.raises(ModelError, match="did you mean 'drive_force'"):
+    with pytest.raises(
+        ModelError, match=r"no output is called 'drive_torque'; there are .* 'drive_force'"
+    ):
         Rows(eq.load("hydraulic-loader")).signals(Objective("drive_torque"))

@@ -200,7 +200,7 @@ OBJECTIVES = [
     (Objective("drive_torque.x"), ".output",
      "no output is called 'drive_torque.x'; did you mean 'drive_torque'?"),
     (Objective("joints.Q"), ".output", "no joint is called 'Q'; there are 'A', 'D', 'B', 'C'"),
-    (Objective("joints.B.z"), ".output", "no joint is called 'B.z'; there are 'A', 'D', 'B', 'C'"),
+    (Objective("joints.B.z"), ".output", "no joint is called 'B.z'; did you mean 'B'?"),
     (Objective("gauges.h"), ".output", "no gauge is called 'h'; there are 'g', 'nod'"),
     (Objective("shaking_moment", "max"), ".measure",
      "got 'max'; give 'rms', 'ripple', 'peak', 'peak_to_peak' or 'area'"),

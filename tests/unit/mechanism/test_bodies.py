@@ -508,7 +508,7 @@ def test_a_file_keeps_its_bodies_and_lengths() -> None:
         (
             'shape = "disc"',
             'shape = "disk"',
-            "links.rocker.bodies[3].shape: got 'disk'; give 'bar',",
+            "links.rocker.bodies[3].shape: got 'disk'; did you mean 'disc'?",
         ),
         (
             'at = "C"',

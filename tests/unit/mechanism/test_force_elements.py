@@ -69,7 +69,7 @@ def test_flywheels() -> None:
 @pytest.mark.parametrize(
     ("make", "key", "words"),
     [
-        (lambda: Motor("3000 rpm", 2.0), "no_load_speed", "got '3000 rpm'; give a number"),  # type: ignore[arg-type]
+        (lambda: Motor("3000 mm", 2.0), "no_load_speed", "got '3000 mm'..."),  # type: ignore[arg-type]
         (lambda: Motor(300.0, 2.0, ratio=None), "ratio", "got None; give a number"),  # type: ignore[arg-type]
         (lambda: MotorTable((1.0, "x"), (1.0, 0.0)), "speed", "got (1.0, 'x'); give numbers"),  # type: ignore[arg-type]
     ],

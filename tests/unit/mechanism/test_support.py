@@ -97,7 +97,7 @@ def test_values_about_a_pivot(changes: dict[str, Any], key: str, words: str) -> 
 @pytest.mark.parametrize(
     ("make", "key", "words"),
     [
-        (lambda: replace(SUPPORT, mass="60 kg"), "mass", "got '60 kg'; give a number"),
+        (lambda: replace(SUPPORT, mass="60 mm"), "mass", "got '60 mm'..."),
         (lambda: replace(SUPPORT, center_of_mass=(0.0,)), "center_of_mass",
          "got (0.0,); give two or three numbers"),
         (lambda: replace(SUPPORT, center_of_mass=0.3), "center_of_mass",
@@ -110,14 +110,14 @@ def test_values_about_a_pivot(changes: dict[str, Any], key: str, words: str) -> 
         (lambda: replace(SUPPORT, mounts=[1]), "mounts",
          "got [1]; give a mapping of names to such objects"),
         (lambda: Mount((0.0, 0.0), "up"), "direction",
-         "got 'up'; give an angle, or three numbers"),  # type: ignore[arg-type]
+         "got 'up'..."),  # type: ignore[arg-type]
         (lambda: Mount((0.0, 0.0), (0.0, 1.0)), "direction",  # type: ignore[arg-type]
          "got (0.0, 1.0); give an angle, or three numbers"),
         (lambda: Mount((0.0, 0.0), one_sided=1), "one_sided",
          "got 1; give true or false"),  # type: ignore[arg-type]
         (lambda: Gauge("abc"), "point",
          "got 'abc'; give two or three numbers"),  # type: ignore[arg-type]
-        (lambda: Row("90 deg"), "phase", "got '90 deg'; give a number"),  # type: ignore[arg-type]
+        (lambda: Row("90 mm"), "phase", "got '90 mm'..."),  # type: ignore[arg-type]
         (lambda: Row(offset=(1.0,)), "offset",
          "got (1.0,); give two numbers"),  # type: ignore[arg-type]
     ],

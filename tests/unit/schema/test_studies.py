@@ -301,7 +301,7 @@ REFUSED = {
         f'{HEAD}{RANGE}{REST}[[outputs]]\nof = "balance"\nvalue = "cost"\nat_most = "much"\n',
         "outputs[2].at_most: got 'much'; give a number in SI units, or one with its unit"),
     "make": (f'{HEAD}{RANGE}{REST}make = "small"\n',
-        "outputs[1].make: got 'small'; give 'smallest' or 'largest'"),
+        "outputs[1].make: got 'small'; did you mean 'smallest'?"),
     "command": (f'{HEAD}{RANGE}{REST}of = "plan"\n',
         "outputs[1].of: no command is called 'plan'; did you"),
     "no value": (f"{HEAD}{RANGE}{REST}[[outputs]]\nname = 'a'\n",

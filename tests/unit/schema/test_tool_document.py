@@ -162,7 +162,7 @@ REFUSED: dict[str, tuple[str, str, str, str]] = {
     "unknown material": (SECTION, f'{TUBE}material = "stel"', "shaft.material",
                          "did you mean 'steel'? (youngs_modulus and density stand for"),
     "unknown theory": (MASS, f'{MASS}\ntheory = "timo"', "shaft.theory",
-                       "got 'timo'; give 'euler-bernoulli' or 'timoshenko'"),
+                       "got 'timo'; did you mean 'timoshenko'?"),
     "no position": ('position = "550 mm"', "", "shaft.stations[2].position",
                     'missing; add position = "0 mm"'),
     "one plane": (HAND, 'hand.stiffness = { vertical = "1 N/m" }',
