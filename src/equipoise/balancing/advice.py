@@ -48,7 +48,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective, Phases
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import GAUGES
+from equipoise.mechanism.parts.objectives import GAUGES, ROWS
 from equipoise.vibration.forced import check_moving
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.resonance import resonances
@@ -164,7 +164,7 @@ class _Adviser:
             yield aims
         for one in large:
             if one not in gauges:
-                yield (Objective(one.output.removeprefix("rows.")),)
+                yield (Objective(one.output.removeprefix(ROWS)),)
 
     def remedies(self, plan: Balance) -> Iterator[Balanced]:
         """What is tried, the simplest first; nothing more where half of the aim is gone."""

@@ -26,6 +26,7 @@ from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.parts.balance import Balance, Objective
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import ROWS
 from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
@@ -237,7 +238,7 @@ class Balanced(Result):
         return {
             name: self.original.drive.speed * sqrt(old[name] / new[name])
             for name in old
-            if name.startswith(("shaking_", "rows.")) and new.get(name, 0.0) > GONE * old[name] > 0
+            if name.startswith(("shaking_", ROWS)) and new.get(name, 0.0) > GONE * old[name] > 0
         }
 
     def _advised(self) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from equipoise.balancing.told import (
 )
 from equipoise.balancing.workshop import sentences
 from equipoise.i18n import said, say, to_say
+from equipoise.mechanism.parts.objectives import ROWS
 from equipoise.quantities import Dimension, change, display, number, percent
 from equipoise.results.blocks import (
     Block,
@@ -243,9 +244,9 @@ faster, tells no more than that next to nothing is left."""
 def _speeds(found: Balanced) -> Iterator[tuple[Cell, ...]]:
     most = FASTER * abs(found.original.drive.speed)
     speeds = {name: one for name, one in found.equivalent_speeds.items() if abs(one) <= most}
-    several = any(name.startswith("rows.") for name in speeds)
+    several = any(name.startswith(ROWS) for name in speeds)
     for name, speed in speeds.items():
-        if name.startswith("rows.shaking_") if several else name.count(".") == 1:
+        if name.startswith(f"{ROWS}shaking_") if several else name.count(".") == 1:
             yield figure_named(name, len(found.original.rows)), Value(speed)
 
 

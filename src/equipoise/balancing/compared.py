@@ -11,7 +11,7 @@ from equipoise.errors import EquipoiseError, ModelError, ResponseError
 from equipoise.mechanism.outputs.declared import GROUPS, declared
 from equipoise.mechanism.parts.balance import Balance, Measure, Objective
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import GAUGES, WITHIN
+from equipoise.mechanism.parts.objectives import GAUGES, ROWS, WITHIN
 from equipoise.planting.summary import plant
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.outputs import Output, unit_of_measure
@@ -25,9 +25,6 @@ FAINT = 1e-4
 """Of the largest figure of its unit: what is smaller is nobody's concern."""
 IMPORTANT = tuple(dict.fromkeys(("gauges", "rows", *GROUPS)))
 """Groups of outputs in the order in which a reader asks for them."""
-
-ROWS = "rows."
-"""Before the name of what all rows do together."""
 
 Pair = tuple[float, float]
 """A value before and after."""

@@ -15,7 +15,7 @@ from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.balance import Objective
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import GAUGES, MEASURES
+from equipoise.mechanism.parts.objectives import GAUGES, MEASURES, ROWS
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.yardsticks import FigureAssessment, assess, assess_parts
 from equipoise.vibration.forced import respond
@@ -140,7 +140,7 @@ def _watched(one: FigureAssessment, outputs: list[str], growth: float) -> Iterat
     known, measure = declared(one.output), one.family[1]
     if known is None or known[0].reason or measure not in MEASURES:
         return
-    objectives = tuple(Objective(name.removeprefix("rows."), measure) for name in outputs)
+    objectives = tuple(Objective(name.removeprefix(ROWS), measure) for name in outputs)
     yield HeadlineLimit(objectives, allowed_ratio(one, growth) * abs(one.value) / one.ratio)
 
 
@@ -158,7 +158,7 @@ def headline_objectives(entries: Assessment) -> tuple[Objective, ...]:
         if gauge:
             return (Objective(one.output, "ripple"),)
         if known is not None and not known[0].reason and measure in MEASURES:
-            name = one.output.removeprefix("rows.")
+            name = one.output.removeprefix(ROWS)
             return (Objective(name, measure),)
     return (Objective("shaking_force"),)
 

@@ -217,7 +217,7 @@ class Watched:
 
     def __exit__(self, *error: object) -> None:
         if self.compute is not None:
-            self.compute.__exit__(*error)
+            self.compute.close()
 
     def __call__(self, values: Any) -> Outcome:
         """Compute designs (P, d)."""

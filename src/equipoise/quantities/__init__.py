@@ -16,10 +16,10 @@ from equipoise.quantities.numbers import brief as brief
 from equipoise.quantities.numbers import change as change
 from equipoise.quantities.numbers import chosen_unit as chosen_unit
 from equipoise.quantities.numbers import chosen_units as chosen_units
+from equipoise.quantities.numbers import column_heading as column_heading
 from equipoise.quantities.numbers import display as display
 from equipoise.quantities.numbers import display_rules as display_rules
 from equipoise.quantities.numbers import fixed as fixed
-from equipoise.quantities.numbers import headed as headed
 from equipoise.quantities.numbers import in_unit as in_unit
 from equipoise.quantities.numbers import number as number
 from equipoise.quantities.numbers import percent as percent

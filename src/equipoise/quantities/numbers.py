@@ -341,6 +341,6 @@ def display_rules() -> Mapping[str, Any]:
     return {"least": LEAST, "most": MOST, "units": units, "lengths": lengths}
 
 
-def headed(name: str, unit: str) -> str:
+def column_heading(name: str, unit: str) -> str:
     """The head of a column of numbers: its name, and its unit where it has one."""
     return f"{name} [{unit}]" if unit else name

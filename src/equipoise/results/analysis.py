@@ -29,7 +29,7 @@ from equipoise.mechanism.outputs.declared import DECLARED, Found
 from equipoise.mechanism.parts.machine import Machine, Vector
 from equipoise.mechanism.parts.places import in_frame
 from equipoise.mechanism.parts.support import idle_parts
-from equipoise.quantities import Dimension, headed
+from equipoise.quantities import Dimension, column_heading
 from equipoise.results.lost_contacts import lost_contacts
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
@@ -299,8 +299,8 @@ class Analysis(Result):
         """
         import pandas
 
-        index = pandas.Index(self.crank_angle, name=headed("crank_angle", "rad"))
-        columns = {headed(one.name, one.unit): one.values for one in self.outputs.arrays}
+        index = pandas.Index(self.crank_angle, name=column_heading("crank_angle", "rad"))
+        columns = {column_heading(one.name, one.unit): one.values for one in self.outputs.arrays}
         return pandas.DataFrame(columns, index=index)
 
 

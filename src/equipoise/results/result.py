@@ -12,7 +12,7 @@ import numpy as np
 
 from equipoise.displays import Displayed, room
 from equipoise.mechanism.parts.shown_units import units_of
-from equipoise.quantities import headed, showing_by_default
+from equipoise.quantities import column_heading, showing_by_default
 from equipoise.signals import Array
 
 if TYPE_CHECKING:
@@ -138,8 +138,8 @@ class Result(Displayed):
         columns = self.columns()
         if columns and not self.records:
             (first, unit, index), *rest = columns
-            frame = {headed(name, one): values for name, one, values in rest}
-            return pandas.DataFrame(frame, pandas.Index(index, name=headed(first, unit)))
+            frame = {column_heading(name, one): values for name, one, values in rest}
+            return pandas.DataFrame(frame, pandas.Index(index, name=column_heading(first, unit)))
         arrays, attributes = _split(self)
         along = self.records or next((name for name in ABSCISSAE if name in arrays), "")
         flat = {
@@ -149,7 +149,7 @@ class Result(Displayed):
             for name, values in _flat(path, np.moveaxis(table, axes.index(along), 0))
         }
         if along in arrays:
-            head = headed(along, ABSCISSAE.get(along, ""))
+            head = column_heading(along, ABSCISSAE.get(along, ""))
             return pandas.DataFrame(flat, pandas.Index(arrays[along][1], name=head))
         if flat:
             return pandas.DataFrame(flat)

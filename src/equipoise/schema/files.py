@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from equipoise.errors import UsageError
 from equipoise.fence import OutsideError, may_be_replaced, open_file
 from equipoise.partial import made, replaced
-from equipoise.quantities import headed
+from equipoise.quantities import column_heading
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
@@ -206,6 +206,6 @@ def csv_text(table: Sequence[tuple[str, str, Any]]) -> str:
     """Columns, as name, unit and values (N,), as the text of a CSV file."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([headed(name, unit) for name, unit, _ in table])
+    writer.writerow([column_heading(name, unit) for name, unit, _ in table])
     writer.writerows(zip(*(values.tolist() for _, _, values in table), strict=True))
     return text.getvalue()

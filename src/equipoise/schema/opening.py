@@ -16,7 +16,6 @@ from typing import Any, Literal, NamedTuple
 from equipoise.errors import ModelError, UsageError, meant
 from equipoise.i18n import Note
 from equipoise.keys import SCHEMA_VERSION, Frozen, Wording
-from equipoise.mechanism.checks import unknown
 from equipoise.quantities.reading import described
 from equipoise.schema.files import LARGEST, FileError, printable, read_text
 from equipoise.schema.toml_slips import syntax_error
@@ -110,8 +109,8 @@ def _known_examples(name: str) -> str:
     if near := _file_meant(name):
         return near
     bare = os.path.basename(name).removesuffix(".toml")
-    hint = unknown(printable(bare), bundled(), "example").split("; ")[-1]
-    near = f"{hint} or " if hint.startswith("did") else ""
+    hint = meant(printable(bare), [*bundled()])
+    near = f"{hint} or " if hint else ""
     return f"{near}give a path, or the name of an example: run `equipoise examples`"
 
 

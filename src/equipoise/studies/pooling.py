@@ -32,7 +32,7 @@ SHARES = 4
 """Parts for each process, so that all end at about the same time."""
 
 
-class Part(NamedTuple):
+class DesignSlice(NamedTuple):
     """Some of the designs that are computed together.
 
     begin : place of the first among them.
@@ -71,6 +71,10 @@ class PooledEvaluator:
         return self
 
     def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End its processes."""
         if self.pool is not None:
             self.pool.close()
 
@@ -101,12 +105,12 @@ class PooledEvaluator:
     def _shared_out(self, pool: Processes, values: Array) -> list[Outcome]:
         size = -(-len(values) // (SHARES * self.workers))
         starts = range(0, len(values), size)
-        parts = (Part(start, values[start : start + size]) for start in starts)
+        parts = (DesignSlice(start, values[start : start + size]) for start in starts)
         found = {part.begin: outcome for part, outcome in computed(pool, parts)}
         return [found[start] for start in starts]
 
 
-def _compute(packed: bytes, part: Part) -> Outcome:
+def _compute(packed: bytes, part: DesignSlice) -> Outcome:
     """In another process: some designs of a study."""
     return _evaluator_of(packed)(part.values)
 

@@ -18,6 +18,7 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.outputs.declared import DECLARED, Declared
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.objectives import ROWS
 from equipoise.quantities import Display, change, display, number, typeset
 from equipoise.quantities.numbers import SAME
 from equipoise.results.analysis import Analysis
@@ -209,7 +210,6 @@ def _plain(value: float, least: float) -> float | None:
     return value if value > least else 0.0
 
 
-ROWS = "rows."
 """What stands before the names of all rows together."""
 LEAST = 1e-6
 """Of the largest force or moment, below which curves are drawn as none."""

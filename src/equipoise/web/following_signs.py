@@ -15,7 +15,7 @@ from equipoise.mechanism.formulas.strands import LEFT, RIGHT
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.symbols.pieces import Piece, pieces
-from equipoise.symbols.scene import Guide, Scene
+from equipoise.symbols.scene import WIDE, Guide, Scene
 from equipoise.symbols.shapes import Array, Shape
 from equipoise.web.block import Values
 
@@ -117,7 +117,7 @@ def _places(scene: Scene, body: str) -> Iterator[tuple[str, complex]]:
 def _corner(
     scene: Scene, own: dict[str, complex], guides: list[Guide], place: complex
 ) -> str | list[str | float] | None:
-    near = SAME * 560 * scene.unit
+    near = SAME * WIDE * scene.unit
     for name, at in own.items():
         if abs(at - place) <= near:
             return name

@@ -26,6 +26,7 @@ from equipoise.mechanism.assembly.full_turn import CHANGE_POINT
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.outputs.declared import GROUPS
 from equipoise.mechanism.parts.machine import FRAME, Machine
+from equipoise.mechanism.parts.objectives import ROWS
 from equipoise.quantities import FACTORS, KINDS, display, display_rules
 from equipoise.quantities.numbers import Display, in_unit
 from equipoise.results.analysis import Analysis, analyze
@@ -36,35 +37,14 @@ from equipoise.schema.template import Template
 from equipoise.symbols.scene import Scene
 from equipoise.web.assets import asset
 from equipoise.web.block import Array, Values
+from equipoise.web.documents import ALONE, data, document, script, style
 from equipoise.web.drawing import stage_of
 from equipoise.web.edits import movable
 from equipoise.web.fields import SECTIONS
-from equipoise.web.figures import ROWS, told_signals
+from equipoise.web.figures import told_signals
 from equipoise.web.following import extent_of
 from equipoise.web.following_signs import ties_of
 from equipoise.web.measures import measures_of
-from equipoise.web.played import POLICY
-
-HTML = """<!doctype html>
-<html lang="{language}">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<meta http-equiv="content-security-policy" content="{policy}">
-<title>{title}</title>
-<link rel="icon" href="data:,">
-<style>{style}</style>
-</head>
-<body>
-<main id="equipoise-interactive"></main>
-<noscript>{without_scripts}</noscript>
-<script type="application/json" id="equipoise-machine">{machine}</script>
-<script id="equipoise-states">{states}</script>
-<script type="module" id="equipoise-page">{page}</script>
-</body>
-</html>
-"""
 
 
 def made(job: Job) -> str:
@@ -84,18 +64,21 @@ def made(job: Job) -> str:
     job.leave_out_motor()
     machine = replace(job.machine, support=None, balance=None)
     page = Interactive(machine, job.crank_angle)
-    script = asset("interactive.js")
-    words = {text: word for text, word in catalogue(spoken()).items() if _says(script, text)}
-    content = {**page.content, "language": spoken(), "words": words}
-    return HTML.format(
+    program = asset("interactive.js")
+    words = {text: word for text, word in catalogue(spoken()).items() if _says(program, text)}
+    body = (
+        '<main id="equipoise-interactive"></main>',
+        f"<noscript>{escape(say('This page needs JavaScript.'))}</noscript>",
+        data("equipoise-machine", {**page.content, "language": spoken(), "words": words}),
+        script(page.script.text, 'id="equipoise-states"'),
+        script(program, 'type="module" id="equipoise-page"'),
+    )
+    return document(
+        style(asset("interactive.css")),
+        "\n".join(body),
+        policy=ALONE,
+        title=said(machine.title),
         language=spoken(),
-        policy=POLICY,
-        title=escape(said(machine.title)),
-        without_scripts=escape(say("This page needs JavaScript.")),
-        style=asset("interactive.css").replace("</", "<\\/"),
-        machine=json.dumps(content, ensure_ascii=False, allow_nan=False).replace("<", "\\u003c"),
-        states=page.script.text,
-        page=script.replace("</script", "<\\/script"),
     )
 
 

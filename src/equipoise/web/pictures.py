@@ -69,7 +69,8 @@ def _over_crank(found: Solved, output: str) -> Chart:
     """An output over the crank angle; of all rows together where it is only there."""
     from equipoise.figures.analysis import ALL
     from equipoise.figures.forces import over_crank
-    from equipoise.web.figures import ROWS, capital
+    from equipoise.mechanism.parts.objectives import ROWS
+    from equipoise.web.figures import capital
 
     outputs = found.analysis.outputs
     one = outputs[f"{ROWS}{output}" if f"{ROWS}{output}" in outputs else output]

@@ -21,6 +21,7 @@ from equipoise.interrupts import answered
 from equipoise.schema.files import reason
 from equipoise.web.assets import TYPES, assets
 from equipoise.web.desk import Desk
+from equipoise.web.documents import document
 from equipoise.web.lanes import Lanes
 from equipoise.web.messages import LARGEST_MESSAGE
 from equipoise.web.page import Page, turn_away
@@ -116,23 +117,10 @@ that a short answer does not wait for long ones.
 MOST_PAGES = 20
 FULL = f"{MOST_PAGES} pages are open already; close one of them"
 NOTHING = "equipoise: there is nothing here; open the address that was printed\n"
-HTML = """<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<title>Equipoise</title>
-<link rel="icon" href="data:,">
-<link rel="stylesheet" href="/equipoise.css?token={token}">
-</head>
-<body>
-<main id="equipoise-live" data-live="/live?token={token}"></main>
+HEAD = '<link rel="stylesheet" href="/equipoise.css?token={token}">'
+BODY = """<main id="equipoise-live" data-live="/live?token={token}"></main>
 <noscript>This page needs JavaScript.</noscript>
-<script type="module" src="/equipoise.js?token={token}"></script>
-</body>
-</html>
-"""
+<script type="module" src="/equipoise.js?token={token}"></script>"""
 
 
 def application(port: int, token: str, begin: Callable[[], Desk], lanes: Lanes) -> ASGIApp:
@@ -146,7 +134,8 @@ def application(port: int, token: str, begin: Callable[[], Desk], lanes: Lanes) 
     from starlette.responses import PlainTextResponse, Response
     from starlette.routing import Route, WebSocketRoute
 
-    html, built = HTML.format(token=token), assets()
+    html = document(HEAD.format(token=token), BODY.format(token=token))
+    built = assets()
     pages: set[Page] = set()
 
     async def index(request: Request) -> Response:

@@ -26,6 +26,7 @@ from equipoise import __version__
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.web.assets import MAKE
+from equipoise.web.documents import document
 
 RUNTIME = "314.0.3"
 """Version of the npm package `pyodide` that the page was tried with."""
@@ -46,26 +47,12 @@ POLICY = (
     "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; "
     "img-src 'self' data: blob:; connect-src 'self' https:; worker-src 'self'; base-uri 'none'"
 )
-HTML = """<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<meta http-equiv="content-security-policy" content="{policy}">
-<meta name="description" content="Draw a linkage, and see how it moves and shakes.">
-<title>Equipoise</title>
-<link rel="icon" href="data:,">
-<link rel="stylesheet" href="equipoise.css">
-</head>
-<body>
-<p id="equipoise-status" role="status">Loading {size:.0f} MB, which are kept for the next time.</p>
+HEAD = """<meta name="description" content="Draw a linkage, and see how it moves and shakes.">
+<link rel="stylesheet" href="equipoise.css">"""
+BODY = """<p id="equipoise-status" role="status">Loading {size:.0f} MB, kept for the next time.</p>
 <main id="equipoise-live" data-worker="worker.js" data-service="service.js?build={build}"></main>
 <noscript>This page needs JavaScript.</noscript>
-<script type="module" src="equipoise.js"></script>
-</body>
-</html>
-"""
+<script type="module" src="equipoise.js"></script>"""
 
 
 @dataclass(frozen=True)
@@ -137,7 +124,8 @@ def write_site(
         }
         (fresh / "site.json").write_text(json.dumps(about), encoding="utf-8")
         first = _first_load(fresh, about)
-        html = HTML.format(policy=POLICY, size=first / 1e6, build=_build_of(fresh))
+        body = BODY.format(size=first / 1e6, build=_build_of(fresh))
+        html = document(HEAD, body, policy=POLICY)
         (fresh / "index.html").write_text(html, encoding="utf-8")
         shutil.rmtree(target, ignore_errors=True)
         fresh.rename(target)

@@ -12,14 +12,14 @@ from equipoise.mechanism.checks import numbered, unknown
 from equipoise.mechanism.parts.joint_properties import OF_FORCES, JointProperties
 from equipoise.mechanism.parts.machine import Machine
 
-Named = dict[str, list[Reaction]]
+ReactionsByName = dict[str, list[Reaction]]
 
 
-def named_joints(joints: Structure, reactions: Sequence[Reaction]) -> Named:
+def named_joints(joints: Structure, reactions: Sequence[Reaction]) -> ReactionsByName:
     """Joints by the names of their forces in outputs; a pin of several links by its point too,
     which stands for all of its forces.
     """
-    named: Named = {}
+    named: ReactionsByName = {}
     for one in reactions:
         family = OF_FORCES[one.kind]
         for name in dict.fromkeys((name_in_outputs(joints, one), one.name)):

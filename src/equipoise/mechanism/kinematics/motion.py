@@ -193,13 +193,17 @@ class Motion(Displayed):
 
         table, number : its list in the file, and its place there from 0.
         """
-        known = self.__dict__.setdefault("_element_values", {})
+        known = self._element_values
         if (table, number) not in known:
             element: ForceElement = getattr(self.machine, table)[number]
             values = element.values(PlacedBodies(self, f"{table}[{number + 1}]"))
             known[table, number] = {name: self._full(value) for name, value in values.items()}
-        found: Mapping[str, Array] = known[table, number]
-        return found
+        return known[table, number]
+
+    @cached_property
+    def _element_values(self) -> dict[tuple[str, int], Mapping[str, Array]]:
+        """Those that have been computed, by list and place."""
+        return {}
 
     def slider(self, slider: Slider) -> SliderMotion:
         """Motion of one of the sliding joints, likewise."""
@@ -361,7 +365,7 @@ def move(
         raise UsageError(f"got {angles}; give a number of crank angles, or angles")
     if isinstance(angles, int | np.integer):
         find = _poses if angles * linkage.cycle.turns > MOST_KEPT else _kept_poses
-        theta, state = find(_Grid(linkage, int(angles)))
+        theta, state = find(_CycleGrid(linkage, int(angles)))
         return Motion(linkage, theta, *_rates(machine.drive, speed, acceleration), True, state)
     theta = _given_angles(angles)
     rates = _rates(machine.drive, speed, acceleration)
@@ -373,7 +377,7 @@ def move(
 
 
 @dataclass(frozen=True, eq=False)
-class _Grid:
+class _CycleGrid:
     """Crank angles in a cycle of a linkage: equal for machines that differ in masses or speed.
 
     count : in a turn.
@@ -384,7 +388,7 @@ class _Grid:
 
     def __eq__(self, other: object) -> bool:
         return (
-            isinstance(other, _Grid)
+            isinstance(other, _CycleGrid)
             and other.count == self.count
             and other.linkage.anchors is self.linkage.anchors
         )
@@ -393,7 +397,7 @@ class _Grid:
         return hash((id(self.linkage.anchors), self.count))
 
 
-def _poses(grid: _Grid) -> tuple[Array, State]:
+def _poses(grid: _CycleGrid) -> tuple[Array, State]:
     """Crank angles and state, in arrays to which nobody writes."""
     theta = _cycle_angles(grid.linkage, grid.count)
     state = grid.linkage.solve(theta)

@@ -34,13 +34,14 @@ MEASURES: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak", "area"
 area under the absolute value over 360 degrees of crank angle."""
 MEASURED_IN: tuple[Dimension, ...] = ("force", "torque", "power", "energy", "length", "angle")
 """What measures of outputs can be."""
+JOINTS, GAUGES, ROWS = "joints.", "gauges.", "rows."
+"""How outputs begin of joints, of the support's gauges, and of what all rows do together."""
 OF_ROWS = tuple(
-    name.removeprefix("rows.")
+    name.removeprefix(ROWS)
     for name, one in DECLARED.items()
-    if one.needs == "rows" and name.removeprefix("rows.") not in DECLARED
+    if one.needs == "rows" and name.removeprefix(ROWS) not in DECLARED
 )
 """About x and y, from linkages side by side."""
-JOINTS, GAUGES = "joints.", "gauges."
 WITHIN = tuple(dict.fromkeys(f"{one.group}." for one in DECLARED.values() if one.internal))
 """How forces begin that act inside of one linkage, whichever row it is."""
 OF_NUMBERS = ("ripple", "peak_to_peak", "area")
