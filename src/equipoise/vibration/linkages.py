@@ -15,7 +15,7 @@ Kinetic energy, momentum and moment of momentum on any moving support follow fro
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from functools import reduce
 from operator import add
@@ -33,6 +33,7 @@ from equipoise.mechanism.dynamics.acting import (
 )
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.reactions import Demand, Pass, demands_of, reactions
+from equipoise.mechanism.dynamics.reduced import generalized_force, reduced_inertia
 from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.machine import Machine
@@ -112,7 +113,8 @@ def sums(machine: Machine, theta: Array, reference: complex, speed: float) -> Su
 
 def _of_row(motion: Motion, shift: complex) -> Sums:
     zero = np.zeros(len(motion.crank_angle))
-    total = Sums(0.0, *(zero + 0j,) * 3, *(zero,) * 6, *_loads(motion, shift))
+    reduced, loads = reduced_inertia(motion), _loads(motion, shift)
+    total = Sums(0.0, *(zero + 0j,) * 3, *(zero,) * 4, *reduced, *loads)
     for mass, own, place, first, second, w, a in _bodies(motion, shift):
         total += Sums(
             mass,
@@ -123,9 +125,7 @@ def _of_row(motion: Motion, shift: complex) -> Sums:
             2 * mass * dot(place, first),
             mass * cross(place, first) + own * w,
             mass * cross(place, second) + own * a,
-            mass * dot(first, first) + own * w**2,
-            2 * (mass * dot(first, second) + own * w * a),
-            *(zero,) * 3,
+            *(zero,) * 5,
         )
     return total
 
@@ -150,17 +150,9 @@ def _loads(motion: Motion, shift: complex) -> tuple[Array, Array, Array]:
         anchor = motion.state[p(motion.linkage.anchors[link])[0]]
         total = total - held
         about = about - moment - cross(anchor + shift, held)
-    turning = [_power(motion, one) for one in (inner_demands(motion), spring_demands(motion))]
-    return total, about, -sum(turning, _power(motion, loads))
-
-
-def _power(motion: Motion, demands: Mapping[str, Demand]) -> Array:
-    """Power of demands at a crank speed of 1 rad/s (N,), N m: minus the torque on the crank."""
-    total: Array = np.zeros(len(motion.crank_angle))
-    for link, (force, moment) in demands.items():
-        anchor_1 = motion.state[p(motion.linkage.anchors[link])[1]]
-        total = total + dot(anchor_1, force) + motion.state[u(link)[1]] * moment
-    return total
+    every = (loads, inner_demands(motion), spring_demands(motion))
+    turning = sum(generalized_force(motion, demands) for demands in every)
+    return total, about, np.asarray(turning)
 
 
 def spread(motion: Motion) -> Array:

@@ -80,6 +80,19 @@ def acting_loads(motion: Motion) -> Iterator[Acting]:
 def outer_loads(motion: Motion) -> Iterator[Acting]:
     """The same of loads from outside, and of the soil."""
     yield from _acting(motion, None)
+    yield from soil_loads(motion)
+
+
+def given_loads(motion: Motion) -> Iterator[Acting]:
+    """Link, point, force and torque of each load of the file, which depend on the crank angle
+    alone.
+    """
+    yield from _acting(motion, "frame")
+    yield from _acting(motion, None)
+
+
+def soil_loads(motion: Motion) -> Iterator[Acting]:
+    """Link, point, force and torque of the soil on each tip."""
     machine = motion.machine
     if machine.planting is not None and machine.planting.soil is not None:
         for arm in machine.planting.every_arm:

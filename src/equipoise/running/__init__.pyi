@@ -1,0 +1,1 @@
+from .equation import CrankEquation as CrankEquation

@@ -1,0 +1,133 @@
+"""The equation of motion of a machine on a fixed frame whose crank follows from torques.
+
+    J(q) q.. + J'(q) q.^2 / 2 = Q(q, q.) + T
+
+with reduced inertia and generalized forces of `mechanism.dynamics.reduced`, summed over all rows on
+the shaft, and T the torque of the drive.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from math import pi
+
+import numpy as np
+
+from equipoise.errors import MassError, UsageError
+from equipoise.i18n import Note
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.dynamics.forces import massless
+from equipoise.mechanism.dynamics.reduced import reduced_inertia
+from equipoise.mechanism.kinematics.jumps import bends_of_rows, jumps_of_rows
+from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import Row
+from equipoise.running.sources import Source, sources_of
+from equipoise.running.tabulated import Tabulated
+from equipoise.signals import Array
+
+PIECES = 24
+"""Pieces of a turn, to begin with."""
+CLOSE = 1e-9
+"""rad, within which edges of pieces are one: rounding of crank angles at which a load sets in."""
+
+
+@dataclass(frozen=True, eq=False)
+class CrankEquation:
+    """A machine as a function of its crank's angle and speed.
+
+    Raises
+    ------
+    MassError : a link has no mass given.
+    MotionError : the crank cannot turn fully.
+    UsageError : the machine is not driven by one crank.
+    """
+
+    machine: Machine
+
+    def __post_init__(self) -> None:
+        if not self.machine.has_crank:
+            raise UsageError(
+                Note(
+                    "forward dynamics is for one crank that a torque turns, not for several drives "
+                    "or one that follows a law; leave the others and the law out"
+                )
+            )
+        if missing := massless(self.machine):
+            raise MassError(missing)
+
+    @cached_property
+    def period(self) -> float:
+        """Crank angle after which everything repeats, rad."""
+        return 2 * pi * assemble(self.machine).cycle.turns
+
+    @cached_property
+    def sources(self) -> tuple[Source, ...]:
+        """What acts on the crank beside the drive."""
+        return tuple(sources_of(self.machine))
+
+    @property
+    def shaft_inertia(self) -> float:
+        """Moment of inertia of flywheel and rotor as the crank feels it, kg m2."""
+        drive = self.machine.drive
+        motor = drive.motor
+        return drive.flywheel + (0.0 if motor is None else motor.ratio**2 * motor.inertia)
+
+    def motions(self, theta: Array) -> list[Motion]:
+        """Motion of each row at crank angles (N,), at a crank speed of 1 rad/s."""
+        rows = self.machine.rows or (Row(),)
+        return [move(self.machine, theta + row.phase, 1.0, 0.0) for row in rows]
+
+    def inertia(self, theta: Array) -> tuple[Array, Array]:
+        """J and J' (N,), kg m2, at crank angles (N,), from the linkage itself."""
+        inertia, slope = np.sum([reduced_inertia(one) for one in self.motions(theta)], axis=0)
+        return inertia + self.shaft_inertia, slope
+
+    def energy(self, theta: Array, speed: Array) -> Array:
+        """Kinetic energy (N,), J, from the linkage itself."""
+        return np.asarray(self.inertia(theta)[0] * speed**2 / 2)
+
+    @cached_property
+    def edges(self) -> Array:
+        """Crank angles of a cycle between which everything is smooth, from 0 on, rad."""
+        linkage = assemble(self.machine)
+        turns = linkage.cycle.turns
+        grid = np.linspace(0.0, self.period, PIECES * turns + 1)
+        jumps, bends = jumps_of_rows(linkage), bends_of_rows(self.machine, turns)
+        apart = np.sort(np.concatenate([jumps, bends]))
+        apart = apart[np.diff(apart, prepend=-1.0) > CLOSE]
+        nearest = np.min(np.abs(np.subtract.outer(grid, apart)), axis=1, initial=np.inf)
+        nearest[[0, -1]] = np.inf
+        inside = apart[(apart > CLOSE) & (apart < self.period - CLOSE)]
+        return np.sort(np.concatenate([grid[nearest > CLOSE], inside]))
+
+    @cached_property
+    def table(self) -> Tabulated:
+        """J', J, and the columns of each source one after the other."""
+
+        def functions(theta: Array) -> Array:
+            motions = self.motions(theta)
+            inertia = sum(reduced_inertia(motion)[0] for motion in motions) + self.shaft_inertia
+            columns = [inertia, *(c for one in self.sources for c in one.columns(motions))]
+            return np.array([np.broadcast_to(column, theta.shape) for column in columns])
+
+        return Tabulated(functions, self.edges, slopes=1)
+
+    @cached_property
+    def slices(self) -> tuple[slice, ...]:
+        """Of each source, its columns in the table."""
+        few = self.motions(np.zeros(1))
+        counts = [len(source.columns(few)) for source in self.sources]
+        ends = 2 + np.cumsum([0, *counts])
+        return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
+
+    def at(self, theta: float, speed: float) -> tuple[float, float, list[float]]:
+        """J, J' and the torque of each source at a crank angle and speed."""
+        values = self.table.at(theta)
+        torques = [
+            source.torque(values[part], speed)
+            for source, part in zip(self.sources, self.slices, strict=True)
+        ]
+        return values[1], values[0], torques

@@ -1,0 +1,115 @@
+"""What turns the crank of a machine or brakes it: weight, springs, loads and soil.
+
+Each is a source of generalized force.  It says which functions of the crank angle it needs, which
+are tabulated, and what it makes of their values and of the crank's speed.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from equipoise.i18n import to_say
+from equipoise.mechanism.dynamics.acting import (
+    given_loads,
+    resistance,
+    spring_demands,
+)
+from equipoise.mechanism.dynamics.reactions import demands_of
+from equipoise.mechanism.dynamics.reduced import generalized_force, weight_torque
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.tip import surface_of
+from equipoise.mechanism.parts.field import Planting
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.signals import Array
+
+Motions = Sequence[Motion]
+"""Of each row of a machine, at the same N instants."""
+
+
+class Source(ABC):
+    """What exerts a generalized force on the crank, by its angle and speed.
+
+    key : its name in JSON.  label : for readers.
+    """
+
+    key: str
+    label: str
+
+    @abstractmethod
+    def columns(self, motions: Motions) -> list[Array]:
+        """Smooth functions (N,) of the crank angle that it needs."""
+
+    @abstractmethod
+    def torque(self, columns: Sequence[float], speed: float) -> float:
+        """Generalized force, N m, by these and the crank's speed, rad/s."""
+
+
+@dataclass(frozen=True)
+class ByAngle(Source):
+    """A source that depends on the crank angle alone."""
+
+    key: str
+    label: str
+    of: Callable[[Motion], Array]
+
+    def columns(self, motions: Motions) -> list[Array]:
+        return [np.asarray(sum(self.of(motion) for motion in motions))]
+
+    def torque(self, columns: Sequence[float], speed: float) -> float:
+        return columns[0]
+
+
+@dataclass(frozen=True)
+class OfSoil(Source):
+    """The soil, whose force follows the velocity of each tip over ground."""
+
+    planting: Planting
+    surface: float
+    key: str = "soil"
+    label: str = to_say("soil")
+
+    def columns(self, motions: Motions) -> list[Array]:
+        found = []
+        for motion in motions:
+            for arm in self.planting.every_arm:
+                tip = motion.point(arm.tip)
+                found += [self.surface - tip.y, tip.place_1.real, tip.place_1.imag]
+        return found
+
+    def torque(self, columns: Sequence[float], speed: float) -> float:
+        assert self.planting.soil is not None
+        total, forward = 0.0, self.planting.forward(speed)
+        for k in range(0, len(columns), 3):
+            depth, x, y = columns[k : k + 3]
+            if depth > 0:
+                over_ground = complex(x * speed + forward, y * speed)
+                rate = abs(over_ground)
+                size = float(resistance(self.planting.soil, depth, rate))  # type: ignore[arg-type]
+                if rate > 0:
+                    total -= size / rate * (over_ground.real * x + over_ground.imag * y)
+        return total
+
+
+def _of_loads(motion: Motion) -> Array:
+    return generalized_force(motion, demands_of(motion, given_loads(motion)))
+
+
+def _of_springs(motion: Motion) -> Array:
+    return generalized_force(motion, spring_demands(motion))
+
+
+def sources_of(machine: Machine) -> Iterator[Source]:
+    """Everything but the drive that turns the crank or brakes it."""
+    if any(machine.gravity):
+        yield ByAngle("weight", to_say("weight"), weight_torque)
+    if [*machine.force_elements] or any(belt.tension for belt in machine.belts):
+        yield ByAngle("springs", to_say("springs"), _of_springs)
+    if machine.loads:
+        yield ByAngle("loads", to_say("loads"), _of_loads)
+    planting = machine.planting
+    if planting is not None and planting.soil is not None:
+        yield OfSoil(planting, surface_of(machine))
