@@ -31,7 +31,7 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.formulas.kernels import cross, length
 from equipoise.mechanism.outputs.declared import DECLARED, Declared, declared
 from equipoise.mechanism.parts.force_kinds import force_kinds
-from equipoise.mechanism.parts.joint_properties import JOINTS
+from equipoise.mechanism.parts.joint_properties import JOINTS, family_of
 from equipoise.mechanism.parts.machine import Machine
 
 _OF_FORCES = re.compile(
@@ -87,8 +87,7 @@ class Signals:
 
     def _known(self) -> Sequence[str]:
         named = self.linkage.named_reactions
-        families = {"gear": "gears", "cam": "cams", "rack": "racks", "belt": "belts"}
-        joints = [f"{families.get(r.kind, 'joints')}.{name}" for name, r in named]
+        joints = [family_of(r.kind) + name for name, r in named]
         ones = (one for one in DECLARED.values() if one.loop is not None and not one.is_family)
         bearings = [f"bearings.{name}" for name in self.machine.bearings]
         return [*(one.name for one in ones if self._has(one)), *joints, *bearings]

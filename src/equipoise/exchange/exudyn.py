@@ -143,7 +143,7 @@ def _geared(tree: Tree) -> list[Data]:
         shares[gear.driven] = {body: factor for body, factor in total.items() if factor}
         if len(shares[gear.driven]) > 1 or tree.machine.support is not None:
             raise UsageError(
-                f"the {gear.kind} {gear.name} follows two bodies that move, which the file's "
+                f"the {gear.noun} {gear.name} follows two bodies that move, which the file's "
                 "format has no joint for; give another format"
             )
     named = ((driven, by, one) for driven, follows in shares.items() for by, one in follows.items())

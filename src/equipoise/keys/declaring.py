@@ -18,6 +18,7 @@ from equipoise.keys.kinds import (
     Number,
     Quantity,
     Table,
+    Tables,
     Whole,
     innermost,
 )
@@ -234,6 +235,13 @@ def keys_of(cls: type[Frozen]) -> Mapping[str, Key]:
     own = {one.name: one for one in declarations(cls) if one.name}
     found = {name: replace(one, name=name) for name, one in cls.beside.items()} | own
     return {name: found[name] for name in dict.fromkeys((*cls.file_order, *own, *cls.beside))}
+
+
+@once
+def listed_types(cls: type[Frozen]) -> Mapping[str, type[Frozen]]:
+    """Classes of the lists of tables that a class has, by field, in the order of the file."""
+    lists = {one.field: one.kind for one in keys_of(cls).values()}
+    return {field: kind.item.type for field, kind in lists.items() if isinstance(kind, Tables)}
 
 
 @once

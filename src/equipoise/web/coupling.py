@@ -13,8 +13,8 @@ from math import pi
 
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
-from equipoise.mechanism.parts.belts import Belt, wrong_belt
-from equipoise.mechanism.parts.gears import wrong_gear
+from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.machine import FRAME, Gear
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities import clean
@@ -33,9 +33,9 @@ def with_gears(
     """A pair of gears in external mesh."""
     carrier = _carrier(sketch, driver, driven, carrier)
     gear = Gear(driver, driven, teeth=teeth, carrier=carrier)
-    for wrong in wrong_gear("gears", gear, sketch.bodies):
+    for wrong in gear.problems("gears", sketch.bodies):
         raise wrong
-    return replace(sketch, gears=(*sketch.gears, gear))
+    return _added(sketch, gear)
 
 
 def with_belt(
@@ -44,12 +44,12 @@ def with_belt(
     """An open chain of the largest usual pitch for which there is room between both pins."""
     carrier = _carrier(sketch, driver, driven, carrier)
     belt = Belt(driver, driven, teeth=teeth, pitch=PITCHES[0], carrier=carrier)
-    for wrong in wrong_belt("belts", belt, sketch.bodies):
+    for wrong in belt.problems("belts", sketch.bodies):
         raise wrong
     one, other = (sketch.places[_pin(sketch, body, carrier)] for body in (driver, driven))
     room = FILLED * 2 * pi * abs(one - other) / sum(teeth)
     pitch = next((one for one in PITCHES if one <= room), clean(room, "length"))
-    return _added(sketch, "belts", replace(belt, pitch=pitch))
+    return _added(sketch, replace(belt, pitch=pitch))
 
 
 def with_rack(sketch: Sketch, driver: str, driven: str) -> Sketch:
@@ -80,7 +80,7 @@ def with_rack(sketch: Sketch, driver: str, driven: str) -> Sketch:
                 drives="pinion" if pinion == driver else "rack",
                 carrier=slider.on,
             )
-            return _added(sketch, "racks", rack)
+            return _added(sketch, rack)
     raise UsageError(
         Note(
             "neither {driver} nor {driven} slides on a body about one point of which the other "
@@ -91,8 +91,9 @@ def with_rack(sketch: Sketch, driver: str, driven: str) -> Sketch:
     )
 
 
-def _added(sketch: Sketch, table: str, one: Belt | Rack) -> Sketch:
-    return replace(sketch, rest={**sketch.rest, table: (*sketch.rest.get(table, ()), one)})
+def _added(sketch: Sketch, one: Coupling) -> Sketch:
+    others = sketch.rest.get(one.table, ())
+    return replace(sketch, rest={**sketch.rest, one.table: (*others, one)})
 
 
 def _shared(sketch: Sketch, body: str, carrier: str) -> list[str]:

@@ -9,14 +9,13 @@ from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.parts.cams import RIDES
-from equipoise.mechanism.parts.force_kinds import force_kinds
+from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.web.adding import with_drive, with_link, with_point, with_slider
 from equipoise.web.camming import with_cam
 from equipoise.web.coupling import with_belt, with_gears, with_rack
 from equipoise.web.messages import Message
 from equipoise.web.remaking import (
-    COUPLED,
     TABLES,
     freed,
     grounded,
@@ -28,9 +27,8 @@ from equipoise.web.remaking import (
     without_point,
     without_slider,
 )
-from equipoise.web.sketch import Sketch
+from equipoise.web.sketch import LISTS, Sketch
 
-LISTS = ("loads", *force_kinds(Machine))
 Operation = Callable[[Sketch, Message], Sketch]
 
 
@@ -81,7 +79,7 @@ DELETED: Mapping[str, Callable[[Sketch, str], Sketch]] = {
     "point": without_point,
     "link": without_link,
     "slider": without_slider,
-    **{table: partial(without_coupling, table) for table in COUPLED},
+    **{table: partial(without_coupling, table) for table in coupling_kinds(Machine)},
 }
 """What can be taken away, by its name."""
 
@@ -135,7 +133,7 @@ OPERATIONS: Mapping[str, tuple[str, Operation]] = {
 
 def lost(before: Sketch, after: Sketch) -> Iterator[str]:
     """A sentence of tables that have gone with what they named."""
-    lists = {"sliders": (before.sliders, after.sliders), "gears": (before.gears, after.gears)}
+    lists = {"sliders": (before.sliders, after.sliders)}
     lists |= {key: (before.rest.get(key, ()), after.rest.get(key, ())) for key in LISTS}
     tables = [f"[[{key}]]" for key, (old, new) in lists.items() if len(new) < len(old)]
     tables += [f"[{key}]" for key in TABLES if before.rest.get(key) and not after.rest.get(key)]

@@ -7,25 +7,21 @@ from dataclasses import replace
 from typing import Any, Literal
 
 from equipoise.keys import Frozen, Kind, Point, Text, innermost, keys_of
-from equipoise.mechanism.parts.belts import Belt
-from equipoise.mechanism.parts.cams import Cam
-from equipoise.mechanism.parts.couplings import Turning, name_of
-from equipoise.mechanism.parts.gears import Gear
-from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.couplings import Turning, coupling_kinds, name_of
+from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.mechanism.parts.objectives import JOINTS
-from equipoise.mechanism.parts.racks import Rack
 
 What = Literal["point", "link"]
 NAMING = {"point": {"point"}, "link": {"link", "body"}}
 """What a text has to be the name of, as its key declares it."""
-COUPLED = tuple(f"{kind.table}." for kind in (Gear, Belt, Rack, Cam))
+COUPLED = tuple(f"{table}." for table in coupling_kinds(Machine))
 """How outputs of couplings begin, which are called after both their links."""
 SLIDING = " on "
 """In the name of a sliding joint."""
 COMPONENTS = (".x", ".y")
 """Of the force in a joint, behind its name."""
 MESHING = ("driver", "driven")
-"""Of gears and of a belt, whose file has both in one list."""
+"""Of couplings whose file has both in one list."""
 
 
 def named_in(value: Any, what: What) -> set[str]:

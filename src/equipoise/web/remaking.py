@@ -9,12 +9,13 @@ from dataclasses import replace
 from typing import Any
 
 from equipoise.errors import UsageError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note
 from equipoise.mechanism.assembly.named_joints import joint_names
 from equipoise.mechanism.checks import Bodies, unknown
 from equipoise.mechanism.parts.balance import Balance
+from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
 from equipoise.mechanism.parts.force_kinds import ForceElement
-from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.web.adding import (
     check_body,
     check_link,
@@ -28,13 +29,6 @@ from equipoise.web.moving import straight
 from equipoise.web.naming import What, named_in, renamed_in
 from equipoise.web.sketch import Sketch
 
-COUPLED = {
-    "gears": to_say("pair of gears"),
-    "belts": to_say("belt"),
-    "racks": to_say("rack"),
-    "cams": to_say("cam"),
-}
-"""Lists of couplings, with what one of each is called."""
 TABLES = ("planting", "balance")
 """Tables of which there is one, and which go with a point or link that they name."""
 
@@ -135,12 +129,12 @@ def without_slider(sketch: Sketch, name: str) -> Sketch:
 
 
 def without_coupling(table: str, sketch: Sketch, name: str) -> Sketch:
-    """One pair of gears, one belt, one rack or one cam less."""
+    """One coupling of a list less."""
     entries = [*sketch.entries()]
     found = [k for k, (key, one) in enumerate(entries) if key == table and one.name == name]
     if not found:
         names = [one.name for key, one in entries if key == table]
-        raise UsageError(unknown(name, names, COUPLED[table]))
+        raise UsageError(unknown(name, names, coupling_kinds(Machine)[table].noun))
     sketch = sketch.with_entries(entries[: found[0]] + entries[found[0] + 1 :])
     plan: Balance | None = sketch.rest.get("balance")
     outputs = [] if plan is None else [one.output for one in plan.asked]
@@ -181,10 +175,7 @@ def _there(sketch: Sketch, value: Any) -> bool:
 
 def _held(key: str, entry: Any, bodies: Bodies) -> bool:
     """Whether all that an entry names is there."""
-    if key in COUPLED:
-        there = {entry.driver, entry.driven, entry.carrier} <= bodies.keys()
-        return there and (key != "cams" or entry.point in bodies[entry.driven])
-    if isinstance(entry, ForceElement):
+    if isinstance(entry, Coupling | ForceElement):
         ends = all(point in bodies.get(body, ()) for body, point in entry.points)
         return ends and {*entry.bodies} <= bodies.keys()
     points = [(entry.link, entry.point)] if entry.point is not None else []
@@ -247,7 +238,6 @@ def _retold(sketch: Sketch, what: What, old: str, new: str) -> Sketch:
     """The tables of a sketch, which name a point or link by its new name."""
     rest = {key: renamed_in(value, what, old, new) for key, value in sketch.rest.items()}
     found: dict[str, Any] = {
-        key: renamed_in(getattr(sketch, key), what, old, new)
-        for key in ("drive", "sliders", "gears")
+        key: renamed_in(getattr(sketch, key), what, old, new) for key in ("drive", "sliders")
     }
     return replace(sketch, rest=rest, **found)

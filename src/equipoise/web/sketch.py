@@ -6,7 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
-from equipoise.mechanism.kinematics.outline import COUPLED, STILL, Outline, Pose
+from equipoise.mechanism.kinematics.outline import STILL, Outline, Pose
+from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.force_kinds import force_kinds
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector
 from equipoise.mechanism.parts.shown_units import ShownUnits
@@ -21,7 +22,7 @@ REST = tuple(
     )
 )
 """Fields of a machine that a sketch hands on as they are; sides and places follow from it."""
-LISTS = (*COUPLED, "loads", *force_kinds(Machine), "joints")
+LISTS = (*coupling_kinds(Machine), "loads", *force_kinds(Machine), "joints")
 """Those of them that have names of links and points in them."""
 
 
@@ -46,7 +47,7 @@ class Sketch(Outline):
             poses[name] = Pose(complex(motion.points[anchor].place[at]) - arm, angle)
         rest = {key: getattr(own, key) for key in REST}
         weights = {name: one for name, one in found.design.counterweights.items() if one.mass}
-        return cls(own.frame, own.links, poses, own.drive, own.sliders, own.gears, rest,
+        return cls(own.frame, own.links, poses, own.drive, own.sliders, rest,
                    float(motion.crank_angle[at]), found.design.name, weights)  # fmt: skip
 
     @property
@@ -78,17 +79,16 @@ class Sketch(Outline):
 
     def entries(self) -> Iterator[tuple[str, Any]]:
         """What has names of links and points in it, with the field that it stands in."""
-        for key in ("sliders", "gears"):
-            yield from ((key, one) for one in getattr(self, key))
+        yield from (("sliders", one) for one in self.sliders)
         for key in LISTS:
             yield from ((key, one) for one in self.rest.get(key, ()))
 
     def with_entries(self, entries: list[tuple[str, Any]]) -> Sketch:
         """The same with other ones."""
         of = {key: tuple(one for name, one in entries if name == key) for key in
-              ("sliders", "gears", *LISTS)}  # fmt: skip
+              ("sliders", *LISTS)}  # fmt: skip
         rest = {**self.rest, **{key: of[key] for key in LISTS}}
-        return replace(self, sliders=of["sliders"], gears=of["gears"], rest=rest)
+        return replace(self, sliders=of["sliders"], rest=rest)
 
     def taking(self, machine: Machine) -> Sketch:
         """The same drawing of a machine whose tables are other ones; a link that is new lies in
@@ -99,7 +99,7 @@ class Sketch(Outline):
         poses = {name: self.poses.get(name, STILL) for name in machine.links}
         rest = {key: getattr(machine, key) for key in REST}
         return replace(self, frame=machine.frame, links=machine.links, poses=poses, drive=drive,
-                       sliders=machine.sliders, gears=machine.gears, rest=rest)  # fmt: skip
+                       sliders=machine.sliders, rest=rest)  # fmt: skip
 
     # -- as a machine ------------------------------------------------------------------------------
 

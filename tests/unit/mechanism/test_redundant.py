@@ -100,7 +100,7 @@ def test_further_cranks_wait_for_the_body_that_a_rod_pushes() -> None:
 
 def test_lengths_that_do_not_agree_are_told_with_what_would_fit() -> None:
     sentence = told(cranks(last=0.1012))
-    assert sentence.startswith("the linkage has no free motion (count 0: 4 moving links, 6 pins,")
+    assert sentence.startswith("the linkage has no free motion (count 0: 4 moving links, 6 pins ")
     assert "B2 of 'crank2' comes 1.2 mm beside its pin, at crank angle " in sentence
     assert sentence.endswith("A2 and B2 are 101.2 mm apart, and 100 mm would fit")
 

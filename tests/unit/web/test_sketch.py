@@ -311,7 +311,7 @@ def test_one_slider_or_pair_of_gears_is_deleted() -> None:
     name = maker.machine.gears[0].name
     count = len(maker.machine.gears)
     maker.do("delete", what="gears", name=name)
-    assert len(maker.session.base().design.gears) == count - 1
+    assert len(maker.session.base().design.rest["gears"]) == count - 1
 
 
 def test_a_belt_and_a_rack_are_added_as_they_are_drawn() -> None:
@@ -489,6 +489,9 @@ def test_what_goes_with_a_point_is_told() -> None:
     page.do("delete", what="point", name=spring.point, at=0)
     told = "gone with it, because they named it: [[springs]]"
     assert page.seen.content["notes"][0].startswith(told)
+    page = Maker(opened("knife-drive")[0])
+    page.do("delete", what="link", name=page.machine.belts[0].driven)
+    assert page.seen.content["notes"][0].endswith(": [[belts]], [balance]")
 
 
 def test_pulleys_of_a_sketch_may_lie_on_each_other() -> None:

@@ -73,7 +73,7 @@ class Imported:
         joints = outline.joints
         pins = sum(len(bodies) - 1 for bodies in joints.pins.values())
         counts = {"link": len(outline.links), "pin": pins, "sliding joint": len(outline.sliders),
-                  "gear": len(outline.gears)}  # fmt: skip
+                  "gear": len(outline.joints.couplings)}  # fmt: skip
         told = ", ".join(f"{n} {what}{'s' * (n != 1)}" for what, n in counts.items() if n)
         yield Text(f"{told}; mobility {outline.mobility}")
         heads = ("link", "points", Column("mass", "mass"))

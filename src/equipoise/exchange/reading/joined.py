@@ -52,7 +52,7 @@ def outline_of(
             Slider(block, slot.point, slot.on, slot.through, clean(slot.way - on, "angle"))
         )
     still = {point: clean_place(places[point], size) for point in frame}
-    return Outline(still, made, poses, None, tuple(sliders), (), {"title": title})
+    return Outline(still, made, poses, None, tuple(sliders), {"title": title})
 
 
 def _pose(places: Sequence[complex]) -> Pose:

@@ -55,10 +55,10 @@ def planar(space: Space, told: Told) -> Read:
     rest = {"title": space.title, "gravity": (float(x), float(y)),
             "springs": tuple(flat.springs(names))}  # fmt: skip
     links = {link: Link(points=points[link], **flat.mass(link)) for link in flat.pins.poses}
-    outline = Outline(points[FRAME], links, flat.pins.poses, None, slides, (), rest)
+    outline = Outline(points[FRAME], links, flat.pins.poses, None, slides, rest)
     crank, speed = flat.drive()
     meshing = gears(space, flat.link_of, flat.normal, outline, crank)
-    outline = replace(outline, gears=tuple(meshing))
+    outline = replace(outline, rest={**rest, "gears": tuple(meshing)})
     hints = [f"{body!r} moves freely in the plane; --frame {body!r} holds it still"
              for body in space.loose if body not in told.still]  # fmt: skip
     if not space.loops:

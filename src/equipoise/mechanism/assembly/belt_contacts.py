@@ -45,7 +45,7 @@ class Pull(Turned):
     def steps(self, coupling: Coupling, ground: Reaction) -> tuple[Reaction, tuple[Step, ...]]:
         link, name = coupling.driven, coupling.name
         force, couple = f"R({name}/{link})", f"C({name}/{link})"
-        push = Reaction(name, coupling.kind, link, coupling.driver, self.driven_pin, force, couple)
+        push = Reaction(name, coupling.table, link, coupling.driver, self.driven_pin, force, couple)
         numbers = (self.radius, self.across, self.along)
         return push, flanked(push, ground, coupling.carrier, joint_kernels.belt_forces, numbers)
 

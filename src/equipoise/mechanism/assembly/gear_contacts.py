@@ -123,4 +123,4 @@ def _push_of(coupling: Coupling) -> Reaction:
     """The force between teeth, at their pitch point."""
     name, link = coupling.name, coupling.driven
     force = f"R({name}/{link})"
-    return Reaction(name, coupling.kind, link, coupling.driver, f"pitch({name})", force)
+    return Reaction(name, coupling.table, link, coupling.driver, f"pitch({name})", force)

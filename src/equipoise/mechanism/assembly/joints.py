@@ -229,14 +229,13 @@ def _check_mobility(joints: Structure, drives: Sequence[str], alike: Note | str)
 
 
 def _count(joints: Structure) -> Note | str:
-    coupled = Counter(one.table for one in joints.couplings)
+    coupled = Counter(one.counted for one in joints.couplings)
     parts = [
         _number(len(joints.bodies) - 1, MOVING_LINKS),
         _number(sum(len(bodies) - 1 for bodies in joints.pins.values()), PINS),
         _number(len(joints.sliders), SLIDING_JOINTS),
-        *(_number(coupled[table], words) for table, words in COUPLINGS.items()
-          if coupled[table] or table == "gears"),
-    ]  # fmt: skip
+        *(_number(count, words) for words, count in coupled.items()),
+    ]
     return all_of(parts, commas=True)
 
 
@@ -296,12 +295,6 @@ def subsets(joints: Structure, links: list[str]) -> Iterator[tuple[str, ...]]:
 MOVING_LINKS = (to_say("{count} moving link"), to_say("{count} moving links"))
 PINS = (to_say("{count} pin"), to_say("{count} pins"))
 SLIDING_JOINTS = (to_say("{count} sliding joint"), to_say("{count} sliding joints"))
-COUPLINGS = {
-    "gears": (to_say("{count} gear"), to_say("{count} gears")),
-    "belts": (to_say("{count} belt"), to_say("{count} belts")),
-    "racks": (to_say("{count} rack"), to_say("{count} racks")),
-    "cams": (to_say("{count} cam"), to_say("{count} cams")),
-}
 
 
 def _number(count: int, words: tuple[str, str]) -> Note:

@@ -175,6 +175,8 @@ class CouplingLoop:
     unknowns: ClassVar[int] = 1
     starts: ClassVar[bool] = True
     """Whether the file says at which angle the driven link starts."""
+    switches: ClassVar[bool] = True
+    """Whether the line of action depends on the sense of the push."""
 
     @property
     def at(self) -> str:

@@ -9,7 +9,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import Structure, name_in_outputs
 from equipoise.mechanism.assembly.steps import Reaction
 from equipoise.mechanism.checks import numbered, unknown
-from equipoise.mechanism.parts.joint_properties import OF_FORCES, JointProperties
+from equipoise.mechanism.parts.joint_properties import JointProperties, family_of
 from equipoise.mechanism.parts.machine import Machine
 
 ReactionsByName = dict[str, list[Reaction]]
@@ -21,7 +21,7 @@ def named_joints(joints: Structure, reactions: Sequence[Reaction]) -> ReactionsB
     """
     named: ReactionsByName = {}
     for one in reactions:
-        family = OF_FORCES[one.kind]
+        family = family_of(one.kind)
         for name in dict.fromkeys((name_in_outputs(joints, one), one.name)):
             named.setdefault(family + name, []).append(one)
     return named
@@ -30,7 +30,7 @@ def named_joints(joints: Structure, reactions: Sequence[Reaction]) -> ReactionsB
 def joint_names(joints: Structure) -> set[str]:
     """Names that forces of joints may have in outputs, in whatever order links are solved."""
     names = {name for point in joints.pins for name in _pin_names(joints, point)}
-    names |= {OF_FORCES["slider"] + one.name for one in joints.sliders}
+    names |= {family_of("slider") + one.name for one in joints.sliders}
     return names | {f"{one.table}.{one.name}" for one in joints.couplings}
 
 
@@ -46,7 +46,7 @@ def pin_radii(joints: Structure, given: Iterable[JointProperties]) -> dict[str, 
 
 def _pin_names(joints: Structure, point: str) -> set[str]:
     """Names of a pin's forces in outputs, and of the whole pin."""
-    whole, bodies = OF_FORCES["pin"] + point, joints.pins[point]
+    whole, bodies = family_of("pin") + point, joints.pins[point]
     return {whole, *(f"{whole}/{body}" for body in bodies if len(bodies) > 2)}
 
 

@@ -101,7 +101,7 @@ class Teeth(Turned):
             mesh = Mesh("", self.pin, self.lever, -np.tan(rack.pressure_angle))
             return mesh.steps(coupling, ground)
         carrier, sense, along = f"u({rack.carrier})", f"flank({name})", self.guide.along
-        push = Reaction(name, rack.kind, link, rack.pinion, f"pitch({name})", f"R({name}/{link})")
+        push = Reaction(name, rack.table, link, rack.pinion, f"pitch({name})", f"R({name}/{link})")
         force, moment = demand_names(link)
         at = (*p(self.pin), *u(rack.carrier))
         return push, (
@@ -125,7 +125,7 @@ class Teeth(Turned):
         base, placed = end(rack.carrier, self.guide.base), end(rack.carrier, self.pin)
         kernel, numbers = rack.relation
         teeth = replace(self, at=placed.arm + self.lever)
-        return RackLoop(rack.name, rack.kind, on, by, rack.carrier, kernel, numbers, 0.0, teeth,
+        return RackLoop(rack.name, rack.table, on, by, rack.carrier, kernel, numbers, 0.0, teeth,
                         own, base, self.guide.along)  # fmt: skip
 
     def place(self, poses: Poses, on: End, carrier: str) -> Any:

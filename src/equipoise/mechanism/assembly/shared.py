@@ -32,7 +32,7 @@ from equipoise.mechanism.assembly.named_joints import given_properties
 from equipoise.mechanism.assembly.newton import LoopGroup, poses_in
 from equipoise.mechanism.assembly.steps import Array, Reaction, State, planar
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.joint_properties import OF_FORCES
+from equipoise.mechanism.parts.joint_properties import family_of
 from equipoise.mechanism.parts.machine import FRAME, Machine
 
 OPEN = 1e-9
@@ -117,7 +117,7 @@ class Shared(LoopForces):
     def senses(self, state: State, poses: Poses) -> list[Any]:
         """The same, with pushes that agree with it once they are shared."""
         pairs = [(k, loop.name) for k, loop in enumerate(self.loops)
-                 if isinstance(loop, CouplingLoop) and self.reactions[k].kind != "cam"]  # fmt: skip
+                 if isinstance(loop, CouplingLoop) and loop.switches]  # fmt: skip
         known = all(f"flank({name})" in state for _, name in pairs)
         senses = super().senses(state, poses)
         if known or not self.count:
@@ -320,7 +320,7 @@ def shared(
     whole = LoopGroup(links, anchors, ((FRAME, pivot),), (), tuple(loops), (), size)
     reactions = tuple(map(maker.reaction, loops))
     every = (*reactions, *(one for group in decided for one in group.reactions))
-    named = {OF_FORCES[one.kind] + name_in_outputs(joints, one): one.force for one in every}
+    named = {family_of(one.kind) + name_in_outputs(joints, one): one.force for one in every}
     given = given_properties(builder.machine, joints, every)
     compliance = {
         joint.force: 1 / one.stiffness for _, joint, one in given if one.stiffness is not None

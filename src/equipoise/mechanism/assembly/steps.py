@@ -131,7 +131,7 @@ def u(link: str) -> tuple[str, str, str]:
 class Reaction:
     """A joint's force, as the calls find it: on body `on`, by body `by`, at point `at`.
 
-    name : of the joint; kind : "pin", "slider" or "gear".
+    name : of the joint; kind : "pin", "slider", or the `table` of a coupling.
     force, couple : names of values in the state; the couple is about `at`, None for pins.
     """
 

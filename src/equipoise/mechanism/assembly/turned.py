@@ -79,7 +79,7 @@ class Turned(ABC):
         on, by = end(coupling.driven, self.driven_pin), end(coupling.driver, self.driver_pin)
         kernel, numbers = coupling.relation
         return CouplingLoop(
-            coupling.name, coupling.kind, on, by, coupling.carrier, kernel, numbers, 0.0, self
+            coupling.name, coupling.table, on, by, coupling.carrier, kernel, numbers, 0.0, self
         )
 
     def backwards(self, coupling: Coupling) -> Note:

@@ -174,7 +174,7 @@ class Pass:
     @property
     def gears(self) -> dict[str, MeshForce]:
         """Pairs of gears, by name; the force is on the driven gear."""
-        gears = (r for r in self.motion.linkage.reactions if r.kind == "gear")
+        gears = (r for r in self.motion.linkage.reactions if r.kind == "gears")
         return Named("pair of gears", ((r.name, self._mesh(r)) for r in gears))
 
     @property
@@ -196,7 +196,7 @@ class Pass:
     @property
     def cams(self) -> dict[str, CamForce]:
         """Cams, by name; the force is on the follower."""
-        cams = (r for r in self.motion.linkage.reactions if r.kind == "cam")
+        cams = (r for r in self.motion.linkage.reactions if r.kind == "cams")
         return Named("cam", ((r.name, self._pressed(r)) for r in cams))
 
     @property

@@ -17,11 +17,10 @@ import numpy as np
 from equipoise.mechanism.assembly.joints import Structure, joined
 from equipoise.mechanism.assembly.linkage import assemble, sides_at_position
 from equipoise.mechanism.kinematics.motion import Motion, move
-from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.couplings import Turning, coupling_kinds
 from equipoise.mechanism.parts.machine import (
     FRAME,
     Drive,
-    Gear,
     Link,
     Machine,
     Position,
@@ -32,8 +31,6 @@ from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities import clean, clean_place
 
 TITLE = "Untitled machine"
-COUPLED = ("belts", "racks", "cams")
-"""Lists of couplings beside gears."""
 USUAL_SIZE = 0.1
 """m, of a machine that has no points yet."""
 MESHING = 1e-9
@@ -93,7 +90,6 @@ class Outline:
     poses: Mapping[str, Pose] = field(default_factory=dict)
     drive: Drive | None = None
     sliders: tuple[Slider, ...] = ()
-    gears: tuple[Gear, ...] = ()
     rest: Mapping[str, Any] = field(default_factory=lambda: {"title": TITLE})
     phase: float = 0.0
 
@@ -128,8 +124,8 @@ class Outline:
 
     @property
     def joints(self) -> Structure:
-        others = (one for key in COUPLED for one in self.rest.get(key, ()))
-        return joined(self.bodies, self.sliders, (*self.gears, *others))
+        couplings = (one for key in coupling_kinds(Machine) for one in self.rest.get(key, ()))
+        return joined(self.bodies, self.sliders, tuple(couplings))
 
     @property
     def driven(self) -> list[str]:
@@ -164,16 +160,13 @@ class Outline:
         ModelError : what it has contradicts itself, or it has no drive.
         """
         drive = self.drive or self._usual_drive()
-        turning = self._meshed(drive)
-        count = len(self.gears)
         return Machine(
             drive=drive,
             frame=self.frame,
             links=self.links,
             sliders=self.sliders,
-            gears=turning[:count],
             position=self._position(),
-            **{**self.rest, "belts": turning[count:]},
+            **{**self.rest, **self._meshed(drive)},
         )
 
     def settled(self) -> Machine:
@@ -203,15 +196,17 @@ class Outline:
         way = self.places[slider.point] - self.places[slider.through]
         return (way / exp(1j * (slider.direction + self.pose(slider.on).angle))).real
 
-    def _meshed(self, drive: Drive) -> tuple[Any, ...]:
-        """Gears, then belts, that start so that what they drive comes to where it is drawn, as far
-        as that is known.
+    def _meshed(self, drive: Drive) -> dict[str, tuple[Turning, ...]]:
+        """Couplings of pinned links, by their lists, that start so that what they drive comes to
+        where it is drawn, as far as that is known.
         """
         angles = {FRAME: (0.0, 0.0)}  # at crank angle 0, and as drawn
         for given in (drive, *self.rest.get("drives", ())):
             if given.link in self.links and not given.pushes:
                 angles[given.link] = float(given.turned(0.0)[0]), self.pose(given.link).angle
-        found: list[Gear | Belt] = [*self.gears, *self.rest.get("belts", ())]
+        kinds = coupling_kinds(Machine).items()
+        lists = [table for table, kind in kinds if issubclass(kind, Turning)]
+        found: list[Turning] = [one for table in lists for one in self.rest.get(table, ())]
         left = [*range(len(found))]
         while ready := [k for k in left if _known(found[k], angles)]:
             k = ready[0]
@@ -223,7 +218,7 @@ class Outline:
                 start = clean(remainder(drawn, 2 * pi), "angle")
                 found[k] = replace(one, start=start)
             angles[one.driven] = start, start + way
-        return tuple(found)
+        return {key: tuple(one for one in found if one.table == key) for key in lists}
 
     def _engaged(self, machine: Machine) -> tuple[Rack, ...]:
         """Racks that start so that what they drive comes to where it is drawn."""
@@ -246,12 +241,12 @@ class Outline:
         return Drive(next(iter(self.links), ""), 0.0)
 
 
-def _known(one: Gear | Belt, angles: Mapping[str, tuple[float, float]]) -> bool:
+def _known(one: Turning, angles: Mapping[str, tuple[float, float]]) -> bool:
     """Whether its driver and its carrier stand where it is known, and what it drives does not."""
     return {one.driver, one.carrier} <= angles.keys() and one.driven not in angles
 
 
-def _way(gear: Gear | Belt, driver: tuple[float, float], carrier: tuple[float, float]) -> float:
+def _way(gear: Turning, driver: tuple[float, float], carrier: tuple[float, float]) -> float:
     """How far a driven gear turns while driver and carrier turn from one angle to another."""
     kernel, numbers = gear.relation
     before, after = (

@@ -20,7 +20,7 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.couplings import Relation, Turning, as_fraction, wrong_ends
+from equipoise.mechanism.parts.couplings import Relation, Turning, as_fraction
 
 if TYPE_CHECKING:
     from equipoise.mechanism.formulas.strands import Strands
@@ -38,7 +38,8 @@ class Belt(Turning):
     }
 
     table: ClassVar[str] = "belts"
-    kind: ClassVar[str] = "belt"
+    noun = to_say("belt")
+    counted = to_say("{count} belt"), to_say("{count} belts")
 
     teeth: tuple[int, int] | None = key(
         Listing(Whole(1), (2,)),
@@ -109,16 +110,16 @@ class Belt(Turning):
         first, second = self.pitch_radii
         return Strands(apart, first, -second if self.crossed else second)
 
-
-def wrong_belt(where: str, belt: Belt, bodies: Bodies) -> Iterator[ModelError]:
-    """Everything that is wrong with a belt, but for where its pulleys are."""
-    yield from wrong_ends(where, belt, bodies)
-    if (belt.radii is None) == (belt.teeth is None):
-        yield ModelError(where, Note("give either teeth and pitch, or radii"))
-    elif (belt.pitch is None) != (belt.teeth is None):
-        missing = "teeth" if belt.teeth is None else "pitch"
-        yield ModelError(f"{where}.{missing}", Note("missing; teeth and pitch go together"))
-    elif belt.teeth is not None and min(belt.teeth) < 1:
-        yield ModelError(
-            f"{where}.teeth", Note("got {teeth}; give two positive numbers", teeth=list(belt.teeth))
-        )
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with a belt, but for where its pulleys are."""
+        yield from self.wrong_ends(where, bodies)
+        if (self.radii is None) == (self.teeth is None):
+            yield ModelError(where, Note("give either teeth and pitch, or radii"))
+        elif (self.pitch is None) != (self.teeth is None):
+            missing = "teeth" if self.teeth is None else "pitch"
+            yield ModelError(f"{where}.{missing}", Note("missing; teeth and pitch go together"))
+        elif self.teeth is not None and min(self.teeth) < 1:
+            yield ModelError(
+                f"{where}.teeth",
+                Note("got {teeth}; give two positive numbers", teeth=list(self.teeth)),
+            )

@@ -8,9 +8,9 @@ from typing import ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Conditions, Frozen, Table, Text, declared, key, not_both
+from equipoise.keys import Conditions, Table, Text, declared, key, not_both
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link, unknown_point
-from equipoise.mechanism.parts.couplings import Relation, coupled, name_of
+from equipoise.mechanism.parts.couplings import Coupling, Relation, coupled
 from equipoise.mechanism.parts.law_checks import CAM, wrong_law
 from equipoise.mechanism.parts.laws import AngleLaw, Law, LengthLaw
 
@@ -22,7 +22,7 @@ ROUND = LengthLaw(between=(0.0, 0.0))
 
 
 @declared
-class Cam(Frozen):
+class Cam(Coupling):
     """A cam and its follower, both joined to the same carrier, with the motion of the follower.
 
     One of lift and swing: of a follower that slides on the carrier, and of one that is pinned to
@@ -31,7 +31,9 @@ class Cam(Frozen):
 
     called = to_say("{what} of cam {number}")
     table: ClassVar[str] = "cams"
-    kind: ClassVar[str] = "cam"
+    noun = to_say("cam")
+    counted = to_say("{count} cam"), to_say("{count} cams")
+    most = 100
     start: ClassVar[float] = 0.0
     switches: ClassVar[bool] = False
     speed_ratio: ClassVar[float] = 0.0
@@ -100,8 +102,8 @@ class Cam(Frozen):
     )
 
     @property
-    def name(self) -> str:
-        return name_of(self.driver, self.driven)
+    def points(self) -> tuple[tuple[str, str], ...]:
+        return ((self.driven, self.point),)
 
     @property
     def law(self) -> Law:
@@ -117,33 +119,32 @@ class Cam(Frozen):
         """Of the curve that roller or edge takes where the displacement is 0, m."""
         return self.base_radius + self.roller_radius
 
-
-def wrong_cam(where: str, cam: Cam, bodies: Bodies) -> Iterator[ModelError]:
-    """Everything that is wrong with a cam."""
-    if problem := [*unknown_link(f"{where}.follower", cam.driven, bodies)]:
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with a cam."""
+        if problem := [*unknown_link(f"{where}.follower", self.driven, bodies)]:
+            yield from problem
+            return
+        yield from unknown_body(f"{where}.cam", self.driver, bodies)
+        yield from unknown_body(f"{where}.carrier", self.carrier, bodies)
+        yield from unknown_point(f"{where}.point", self.point, self.driven, bodies)
+        if len({*self.bodies}) < 3:
+            told = Note(
+                "cam {driver!r}, follower {driven!r} and carrier {carrier!r} must be three "
+                "different bodies",
+                driver=self.driver,
+                driven=self.driven,
+                carrier=self.carrier,
+            )
+            yield ModelError(where, told)
+        if self.lift is not None and self.swing is not None:
+            yield ModelError(where, Note("give either lift or swing, not both"))
+            return
+        yield from _wrong_ride(where, self)
+        at = f"{where}.{'lift' if self.swing is None else 'swing'}"
+        problem = [*wrong_law(at, self.law, CAM)]
         yield from problem
-        return
-    yield from unknown_body(f"{where}.cam", cam.driver, bodies)
-    yield from unknown_body(f"{where}.carrier", cam.carrier, bodies)
-    yield from unknown_point(f"{where}.point", cam.point, cam.driven, bodies)
-    if len({cam.driver, cam.driven, cam.carrier}) < 3:
-        told = Note(
-            "cam {driver!r}, follower {driven!r} and carrier {carrier!r} must be three different "
-            "bodies",
-            driver=cam.driver,
-            driven=cam.driven,
-            carrier=cam.carrier,
-        )
-        yield ModelError(where, told)
-    if cam.lift is not None and cam.swing is not None:
-        yield ModelError(where, Note("give either lift or swing, not both"))
-        return
-    yield from _wrong_ride(where, cam)
-    at = f"{where}.{'lift' if cam.swing is None else 'swing'}"
-    problem = [*wrong_law(at, cam.law, CAM)]
-    yield from problem
-    if not problem and (cam.law.turns != 1 or cam.law.windings):
-        yield ModelError(at, Note("let the follower be back after one turn of the cam"))
+        if not problem and (self.law.turns != 1 or self.law.windings):
+            yield ModelError(at, Note("let the follower be back after one turn of the cam"))
 
 
 def _wrong_ride(where: str, cam: Cam) -> Iterator[ModelError]:

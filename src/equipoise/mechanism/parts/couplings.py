@@ -9,14 +9,15 @@ and never for a kind of coupling.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from math import pi, radians
-from typing import Any, ClassVar, Protocol, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Frozen, Key, Keys, Listing, Text, declared, inside, key
+from equipoise.keys.declaring import listed_types, once
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body
 from equipoise.mechanism.formulas.rolling_kernels import followed
 
@@ -27,47 +28,103 @@ Law = Callable[[Any], tuple[Any, Any, Any]]
 """A function of an angle, with its first and second derivative."""
 
 
-class Coupling(Protocol):
+class Coupling(Frozen):
     """Two bodies of which one drives the other, both on a carrier.
 
-    table : key of the list in the model file.  kind : that of its `Reaction`.
+    table : key of its list in the model file, which is the `kind` of its `Reaction` too.
+    most : that a machine may have.  noun : what one is called.  counted : how one, and several, are
+        counted.
+    driver, driven, carrier : names of bodies.
     start : angle of the driven body in the frame at crank angle 0, rad.
     switches : whether another flank, or another strand, bears where the force changes its sense, so
         that forces inside the linkage are not linear in the masses.
     """
 
     table: ClassVar[str]
-    kind: ClassVar[str]
+    noun: ClassVar[str]
+    counted: ClassVar[tuple[str, str]]
+    most: ClassVar[int] = 200
+
+    if TYPE_CHECKING:  # fields of some kinds, and properties of others
+
+        @property
+        def driver(self) -> str: ...
+        @property
+        def driven(self) -> str: ...
+        @property
+        def carrier(self) -> str: ...
+        @property
+        def start(self) -> Any: ...
+        @property
+        def switches(self) -> bool: ...
 
     @property
-    def switches(self) -> bool: ...
+    def name(self) -> str:
+        return name_of(self.driver, self.driven)
+
     @property
-    def name(self) -> str: ...
+    def bodies(self) -> tuple[str, str, str]:
+        """Driver, driven body and carrier."""
+        return self.driver, self.driven, self.carrier
+
     @property
-    def driver(self) -> str: ...
+    def points(self) -> tuple[tuple[str, str], ...]:
+        """Bodies and points that it names."""
+        return ()
+
     @property
-    def driven(self) -> str: ...
-    @property
-    def carrier(self) -> str: ...
-    @property
-    def start(self) -> Any: ...
-    @property
+    @abstractmethod
     def relation(self) -> Relation:
         """How the angles go together."""
 
     @property
+    @abstractmethod
     def speed_ratio(self) -> float:
         """Speed of the driven body over the driver's, both seen from the carrier, in the mean."""
 
     @property
+    @abstractmethod
     def exact_ratio(self) -> Fraction | None:
         """Turns of the driven body in a turn of the driver, both seen from the carrier; None where
         that is no ratio of whole numbers.
         """
 
+    def wrong_ends(
+        self,
+        where: str,
+        bodies: Bodies,
+        keys: tuple[str, str] = ("between[1]", "between[2]"),
+    ) -> Iterator[ModelError]:
+        """Everything that is wrong with driver, driven link and carrier.
+
+        keys : by which the file tells driver and driven link.
+        """
+        for named, name in zip((*keys, "carrier"), self.bodies, strict=True):
+            yield from unknown_body(f"{where}.{named}", name, bodies)
+        if len({*self.bodies}) < 3:
+            told = Note(
+                "driver {driver!r}, driven link {driven!r} and carrier {carrier!r} must be three "
+                "different bodies",
+                driver=self.driver,
+                driven=self.driven,
+                carrier=self.carrier,
+            )
+            yield ModelError(where, told)
+
+    @abstractmethod
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with it in a machine of these bodies."""
+
+
+@once
+def coupling_kinds(of: type[Frozen]) -> Mapping[str, type[Coupling]]:
+    """Kinds of couplings that a class of machines has, by field, in the order of the file."""
+    kinds = listed_types(of).items()
+    return {field: kind for field, kind in kinds if issubclass(kind, Coupling)}
+
 
 @declared
-class Turning(Frozen):
+class Turning(Coupling):
     """What turns two links that are pinned to the same carrier: gears, and belts."""
 
     beside: ClassVar[Keys] = {
@@ -79,9 +136,6 @@ class Turning(Frozen):
             example=["crank", "wheel"],
         )
     }
-    table: ClassVar[str]
-    kind: ClassVar[str]
-
     driver: str = inside(Text())
     driven: str = inside(Text())
     carrier: str = key(
@@ -106,20 +160,6 @@ class Turning(Frozen):
     @classmethod
     def to_table(cls, value: Self) -> dict[str, Any]:
         return {"between": (value.driver, value.driven), **super().to_table(value)}
-
-    @property
-    def name(self) -> str:
-        return name_of(self.driver, self.driven)
-
-    @property
-    @abstractmethod
-    def switches(self) -> bool:
-        """Whether another flank, or another strand, bears where the force changes its sense."""
-
-    @property
-    @abstractmethod
-    def speed_ratio(self) -> float:
-        """Speed of driven over driver relative to the carrier; the mean where it varies."""
 
     @property
     def ratios(self) -> tuple[float, float]:
@@ -164,27 +204,3 @@ def coupled(
     value, first, second = law(angle_r - angle_c)
     rates = followed(first, second, w_r, a_r, w_c, a_c)  # type: ignore[no-untyped-call]
     return (angle_c + value + offset, *rates)
-
-
-def wrong_ends(
-    where: str,
-    coupling: Coupling,
-    bodies: Bodies,
-    keys: tuple[str, str] = ("between[1]", "between[2]"),
-) -> Iterator[ModelError]:
-    """Everything that is wrong with driver, driven link and carrier.
-
-    keys : by which the file tells driver and driven link.
-    """
-    ends = (coupling.driver, coupling.driven, coupling.carrier)
-    for named, name in zip((*keys, "carrier"), ends, strict=True):
-        yield from unknown_body(f"{where}.{named}", name, bodies)
-    if len({coupling.driver, coupling.driven, coupling.carrier}) < 3:
-        told = Note(
-            "driver {driver!r}, driven link {driven!r} and carrier {carrier!r} must be three "
-            "different bodies",
-            driver=coupling.driver,
-            driven=coupling.driven,
-            carrier=coupling.carrier,
-        )
-        yield ModelError(where, told)

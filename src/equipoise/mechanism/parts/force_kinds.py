@@ -12,8 +12,8 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from equipoise.i18n import Note
-from equipoise.keys import Frozen, Tables, keys_of
-from equipoise.keys.declaring import once
+from equipoise.keys import Frozen
+from equipoise.keys.declaring import listed_types, once
 from equipoise.mechanism.checks import FRAME, Bodies
 
 if TYPE_CHECKING:
@@ -102,6 +102,5 @@ class ForceElement(Frozen):
 @once
 def force_kinds(of: type[Frozen]) -> Mapping[str, type[ForceElement]]:
     """Kinds of force elements that a class of machines has, by field, in the order of the file."""
-    lists = ((one.field, one.kind) for one in keys_of(of).values())
-    tables = {field: kind.item.type for field, kind in lists if isinstance(kind, Tables)}
-    return {field: kind for field, kind in tables.items() if issubclass(kind, ForceElement)}
+    kinds = listed_types(of).items()
+    return {field: kind for field, kind in kinds if issubclass(kind, ForceElement)}

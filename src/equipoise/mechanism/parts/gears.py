@@ -32,7 +32,6 @@ from equipoise.mechanism.parts.couplings import (
     as_fraction,
     coupled,
     pressure_angle,
-    wrong_ends,
 )
 from equipoise.mechanism.parts.gear_shapes import GearShape, wrong_shape
 
@@ -55,7 +54,8 @@ class Gear(Turning):
     }
 
     table: ClassVar[str] = "gears"
-    kind: ClassVar[str] = "gear"
+    noun = to_say("pair of gears")
+    counted = to_say("{count} gear"), to_say("{count} gears")
 
     ratio: float | None = key(
         Number(),
@@ -141,29 +141,29 @@ class Gear(Turning):
             return ratio if self.mesh == "internal" else -ratio
         return as_fraction(self.speed_ratio)
 
-
-def wrong_gear(where: str, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:
-    """Everything that is wrong with a pair of gears."""
-    yield from wrong_ends(where, gear, bodies)
-    if (gear.ratio is None) == (gear.teeth is None):
-        yield ModelError(where, Note("give either ratio or teeth"))
-        return
-    if gear.teeth is not None and min(gear.teeth) < 1:
-        yield ModelError(
-            f"{where}.teeth", Note("got {teeth}; give two positive numbers", teeth=list(gear.teeth))
-        )
-    elif gear.speed_ratio == 0.0:
-        yield ModelError(where, Note("the ratio is 0; no pair of gears has that"))
-    elif gear.speed_ratio == 1.0:
-        yield ModelError(
-            where,
-            Note(
-                "the ratio is 1; no pair of gears has that, a ring would be as large as what turns "
-                "in it; take a belt, which turns both alike: [[belts]]"
-            ),
-        )
-    elif gear.shape is not None:
-        yield from _wrong_shape(f"{where}.shape", gear.shape, gear, bodies)
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with a pair of gears."""
+        yield from self.wrong_ends(where, bodies)
+        if (self.ratio is None) == (self.teeth is None):
+            yield ModelError(where, Note("give either ratio or teeth"))
+            return
+        if self.teeth is not None and min(self.teeth) < 1:
+            yield ModelError(
+                f"{where}.teeth",
+                Note("got {teeth}; give two positive numbers", teeth=list(self.teeth)),
+            )
+        elif self.speed_ratio == 0.0:
+            yield ModelError(where, Note("the ratio is 0; no pair of gears has that"))
+        elif self.speed_ratio == 1.0:
+            yield ModelError(
+                where,
+                Note(
+                    "the ratio is 1; no pair of gears has that, a ring would be as large as what "
+                    "turns in it; take a belt, which turns both alike: [[belts]]"
+                ),
+            )
+        elif self.shape is not None:
+            yield from _wrong_shape(f"{where}.shape", self.shape, self, bodies)
 
 
 def _wrong_shape(where: str, shape: GearShape, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:

@@ -6,19 +6,20 @@ or clearance, is a further key here.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Conditions, Frozen, Text, any_of, declared, key
-from equipoise.mechanism.checks import Bodies
 
 JOINTS = ("pin", "slider")
 """Kinds of joints that hold bodies together, which no coupling is."""
-OF_FORCES = {"pin": "joints.", "slider": "joints.", "gear": "gears.", "rack": "racks.",
-             "belt": "belts.", "cam": "cams."}  # fmt: skip
-"""Beginnings of the names of outputs that are forces, by the kind of joint."""
+
+
+def family_of(kind: str) -> str:
+    """How the outputs begin that are forces of a kind of joint, or of the couplings of a list."""
+    return "joints." if kind in JOINTS else f"{kind}."
 
 
 @declared
@@ -44,9 +45,12 @@ class JointProperties(Frozen):
     )
 
 
-def wrong_joint(where: str, one: JointProperties, bodies: Bodies) -> Iterator[ModelError]:
-    """Report what is wrong with an entry by itself; the linkage knows which joints there are."""
-    if not one.joint.startswith((*OF_FORCES.values(),)):
+def wrong_joint(where: str, one: JointProperties, families: Iterable[str]) -> Iterator[ModelError]:
+    """Report what is wrong with an entry by itself; the linkage knows which joints there are.
+
+    families : groups of outputs that are forces of joints and couplings.
+    """
+    if not one.joint.startswith((*(f"{family}." for family in families),)):
         told = Note("got {joint!r}; give a joint as joints.B", joint=one.joint)
         yield ModelError(f"{where}.joint", told)
     if one.radius is None and one.stiffness is None:

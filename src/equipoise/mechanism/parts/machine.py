@@ -39,7 +39,7 @@ from equipoise.mechanism.checks import (
 )
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.cams import Cam
-from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
 from equipoise.mechanism.parts.drives import (
     Drive,
     Driven,
@@ -206,7 +206,7 @@ class Machine(Driven, Displayed, Frozen):
     @property
     def couplings(self) -> tuple[Coupling, ...]:
         """Joints by which one body's angle tells another's, in the order of the file."""
-        return (*self.gears, *self.belts, *self.racks, *self.cams)
+        return tuple(one for table in coupling_kinds(type(self)) for one in getattr(self, table))
 
     @property
     def force_elements(self) -> Iterator[tuple[str, int, ForceElement]]:

@@ -8,23 +8,24 @@ from typing import ClassVar, Literal
 
 from equipoise.errors import ModelError, MotionError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Frozen, Text, declared, key
+from equipoise.keys import Text, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.couplings import Relation, name_of, pressure_angle, wrong_ends
+from equipoise.mechanism.parts.couplings import Coupling, Relation, pressure_angle
 
 HANDS = ("left", "right")
 ENDS = ("pinion", "rack")
 
 
 @declared
-class Rack(Frozen):
+class Rack(Coupling):
     """A rack and its pinion, which is pinned to the carrier on which the rack slides."""
 
     called = to_say("{what} of rack {number}")
 
     table: ClassVar[str] = "racks"
-    kind: ClassVar[str] = "rack"
+    noun = to_say("rack")
+    counted = to_say("{count} rack"), to_say("{count} racks")
 
     pinion: str = key(Text(of="body"), "link that turns", example="rocker")
     rack: str = key(
@@ -70,10 +71,6 @@ class Rack(Frozen):
         return self.rack if self.drives == "pinion" else self.pinion
 
     @property
-    def name(self) -> str:
-        return name_of(self.driver, self.driven)
-
-    @property
     def switches(self) -> bool:
         """The flank in contact follows from the sense of the force."""
         return True
@@ -116,16 +113,16 @@ class Rack(Frozen):
             )
         )
 
-
-def wrong_rack(where: str, rack: Rack, bodies: Bodies) -> Iterator[ModelError]:
-    """Everything that is wrong with a rack, but for how it is guided."""
-    keys = ("pinion", "rack") if rack.drives == "pinion" else ("rack", "pinion")
-    yield from wrong_ends(where, rack, bodies, keys)
-    for name, drives in (("angle", "rack"), ("travel", "pinion")):
-        if getattr(rack, name) and rack.drives != drives:
-            yield ModelError(
-                f"{where}.{name}",
-                Note(
-                    "goes with drives = {drives!r}; what drives tells its own place", drives=drives
-                ),
-            )
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with a rack, but for how it is guided."""
+        keys = ("pinion", "rack") if self.drives == "pinion" else ("rack", "pinion")
+        yield from self.wrong_ends(where, bodies, keys)
+        for name, drives in (("angle", "rack"), ("travel", "pinion")):
+            if getattr(self, name) and self.drives != drives:
+                yield ModelError(
+                    f"{where}.{name}",
+                    Note(
+                        "goes with drives = {drives!r}; what drives tells its own place",
+                        drives=drives,
+                    ),
+                )

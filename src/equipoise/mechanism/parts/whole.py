@@ -8,34 +8,26 @@ from typing import Any
 from equipoise.errors import ModelError
 from equipoise.keys import wrong_values
 from equipoise.mechanism.checks import Bodies, numbered, too_many, unknown_link, wrong_text
-from equipoise.mechanism.parts.belts import wrong_belt
-from equipoise.mechanism.parts.cams import wrong_cam
+from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.drive_checks import wrong_drive, wrong_further, wrong_together
 from equipoise.mechanism.parts.field import wrong_planting
 from equipoise.mechanism.parts.force_elements import wrong_load
 from equipoise.mechanism.parts.force_kinds import force_kinds
-from equipoise.mechanism.parts.gears import wrong_gear
 from equipoise.mechanism.parts.joint_properties import wrong_joint
 from equipoise.mechanism.parts.links import wrong_link, wrong_points
 from equipoise.mechanism.parts.places import wrong_position
 from equipoise.mechanism.parts.planes import wrong_planes
-from equipoise.mechanism.parts.racks import wrong_rack
 from equipoise.mechanism.parts.sliders import wrong_slider
 from equipoise.mechanism.parts.support import wrong_support
 
-MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "belts": 200, "racks": 200,
-        "cams": 100, "loads": 500, "joints": 500, "drives": 20}  # fmt: skip
+MOST = {"links": 100, "points": 2000, "sliders": 200, "loads": 500, "joints": 500,
+        "drives": 20}  # fmt: skip
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
     "sliders": wrong_slider,
-    "gears": wrong_gear,
-    "belts": wrong_belt,
-    "racks": wrong_rack,
-    "cams": wrong_cam,
     "loads": wrong_load,
-    "joints": wrong_joint,
 }
-"""What is wrong with each of the lists; force elements say it themselves."""
+"""What is wrong with each of the lists; couplings and force elements say it themselves."""
 
 
 def problems_of(machine: Any) -> Iterator[ModelError]:
@@ -53,8 +45,12 @@ def problems_of(machine: Any) -> Iterator[ModelError]:
     for name, wrong in LISTS.items():
         for where, item in numbered(name, getattr(machine, name)):
             yield from wrong(where, item, bodies)
-    for table, number, element in machine.force_elements:
-        yield from element.problems(f"{table}[{number + 1}]", bodies)
+    kinds = coupling_kinds(type(machine))
+    for table in (*kinds, *force_kinds(type(machine))):
+        for where, item in numbered(table, getattr(machine, table)):
+            yield from item.problems(where, bodies)
+    for where, item in numbered("joints", machine.joints):
+        yield from wrong_joint(where, item, ("joints", *kinds))
     sliders = [one.name for one in machine.sliders]
     for where, item in numbered("drives", machine.drives):
         yield from wrong_further(where, item, bodies, sliders)
@@ -71,10 +67,11 @@ def _too_much(machine: Any) -> Iterator[ModelError]:
     points = [(body, point) for body, points in machine.bodies.items() for point in points]
     yield from too_many("links", machine.links, MOST["links"])
     yield from too_many("points", points, MOST["points"])
-    for what in (*LISTS, "drives"):
+    for what in ("sliders", "loads", "joints", "drives"):
         yield from too_many(what, getattr(machine, what), MOST[what])
-    for table, kind in force_kinds(type(machine)).items():
-        yield from too_many(table, getattr(machine, table), kind.most)
+    for kinds in (coupling_kinds(type(machine)), force_kinds(type(machine))):
+        for table, kind in kinds.items():
+            yield from too_many(table, getattr(machine, table), kind.most)
     yield from wrong_text("title", machine.title)
     for body, names in machine.bodies.items():
         yield from wrong_text("links", body)
