@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,6 +17,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from equipoise.cli.tools import tools
 from equipoise.errors import EquipoiseError, UsageError
+from equipoise.folders import Folder
 from equipoise.schema.documents import load
 from equipoise.web import server as served_files
 from equipoise.web.disk import on_disk
@@ -309,6 +311,35 @@ def test_what_is_begun_beside_a_place_goes_through_no_link(
     assert not Path("out.csv").is_symlink() and not Path("out.zarr").is_symlink()
 
 
+@pytest.mark.parametrize("swap", ["file", "folder"])
+@pytest.mark.parametrize("words", WRITING.values(), ids=WRITING)
+@pytest.mark.usefixtures("store")
+def test_what_is_written_goes_through_no_link_that_comes_meanwhile(
+    words: tuple[str, ...], swap: str, outside: Outside, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A link is put in the place of the file, or of its folder, once writing has begun."""
+    inputs()
+    succeeded(equipoise("export", "mine.toml", "-o", "mine.mjcf.xml"))
+    name = next(one for one in words if "{}" in one).format("here/out")
+    Path("here").mkdir()
+    opened, planted_there = Folder.open, []
+
+    def open_late(folder: Folder, file: str, flags: int, mode: int = 0o666) -> int:
+        descriptor = opened(folder, file, flags, mode)
+        if flags & os.O_CREAT and not planted_there:
+            planted_there.append(file)
+            if swap == "file":
+                Path(name).symlink_to(outside.folder / "secret.txt")
+            else:
+                Path("here").rename("old")
+                Path("here").symlink_to(outside.folder)
+        return descriptor
+
+    monkeypatch.setattr(Folder, "open", open_late)
+    equipoise(*(one.format("here/out") for one in words))
+    assert planted_there
+
+
 def test_a_link_within_the_folder_stays_one() -> None:
     Path("mine.toml").write_text(MODEL)
     Path("out.csv").symlink_to("real.csv")
@@ -392,27 +423,62 @@ def asked(page: ClientConnection, kind: str, **given: object) -> dict[str, Any]:
             return answer
 
 
+def put_elsewhere(elsewhere: Path) -> None:
+    """The file goes, and a link to a copy of it lies in its place."""
+    shutil.copy("sub/mine.toml", elsewhere)
+    planted(Path("sub/mine.toml"), elsewhere / "mine.toml")
+
+
+def put_beside(elsewhere: Path) -> None:
+    """The link leads to a copy within the folder, where links of paths that one gives may lead."""
+    shutil.copy("sub/mine.toml", "sub/copy.toml")
+    planted(Path("sub/mine.toml"), Path("copy.toml"))
+
+
+def put_above(elsewhere: Path) -> None:
+    """The whole folder becomes a link to another with a copy."""
+    shutil.copy("sub/mine.toml", elsewhere)
+    planted(Path("sub"), elsewhere)
+
+
+SAVED = {
+    "linkage": ("yamashita-1", "links.crank.mass", "300 g"),
+    "tool": ("nagamine-irie", "shaft.stations[3].mass", "1.5 kg"),
+}
+
+
+@pytest.mark.parametrize("plant", [put_elsewhere, put_beside, put_above])
+@pytest.mark.parametrize("kind", SAVED)
 def test_a_page_saves_through_no_link_that_was_put_in_the_place_of_its_file(
-    outside: Outside, tmp_path_factory: pytest.TempPathFactory
+    kind: str,
+    plant: Callable[[Path], None],
+    outside: Outside,
+    tmp_path_factory: pytest.TempPathFactory,
 ) -> None:
     if not (Path(served_files.__file__).parent / "static" / "equipoise.js").exists():
         pytest.skip("the page is not bundled")
-    Path("mine.toml").write_text(MODEL)
-    change = {"set": "links.crank.mass", "text": "300 g"}
-    with page_of("mine.toml") as page:
-        page.send(json.dumps({"type": "edit", "seq": 1, "label": "mass", "edits": [change]}))
+    name, number, text = SAVED[kind]
+    elsewhere = tmp_path_factory.mktemp("elsewhere")
+    Path("sub").mkdir()
+    Path("sub/mine.toml").write_text(example_text(name))
+    edit = {"type": "edit", "seq": 1, "label": "it", "edits": [{"set": number, "text": text}]}
+    with page_of("sub/mine.toml") as page:
+        page.send(json.dumps(edit))
         assert asked(page, "save")["type"] == "saved"
-        assert "300" in Path("mine.toml").read_text()
-        page.send(json.dumps({"type": "edit", "seq": 1, "label": "mass", "edits": [change]}))
-        copy = tmp_path_factory.mktemp("elsewhere") / "copy.toml"
-        shutil.copy("mine.toml", copy)
-        text = copy.read_text()
-        planted(Path("mine.toml"), copy)  # with the same content, so that the link alone is wrong
-        assert asked(page, "save")["type"] == "refused"
-        assert copy.read_text() == text and Path("mine.toml").is_symlink()
-        Path("mine.toml").unlink()
-        Path("mine.toml").symlink_to(outside.folder / "nowhere")
-        assert asked(page, "save")["type"] != "saved"
+        assert text.split()[0] in Path("sub/mine.toml").read_text()
+        plant(elsewhere)
+        copies = {
+            path: path.read_bytes() for path in (*elsewhere.iterdir(), *Path("sub").iterdir())
+        }
+        page.send(
+            json.dumps(edit | {"edits": [{"set": number, "text": f"1.25 {text.split()[1]}"}]})
+        )
+        asked(page, "save")
+        del copies[Path("sub/mine.toml")]  # where the link itself may give way to a file
+        assert copies == {path: path.read_bytes() for path in copies}
+        if plant is not put_above:
+            planted(Path("sub/mine.toml"), outside.folder / "nowhere")
+            assert asked(page, "save")["type"] != "saved"
 
 
 @pytest.mark.usefixtures("store")
