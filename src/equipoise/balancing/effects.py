@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -30,7 +31,6 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.outputs.declared import Declared, Found, matches
-from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import balanced_names
 from equipoise.mechanism.parts.places import in_frame
@@ -295,19 +295,17 @@ class Solved(Exerted):
     effects: Effects
     about: complex
 
-    def tension(self, belt: Belt) -> float:
-        return 0.0
+    preloads: ClassVar[bool] = False
 
 
 class Present(Solved):
     """Of the machine from which the numbers count."""
 
+    preloads: ClassVar[bool] = True
+
     @property
     def solved(self) -> Pass:
         return self.effects.present
-
-    def tension(self, belt: Belt) -> float:
-        return belt.tension or 0.0
 
     @property
     def shaking_force(self) -> VectorSignal:

@@ -28,6 +28,7 @@ from equipoise.mechanism.assembly.linkage import Linkage, assemble
 from equipoise.mechanism.assembly.newton import LoopGroup
 from equipoise.mechanism.assembly.steps import Reaction, planar
 from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.dynamics.reactions import Push
 from equipoise.mechanism.formulas.kernels import cross, length
 from equipoise.mechanism.outputs.declared import DECLARED, Declared, declared
 from equipoise.mechanism.parts.force_kinds import force_kinds
@@ -202,25 +203,20 @@ class Signals:
         self.demands  # noqa: B018
         return bearing_force(self.trace, item, self.joint_force)
 
-    def push(self, item: str) -> Any:
-        """What a cam, or both strands of a belt, push or pull with."""
-        self._reaction(item)
-        return self.forces[f"T({item})"]
-
     def pressure_angle(self, item: str) -> Any:
         self._reaction(item)
         forth, normal = (self.forces[f"{key}({item})"] for key in ("forth", "normal"))
         return angle_of(forth.conjugate() * normal)
 
-    def strand(self, item: str, side: int) -> Any:
-        """Tension of the left (1) or right (-1) strand of a belt, as `JointReactions.belts`."""
-        belts, pull = self.machine.belts, self.push(item)
-        number = next(k for k, one in enumerate(belts) if one.name == item)
-        mean = 0.5 * self.forces[f"flank({item})"] * pull
-        if belts[number].tension is not None:
-            what = f"tension of belt {number}"
-            mean = self.trace.slot(what, lambda found: found.machine.belts[number].tension)
-        return mean + (-0.5 * side if belts[number].crossed else 0.5 * side) * pull
+    def coupling_part(self, item: str, part: str) -> Any:
+        """A part of a coupling's force by its name."""
+        reaction, couplings = self._reaction(item), self.machine.couplings
+        number, coupling = next((k, one) for k, one in enumerate(couplings) if one.name == item)
+        preload = coupling.preload and self.trace.slot(
+            f"preload of {item}", lambda found: found.machine.couplings[number].preload
+        )
+        at = Push(self.forces, reaction, self.linkage.joints, coupling, preload)
+        return coupling.parts(at)[part]
 
     def element_value(self, item: str, table: str, name: str) -> Any:
         """An output of a force element, by its number from 1 in a list of the file."""
@@ -241,11 +237,8 @@ OF_MEMBERS: dict[str, Callable[..., Any]] = {
     "joint force": Signals.joint_force,
     "joint moment": Signals.joint_moment,
     "bearing force": Signals.bearing_force,
-    "cam push": Signals.push,
+    "coupling part": Signals.coupling_part,
     "pressure angle": Signals.pressure_angle,
-    "belt pull": Signals.push,
-    "belt left": lambda signals, item: signals.strand(item, 1),
-    "belt right": lambda signals, item: signals.strand(item, -1),
     "force element": Signals.element_value,
 }
 """Values of members of families, by the names that `declared` looks them up by."""

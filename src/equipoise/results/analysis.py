@@ -242,10 +242,9 @@ class Analysis(Result):
         if found is None:
             result["missing"] = massless(self.machine)
         else:
-            for family in ("joints", "gears", "racks", "belts", "cams"):
-                joints = getattr(found, family)
-                ends = {name: {"on": one.on, "by": one.by} for name, one in joints.items()}
-                if ends or family in ("joints", "gears"):
+            for family, forces in {"joints": found.joints, **found.couplings}.items():
+                ends = {name: {"on": one.on, "by": one.by} for name, one in forces.items()}
+                if ends or family == "joints":
                     result[family] = ends
             result.update(_undecided(self.motion.linkage))
             result["about"] = {"x": found.about.real, "y": found.about.imag}
@@ -346,7 +345,7 @@ def _split(found: Forces) -> Values:
     split_of = to_say("forces by cause and link at {count} crank angles, of {turns} turns")
     check_memory(SPLIT * links**2 * count, Note(split_of, count=count, turns=motion.turns))
     read = Found(found.motion, found.split)
-    result: Values = {key: {"joints": {}, "gears": {}} for key in ("by_cause", "by_link")}
+    result: Values = {key: {"joints": {}} for key in ("by_cause", "by_link")}
     for one in DECLARED.values():
         if one.part in ("x", "y") or not one.is_split:
             continue

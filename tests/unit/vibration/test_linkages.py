@@ -267,7 +267,7 @@ def same(found: Pass, wanted: Pass | eq.mechanism.Forces) -> None:
     for name, joint in wanted.joints.items():
         np.testing.assert_allclose(found.joints[name].value, joint.value, atol=1e-12 * size)
     for name, gear in wanted.gears.items():
-        np.testing.assert_allclose(found.gears[name].value, gear.value, atol=1e-12 * size)
+        np.testing.assert_allclose(found.contacts[name].value, gear.value, atol=1e-12 * size)
     close(found.drive_torque, wanted.drive_torque, 1e-11)
 
 

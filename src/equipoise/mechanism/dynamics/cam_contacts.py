@@ -161,7 +161,7 @@ def _lowest(name: str, forces: Forces, squares: Array) -> tuple[float, float]:
 def _at_rest(name: str, forces: Forces) -> tuple[Array, Array]:
     """Normal force on a follower as its crank stands still, N, and what a speed of 1 rad/s adds."""
     fast = forces.at(speed=1.0, acceleration=0.0).inertia
-    per_speed2 = reactions(forces.motion, fast, forces.solved).cams[name].normal
+    per_speed2 = reactions(forces.motion, fast, forces.solved).force_on(name).normal
     return forces.cams[name].normal - per_speed2 * forces.motion.speed**2, per_speed2
 
 

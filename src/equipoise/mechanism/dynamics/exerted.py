@@ -5,22 +5,36 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from functools import cached_property
+from typing import Any, ClassVar
 
-from equipoise.mechanism.dynamics.reactions import BeltForce, CamForce, JointForce, MeshForce, Pass
-from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.dynamics.reactions import CouplingForces, JointForce, Pass
+from equipoise.mechanism.parts.couplings import coupling_kinds
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.signals import Array
 
 
-class Exerted(ABC):
-    """What is read of a run over the joints, `solved`."""
+class Coupled:
+    """What has `couplings`: forces by list of the file, each of which is an attribute too."""
+
+    couplings: Any
+
+    def __getattr__(self, name: str) -> Any:
+        if name in coupling_kinds(Machine):
+            return self.couplings[name]
+        raise AttributeError(f"{type(self).__name__} has no {name!r}")
+
+
+class Exerted(Coupled, ABC):
+    """What is read of a run over the joints, `solved`.
+
+    preloads : whether it has the preloads of couplings.
+    """
+
+    preloads: ClassVar[bool] = True
 
     @property
     @abstractmethod
     def solved(self) -> Pass: ...
-
-    @abstractmethod
-    def tension(self, belt: Belt) -> float:
-        """What both strands of a belt have anyway, N."""
 
     @property
     def drive_torque(self) -> Array:
@@ -43,21 +57,6 @@ class Exerted(ABC):
         return self.solved.joints
 
     @cached_property
-    def gears(self) -> Mapping[str, MeshForce]:
-        """Force between the teeth of each pair of gears, on the driven gear by the driver."""
-        return self.solved.gears
-
-    @cached_property
-    def racks(self) -> Mapping[str, MeshForce]:
-        """Force between the teeth of each rack and its pinion, on the driven of them."""
-        return self.solved.racks
-
-    @cached_property
-    def belts(self) -> Mapping[str, BeltForce]:
-        """Pull and tensions of each belt on its driven link."""
-        return self.solved.belts(self.tension)
-
-    @cached_property
-    def cams(self) -> Mapping[str, CamForce]:
-        """Force of each cam on its follower."""
-        return self.solved.cams
+    def couplings(self) -> CouplingForces:
+        """Force of each coupling on its driven body, by list of the file and name."""
+        return self.solved.couplings(lambda one: one.preload if self.preloads else 0.0)

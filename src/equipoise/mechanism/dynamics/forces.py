@@ -41,7 +41,7 @@ from equipoise.mechanism.dynamics.reactions import (
 from equipoise.mechanism.dynamics.shares import CAUSES, Split
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion
-from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.machine import Link, Machine, Vector
 from equipoise.mechanism.parts.places import in_frame
 
@@ -129,10 +129,6 @@ class Forces(Exerted, Displayed):
         """The same without what links and frame exert on each other: springs, and loads between."""
         outside = demands_of(self.motion, acting.outer_loads(self.motion))
         return replace(self, loads=outside, springs={}, inner={})
-
-    def tension(self, belt: Belt) -> float:
-        """What both strands of a belt have anyway, N."""
-        return belt.tension or 0.0
 
     @property
     def flywheel_torque(self) -> float:
@@ -322,10 +318,10 @@ def split(whole: Forces) -> Split:
         demands[link] = (force, moment)
     solved = reactions(motion, demands, whole.solved)
 
-    def tension_told(belt: Belt) -> Array:
+    def preload_shares(coupling: Coupling) -> Array:
         """With the springs, and with the driven link."""
         own = np.zeros(shape)
-        own[CAUSES.index("spring"), links.index(belt.driven)] = belt.tension or 0.0
+        own[CAUSES.index("spring"), links.index(coupling.driven)] = coupling.preload
         return own
 
     inertial = np.array([1, 1, 0, 0, 0])[:, None, None]
@@ -345,10 +341,7 @@ def split(whole: Forces) -> Split:
         solved.drive_torque,
         solved.drives,
         solved.joints,
-        solved.gears,
-        solved.racks,
-        solved.belts(tension_told),
-        solved.cams,
+        solved.couplings(preload_shares),
         apart(whole.across, exerted_in(solved), shape) if motion.machine.has_planes else None,
         links,
         drive_force=pushed(solved),

@@ -15,16 +15,16 @@ from typing import Any
 import numpy as np
 
 from equipoise.displays import Brief
+from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.steps import Array, Reaction, State, demand_names, run
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dynamics.undecided import hidden
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.pushing import pushes
-from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
 from equipoise.mechanism.parts.joint_properties import JOINTS
 from equipoise.mechanism.parts.machine import FRAME
-from equipoise.mechanism.parts.racks import Rack
 
 PUSH, TORQUE = "push({})", "M({})"  # what drives exert on their links
 """Name of the force of a drive that pushes, among the values of a pass."""
@@ -78,42 +78,53 @@ class SliderForce(JointForce):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MeshForce(JointForce):
-    """Force between teeth, N, along the line of action at the pitch point.
+class CouplingForce(JointForce):
+    """Force of a coupling on its driven body, N; of belts without what strands pull anyway.
 
-    tangential : part that transmits torque, positive where it turns the gear `on`
-        counterclockwise, or moves a rack ahead.  radial : part along the line of centres, positive
-        towards the pin of the gear `on`; of racks, positive where it pushes them apart.
+    parts : of it, by name, as `Coupling.parts` has them; attributes too, such as `tangential`.
     """
 
-    tangential: Array
-    radial: Array
+    parts: Mapping[str, Array]
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name not in self.parts:
+            raise AttributeError(f"{name!r} is no part of this force")
+        return self.parts[name]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class BeltForce(Brief):
-    """What a belt does to its driven link `on`; arrays (..., N), N.
+CouplingForces = Mapping[str, Mapping[str, CouplingForce]]
+"""Forces of couplings, by list of the file and name."""
 
-    pull : what turns the link, at the pitch radius; positive counterclockwise.
-    left, right : tension of the strands that leave the driver left and right of the way to the
-        driven link; below 0 where a belt would have to push.
+
+@dataclass(frozen=True)
+class Push:
+    """What is found of a coupling's force among the values of a pass; see `Pushed`.
+
+    preload : that counts, N.
     """
 
-    on: str
-    by: str
-    pull: Array
-    left: Array
-    right: Array
+    state: Mapping[str, Any]
+    reaction: Reaction
+    joints: Structure
+    coupling: Coupling
+    preload: Any
 
+    @property
+    def force(self) -> Any:
+        return self.state[self.reaction.force]
 
-@dataclass(frozen=True, eq=False, repr=False)
-class CamForce(JointForce):
-    """Force of a cam on its follower, N, along their common normal.
+    @property
+    def push(self) -> Any:
+        return self.state[f"T({self.reaction.name})"]
 
-    normal : it along the normal away from the cam; below 0 where the follower is held back.
-    """
+    @property
+    def sense(self) -> Any:
+        return self.state[f"flank({self.reaction.name})"]
 
-    normal: Array
+    @property
+    def arm(self) -> Any:
+        pin = self.joints.pins_between(self.coupling.driven, self.coupling.carrier)[0]
+        return self.state[f"p({self.reaction.at})"] - self.state[f"p({pin})"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,33 +182,33 @@ class Pass:
         named = ((n, r) for n, r in self.motion.linkage.named_reactions if n not in left_out)
         return Named("joint", ((n, self._joint(r)) for n, r in named if r.kind in JOINTS))
 
-    @property
-    def gears(self) -> dict[str, MeshForce]:
-        """Pairs of gears, by name; the force is on the driven gear."""
-        gears = (r for r in self.motion.linkage.reactions if r.kind == "gears")
-        return Named("pair of gears", ((r.name, self._mesh(r)) for r in gears))
+    def couplings(self, preload: Callable[[Coupling], Any]) -> CouplingForces:
+        """Forces of couplings by list and name.
 
-    @property
-    def racks(self) -> dict[str, MeshForce]:
-        """Racks, by name; the force is on the driven of rack and pinion."""
-        racks = self.motion.machine.racks
-        return Named("rack", ((rack.name, self._teeth(rack)) for rack in racks))
+        preload : what is to be told of that of a coupling.
+        """
+        kinds = coupling_kinds(type(self.motion.machine))
+        found: dict[str, dict[str, CouplingForce]] = {
+            table: Named(kind.noun, ()) for table, kind in kinds.items()
+        }
+        reactions = {one.name: one for one in self.motion.linkage.reactions if one.kind in kinds}
+        for one in self.motion.machine.couplings:
+            force = self._force(one, reactions[one.name], preload(one))
+            found[one.table][one.name] = force
+        return found
 
-    def belts(self, tension: Callable[[Belt], Any]) -> dict[str, BeltForce]:
-        """Belts, by name, with a tension in both strands beside what their pull makes."""
-        belts = self.motion.machine.belts
-        return Named("belt", ((belt.name, self._belt(belt, tension(belt))) for belt in belts))
+    def force_on(self, name: str) -> CouplingForce:
+        """Force of a coupling by its name, without a preload."""
+        groups = self.couplings(lambda _: 0.0).values()
+        return next(group[name] for group in groups if name in group)
 
     @property
     def contacts(self) -> dict[str, JointForce]:
-        """Force in every joint and between all teeth and of all cams, by name."""
-        return {**self.joints, **self.gears, **self.racks, **self.cams}
-
-    @property
-    def cams(self) -> dict[str, CamForce]:
-        """Cams, by name; the force is on the follower."""
-        cams = (r for r in self.motion.linkage.reactions if r.kind == "cams")
-        return Named("cam", ((r.name, self._pressed(r)) for r in cams))
+        """Forces at one place in every joint and coupling, by name."""
+        pushing = {one.name for one in self.motion.machine.couplings if one.pushes}
+        groups = self.couplings(lambda _: 0.0).values()
+        forces = {name: one for group in groups for name, one in group.items() if name in pushing}
+        return {**self.joints, **forces}
 
     @property
     def flanks(self) -> State:
@@ -221,32 +232,11 @@ class Pass:
         normal = kernels.cross(direction, force)
         return SliderForce(force, on, by, normal, full(self.motion, moment, float))
 
-    def _belt(self, belt: Belt, tension: Any) -> BeltForce:
-        pull = full(self.motion, self.state[f"T({belt.name})"], float)
-        half = 0.5 * pull
-        mean = tension + (0.0 if belt.tension else self.state[f"flank({belt.name})"]) * half
-        left = -half if belt.crossed else half
-        return BeltForce(belt.driven, belt.driver, pull, mean + left, mean - left)
-
-    def _teeth(self, rack: Rack) -> MeshForce:
-        force = full(self.motion, self.state[f"R({rack.name}/{rack.driven})"], complex)
-        push = full(self.motion, self.state[f"T({rack.name})"], float)
-        apart = np.tan(rack.pressure_angle) * self.state[f"flank({rack.name})"] * push
-        return MeshForce(force, rack.driven, rack.driver, push, apart)
-
-    def _mesh(self, reaction: Reaction) -> MeshForce:
-        force = full(self.motion, self.state[reaction.force], complex)
-        tangential = full(self.motion, self.state[f"T({reaction.name})"], float)
-        gear = next(g for g in self.motion.machine.gears if g.name == reaction.name)
-        pin = self.motion.linkage.joints.pins_between(gear.driven, gear.carrier)[0]
-        lever = self.state[f"p({reaction.at})"] - self.state[f"p({pin})"]
-        radial = -kernels.dot(lever, force) / abs(lever)
-        return MeshForce(force, reaction.on, reaction.by, tangential, radial)
-
-    def _pressed(self, reaction: Reaction) -> CamForce:
-        force = full(self.motion, self.state[reaction.force], complex)
-        normal = full(self.motion, self.state[f"T({reaction.name})"], float)
-        return CamForce(force, reaction.on, reaction.by, normal)
+    def _force(self, coupling: Coupling, reaction: Reaction, preload: Any) -> CouplingForce:
+        at = Push(self.state, reaction, self.motion.linkage.joints, coupling, preload)
+        parts = {name: full(self.motion, one, float) for name, one in coupling.parts(at).items()}
+        force = full(self.motion, at.force, complex)
+        return CouplingForce(force, reaction.on, reaction.by, parts)
 
 
 def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None = None) -> Pass:

@@ -12,27 +12,26 @@ from equipoise.errors import UsageError
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics.across import OF_FRAME, Across
+from equipoise.mechanism.dynamics.exerted import Coupled
 from equipoise.mechanism.dynamics.reactions import (
-    BeltForce,
-    CamForce,
+    CouplingForces,
     JointForce,
-    MeshForce,
     SliderForce,
 )
 
 CAUSES = ("translation", "rotation", "weight", "load", "spring")
 """Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside, and
-springs and the tension of belts."""
+springs and preloads of couplings."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Shares(Brief):
+class Shares(Coupled, Brief):
     """Outputs told apart: arrays (..., N), whose first axes are what they are shares of.
 
     drives : link -> torque of its drive, N m, of which `drive_torque` is the first.
     shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
     drive_force : N, of a drive that pushes.
-    joints, gears, racks, belts, cams : name -> force whose arrays have those axes.
+    joints : name -> force whose arrays have those axes; couplings : such names by list of the file.
     across : what links beside each other do; None where they all lie in one plane.
     """
 
@@ -43,10 +42,7 @@ class Shares(Brief):
     drive_torque: Array
     drives: Mapping[str, Array]
     joints: Mapping[str, JointForce]
-    gears: Mapping[str, MeshForce]
-    racks: Mapping[str, MeshForce]
-    belts: Mapping[str, BeltForce]
-    cams: Mapping[str, CamForce]
+    couplings: CouplingForces
     across: Across | None
     drive_force: Array | None = field(default=None, kw_only=True)
 
@@ -85,11 +81,10 @@ class Split(Shares):
                 found[f"joints.{name}.moment"] = joint.moment
         for name, effort in self.drives.items():
             found |= {f"drives.{name}.{what}": effort for what in ("torque", "force")}
-        found |= {f"gears.{name}": mesh.value for name, mesh in self.gears.items()}
-        found |= {f"racks.{name}": mesh.value for name, mesh in self.racks.items()}
-        for name, belt in self.belts.items():
-            found |= {f"belts.{name}.{k}": getattr(belt, k) for k in ("pull", "left", "right")}
-        found |= {f"cams.{name}": pressed.value for name, pressed in self.cams.items()}
+        for table, forces in self.couplings.items():
+            for name, force in forces.items():
+                found[f"{table}.{name}"] = force.value
+                found |= {f"{table}.{name}.{part}": one for part, one in force.parts.items()}
         if self.across is not None:
             found |= {f"bearings.{name}": one.value for name, one in self.across.bearings.items()}
         if output not in found:

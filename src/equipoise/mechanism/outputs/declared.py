@@ -301,12 +301,22 @@ of_bearing(
 )
 
 
+def _members_of(table: str) -> dict[str, Any]:
+    return {
+        "members": lambda machine: [one.name for one in getattr(machine, table)],
+        "spoken": lambda name: name.replace(" to ", " → "),
+    }
+
+
+def part_in_loops(part: str) -> Callable[[Callable[..., Any]], Any]:
+    """A part of a coupling's force in compiled loops."""
+    return lambda value: value("coupling part", part)
+
+
 def _coupled(table: str) -> Callable[..., None]:
     """Outputs of couplings; linear for the flanks in contact and the strands that pull."""
-    shared: dict[str, Any] = {"spoken": lambda name: name.replace(" to ", " → ")}
-    shared |= {"linear": True, "internal": True}
-    shared["members"] = lambda machine: [one.name for one in getattr(machine, table)]
-    read = lambda name, found, item: _members(getattr(found.forces, table), name, item)  # noqa: E731
+    shared: dict[str, Any] = {"linear": True, "internal": True, **_members_of(table)}
+    read = lambda name, found, item: _members(found.forces.couplings[table], name, item)  # noqa: E731
     return alike(table + ".{}", read, **shared)
 
 
@@ -319,26 +329,21 @@ for of_teeth in (_coupled("gears"), _coupled("racks")):
     of_teeth(".radial", "force", to_say("radial tooth force {name}"), **PART_OF_TOOTH)
 of_belt = _coupled("belts")
 of_belt(".pull", "force", to_say("effective pull {name}"), compared=FORCE,
-        loop=looked_up("belt pull"), yardstick="acting")  # fmt: skip
+        loop=part_in_loops("pull"), yardstick="acting")  # fmt: skip
 of_belt(".left", "force", to_say("tension of the left strand {name}"), compared=FORCE,
-        loop=looked_up("belt left"))  # fmt: skip
+        loop=part_in_loops("left"))  # fmt: skip
 of_belt(".right", "force", to_say("tension of the right strand {name}"), compared=FORCE,
-        loop=looked_up("belt right"))  # fmt: skip
+        loop=part_in_loops("right"))  # fmt: skip
 
-CAMMED: dict[str, Any] = {
-    "members": lambda machine: [cam.name for cam in machine.cams],
-    "spoken": lambda name: name.replace(" to ", " → "),
-}
-of_cam = alike("cams.{}", lambda name, found, cam: _members(found.forces.cams, name, cam),
-               linear=True, internal=True, **CAMMED)  # fmt: skip
+of_cam = _coupled("cams")
 of_cam("", "force", to_say("contact force {name}"), FORCES,
        loop=looked_up("joint force"), summed=(True, False), compared=FORCE,
        yardstick="acting")  # fmt: skip
 READ = "{what} is only read; take the whole contact force instead"
 of_cam(".normal", "force", to_say("contact force along the normal {name}"), reason=READ,
-       loop=looked_up("cam push"))  # fmt: skip
+       loop=part_in_loops("normal"))  # fmt: skip
 of_shape = alike("cams.{}.", lambda name, found, cam: getattr(found.motion, name + "s")[cam],
-                 needs="motion", **CAMMED)  # fmt: skip
+                 needs="motion", **_members_of("cams"))  # fmt: skip
 of_shape("pressure_angle", "angle", to_say("pressure angle {name}"),
          loop=True,
          yardstick="pressure")  # fmt: skip

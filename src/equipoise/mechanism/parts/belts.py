@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -20,7 +20,7 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.couplings import Relation, Turning, as_fraction
+from equipoise.mechanism.parts.couplings import Pushed, Relation, Turning, as_fraction
 
 if TYPE_CHECKING:
     from equipoise.mechanism.formulas.strands import Strands
@@ -39,6 +39,7 @@ class Belt(Turning):
 
     table: ClassVar[str] = "belts"
     noun = to_say("belt")
+    pushes = False
     counted = to_say("{count} belt"), to_say("{count} belts")
 
     teeth: tuple[int, int] | None = key(
@@ -82,6 +83,10 @@ class Belt(Turning):
         return first, second
 
     @property
+    def preload(self) -> Any:
+        return self.tension or 0.0
+
+    @property
     def switches(self) -> bool:
         """Without tension one strand pulls, which follows from the sense of the torque."""
         return self.tension is None
@@ -109,6 +114,16 @@ class Belt(Turning):
 
         first, second = self.pitch_radii
         return Strands(apart, first, -second if self.crossed else second)
+
+    def parts(self, at: Pushed) -> Mapping[str, Any]:
+        """What turns the driven link at its pitch radius, positive counterclockwise, and the
+        tension of the strands that leave the driver left and right of the way to the driven link,
+        below 0 where one would have to push.
+        """
+        half = 0.5 * at.push
+        mean = at.sense * half if self.tension is None else at.preload
+        left = -half if self.crossed else half
+        return {"pull": at.push, "left": mean + left, "right": mean - left}
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with a belt, but for where its pulleys are."""

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Conditions, Table, Text, declared, key, not_both
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link, unknown_point
-from equipoise.mechanism.parts.couplings import Coupling, Relation, coupled
+from equipoise.mechanism.parts.couplings import Coupling, Pushed, Relation, coupled
 from equipoise.mechanism.parts.law_checks import CAM, wrong_law
 from equipoise.mechanism.parts.laws import AngleLaw, Law, LengthLaw
 
@@ -118,6 +118,10 @@ class Cam(Coupling):
     def radius(self) -> float:
         """Of the curve that roller or edge takes where the displacement is 0, m."""
         return self.base_radius + self.roller_radius
+
+    def parts(self, at: Pushed) -> Mapping[str, Any]:
+        """Along the normal away from the cam; below 0 where the follower is held back."""
+        return {"normal": at.push}
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with a cam."""

@@ -12,7 +12,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from math import pi, radians
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
@@ -28,12 +28,37 @@ Law = Callable[[Any], tuple[Any, Any, Any]]
 """A function of an angle, with its first and second derivative."""
 
 
+class Pushed(Protocol):
+    """What is found of a coupling's force, as arrays over the crank angle, or as terms."""
+
+    @property
+    def force(self) -> Any:
+        """On the driven body, complex, N, without preloads."""
+
+    @property
+    def push(self) -> Any:
+        """The part of it that transmits torque or moves ahead, N."""
+
+    @property
+    def sense(self) -> Any:
+        """Sign of what the driven body needs."""
+
+    @property
+    def arm(self) -> Any:
+        """From the driven body's pin to where the force acts, complex, m."""
+
+    @property
+    def preload(self) -> Any:
+        """What there is of `Coupling.preload`, N."""
+
+
 class Coupling(Frozen):
     """Two bodies of which one drives the other, both on a carrier.
 
     table : key of its list in the model file, which is the `kind` of its `Reaction` too.
     most : that a machine may have.  noun : what one is called.  counted : how one, and several, are
-        counted.
+        counted.  pushes : whether it is one force at one place, told as a whole and in parts.
+    preload : what its sides pull with where no torque is passed on, N.
     driver, driven, carrier : names of bodies.
     start : angle of the driven body in the frame at crank angle 0, rad.
     switches : whether another flank, or another strand, bears where the force changes its sense, so
@@ -44,6 +69,8 @@ class Coupling(Frozen):
     noun: ClassVar[str]
     counted: ClassVar[tuple[str, str]]
     most: ClassVar[int] = 200
+    pushes: ClassVar[bool] = True
+    preload: ClassVar[Any] = 0.0
 
     if TYPE_CHECKING:  # fields of some kinds, and properties of others
 
@@ -110,6 +137,10 @@ class Coupling(Frozen):
                 carrier=self.carrier,
             )
             yield ModelError(where, told)
+
+    @abstractmethod
+    def parts(self, at: Pushed) -> Mapping[str, Any]:
+        """Parts of its force by the names of their outputs, N."""
 
     @abstractmethod
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from math import dist
@@ -27,6 +27,7 @@ from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.couplings import (
     Law,
+    Pushed,
     Relation,
     Turning,
     as_fraction,
@@ -140,6 +141,13 @@ class Gear(Turning):
             ratio = Fraction(*self.teeth)
             return ratio if self.mesh == "internal" else -ratio
         return as_fraction(self.speed_ratio)
+
+    def parts(self, at: Pushed) -> Mapping[str, Any]:
+        """Along the pitch curves, positive where it turns the driven gear counterclockwise, and
+        along the line of centres, positive towards the pin of the driven gear.
+        """
+        radial = -kernels.dot(at.arm, at.force) / abs(at.arm)
+        return {"tangential": at.push, "radial": radial}
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with a pair of gears."""

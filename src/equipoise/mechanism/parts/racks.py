@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
-from typing import ClassVar, Literal
+from math import tan
+from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError, MotionError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Text, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.couplings import Coupling, Relation, pressure_angle
+from equipoise.mechanism.parts.couplings import Coupling, Pushed, Relation, pressure_angle
 
 HANDS = ("left", "right")
 ENDS = ("pinion", "rack")
@@ -112,6 +113,12 @@ class Rack(Coupling):
                 pinion=self.pinion,
             )
         )
+
+    def parts(self, at: Pushed) -> Mapping[str, Any]:
+        """Along the rack, positive where it moves the driven body ahead, and what pushes both
+        apart.
+        """
+        return {"tangential": at.push, "radial": tan(self.pressure_angle) * at.sense * at.push}
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with a rack, but for how it is guided."""
