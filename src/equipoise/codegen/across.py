@@ -18,8 +18,8 @@ def trace_across(trace: Trace, loads: Sequence[Any], springs: Sequence[Any]) -> 
     """Add ``Q(link)``, the sum of planes times forces that each link needs, and ``rocking
     moment`` and ``frame rocking moment`` of all of them.
 
-    loads, springs : the force that holds each, of springs, and then of the tension of belts, at
-        each end on a link.
+    loads, springs : the force that holds each, of force elements and then of preloads of couplings,
+        at each end on a link.
     """
     machine, state = trace.machine, trace.state
     moving, needed = [], {}
@@ -51,12 +51,11 @@ def trace_across(trace: Trace, loads: Sequence[Any], springs: Sequence[Any]) -> 
         for body in element.bodies
         if body != FRAME
     ]
-    strained = [belt for belt in machine.belts if belt.tension is not None]
     ends += [
-        (link, belt.driven, None)
-        for belt in strained
-        for link in (belt.driver, belt.driven)
-        if link != FRAME
+        (link, one.driven, None)
+        for one in machine.couplings
+        for link in (one.driver, one.driven)
+        if one.preload and link != FRAME
     ]
     for force, (link, on, point) in zip(springs, ends, strict=True):
         needed[link].append(_plane(trace, on, point) * force)

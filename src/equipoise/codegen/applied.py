@@ -1,4 +1,4 @@
-"""What acts on links from outside, force elements, and the tension of belts, in terms."""
+"""What acts on links from outside, force elements, and preloads of couplings, in terms."""
 
 from __future__ import annotations
 
@@ -101,23 +101,21 @@ def traced_element(trace: Trace, table: str, number: int) -> tuple[ForceElement,
     return element, TracedBodies(trace, name)
 
 
-def trace_tension(trace: Trace, number: int) -> Iterator[Held]:
-    """What holds the tension that both strands of a belt have anyway."""
-    belt = trace.machine.belts[number]
-    if belt.tension is None:
+def trace_preload(trace: Trace, number: int) -> Iterator[Held]:
+    """What holds the preload of the coupling of this number, if it has one."""
+    coupling = trace.machine.couplings[number]
+    if not coupling.preload:
         return
-    driver, driven = coupling_pins(trace.linkage.joints, belt)
+    driver, driven = coupling_pins(trace.linkage.joints, coupling)
 
-    def pull(found: Linkage) -> Any:
-        own, points = found.machine.belts[number], found.machine.points_of(belt.carrier)
-        assert own.tension is not None  # machines of the same build have it or lack it
-        strands = own.strands(planar(points[driven]) - planar(points[driver]))
-        return own.tension * 2 * strands.cosine / strands.distance
+    def rate(found: Linkage) -> Any:
+        points = found.machine.points_of(coupling.carrier)
+        distance = abs(planar(points[driven]) - planar(points[driver]))
+        return found.machine.couplings[number].preload_rate(distance)
 
-    share = trace.slot(f"tension({number})", pull)
-    ends = [trace.point(belt.carrier, pin)[0] for pin in (driver, driven)]
-    force = (ends[1] - ends[0]) * share
-    for link, pin, pulled in ((belt.driver, driver, force), (belt.driven, driven, -force)):
+    ends = [trace.point(coupling.carrier, pin)[0] for pin in (driver, driven)]
+    force = (ends[1] - ends[0]) * trace.slot(f"preload rate({number})", rate)
+    for link, pin, pulled in ((coupling.driver, driver, force), (coupling.driven, driven, -force)):
         if link != FRAME:
             yield _held(trace, link, pin, pulled, 0.0)
 

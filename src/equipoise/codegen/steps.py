@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.across import trace_across
-from equipoise.codegen.applied import Held, trace_element, trace_load, trace_tension
+from equipoise.codegen.applied import Held, trace_element, trace_load, trace_preload
 from equipoise.codegen.coupled import trace_coupling, trace_rolled
 from equipoise.codegen.followers import trace_displacement, trace_swung
 from equipoise.codegen.laws import trace_law
@@ -150,7 +150,7 @@ def trace_demands(trace: Trace) -> None:
         for table, number, _ in machine.force_elements
         for held in trace_element(trace, table, number)
     ]
-    springs += [held for k in range(len(machine.belts)) for held in trace_tension(trace, k)]
+    springs += [held for k in range(len(machine.couplings)) for held in trace_preload(trace, k)]
     if machine.has_planes:
         trace_across(trace, [force for _, force, _ in loads], [force for _, force, _ in springs])
     _on_frame(trace, "shaking", moving)

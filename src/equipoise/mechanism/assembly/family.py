@@ -38,6 +38,7 @@ from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.formulas.rolling import beside
 from equipoise.mechanism.parts.bodies import Body
 from equipoise.mechanism.parts.body_checks import outlined_by_columns
+from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.force_kinds import force_kinds
 from equipoise.mechanism.parts.machine import FRAME, Machine, Vector
 
@@ -193,22 +194,20 @@ HOLDERS: Mapping[str, Set[str] | None] = {
     r"(links)\.(.+)": {"mass", "inertia", "length", "plane"},
     r"(bearings)\.(.+)": {"plane"},
     r"(sliders)\[([1-9]\d*)\]": {"direction", "angle"},
-    r"(gears)\[([1-9]\d*)\]\.(shape)": {"eccentricity", "phase", "cosines", "sines"},
-    r"(gears)\[([1-9]\d*)\]": {"start", "pressure_angle"},
-    r"(belts)\[([1-9]\d*)\]": {"start", "tension"},
-    r"(racks)\[([1-9]\d*)\]": {"angle", "travel", "pressure_angle"},
-    r"(cams)\[([1-9]\d*)\]": {"base_radius", "roller_radius", "normal"},
 }
 """What has numbers that may be columns, by its path in the model file, and their keys; None where
-these are names.  All quantities of force elements may."""
+these are names.  Couplings tell theirs, and all quantities of force elements may."""
 
 
 _LISTED = re.compile(r"\[[1-9]\d*\]$")
 """Place in a list of numbers."""
 
 
-def _force_holders(of: type[Frozen]) -> Iterator[tuple[str, set[str]]]:
-    """As `HOLDERS`, of the force elements of a class of machines."""
+def _listed_holders(of: type[Frozen]) -> Iterator[tuple[str, Set[str]]]:
+    """As `HOLDERS`, of the couplings and force elements of a class of machines."""
+    for table, coupling in coupling_kinds(of).items():
+        for inner, keys in coupling.columns.items():
+            yield rf"({table})\[([1-9]\d*)\]" + (rf"\.({inner})" if inner else ""), keys
     for table, kind in force_kinds(of).items():
         known = keys_of(kind).items()
         names = {name for name, one in known if isinstance(innermost(one.kind), Quantity)}
@@ -217,7 +216,7 @@ def _force_holders(of: type[Frozen]) -> Iterator[tuple[str, set[str]]]:
 
 def _holder(whole: str, parts: Set[str], of: type[Frozen] = Machine) -> tuple[str, ...]:
     """The steps to what has these numbers; a `KeyError` where they may be no columns."""
-    for pattern, keys in (*HOLDERS.items(), *_force_holders(of)):
+    for pattern, keys in (*HOLDERS.items(), *_listed_holders(of)):
         found = re.fullmatch(pattern, whole)
         if found is not None and (
             keys is None or {_LISTED.sub("", part) for part in parts} <= keys

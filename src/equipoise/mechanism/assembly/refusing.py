@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from itertools import combinations
-from math import pi
 from typing import Any
 
 import numpy as np
@@ -15,11 +15,9 @@ from equipoise.mechanism.assembly.family import Columns, joints_of
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array, planar
-from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.machine import FRAME, Machine
-from equipoise.mechanism.parts.pitch_curves import can_roll
 from equipoise.mechanism.parts.planes import demands_across
-from equipoise.mechanism.parts.racks import Rack
 from equipoise.quantities.units import HUGE, TINY
 
 
@@ -47,19 +45,17 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
             yield (link.mass >= 0) & (link.inertia >= 0)
             yield (link.mass > 0) | (np.asarray(link.inertia) == 0)
         yield from link.demands()
-    for belt in machine.belts:
-        points = machine.points_of(belt.carrier)
-        driver, driven = (planar(points[pin]) for pin in coupling_pins(base.joints, belt))
-        yield abs(driver - driven) > sum(belt.pitch_radii)
-        yield belt.tension is None or belt.tension > 0
+    for coupling in machine.couplings:
+        yield from coupling.demands(partial(_distance, machine, base, coupling))
     fits = fits_of(machine, joints_of(machine, base)) if machine.cams else ()
     yield from (can_be_made(fit) for fit in fits if np.ndim(fit.rest))
-    toothed: tuple[Gear | Rack, ...] = (*machine.gears, *machine.racks)
-    for gear in toothed:
-        yield (gear.pressure_angle >= 0) & (np.asarray(gear.pressure_angle) < pi / 2)
-    for pair in machine.gears:
-        if pair.shape is not None and pair.shape.varies:
-            yield can_roll(pair.shape, pair)
     yield from demands_across(machine)
     for *_, element in machine.force_elements:
         yield from element.demands()
+
+
+def _distance(machine: Machine, base: Linkage, coupling: Coupling) -> Any:
+    """Of the pins of driver and driven body."""
+    points = machine.points_of(coupling.carrier)
+    driver, driven = (planar(points[pin]) for pin in coupling_pins(base.joints, coupling))
+    return abs(driven - driver)

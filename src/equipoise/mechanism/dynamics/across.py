@@ -15,7 +15,7 @@ import numpy as np
 
 from equipoise.mechanism.assembly.steps import p, u
 from equipoise.mechanism.checks import Named
-from equipoise.mechanism.dynamics.acting import acting_elements, acting_strands
+from equipoise.mechanism.dynamics.acting import acting_elements, acting_preloads
 from equipoise.mechanism.dynamics.reactions import (
     PUSH,
     Acting,
@@ -154,10 +154,10 @@ def pushes_across(motion: Motion, acting: Iterable[Acting]) -> dict[str, Any]:
 
 
 def springs_across(motion: Motion) -> dict[str, Any]:
-    """What holds force elements, and the tension of belts, in the plane of their driven link."""
+    """What holds force elements, and preloads of couplings, in the plane of their driven link."""
     found = pushes_across(motion, acting_elements(motion))
-    for belt, ends in acting_strands(motion):
-        plane = motion.machine.links[belt.driven].plane
+    for driven, ends in acting_preloads(motion):
+        plane = motion.machine.links[driven].plane
         for link, _, force, _ in ends:
             found[link] = found.get(link, 0.0) - plane * force
     return found

@@ -1,4 +1,4 @@
-"""What acts on links beside their joints: loads, soil, force elements, the tension of belts."""
+"""What acts on links beside their joints: loads, soil, force elements, preloads of couplings."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ from equipoise.mechanism.dynamics.loads import load_at
 from equipoise.mechanism.dynamics.reactions import Acting, Demand, demands_of
 from equipoise.mechanism.kinematics.motion import Motion, PlacedBodies
 from equipoise.mechanism.kinematics.tip import surface_of, tip_link
-from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.field import Soil
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.mechanism.parts.springs import Spring
@@ -31,15 +30,15 @@ def load_demands(motion: Motion) -> dict[str, Demand]:
 
 
 def spring_demands(motion: Motion) -> dict[str, Demand]:
-    """What holds force elements and the tension of belts, for every link that has one.
+    """What holds force elements and preloads of couplings, for every link that has one.
 
     Raises
     ------
     ModelError : the ends of a spring with a free length meet, or a link turns beyond where the
         torque of a torsion spring is known.
     """
-    strands = (one for _, ends in acting_strands(motion) for one in ends)
-    return demands_of(motion, chain(acting_elements(motion), strands))
+    preloads = (one for _, ends in acting_preloads(motion) for one in ends)
+    return demands_of(motion, chain(acting_elements(motion), preloads))
 
 
 def acting_elements(motion: Motion) -> Iterator[Acting]:
@@ -55,15 +54,17 @@ def acting_elements(motion: Motion) -> Iterator[Acting]:
         yield from element.on_links(PlacedBodies(motion, f"{table}[{number + 1}]"))
 
 
-def acting_strands(motion: Motion) -> Iterator[tuple[Belt, list[Acting]]]:
-    """Belts with what their tension does to their links, whether or not they pass a torque on."""
-    for belt in motion.machine.belts:
-        if belt.tension is not None:
-            driver, driven = coupling_pins(motion.linkage.joints, belt)
+def acting_preloads(motion: Motion) -> Iterator[tuple[str, list[Acting]]]:
+    """Driven links of couplings with what preloads do to driver and driven link, whether or not
+    these pass a torque on.
+    """
+    for coupling in motion.machine.couplings:
+        if coupling.preload:
+            driver, driven = coupling_pins(motion.linkage.joints, coupling)
             apart = motion.point(driven).place - motion.point(driver).place
-            pull = belt.tension * belt.strands(apart).toward
-            ends = (belt.driver, driver, pull), (belt.driven, driven, -pull)
-            yield belt, [(*end, 0.0) for end in ends if end[0] != FRAME]
+            pull = apart * coupling.preload_rate(abs(apart))
+            ends = (coupling.driver, driver, pull), (coupling.driven, driven, -pull)
+            yield coupling.driven, [(*end, 0.0) for end in ends if end[0] != FRAME]
 
 
 def inner_demands(motion: Motion) -> dict[str, Demand]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Set
 from fractions import Fraction
 from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -40,6 +40,7 @@ class Belt(Turning):
     table: ClassVar[str] = "belts"
     noun = to_say("belt")
     pushes = False
+    columns: ClassVar[Mapping[str, Set[str]]] = {"": {"start", "tension"}}
     counted = to_say("{count} belt"), to_say("{count} belts")
 
     teeth: tuple[int, int] | None = key(
@@ -84,7 +85,7 @@ class Belt(Turning):
 
     @property
     def preload(self) -> Any:
-        return self.tension or 0.0
+        return 0.0 if self.tension is None else self.tension
 
     @property
     def switches(self) -> bool:
@@ -124,6 +125,15 @@ class Belt(Turning):
         mean = at.sense * half if self.tension is None else at.preload
         left = -half if self.crossed else half
         return {"pull": at.push, "left": mean + left, "right": mean - left}
+
+    def preload_rate(self, distance: Any) -> Any:
+        """Sum of both tensions along the line of the pins, over their distance, N/m."""
+        return self.preload * 2 * self.strands(distance).cosine / distance
+
+    def demands(self, distance: Callable[[], Any]) -> Iterator[Any]:
+        """Pulleys that lie apart, and a tension that pulls."""
+        yield distance() > sum(self.pitch_radii)
+        yield self.tension is None or self.tension > 0
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with a belt, but for where its pulleys are."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from fractions import Fraction
 from typing import Any, ClassVar, Literal
 
@@ -32,6 +32,7 @@ class Cam(Coupling):
     called = to_say("{what} of cam {number}")
     table: ClassVar[str] = "cams"
     noun = to_say("cam")
+    columns: ClassVar[Mapping[str, Set[str]]] = {"": {"base_radius", "roller_radius", "normal"}}
     counted = to_say("{count} cam"), to_say("{count} cams")
     most = 100
     start: ClassVar[float] = 0.0

@@ -9,7 +9,7 @@ and never for a kind of coupling.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Set
 from fractions import Fraction
 from math import pi, radians
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self
@@ -59,6 +59,7 @@ class Coupling(Frozen):
     most : that a machine may have.  noun : what one is called.  counted : how one, and several, are
         counted.  pushes : whether it is one force at one place, told as a whole and in parts.
     preload : what its sides pull with where no torque is passed on, N.
+    columns : numbers that columns of designs may have, and of what is inside of it by its key.
     driver, driven, carrier : names of bodies.
     start : angle of the driven body in the frame at crank angle 0, rad.
     switches : whether another flank, or another strand, bears where the force changes its sense, so
@@ -71,6 +72,7 @@ class Coupling(Frozen):
     most: ClassVar[int] = 200
     pushes: ClassVar[bool] = True
     preload: ClassVar[Any] = 0.0
+    columns: ClassVar[Mapping[str, Set[str]]] = {}
 
     if TYPE_CHECKING:  # fields of some kinds, and properties of others
 
@@ -141,6 +143,19 @@ class Coupling(Frozen):
     @abstractmethod
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         """Parts of its force by the names of their outputs, N."""
+
+    def preload_rate(self, distance: Any) -> Any:
+        """Force by which its preload draws the pins of driver and driven body together, over their
+        distance, N/m.
+        """
+        return 0.0
+
+    def demands(self, distance: Callable[[], Any]) -> Iterator[Any]:
+        """What has to be true of its numbers, or of columns of them.
+
+        distance : of the pins of driver and driven body, m.
+        """
+        return iter(())
 
     @abstractmethod
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
@@ -213,6 +228,11 @@ def pressure_angle(sets: str) -> Any:
         below=pi / 2,
         why=Note("give an angle from 0 deg to less than 90 deg"),
     )
+
+
+def is_pressure_angle(angle: Any) -> Any:
+    """Whether teeth can have such a pressure angle, rad, or which of a column."""
+    return (angle >= 0) & (angle < pi / 2)
 
 
 def as_fraction(ratio: float) -> Fraction | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Set
 from dataclasses import replace
 from fractions import Fraction
 from math import dist
@@ -32,6 +32,7 @@ from equipoise.mechanism.parts.couplings import (
     Turning,
     as_fraction,
     coupled,
+    is_pressure_angle,
     pressure_angle,
 )
 from equipoise.mechanism.parts.gear_shapes import GearShape, wrong_shape
@@ -56,6 +57,10 @@ class Gear(Turning):
 
     table: ClassVar[str] = "gears"
     noun = to_say("pair of gears")
+    columns: ClassVar[Mapping[str, Set[str]]] = {
+        "": {"start", "pressure_angle"},
+        "shape": {"eccentricity", "phase", "cosines", "sines"},
+    }
     counted = to_say("{count} gear"), to_say("{count} gears")
 
     ratio: float | None = key(
@@ -148,6 +153,14 @@ class Gear(Turning):
         """
         radial = -kernels.dot(at.arm, at.force) / abs(at.arm)
         return {"tangential": at.push, "radial": radial}
+
+    def demands(self, distance: Callable[[], Any]) -> Iterator[Any]:
+        """A pressure angle that there is, and pitch curves that roll on each other."""
+        yield is_pressure_angle(self.pressure_angle)
+        if self.shape is not None and self.shape.varies:
+            from equipoise.mechanism.parts.pitch_curves import can_roll
+
+            yield can_roll(self.shape, self)
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with a pair of gears."""

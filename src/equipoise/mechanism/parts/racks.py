@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Set
 from fractions import Fraction
 from math import tan
 from typing import Any, ClassVar, Literal
@@ -12,7 +12,13 @@ from equipoise.i18n import Note, to_say
 from equipoise.keys import Text, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.couplings import Coupling, Pushed, Relation, pressure_angle
+from equipoise.mechanism.parts.couplings import (
+    Coupling,
+    Pushed,
+    Relation,
+    is_pressure_angle,
+    pressure_angle,
+)
 
 HANDS = ("left", "right")
 ENDS = ("pinion", "rack")
@@ -26,6 +32,7 @@ class Rack(Coupling):
 
     table: ClassVar[str] = "racks"
     noun = to_say("rack")
+    columns: ClassVar[Mapping[str, Set[str]]] = {"": {"angle", "travel", "pressure_angle"}}
     counted = to_say("{count} rack"), to_say("{count} racks")
 
     pinion: str = key(Text(of="body"), "link that turns", example="rocker")
@@ -119,6 +126,10 @@ class Rack(Coupling):
         apart.
         """
         return {"tangential": at.push, "radial": tan(self.pressure_angle) * at.sense * at.push}
+
+    def demands(self, distance: Callable[[], Any]) -> Iterator[Any]:
+        """A pressure angle that there is."""
+        yield is_pressure_angle(self.pressure_angle)
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with a rack, but for how it is guided."""
