@@ -13,6 +13,7 @@ import numpy as np
 from equipoise.displays import Displayed, room
 from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import column_heading, showing_by_default
+from equipoise.results.declaring import Declarations, columns_of, figures_of, values_of
 from equipoise.signals import Array
 
 if TYPE_CHECKING:
@@ -59,10 +60,15 @@ class Result(Displayed):
     def to_dict(self) -> Values:
         """The machine-readable output, in SI units: dicts, numbers and arrays.
 
-        Where a result does not say more, its fields that are plain values.
+        What it declares; where that is nothing, its fields that are plain values.
         """
+        if self.declared:
+            return values_of(self, self.declared)
         told = {one.name: getattr(self, one.name) for one in fields(cast("Any", self))}
         return {name: value for name, value in told.items() if isinstance(value, PLAIN)}
+
+    declared: ClassVar[Declarations] = {}
+    """Its outputs by key."""
 
     records: ClassVar[str] = ""
     """Entry of `to_dict` with a dict for each of its records, where it is a list of such."""
@@ -72,7 +78,7 @@ class Result(Displayed):
 
         Empty where it has none.
         """
-        return []
+        return [*columns_of(self, self.declared, model=self.owner)]
 
     shown_in: ClassVar[str] = ""
     """Module that tells what it shows; ``blocks`` of its room where not given."""
@@ -81,7 +87,8 @@ class Result(Displayed):
         """What it shows, in the language that is spoken."""
         module = self.shown_in or f"{type(self).__module__.split('.')[1]}.blocks"
         with self.in_own_units():
-            return tuple(room(module).SHOWS[type(self).__name__](self, **options))
+            own = room(module).SHOWS[type(self).__name__](self, **options)
+            return (*own, *figures_of(self, self.declared))
 
     headline_in: ClassVar[str] = ""
     """Module and function that tell what stands first of it, such as

@@ -18,7 +18,8 @@ import numpy as np
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import Call
-from equipoise.studies.figures import ABSCISSAE, PLACES, Step, figure_name, resolve
+from equipoise.results.declaring import ALONG, PLACES
+from equipoise.studies.figures import Step, figure_name, resolve
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
@@ -146,7 +147,7 @@ class Request:
 
     @property
     def wanted(self) -> set[str]:
-        along = {*ABSCISSAE} if any(figure_name(one) in PLACES for one in self.steps) else set()
+        along = {*ALONG} if any(figure_name(one) in PLACES for one in self.steps) else set()
         return {str(one[0]) for one in self.steps} | along
 
 

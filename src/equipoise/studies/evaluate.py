@@ -29,8 +29,9 @@ from equipoise.codegen.figures import (
 from equipoise.errors import ChangePointError, EquipoiseError, ModelError, MotionError, RangeError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.results.declaring import PLACES
 from equipoise.studies.commands import ANGLES, COMMANDS, Request, analyzed, find_outputs
-from equipoise.studies.figures import PLACES, Step, figure_name, read, scale
+from equipoise.studies.figures import Step, figure_name, read, scale
 from equipoise.studies.outcomes import Evaluator, Outcome
 
 if TYPE_CHECKING:

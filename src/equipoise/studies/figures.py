@@ -22,6 +22,7 @@ from equipoise.mechanism.kinematics.stroke_figures import declared_figures
 from equipoise.mechanism.kinematics.stroke_figures import dimension_of as of_stroke
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.planting.names import dimension_of as of_planting
+from equipoise.results.declaring import ALONG, FIGURES_OF_LISTS, PLACES, dimension_at
 from equipoise.signals import figures
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class Order:
 
 @dataclass(frozen=True)
 class Of:
-    """A figure of a list of numbers, one of `OF_LISTS`."""
+    """A figure of a list of numbers, one of `FIGURES_OF_LISTS`."""
 
     name: str
 
@@ -50,13 +51,8 @@ class Of:
 Step = str | int | Order | Of
 """A key, a place in a list from 0, or one of those above."""
 
-OF_LISTS = ("mean", "rms", "peak", "max", "min", "peak_to_peak")
-PLACES = ("peak_at", "max_at", "min_at")
-"""Figures of a list, and where these are along the abscissa of the whole object."""
 AMPLITUDES = ("harmonics", "a", "b")
 """Keys of lists by order."""
-ABSCISSAE = ("crank_angle", "speed")
-"""Keys of the whole object along which its lists may run."""
 
 _INDEX = re.compile(r"\[\s*(order\s+)?([0-9]{1,9}(?:\.[0-9]{1,9})?)\s*\]")
 _QUOTED = re.compile(r'"([^"]*)"')
@@ -135,7 +131,7 @@ def _figure(numbers: Any, of: Of, whole: Values) -> float:
 
 def _abscissa(whole: Values, count: int) -> Array | None:
     """What a list of so many numbers runs along, if it does."""
-    along = (whole.get(key) for key in ABSCISSAE)
+    along = (whole.get(key) for key in ALONG)
     return next((x for x in along if isinstance(x, np.ndarray) and x.shape == (count,)), None)
 
 
@@ -201,7 +197,7 @@ class _Finder:
         known: tuple[str, ...] = ()
         if len(here) and _of_numbers(here):
             along = _abscissa(self.whole, len(here)) is not None
-            known = OF_LISTS + PLACES if along else OF_LISTS
+            known = FIGURES_OF_LISTS + PLACES if along else FIGURES_OF_LISTS
         if rest in known:
             yield (Of(rest),)
             return
@@ -254,15 +250,6 @@ KINDS: dict[str, dict[str, str | None]] = {
         r"loops\.(area|in_soil.*)": None,
         rf"(cusps|tray_crossings)(\..*)?|(visits|loops)\..*|forces\..*\.({_AT})": "angle",
     },
-    "respond": {
-        r"(.*\.)?phases": "angle",
-        r"(.*\.)?(orders|transmissibility|transmissibility_by_order|lifts_off)": None,
-        r"((drive\.)?speed|modes\.(natural|damped)_frequency)(\..*)?": "angular speed",
-        r"drive\.torque(\..*)?": "torque",
-        r"energy(\..*)?": "energy",
-        r"joints(\..*)?": "force",
-        r"modes\.hertz(\..*)?": "frequency",
-    },
     "balance": {
         r"speed|equivalent_speeds\..*": "angular speed",
         r"added_mass|(before|after)\.mass": "mass",
@@ -298,13 +285,15 @@ def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
     whole = re.sub(r"\[[^\]]*\]", "", value).replace('"', "")
     if of not in ("plant", "respond", "balance", "tool"):
         of, whole = "analyze", whole.removeprefix("summary.").removeprefix("outputs.")
+    if of == "respond":
+        from equipoise.vibration.response import Response
+
+        return dimension_at(Response.declared, whole, model)
     path = whole if of in ("plant", "balance") else _STATISTIC.sub("", whole)
     for pattern, dimension in KINDS[of].items():
         if re.fullmatch(pattern, path):
             return dimension
     first, _, rest = path.partition(".")
-    if of == "respond":
-        return _of_support(model, first, rest)
     if of == "plant" and first != "forces":
         return of_planting(path)
     if of == "balance" and rest.startswith("planting."):
@@ -317,7 +306,7 @@ def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
     return found or _of_output(path if plain else _LAST.sub("", rest))
 
 
-_STATISTIC = re.compile(rf"\.({'|'.join(OF_LISTS)})$")
+_STATISTIC = re.compile(rf"\.({'|'.join(FIGURES_OF_LISTS)})$")
 _LAST = re.compile(r"(\.in_air|\.in_soil)?\.[^.]*$")
 
 

@@ -12,9 +12,10 @@ from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import PER_RPM, Dimension, number, told
 from equipoise.results.analysis_blocks import loud
 from equipoise.results.blocks import Block, Cell, Column, Facts, Notes, Table, Text, Value
+from equipoise.results.declaring import cells_of, headings, table_of
 from equipoise.results.drive_blocks import driven
 from equipoise.signals import Array
-from equipoise.vibration.response import MODELS, Model
+from equipoise.vibration.response import MODELS, GaugeSignals, Joint, Model, MountForce, members_of
 
 if TYPE_CHECKING:
     from equipoise.signals import Figures
@@ -81,7 +82,8 @@ def response_blocks(
         yield _mounts(response)
     yield from _drive(response)
     if response.joints:
-        yield _joints(response)
+        title = say("Largest force in each joint of the first row")
+        yield table_of(title, response.joints, Joint.declared)
     if lines := tuple(_solution(response)):
         yield Facts(say("Periodic solution"), lines)
     if notes := (*response.notes, *disagreement(others or {})):
@@ -134,14 +136,16 @@ def _gauges(response: Response) -> Iterator[Table]:
             if gauge.rotation is rotation:
                 signals = (gauge.displacement, gauge.velocity, gauge.acceleration)
                 sizes = ((signal.peak_to_peak, signal.vibration_rms) for signal in signals)
-                rows.append((name, *(Value(float(x), NOTHING) for pair in sizes for x in pair)))
+                cells = (Value(float(x), NOTHING) for pair in sizes for x in pair)
+                rows.append((name, *cells, *cells_of(gauge, GaugeSignals.declared)))
         if rows:
             heads = (
                 Column(what, *kind)
                 for label, kind in zip(labels, kinds, strict=True)
                 for what in (label, say("RMS"))
             )
-            yield Table.of(title, ("", *heads), rows)
+            further = headings(GaugeSignals.declared, rotation)
+            yield Table.of(title, ("", *heads, *further), rows)
 
 
 def _orders(response: Response) -> Table:
@@ -218,13 +222,14 @@ def _mounts(response: Response) -> Table:
         ratio = None if np.isnan(mount.whole) else Value(mount.whole, 1.0)
         off = Value(100 * mount.lifts_off, after=0) if mount.least == 0 else None
         cells = (Value(value, scale, dimension=kind) for value in values)
-        rows.append((name, *cells, ratio, *([off] if lifting else [])))
+        further = cells_of(mount, MountForce.declared)
+        rows.append((name, *cells, ratio, *([off] if lifting else []), *further))
     labels = (say("mean"), say("largest"), say("smallest"), say("RMS"), say("transmissibility"))
     in_air = (Column(say("in the air"), unit="%"),) if lifting else ()
     title = say(
         "Mounts: force on the support, RMS about the mean; what they hand on of the shaking force"
     )
-    return Table.of(title, ("", *labels, *in_air), rows)
+    return Table.of(title, ("", *labels, *in_air, *headings(MountForce.declared)), rows)
 
 
 def _drive(response: Response) -> Iterator[Block]:
@@ -248,15 +253,6 @@ def _drive(response: Response) -> Iterator[Block]:
 
 def _extremes(name: str, found: Figures, kind: Kind) -> tuple[Cell, ...]:
     return _row(name, (found.mean, found.max, found.min, found.peak_to_peak), kind)
-
-
-def _joints(response: Response) -> Table:
-    labels = (say("here"), say("on solid ground, constant speed"))
-    rows = (
-        (name, Value(joint.peak), Value(joint.on_ground)) for name, joint in response.joints.items()
-    )
-    columns = ("", *(Column(label, "force") for label in labels))
-    return Table.of(say("Largest force in each joint of the first row"), columns, rows)
 
 
 def _solution(response: Response) -> Iterator[str]:
@@ -290,11 +286,12 @@ def transient_blocks(found: Transient) -> Iterator[Block]:
         )
     )
     rows = []
+    turning = members_of("gauges")(found.machine)
     for name, values in found.gauges.items():
-        rows.append(_stretch(name, values, (MOVED if found.unit(name) == "m" else TURNED)[0]))
+        rows.append(_stretch(name, values, (TURNED if turning[name] else MOVED)[0]))
+    turning = members_of("mounts")(found.machine)
     for name, values in found.mounts.items():
-        kind: Kind = ("force" if found.along(name) else "torque", None)
-        rows.append(_stretch(name, values, kind))
+        rows.append(_stretch(name, values, ("torque" if turning[name] else "force", None)))
     rows.append(_stretch(say("crank speed"), found.crank_speed, ("angular speed", "rpm")))
     ranges = (say("range in the first fifth"), say("range in the last fifth"))
     labels = ("", say("smallest"), say("largest"), *ranges)

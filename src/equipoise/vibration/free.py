@@ -14,12 +14,28 @@ from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Place
+from equipoise.results.declaring import NOTES, TITLE, Declarations, ResultOutput
 from equipoise.results.result import Result
 from equipoise.signals import Array
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.forced import excitation_model_of
 from equipoise.vibration.linear import Linear, gauges_of
-from equipoise.vibration.response import Mode, Values
+from equipoise.vibration.response import Mode, members_of
+
+
+@dataclass(frozen=True, eq=False)
+class GaugedMode:
+    """A mode, and what each gauge reads of its shape: real and imaginary part."""
+
+    mode: Mode
+    gauges: Mapping[str, list[float]]
+
+    declared: ClassVar[Declarations] = {
+        "mode": ResultOutput("of the support", of=Mode.declared, spliced=True),
+        "gauges": ResultOutput(
+            "reading of the shape at each gauge: real and imaginary part", family=True
+        ),
+    }
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -62,24 +78,48 @@ class FreeVibration(Result):
         shapes = np.array([mode.shape for mode in self.modes]).reshape(-1, len(body.free))
         return {n: shapes @ body.row(gauge)[body.free] for n, gauge in gauges_of(body).items()}
 
-    def to_dict(self) -> Values:
-        """The machine-readable output, in SI units; shapes as real and imaginary parts."""
-        modes = []
-        for number, mode in enumerate(self.modes):
-            read = {n: [v[number].real, v[number].imag] for n, v in self.gauges.items()}
-            modes.append({**mode.to_dict(), "gauges": read})
-        return {
-            "title": self.machine.title,
-            "model": self.linear.excitation.model,
-            "coordinates": list(self.coordinates),
-            "reference": list(self.reference),
-            "modes": modes,
-            "mass": self.linear.mass,
-            "damping": self.linear.damping,
-            "stiffness": self.linear.stiffness,
-            "preloads": dict(self.preloads),
-            "notes": list(map(str, self.notes)),
-        }
+    @property
+    def gauged_modes(self) -> tuple[GaugedMode, ...]:
+        """Each mode with what the gauges read of its shape."""
+        read = {name: values.tolist() for name, values in self.gauges.items()}
+        return tuple(
+            GaugedMode(
+                mode, {name: [values[k].real, values[k].imag] for name, values in read.items()}
+            )
+            for k, mode in enumerate(self.modes)
+        )
+
+    declared: ClassVar[Declarations] = {
+        "title": TITLE,
+        "model": ResultOutput("which equations", read="linear.excitation.model"),
+        "coordinates": ResultOutput(
+            "displacements and rotations to which parts of shapes and matrices belong",
+            read=lambda free: list(free.coordinates),
+        ),
+        "reference": ResultOutput(
+            "point (x, y, z) that is displaced and about which the support turns: its pivot, or "
+            "its centre of mass",
+            "length",
+            read=lambda free: list(free.reference),
+        ),
+        "modes": ResultOutput(
+            "natural modes, the slowest first",
+            of=GaugedMode.declared,
+            many=True,
+            read="gauged_modes",
+        ),
+        "mass": ResultOutput("matrix for the coordinates", read="linear.mass"),
+        "damping": ResultOutput("matrix for the coordinates", read="linear.damping"),
+        "stiffness": ResultOutput("matrix for the coordinates", read="linear.stiffness"),
+        "preloads": ResultOutput(
+            "force or torque of each mount at rest",
+            "force",
+            "torque",
+            family=True,
+            members=members_of("mounts"),
+        ),
+        "notes": NOTES,
+    }
 
 
 def modes(machine: Machine, model: str | None = None) -> FreeVibration:

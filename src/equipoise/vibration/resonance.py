@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from math import copysign, pi, sqrt
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.machine import Drive
 from equipoise.quantities import PER_RPM, brief, number
+from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.response import Mode
 
@@ -48,9 +49,18 @@ class Resonance:
         """Whether it matters to whoever chooses a speed."""
         return self.share >= LOUD
 
-    def to_dict(self) -> dict[str, Any]:
-        """In SI units."""
-        return {**vars(self), "avoid": None if self.avoid is None else list(self.avoid)}
+    declared: ClassVar[Declarations] = {
+        "speed": ResultOutput("speed of the crank", "angular speed"),
+        "order": ResultOutput("events in a turn"),
+        "mode": ResultOutput("number of the mode, from 1"),
+        "frequency": ResultOutput("natural frequency of the mode", "angular speed"),
+        "share": ResultOutput("amplitude over that of the loudest resonance at a gauge"),
+        "avoid": ResultOutput(
+            "speeds between which the order is amplified more than three times, or null",
+            "angular speed",
+            read=lambda one: None if one.avoid is None else list(one.avoid),
+        ),
+    }
 
 
 AROUND = (0.2, 2.0)

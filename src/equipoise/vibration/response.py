@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import pi
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from equipoise.displays import Brief
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.mechanism.parts.support import AXES, Support
+from equipoise.quantities import Dimension
 from equipoise.results.analysis import analyze
+from equipoise.results.declaring import NOTES, OWN, TITLE, Declarations, ResultOutput, columns_of
 from equipoise.results.result import Result
 from equipoise.signals import Array, Figures, Periodic
 
-Values = dict[str, Any]
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]
 MODELS: dict[Model, str] = {
     "linear": to_say("the shaking force at the drive's pivot (equation (59) of Yamashita et al.)"),
@@ -80,16 +82,26 @@ class Mode:
         """Natural frequency, Hz."""
         return self.natural_frequency / (2 * pi)
 
-    def to_dict(self) -> Values:
-        """In SI units; the eigenvalue and the shape as real and imaginary parts."""
-        return {
-            "natural_frequency": self.natural_frequency,
-            "hertz": self.cycles_per_second,
-            "damped_frequency": self.damped_frequency,
-            "damping_ratio": self.damping_ratio,
-            "eigenvalue": [self.eigenvalue.real, self.eigenvalue.imag],
-            "shape": [[part.real, part.imag] for part in self.shape.tolist()],
-        }
+    declared: ClassVar[Declarations] = {
+        "natural_frequency": ResultOutput("natural frequency without damping", "angular speed"),
+        "hertz": ResultOutput(
+            "natural frequency in cycles a second",
+            "frequency",
+            read="cycles_per_second",
+        ),
+        "damped_frequency": ResultOutput(
+            "frequency of the free vibration with damping", "angular speed"
+        ),
+        "damping_ratio": ResultOutput("share of the critical damping"),
+        "eigenvalue": ResultOutput(
+            "growth as exp(eigenvalue t): real and imaginary part, 1/s",
+            read=lambda mode: [mode.eigenvalue.real, mode.eigenvalue.imag],
+        ),
+        "shape": ResultOutput(
+            "displacements (m) and rotations (rad) of the support: real and imaginary parts",
+            read=lambda mode: [[part.real, part.imag] for part in mode.shape.tolist()],
+        ),
+    }
 
 
 def swings_in_a_turn(modes: Iterable[Mode], speed: float) -> float:
@@ -100,23 +112,43 @@ def swings_in_a_turn(modes: Iterable[Mode], speed: float) -> float:
 # -- signals of a response -------------------------------------------------------------------------
 
 
-def by_order(signal: Periodic) -> Values:
-    """Figures of one signal and its amplitudes by order; RMS is about the mean."""
-    sizes = signal.sizes
-    varying = sizes[1:]
+def _reported(signal: Periodic) -> slice:
+    """Orders that are reported: up to the last that is not rounding, and the first ten anyway."""
+    varying = signal.sizes[1:]
     above = np.flatnonzero(varying > SMALL * np.max(varying, initial=0.0))
     last = max(int(above[-1]) + 1 if above.size else 0, LEAST_ORDERS * signal.turns)
-    keep = slice(0, min(last, len(sizes) - 1) + 1)
-    return {
-        "mean": float(signal.mean),
-        "peak_to_peak": float(signal.peak_to_peak),
-        "max": float(signal.extreme(1)[0]),
-        "min": float(signal.extreme(-1)[0]),
-        "rms": float(signal.vibration_rms),
-        "orders": signal.orders[keep].tolist(),
-        "harmonics": sizes[keep].tolist(),
-        "phases": signal.phases[keep].tolist(),
-    }
+    return slice(0, min(last, len(varying)) + 1)
+
+
+SIGNAL: Declarations = {
+    "mean": ResultOutput("mean", OWN, read=lambda signal: float(signal.mean)),
+    "peak_to_peak": ResultOutput(
+        "largest minus smallest value", OWN, read=lambda signal: float(signal.peak_to_peak)
+    ),
+    "max": ResultOutput("largest value", OWN, read=lambda signal: float(signal.extreme(1)[0])),
+    "min": ResultOutput("smallest value", OWN, read=lambda signal: float(signal.extreme(-1)[0])),
+    "rms": ResultOutput("RMS about the mean", OWN, read=lambda signal: float(signal.vibration_rms)),
+    "orders": ResultOutput(
+        "orders of the lists that follow; where a period has one turn, order n is at place n",
+        read=lambda signal: signal.orders[_reported(signal)].tolist(),
+    ),
+    "harmonics": ResultOutput(
+        "amplitude of each order; of order 0 the size of the mean",
+        OWN,
+        read=lambda signal: signal.sizes[_reported(signal)].tolist(),
+    ),
+    "phases": ResultOutput(
+        r"phase of each order, as a sine: $\sum R_n \sin(n\theta + \phi_n)$",
+        "angle",
+        read=lambda signal: signal.phases[_reported(signal)].tolist(),
+    ),
+}
+"""Figures of one signal over a period, and its amplitudes by order."""
+
+
+def signal_output(meaning: str, dimension: Dimension, **more: Any) -> ResultOutput:
+    """A signal over a period as an output: figures in JSON, samples in CSV."""
+    return ResultOutput(meaning, dimension, of=SIGNAL, table="signal", **more)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -128,12 +160,19 @@ class GaugeSignals(Brief):
     acceleration: Periodic
     rotation: bool
 
-    def to_dict(self) -> Values:
-        """Figures of the displacement, and below them those of its derivatives."""
-        quantity = "rotation" if self.rotation else "displacement"
-        values = {"quantity": quantity, **by_order(self.displacement)}
-        rates = {"velocity": self.velocity, "acceleration": self.acceleration}
-        return values | {name: by_order(signal) for name, signal in rates.items()}
+    declared: ClassVar[Declarations] = {
+        "quantity": ResultOutput(
+            '`"displacement"` or `"rotation"`',
+            read=lambda gauge: "rotation" if gauge.rotation else "displacement",
+        ),
+        "displacement": signal_output(
+            "signal", "length", turned="angle", spliced=True, column="displacement"
+        ),
+        "velocity": signal_output("signal", "speed", turned="angular speed", column="velocity"),
+        "acceleration": signal_output(
+            "signal", "acceleration", turned="angular acceleration", column="acceleration"
+        ),
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,14 +205,50 @@ class MountForce:
         """N or N m."""
         return max(float(self.force.extreme(-1)[0]), self.least)
 
-    def to_dict(self) -> Values:
-        """Figures of the force, and what it hands on; None where there is nothing to hand on."""
-        told = by_order(self.force)
-        told |= {"min": self.smallest, "peak_to_peak": self.largest - self.smallest}
-        ratios = self.transmissibility[: len(told["orders"])]
-        told["transmissibility_by_order"] = [None if np.isnan(r) else float(r) for r in ratios]
-        told["transmissibility"] = None if np.isnan(self.whole) else self.whole
-        return told | {"lifts_off": self.lifts_off}
+    @property
+    def mean(self) -> float:
+        """N or N m."""
+        return float(self.force.mean)
+
+    @property
+    def rms(self) -> float:
+        """About the mean, N or N m."""
+        return float(self.force.vibration_rms)
+
+    @property
+    def by_order(self) -> list[float | None]:
+        """Transmissibility of each order that is reported; None where there is no force."""
+        ratios = self.transmissibility[_reported(self.force)]
+        return [None if np.isnan(ratio) else float(ratio) for ratio in ratios]
+
+    declared: ClassVar[Declarations] = {
+        "force": signal_output("signal", "force", turned="torque", spliced=True, column="force"),
+        "min": ResultOutput(
+            "smallest force, not below 0 where a mount pushes only",
+            "force",
+            "torque",
+            read="smallest",
+        ),
+        "peak_to_peak": ResultOutput(
+            "largest minus smallest force",
+            "force",
+            "torque",
+            read=lambda mount: mount.largest - mount.smallest,
+        ),
+        "transmissibility_by_order": ResultOutput(
+            "transmissibility of each of `orders`; null where there is no such force",
+            read="by_order",
+        ),
+        "transmissibility": ResultOutput(
+            "RMS of this force over that of the force of all linkages on the frame, taken as the "
+            "root of the sum of its squares along x and y (so that a rotating force counts √2 "
+            "times its size); null for torsional mounts, and where rows or links cancel each other "
+            "(to 1e-10 of the mass of all links, times the size of the largest, times the square "
+            "of the speed)",
+            read=lambda mount: None if np.isnan(mount.whole) else mount.whole,
+        ),
+        "lifts_off": ResultOutput("share of the time in which a one-sided mount does not touch"),
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,6 +257,11 @@ class Energy:
 
     fed_in: float
     lost: float
+
+    declared: ClassVar[Declarations] = {
+        "fed_in": ResultOutput("work of drive and loads in a period", "energy"),
+        "lost": ResultOutput("work that mounts take in a period", "energy"),
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,15 +297,39 @@ class DriveSignals:
             return 0.0
         return float(self.speed.peak_to_peak / abs(self.speed.mean))
 
-    def to_dict(self) -> Values:
-        """Figures of the torque, and of the speed where it is not constant."""
-        found = self.torque_figures
-        told = {name: getattr(found, name) for name in ("mean", "max", "min", "peak_to_peak")}
-        values: Values = {"torque": by_order(self.torque) | told}
-        if self.speed is not None:
-            values["speed"] = by_order(self.speed)
-            values |= {"fluctuation": self.fluctuation, "curve_shift": self.shift}
-        return values
+    declared: ClassVar[Declarations] = {
+        "torque": ResultOutput(
+            "signal of the torque on all cranks together",
+            "torque",
+            read=lambda drive: drive,
+            series="torque",
+            of={
+                "torque": signal_output("signal", "torque", spliced=True),
+                **{
+                    key: replace(SIGNAL[key], read=f"torque_figures.{key}")
+                    for key in ("mean", "max", "min", "peak_to_peak")
+                },
+            },
+            column="torque",
+            table="signal",
+        ),
+        "speed": signal_output(
+            "signal of the crank's speed, with `--drive`",
+            "angular speed",
+            present="speed",
+            column="speed",
+        ),
+        "fluctuation": ResultOutput(
+            "range of the crank's speed over its mean, with `--drive`",
+            present="speed",
+        ),
+        "curve_shift": ResultOutput(
+            "shift of the motor's curve, with `--drive`",
+            "angular speed",
+            read="shift",
+            present="speed",
+        ),
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,6 +338,37 @@ class Joint:
 
     peak: float
     on_ground: float
+
+    declared: ClassVar[Declarations] = {
+        "peak": ResultOutput(
+            "largest force in a joint of the first row", "force", heading=to_say("here")
+        ),
+        "peak_on_ground": ResultOutput(
+            "largest force on solid ground at constant speed",
+            "force",
+            read="on_ground",
+            heading=to_say("on solid ground, constant speed"),
+        ),
+    }
+
+
+def members_of(key: str) -> Callable[[Any], Mapping[str, bool]]:
+    """Gets the gauges or mounts of a model's support, and whether each is of rotation."""
+
+    def members(model: Any) -> Mapping[str, bool]:
+        support: Support | None = getattr(model, "support", None)
+        if support is None:
+            return {}
+        if key == "gauges" and not support.gauges:  # then the coordinates are read
+            return {name: name in AXES for name in support.coordinates}
+        return {name: place.axis is not None for name, place in getattr(support, key).items()}
+
+    return members
+
+
+def of_support(key: str, meaning: str, of: Declarations) -> ResultOutput:
+    """What each gauge or mount of a support has.  key : ``gauges`` or ``mounts``."""
+    return ResultOutput(meaning, of=of, family=True, members=members_of(key), column=f"{key}.{{}}.")
 
 
 # -- the response ----------------------------------------------------------------------------------
@@ -284,32 +419,41 @@ class Response(Result):
             return None
         return bool(np.abs(self.multipliers[0]) <= 1 + NEUTRAL)
 
-    def to_dict(self) -> Values:
-        """The machine-readable output, in SI units."""
-        values: Values = {
-            "title": self.machine.title,
-            "model": self.model,
-            "speed": self.speed,
-            "turns": self.turns,
-            "gauges": {name: gauge.to_dict() for name, gauge in self.gauges.items()},
-            "mounts": {name: mount.to_dict() for name, mount in self.mounts.items()},
-            "modes": [mode.to_dict() for mode in self.modes],
-            "drive": self.drive.to_dict(),
-        }
-        if self.joints:
-            values["joints"] = {
-                name: {"peak": joint.peak, "peak_on_ground": joint.on_ground}
-                for name, joint in self.joints.items()
-            }
-        if self.residual is not None:
-            values["residual"] = self.residual
-        if self.multipliers is not None:
-            values["stable"] = self.stable
-            values["multipliers"] = [[m.real, m.imag] for m in self.multipliers.tolist()]
-        if self.energy is not None:
-            values["energy"] = dict(vars(self.energy))
-        values["notes"] = list(map(str, self.notes))
-        return values
+    declared: ClassVar[Declarations] = {
+        "title": TITLE,
+        "model": ResultOutput("which equations"),
+        "speed": ResultOutput("speed of the crank in the mean", "angular speed"),
+        "turns": ResultOutput("turns of the crank in a period"),
+        "gauges": of_support(
+            "gauges",
+            "signal of the displacement or rotation at a gauge",
+            GaugeSignals.declared,
+        ),
+        "mounts": of_support(
+            "mounts",
+            "signal of the force or torque of a mount on the support",
+            MountForce.declared,
+        ),
+        "modes": ResultOutput("natural modes", of=Mode.declared, many=True),
+        "drive": ResultOutput(
+            "what happens at the crank", of=DriveSignals.declared, column="drive."
+        ),
+        "joints": ResultOutput(
+            "largest forces in a joint, only with the model exact",
+            of=Joint.declared,
+            family=True,
+            present="joints",
+        ),
+        "residual": ResultOutput("residual of the periodic solution", present="residual"),
+        "stable": ResultOutput("whether small disturbances die out", present="multipliers"),
+        "multipliers": ResultOutput(
+            "Floquet multipliers: real and imaginary parts",
+            read=lambda response: [[m.real, m.imag] for m in response.multipliers.tolist()],
+            present="multipliers",
+        ),
+        "energy": ResultOutput("only with the model exact", of=Energy.declared, present="energy"),
+        "notes": NOTES,
+    }
 
     def columns(self, samples: int = 360) -> list[tuple[str, str, Array]]:
         """Name, unit and values (samples per turn) of every signal, against time.
@@ -323,21 +467,11 @@ class Response(Result):
             found.append(("crank_angle", "rad", np.sign(self.speed) * phase))
         backwards = self.speed < 0
 
-        def add(name: str, unit: str, signal: Periodic) -> None:
+        def sampled(signal: Periodic) -> Array:
             values = signal.samples(count)
-            found.append((name, unit, np.roll(values[::-1], 1) if backwards else values))
+            return np.roll(values[::-1], 1) if backwards else values
 
-        for name, gauge in self.gauges.items():
-            unit = "rad" if gauge.rotation else "m"
-            add(f"gauges.{name}.displacement", unit, gauge.displacement)
-            add(f"gauges.{name}.velocity", f"{unit}/s", gauge.velocity)
-            add(f"gauges.{name}.acceleration", f"{unit}/s^2", gauge.acceleration)
-        for name, mount in self.mounts.items():
-            add(f"mounts.{name}.force", "N m" if mount.torsional else "N", mount.force)
-        add("drive.torque", "N m", self.drive.torque)
-        if self.drive.speed is not None:
-            add("drive.speed", "rad/s", self.drive.speed)
-        return found
+        return [*found, *columns_of(self, self.declared, sampled, self.machine)]
 
 
 def in_words(multipliers: Array) -> list[Note]:

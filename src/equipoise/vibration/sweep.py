@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 
@@ -14,7 +14,8 @@ from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.quantities import in_si
+from equipoise.quantities import Dimension, in_si
+from equipoise.results.declaring import NOTES, TITLE, Declarations, ResultOutput
 from equipoise.results.result import Result
 from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import MISSING
@@ -28,7 +29,14 @@ from equipoise.vibration.forced import (
 )
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.resonance import Resonance, resonances
-from equipoise.vibration.response import Mode, Model, Response, Values, range_shown
+from equipoise.vibration.response import (
+    GaugeSignals,
+    Mode,
+    Model,
+    Response,
+    of_support,
+    range_shown,
+)
 from equipoise.vibration.sampling import about, answered
 from equipoise.vibration.small_motion import respond_coupled, respond_linear
 
@@ -36,9 +44,24 @@ SPEEDS = 200
 """In a sweep, besides those about resonances and where curves bend."""
 MOST_SPEEDS = 20_000
 MOST_RESONANCES = 60
-TOLD = ("peak_to_peak", "rms")
 PREFIXES = {"displacement": "", "velocity": "velocity_", "acceleration": "acceleration_"}
 """Of the figures of a gauge's displacement and of its derivatives."""
+
+
+curve = partial(ResultOutput, along="speed", nulls=True)
+"""Declares values (S,) against speed."""
+
+
+def curves(dimension: Dimension, turned: Dimension, prefix: str = "") -> Declarations:
+    """Range and RMS of a signal against speed.  prefix : of their attributes and columns."""
+    names = {key: f"{prefix}{key}" for key in ("peak_to_peak", "rms")}
+    return {
+        key: curve(figure, dimension, turned, read=names[key], column=names[key])
+        for key, figure in (
+            ("peak_to_peak", "largest minus smallest value"),
+            ("rms", "RMS about the mean"),
+        )
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,13 +78,23 @@ class GaugeCurve:
     """(S, K + 1) amplitude of the displacement's orders."""
     rotation: bool
 
-    def to_dict(self) -> Values:
-        """Figures of the displacement, and below them those of its derivatives."""
-        values: Values = {"quantity": "rotation" if self.rotation else "displacement"}
-        for name, prefix in PREFIXES.items():
-            figures = {key: _plain(getattr(self, prefix + key)) for key in TOLD}
-            values |= {name: figures} if prefix else figures
-        return values | {"harmonics": _plain(self.harmonics)}
+    declared: ClassVar[Declarations] = {
+        "quantity": GaugeSignals.declared["quantity"],
+        **curves("length", "angle"),
+        "velocity": ResultOutput(
+            "of the velocity",
+            of=curves("speed", "angular speed", "velocity_"),
+            read=lambda gauge: gauge,
+            column="",
+        ),
+        "acceleration": ResultOutput(
+            "of the acceleration",
+            of=curves("acceleration", "angular acceleration", "acceleration_"),
+            read=lambda gauge: gauge,
+            column="",
+        ),
+        "harmonics": curve("amplitude of each order at each speed", "length", "angle"),
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,9 +107,16 @@ class MountCurve:
     lifts_off: Array
     torsional: bool
 
-    def to_dict(self) -> Values:
-        """Its curves by name."""
-        return {name: _plain(one) for name, one in vars(self).items() if name != "torsional"}
+    @property
+    def ratio(self) -> Array | None:
+        """Transmissibility (S,); None of what turns, which hands on no force."""
+        return None if self.torsional else self.transmissibility
+
+    declared: ClassVar[Declarations] = {
+        **curves("force", "torque"),
+        "transmissibility": curve("as at one speed", series="ratio", column="transmissibility"),
+        "lifts_off": curve("as at one speed"),
+    }
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -112,48 +152,46 @@ class Sweep(Result):
             found[name] = sorted(tops, key=lambda top: -top[1])
         return found
 
-    def columns(self) -> list[tuple[str, str, Array]]:
-        """Name, unit and values (S,) of every figure; NaN where there is none."""
-        found: list[tuple[str, str, Array]] = [("speed", "rad/s", self.speed)]
-        for name, curve in self.gauges.items():
-            unit = "rad" if curve.rotation else "m"
-            for prefix, per in zip(PREFIXES.values(), ("", "/s", "/s^2"), strict=True):
-                found += [
-                    (f"gauges.{name}.{prefix}{figure}", unit + per, getattr(curve, prefix + figure))
-                    for figure in TOLD
-                ]
-        for name, mount in self.mounts.items():
-            unit = "N m" if mount.torsional else "N"
-            found += [(f"mounts.{name}.{key}", unit, getattr(mount, key)) for key in TOLD]
-            if not mount.torsional:
-                found.append((f"mounts.{name}.transmissibility", "1", mount.transmissibility))
-        return found
+    @property
+    def _stability(self) -> list[bool] | None:
+        """Whether the steady state at each speed is stable; None where no multipliers tell."""
+        return self.stable.tolist() if self.model in {"coupled", "exact"} else None
 
-    def to_dict(self) -> Values:
-        """The machine-readable output, in SI units; speeds at which there is none are null."""
-        values: Values = {
-            "title": self.machine.title,
-            "model": self.model,
-            "speed": self.speed,
-            "gauges": {name: curve.to_dict() for name, curve in self.gauges.items()},
-            "mounts": {name: curve.to_dict() for name, curve in self.mounts.items()},
-            "modes": [mode.to_dict() for mode in self.modes],
-            "resonances": [resonance.speed for resonance in self.resonances],
-            "resonance_map": [resonance.to_dict() for resonance in self.resonances],
-        }
-        if self.model in {"coupled", "exact"}:
-            values["stable"] = self.stable.tolist()
-        if np.any(self.fluctuation > 0):
-            values["fluctuation"] = _plain(self.fluctuation)
-        values["notes"] = list(map(str, self.notes))
-        return values
+    @property
+    def _fluctuates(self) -> bool | None:
+        """Whether the speed of the crank varies; None where it does not."""
+        return True if np.any(self.fluctuation > 0) else None
 
-
-def _plain(values: Array) -> list[Any]:
-    """As lists, with None for what is not a number."""
-    found = values.astype(object)
-    found[~np.isfinite(values)] = None
-    return list(found.tolist())
+    declared: ClassVar[Declarations] = {
+        "title": TITLE,
+        "model": ResultOutput("which equations"),
+        "speed": ResultOutput(
+            "speed of the crank; closer about resonances and where curves bend",
+            "angular speed",
+            along="speed",
+            column="speed",
+        ),
+        "gauges": of_support("gauges", "curves of a gauge", GaugeCurve.declared),
+        "mounts": of_support("mounts", "curves of the force of a mount", MountCurve.declared),
+        "modes": ResultOutput("as at one speed", of=Mode.declared, many=True, table="respond"),
+        "resonances": ResultOutput(
+            "speeds of the crank at which an order meets a mode, the fastest first",
+            "angular speed",
+            read=lambda sweep: [resonance.speed for resonance in sweep.resonances],
+        ),
+        "resonance_map": ResultOutput(
+            "resonances", of=Resonance.declared, many=True, read="resonances"
+        ),
+        "stable": ResultOutput(
+            "whether small disturbances die out, with the models coupled and exact",
+            read="_stability",
+            present="_stability",
+        ),
+        "fluctuation": curve(
+            "range of the crank's speed over its mean, with `--drive`", present="_fluctuates"
+        ),
+        "notes": NOTES,
+    }
 
 
 def sweep_speed(

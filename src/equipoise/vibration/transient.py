@@ -6,14 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 
 from equipoise.errors import MassError, ResponseError, UsageError
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.quantities import in_si
+from equipoise.quantities import Dimension, in_si
+from equipoise.results.declaring import TITLE, Declarations, ResultOutput
 from equipoise.results.result import Result
 from equipoise.signals import Array
 from equipoise.vibration.body import Body, Reading
@@ -21,10 +22,16 @@ from equipoise.vibration.coupled import Coupled, follow
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import chosen_model, steady_speed
 from equipoise.vibration.linear import gauges_of
+from equipoise.vibration.response import of_support
 from equipoise.vibration.steady import equations, motor_setting
 
 MOST_TURNS = 2000
 LEAST_SAMPLES, SAMPLES_PER_TURN, MOST_SAMPLES = 2001, 72, 1_000_000
+
+
+def _signal(name: str, dimension: Dimension, turned: Dimension) -> ResultOutput:
+    """A signal (M,) of a gauge or mount."""
+    return ResultOutput(name, dimension, turned, read=lambda values: values, column=name)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -60,39 +67,18 @@ class Transient(Result):
         ride = self.system.place_and_rate(self.states)
         return {contact.name: contact.force(*ride) for contact in self.system.contacts}
 
-    def columns(self) -> list[tuple[str, str, Array]]:
-        """Name, unit and values (M,) of every signal."""
-        return [
-            ("time", "s", self.time),
-            ("crank_angle", "rad", self.crank_angle),
-            ("crank_speed", "rad/s", self.crank_speed),
-            *((f"gauges.{n}.displacement", self.unit(n), y) for n, y in self.gauges.items()),
-            *(
-                (f"mounts.{name}.force", "N" if self.along(name) else "N m", force)
-                for name, force in self.mounts.items()
-            ),
-        ]
-
-    def along(self, mount: str) -> bool:
-        """Whether a mount pushes along a line, instead of turning back."""
-        assert self.machine.support is not None
-        return self.machine.support.mounts[mount].point is not None
-
-    def unit(self, gauge: str) -> str:
-        """SI unit of a gauge's displacement."""
-        assert self.machine.support is not None
-        return "rad" if gauges_of(Body(self.machine))[gauge].axis is not None else "m"
-
-    def to_dict(self) -> dict[str, Any]:
-        """The machine-readable output, in SI units."""
-        return {
-            "title": self.machine.title,
-            "time": self.time,
-            "crank_angle": self.crank_angle,
-            "crank_speed": self.crank_speed,
-            "gauges": {name: {"displacement": y} for name, y in self.gauges.items()},
-            "mounts": {name: {"force": y} for name, y in self.mounts.items()},
-        }
+    declared: ClassVar[Declarations] = {
+        "title": TITLE,
+        "time": ResultOutput("instants", "time", column="time"),
+        "crank_angle": ResultOutput("crank angle since the start", "angle", column="crank_angle"),
+        "crank_speed": ResultOutput("speed of the crank", "angular speed", column="crank_speed"),
+        "gauges": of_support(
+            "gauges", "of each gauge", {"displacement": _signal("displacement", "length", "angle")}
+        ),
+        "mounts": of_support(
+            "mounts", "of each mount", {"force": _signal("force", "force", "torque")}
+        ),
+    }
 
 
 def simulate(
