@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 # Tests start hundreds of processes, and two commands run the same tests: from bytecode that is kept.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo page pictures docs site test narrow coverage lint bench clean
+.PHONY: demo page pictures docs site test test-all browser documentation narrow coverage lint bench clean
 
 $(VENV)/.installed: pyproject.toml hatch_build.py
 	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Equipoise needs Python 3.11 or newer; say which with: make PYTHON=python3.12')"
@@ -57,9 +57,25 @@ demo: $(VENV)/.installed
 # the other at the end.
 WORKERS = --numprocesses auto --dist worksteal
 
+TEST = $(BIN)/python -m pytest $(WORKERS)
+
+# All but what is looked at in a browser, and the documentation.
 test: $(VENV)/.installed-test
 	-@$(BIN)/python page/bundle.py
-	$(BIN)/python -m pytest $(WORKERS)
+	$(TEST) -m "not documentation" --ignore=tests/browser tests
+
+browser: $(VENV)/.installed-test
+	-@$(BIN)/python page/bundle.py
+	$(TEST) tests/browser
+
+# The snippets of the pages, and the site that is made of them.
+documentation: $(VENV)/.installed-test
+	$(TEST) -m documentation README.md docs tests/surface/test_site.py
+
+# What a release has to pass: every machine where a few show the same on every change, and more seeds.
+test-all: $(VENV)/.installed-test
+	-@$(BIN)/python page/bundle.py
+	$(TEST) --exhaustive --seeds 5
 
 # Unit tests and laws as on a processor without wide instructions, where sums round otherwise.  Left
 # out is what compares texts, pictures and structures, processes that are killed, and shares of many
@@ -68,12 +84,12 @@ NO_ROUNDING = $(addprefix tests/unit/,animation exchange figures i18n present qu
 	symbols web test_house.py test_public_names.py studies/test_executors.py measured/test_intervals.py)
 WIDE = import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"].get("found", []))
 narrow: $(VENV)/.installed-test
-	NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(WIDE)')" $(BIN)/python -m pytest $(WORKERS) \
+	NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(WIDE)')" $(TEST) \
 		$(addprefix --ignore=,$(NO_ROUNDING)) tests/unit tests/laws
 
 coverage: $(VENV)/.installed-test
 	-@$(BIN)/python page/bundle.py
-	$(BIN)/python -m pytest $(WORKERS) --cov --cov-report=term
+	$(TEST) --cov --cov-report=term
 
 lint: $(VENV)/.installed-test
 	$(BIN)/ruff check .

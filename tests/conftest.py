@@ -9,36 +9,57 @@ import subprocess
 import sys
 from collections import defaultdict
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from support import gallery
 
-SEEDED = {Path(__file__).parent / room for room in ("laws", "secondroute")}
+SEEDED = {Path(__file__).parent / room for room in ("laws", "secondroute", "crosscheck")}
+PARAM = type(pytest.param())
 NAMED = re.compile(r"(.+):(\d+)")
 """A random machine by its kind and seed, such as ``slider_crank:3``."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Tell how many of the seeds of each law are tried."""
+    """Tell how many of the seeds of each law are tried, and whether all of everything is."""
     parser.addoption(
         "--seeds", type=int, default=1, metavar="N", help="seeds of each law that are tried"
     )
+    parser.addoption(
+        "--exhaustive", action="store_true", help="also what only a release has to pass"
+    )
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Make no test of a further seed, or of what is exhaustive, unless it was asked for."""
+    if _by_name(metafunc.config):
+        return
+    seeded = metafunc.definition.path.parent in SEEDED
+    seeds = metafunc.config.getoption("--seeds") if seeded else None
+    every = metafunc.config.getoption("--exhaustive")
+    marks = metafunc.definition.own_markers
+    marks[:] = [
+        _thinned(mark, seeds, every) if mark.name == "parametrize" else mark for mark in marks
+    ]
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Mark what stands apart from `make test`: what needs a browser, or the documentation."""
+    if item.path.parent.name == "browser":
+        item.add_marker("browser")
+    elif item.path.suffix == ".md" or "site" in getattr(item, "fixturenames", ()):
+        item.add_marker("documentation")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out the further seeds of a law, unless it was asked for by its name."""
-    if any("::" in argument for argument in config.args):
+    """Leave out tests that are exhaustive, unless they were asked for."""
+    if config.getoption("--exhaustive") or _by_name(config):
         return
-    seeds: defaultdict[tuple[str, ...], dict[str, None]] = defaultdict(dict)
-    kept, left = [], []
-    for item in items:
-        place, seed = _seed_of(item)
-        seeds[place].setdefault(seed)
-        few = list(seeds[place]).index(seed) < config.getoption("--seeds")
-        (kept if few or not seed else left).append(item)
+    left = [item for item in items if item.get_closest_marker("exhaustive")]
     config.hook.pytest_deselected(items=left)
-    items[:] = kept
+    items[:] = [item for item in items if not item.get_closest_marker("exhaustive")]
 
 
 def pytest_collection_finish() -> None:
@@ -66,13 +87,40 @@ def site() -> Path:
     return top / "build" / "docs"
 
 
-def _seed_of(item: pytest.Item) -> tuple[tuple[str, ...], str]:
+def _by_name(config: pytest.Config) -> bool:
+    """Whether tests were asked for by their names, which are tried whatever they are."""
+    return any("::" in argument for argument in config.args)
+
+
+def _thinned(mark: pytest.Mark, seeds: int | None, every: bool) -> pytest.Mark:
+    """A parametrisation without the values that are left out."""
+    names, values, *rest = mark.args
+    names = [name.strip() for name in names.split(",")] if isinstance(names, str) else names
+    values, kept = list(values), []
+    seen: defaultdict[tuple[str, ...], list[str]] = defaultdict(list)
+    for k, value in enumerate(values):
+        given, marks = (value.values, value.marks) if isinstance(value, PARAM) else (value, ())
+        if not isinstance(value, PARAM) and len(names) == 1:
+            given = (value,)
+        if not every and any(one.name == "exhaustive" for one in marks):
+            continue
+        if seeds is not None:
+            place, seed = _seed_of(dict(zip(names, given, strict=True)))
+            if seed not in seen[place]:
+                seen[place].append(seed)
+            if seed and seen[place].index(seed) >= seeds:
+                continue
+        kept.append(k)
+    how = dict(mark.kwargs)
+    if isinstance(how.get("ids"), list | tuple):
+        how["ids"] = [how["ids"][k] for k in kept]
+    return pytest.mark.parametrize(mark.args[0], [values[k] for k in kept], *rest, **how).mark
+
+
+def _seed_of(params: dict[str, Any]) -> tuple[tuple[str, ...], str]:
     """What is tried but for its seed, and the seed; empty for what has none."""
-    params = getattr(item, "callspec", None)
-    place, seed = [item.nodeid.partition("[")[0]], ""
-    if params is None or item.path.parent not in SEEDED:
-        return (*place, item.nodeid), seed
-    for name, value in params.params.items():
+    place, seed = [], ""
+    for name, value in params.items():
         named = NAMED.fullmatch(value) if isinstance(value, str) else None
         seed += f" {value}" if name == "seed" else f" {named[2]}" if named else ""
         place.append("" if name == "seed" else named[1] if named else f"{name} {value!r}")

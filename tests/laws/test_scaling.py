@@ -34,6 +34,7 @@ from equipoise.results.blocks import Column, Many, Span, Table, Value
 from equipoise.symbols.scene import Scene
 from laws.subjects import machine_of, names
 from laws.transforms import Units, in_units
+from support.chosen import DISTINCT, few
 
 MICRO = Units(2.0**-13, 2.0**-38, 2.0**-6)
 """Of a crank of 33.5 mm one of 4 um, of 200 g some 1e-12 kg, and 64 turns where there was one."""
@@ -92,6 +93,7 @@ def same_cell(cell: Any, want: Any, column: Column, tolerance: float) -> None:
 
 EXAMPLES = [name for name in names() if ":" not in name and " " not in name]
 FAST = [name for name in names() if not name.startswith("balance-geared")]
+each_kind = pytest.mark.parametrize("name", few(FAST, {*FAST} - {*EXAMPLES} | {*DISTINCT}))
 RIGS = ("yamashita-rig", "riding-transplanter", "walking-transplanter", "exudyn-slider-crank")
 
 
@@ -100,7 +102,7 @@ def both(machine: eq.Machine, compute: Callable[[eq.Machine], Any]) -> tuple[Any
     return compute(in_units(machine, MICRO)), compute(machine)
 
 
-@pytest.mark.parametrize("name", FAST)
+@each_kind
 def test_analysis(name: str) -> None:
     same_blocks(*both(machine_of(name), eq.analyze), 1e-9)
 
@@ -120,7 +122,7 @@ def plan_of(machine: eq.Machine) -> Balance:
     return Balance(masses=(weight,), objectives=force)
 
 
-@pytest.mark.parametrize("name", FAST)
+@each_kind
 def test_balancing_by_a_plan(name: str) -> None:
     """With a plan of its own where it has one; the same change is told."""
     kept = eq.load(name) if name in EXAMPLES else machine_of(name)

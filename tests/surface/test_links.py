@@ -234,7 +234,7 @@ WRITING = {
     "tool --csv": ("tool", "nagamine-irie", "--modes", "--csv", "{}.csv"),
 }
 DRAWING = {
-    "plot": ("plot", "mine.toml", "-o", "pictures"),
+    "plot": ("plot", "mine.toml", "--only", "linkage", "-o", "pictures"),
     "tolerance": ("tolerance", "study.toml", "--designs", "352", "--plot", "pictures"),
     "search": ("search", "search.toml", *SMALL, "--plot", "pictures"),
     "best": ("best", str(STORE), "--plot", "pictures"),

@@ -42,7 +42,7 @@ PAGES = [
 EACH_PAGE = pytest.mark.parametrize(
     "page", PAGES, ids=lambda page: page.relative_to(TOP).as_posix()
 )
-ELSEWHERE = {"--seeds", "--narrow"}
+ELSEWHERE = {"--seeds", "--exhaustive", "--narrow", "--all"}
 """Options of the tests and of `.ci/run`."""
 STYLE = re.compile("--linkage-")
 """Of a drawing, for style sheets."""

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from support.chosen import few
 from surface.running import (
     changed,
     equipoise,
@@ -217,7 +218,7 @@ ONE_SIDED = ("planetary-planting-arm", "geared-counterweight", "kim-chung-b")
 """On which a mount may let go; to look for that takes ten times as long."""
 
 
-@pytest.mark.parametrize("name", CARRIED)
+@pytest.mark.parametrize("name", few(CARRIED, {*CARRIED} - {"transplanter"}))
 def test_any_linkage_on_a_support(name: str) -> None:
     """Geared ones with cycles of several turns, loads with windows, soil."""
     held = () if name in ONE_SIDED else (("one_sided = true\n", ""),)

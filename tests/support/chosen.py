@@ -1,0 +1,37 @@
+"""Values of a parametrisation that are tried on every change, and those left to a release."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable
+from typing import Any
+
+import pytest
+
+EXHAUSTIVE = pytest.mark.exhaustive
+DISTINCT = (
+    "yamashita-1",  # a four-bar
+    "slider-crank-engine",  # a slider, and a load by a table
+    "scotch-yoke",  # two guides
+    "quick-return",  # a guide on a link
+    "stephenson-six-bar",
+    "class-three",  # a group of three dyads that are solved at once
+    "straw-walker",  # more links than hold it
+    "cam-pusher",
+    "knife-drive",  # a belt and a rack
+    "hydraulic-loader",  # driven to and fro by a cylinder
+    "geared-counterweight",  # over several turns
+    "rotary-transplanter",  # planet gears, and a path in the soil
+    "kim-chung-b",  # a planting finger with arms
+    "balance-geared-a",  # a plan with a shaft of its own
+    "balance-spring",  # a plan with a spring
+    "twin-engine",  # links in planes beside each other
+    "four-row-transplanter",  # rows, and a plan of their phases
+    "sieve",  # on mounts, with a plan
+    "riding-transplanter",  # on mounts, with rows
+)
+"""Bundled linkages of which each can do what no other of them can."""
+
+
+def few(values: Iterable[Any], chosen: Container[Any]) -> list[Any]:
+    """All values, of which those that are not chosen are tried by `--exhaustive` alone."""
+    return [one if one in chosen else pytest.param(one, marks=EXHAUSTIVE) for one in values]
