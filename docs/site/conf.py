@@ -14,6 +14,7 @@ import ziamath
 from docutils.nodes import SkipNode, image
 from latex2mathml.converter import convert
 from search import Words
+from sections import RANKING
 from sphinx.util.logging import getLogger
 
 import equipoise
@@ -26,7 +27,13 @@ FONT = "STIXTwoMath-Regular.ttf"
 project = "Equipoise"
 copyright = "The Equipoise authors"
 release = version = equipoise.__version__
-extensions = ["myst_parser", "sphinx.ext.autodoc"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx_copybutton",
+    "sphinx_design",
+    "sections",
+]
 root_doc = "index"
 smartquotes = False  # two hyphens begin an option, and quotes are typed
 default_role = "code"
@@ -42,7 +49,9 @@ autodoc_preserve_defaults = True
 html_theme = "furo"
 html_title = "Equipoise"
 html_static_path = ["static", str(Path(ziamath.__file__).with_name("fonts") / FONT)]
+copybutton_exclude = ".linenos, .gp, .go"  # of a session only what is typed
 html_css_files = ["site.css"]
+templates_path = ["templates"] if RANKING.exists() else []
 html_copy_source = html_show_sourcelink = html_show_sphinx = False
 html_show_search_summary = False  # a page opened as a file must not read others
 html_search_language = Words.lang

@@ -25,13 +25,43 @@ class Words(NamedTuple):
     to_try: str
     live: str
     page: str
+    kinds: tuple[str, ...]
     colon: str = ": "
 
 
 WORDS = {
-    "en": Words("What it teaches", "The picture", "To try", "open live", "open in the live page"),
+    "en": Words(
+        "What it teaches",
+        "The picture",
+        "To try",
+        "open live",
+        "open in the live page",
+        (
+            "Planting mechanisms",
+            "Linkages",
+            "Gears, belts, racks and cams",
+            "On mounts",
+            "Balancing",
+            "Hand-held tools",
+            "Studies",
+        ),
+    ),
     "ja": Words(
-        "学べること", "図を作るコマンド", "試すコマンド", "動かして開く", "ライブページで開く", "："
+        "学べること",
+        "図を作るコマンド",
+        "試すコマンド",
+        "動かして開く",
+        "ライブページで開く",
+        (
+            "植付機構",
+            "リンク機構",
+            "歯車、ベルト、ラック、カム",
+            "マウントの上の機械",
+            "釣合わせ",
+            "手持ち工具",
+            "スタディ",
+        ),
+        "：",
     ),
     "ko": Words(
         "배울 수 있는 것",
@@ -39,8 +69,49 @@ WORDS = {
         "해 볼 명령",
         "움직이며 열기",
         "라이브 페이지에서 열기",
+        (
+            "식부 기구",
+            "링크 기구",
+            "기어, 벨트, 랙, 캠",
+            "마운트 위의 기계",
+            "균형 잡기",
+            "손공구",
+            "스터디",
+        ),
     ),
 }
+KEYS = (
+    {"planting"},
+    set(),
+    {"gears", "belts", "racks", "cams"},
+    {"support"},
+    {"balance"},
+    {"shaft"},
+    {"vary"},
+)
+"""What a file of each kind has, in the order of `Words.kinds`; of several the last counts."""
+
+
+def kind_of(content: Mapping[str, Any]) -> int:
+    """Which of `Words.kinds` a file is."""
+    return max((at for at, keys in enumerate(KEYS) if keys & content.keys()), default=1)
+
+
+def grid(language: str, contents: Mapping[str, Mapping[str, Any]]) -> str:
+    """Thumbnails by kind, each of which leads to its example below."""
+    parts = []
+    for at, kind in enumerate(WORDS[language].kinds):
+        parts += [f"## {kind}", "::::{grid} 2 3 4 4", ":gutter: 2"]
+        for name, content in contents.items():
+            if kind_of(content) == at:
+                title = plain(content["title"][language])
+                parts += [
+                    f"\n:::{{grid-item-card}} {title}",
+                    f":img-top: /moving/{content.get('model', name)}.svg",
+                    f":link: {language}-{name}\n:link-type: ref\n:::",
+                ]
+        parts += ["::::\n"]
+    return "\n".join(parts)
 
 
 def plain(text: str) -> str:
@@ -78,7 +149,8 @@ def card(
         f"**{words.picture}**": f"`equipoise {command_of(picture)}`",
         f"**{words.to_try}**": to_try,
     }
-    heads = [f"## {title}", f"![{title}]({picture})", opened(language, name, live)]
+    label = f"({language}-{name})="
+    heads = [f"{label}\n### {title}", f"![{title}]({picture})", opened(language, name, live)]
     parts = [f"{head}{words.colon}{text}".rstrip(f" {words.colon}") for head, text in told.items()]
     return "\n\n".join([*heads, *parts, ""])
 
@@ -97,5 +169,7 @@ def gallery(pages: Mapping[str, str], live: Collection[str] = ()) -> dict[str, s
             for name, told in lessons(text).items()
         ]
         before, after = TABLE.split(text)
-        done[language] = "\n".join([before, *cards, after])
+        shown = {name: contents[name] for name in lessons(text)}
+        parts = [before, grid(language, shown), f"## {WORDS[language].teaches}\n", *cards, after]
+        done[language] = "\n".join(parts)
     return done

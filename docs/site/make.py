@@ -24,10 +24,14 @@ AROUND = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")
 MADE = {"examples": "scripts.md"}
 """Folders of the repository that have a page here."""
 GALLERY = {"en": "examples.md", "ja": "ja/examples.md", "ko": "ko/examples.md"}
+LONG = ("model-file.md", "recipes.md", "errors.md")
+"""Pages of which each part is a page on the site."""
 EXTRA = "extra"
 """Folder of what Sphinx takes over as it is."""
 SITE_ONLY = re.compile(r"<!-- site only\n(.*?)-->\n", re.DOTALL)
 """What is hidden in a page of the repository, for it goes to pages that only the site has."""
+FRAME = re.compile(r"<iframe .*?\n\n.*?\n\n(?=-->)", re.DOTALL)
+"""An interactive file in a page, with what is said of it."""
 ANCHOR = re.compile(r'<a id="([\w-]+)"></a>')
 LINK = re.compile(r"\[([^\]]*)\]\((?!\w+:|[#/])([^)#\s]+)(#[^)\s]*)?\)")
 
@@ -65,6 +69,7 @@ def lay_out(source: Path) -> None:
     from live import write_live
     from names import names
     from pictures import draw
+    from split import split
 
     pages = {
         **{page.relative_to(DOCS).as_posix(): linked(page) for page in DOCS.rglob("*.md")},
@@ -73,9 +78,13 @@ def lay_out(source: Path) -> None:
         "commands.md": commands(),
         "scripts.md": scripts(),
     }
+    for page in LONG:
+        pages = split(pages, page)
     source.mkdir(parents=True)
     live = write_live(source / EXTRA, GALLERY)
     shown = gallery({language: pages[page] for language, page in GALLERY.items()}, live)
+    if not live:
+        pages["index.md"] = FRAME.sub("", pages["index.md"])
     pages |= {GALLERY[language]: text for language, text in shown.items()}
     draw(pages.values(), source)
     for name, text in pages.items():
