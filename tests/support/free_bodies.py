@@ -20,6 +20,7 @@ import numpy as np
 
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.cams import Cam
+from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Gear, Machine
 from equipoise.mechanism.parts.racks import Rack
 from support.cams import line_of_force
@@ -27,6 +28,7 @@ from support.loads import on_links, springs_on_links
 from support.newton import rack_guide
 from support.poses import Array, Poses, cross, drive_pivot, pin_between, pins, quarter, turned
 from support.rolling_reference import Rolling
+from support.slots import normal_of
 
 
 @dataclass(frozen=True)
@@ -122,6 +124,7 @@ def solve(
         taken, and those that vanish are left out.  What is found has to push on the same flanks.
     """
     joints = [*pin_contacts(machine, poses, pairs or {}), *slider_contacts(machine, poses)]
+    joints += [slot_contact(slot, machine, poses) for slot in machine.circular_slots]
     joints += [cam_contact(cam, machine, poses) for cam in machine.cams]
     gears = [gear_contact(gear, machine, poses) for gear in machine.gears]
     racks = [rack_contact(rack, machine, poses) for rack in machine.racks]
@@ -305,6 +308,12 @@ def slider_contacts(machine: Machine, poses: Poses) -> list[Contact]:
         across = quarter(poses.turned(slider.on, line))
         found.append(Contact(slider.name, on, by, at, (across,), couple=True))
     return found
+
+
+def slot_contact(slot: CircularSlot, machine: Machine, poses: Poses) -> Contact:
+    """Return the push of a slot on its pin."""
+    at = poses.place(slot.link, machine.links[slot.link].points[slot.point])
+    return Contact(slot.name, slot.link, slot.on, at, (normal_of(slot, machine, poses),))
 
 
 def centre_line(gear: Gear, machine: Machine, poses: Poses) -> tuple[Array, Array]:

@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.machine import (
     FRAME,
     Drive,
@@ -28,6 +29,7 @@ from support.driving import driven
 from support.driving import followed as followed_law
 from support.poses import Array, Poses, cross, pins, quarter, turned
 from support.rolling_reference import Rolling
+from support.slots import on_circle
 
 
 class NotAssembledError(RuntimeError):
@@ -72,6 +74,7 @@ class Constraints:
             for body in bodies[1:]
         ]
         rows += [row for slider in self.machine.sliders for row in self._slider(q, rate, slider)]
+        rows += [self._circular(q, rate, slot) for slot in self.machine.circular_slots]
         rows += [self._gear(q, rate, gear) for gear in self.machine.gears]
         rows += [self._belt(q, belt) for belt in self.machine.belts]
         rows += [self._rack(q, rate, rack) for rack in self.machine.racks]
@@ -145,6 +148,12 @@ class Constraints:
             bend += -2 * spin * (line @ drift) - spin**2 * (across @ apart)
         distance = Row(np.array([across @ apart]), jacobian[None], np.array([-bend]))
         return [distance, self._turn(weights, q, -slider.direction - slider.angle)]
+
+    def _circular(self, q: Array, rate: Array, slot: CircularSlot) -> Row:
+        ends = (self._place(q, rate, body, self.machine.points_of(body)[point])
+                for body, point in slot.points)  # fmt: skip
+        residual, jacobian, bend = on_circle(slot, *ends, rate)
+        return Row(np.array([residual]), jacobian[None], np.array([bend]))
 
     def _gear(self, q: Array, rate: Array, gear: Gear) -> Row:
         if gear.name not in self.gear_constants:

@@ -10,15 +10,17 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.terms import Pair, angle_of, rotation
-from equipoise.codegen.trace import Array, Trace
-from equipoise.keys import Frozen
-from equipoise.mechanism.assembly.family import with_fields
+from equipoise.codegen.trace import FAR, Array, Trace
+from equipoise.keys import Frozen, with_fields
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import planar, u
 from equipoise.mechanism.dynamics.loads import load_at
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.kinematics.motion import ROUNDING
+from equipoise.mechanism.parts.element_kinds import Element
 from equipoise.mechanism.parts.force_kinds import ForceElement
+from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.machine import FRAME, Load
 
 NEAR = 0.4
@@ -45,7 +47,7 @@ def _part_of_load(load: Load, key: str, theta: Array) -> Array:
 
 @dataclass(frozen=True)
 class TracedBodies:
-    """Bodies in terms, for what a force element exerts.
+    """Bodies in terms, for the outputs of an element and what it exerts.
 
     name : of the element.
     """
@@ -65,6 +67,31 @@ class TracedBodies:
         self.trace.running[f"{self.name}, {body} on {on}"] = away.real + NEAR
         return middle + angle_of(away)
 
+    def turn(self, body: str) -> Any:
+        """Rotation of a body."""
+        return self.trace.state[u(body)[0]]
+
+    def rate(self, body: str) -> Any:
+        """Angular velocity of a body, rad/s."""
+        return self.trace.state[u(body)[1]] * self.trace.rate("speed")
+
+    def bearing(self, vector: Any, middle: Any) -> Any:
+        """Angle of a vector, within half a turn of `middle`."""
+        return middle + angle_of(vector * rotation(middle).conjugate())
+
+    def within(self, value: Any, ends: tuple[Any, Any], wrong: str) -> None:
+        """Watch a value, so that a design in which it leaves its range is computed by itself."""
+        for what, margin in (("lower", value - ends[0]), ("upper", ends[1] - value)):
+            self.trace.running[f"{self.name}, {what} end"] = margin + (FAR + ROUNDING)
+
+
+def trace_limits(trace: Trace) -> None:
+    """Watch whether pins stay in their slots."""
+    for table in joint_kinds(type(trace.machine)):
+        for number in range(len(getattr(trace.machine, table))):
+            element, at = traced_element(trace, table, number)
+            element.values(at)
+
 
 def trace_element(trace: Trace, table: str, number: int) -> Iterator[Held]:
     """What holds a force element at each of its ends on a link.
@@ -72,12 +99,13 @@ def trace_element(trace: Trace, table: str, number: int) -> Iterator[Held]:
     table, number : its list in the file, and its place there from 0.
     """
     element, at = traced_element(trace, table, number)
+    assert isinstance(element, ForceElement)
     for link, point, force, torque in element.on_links(at):
         yield _held(trace, link, point, force, torque)
 
 
-def traced_element(trace: Trace, table: str, number: int) -> tuple[ForceElement, TracedBodies]:
-    """A force element with terms for its numbers, and the bodies between which it acts."""
+def traced_element(trace: Trace, table: str, number: int) -> tuple[Element, TracedBodies]:
+    """An element with terms for its numbers, and the bodies between which it acts."""
     name = f"{table}[{number}]"
 
     def read(found: Linkage, steps: tuple[str | int, ...]) -> Any:
@@ -97,7 +125,7 @@ def traced_element(trace: Trace, table: str, number: int) -> tuple[ForceElement,
             return value
         return trace.slot(f"{name}{steps}", partial(read, steps=steps))
 
-    element: ForceElement = traced(getattr(trace.machine, table)[number])
+    element: Element = traced(getattr(trace.machine, table)[number])
     return element, TracedBodies(trace, name)
 
 

@@ -33,7 +33,7 @@ from equipoise.codegen.figures import (
 )
 from equipoise.codegen.march import STEPS, March
 from equipoise.codegen.source import Source
-from equipoise.codegen.trace import Trace
+from equipoise.codegen.trace import FAR, Trace
 from equipoise.errors import UsageError
 from equipoise.mechanism.assembly import cycle, full_turn
 from equipoise.mechanism.assembly.family import linkage_of, with_columns
@@ -75,8 +75,6 @@ STEP = 4
 """Crank angles, over the tolerance, that laws of cams take whose acceleration jumps at each
 design's own crank angles: means over them come closer as 1 / N, and may by chance stand still
 before."""
-FAR = -0.5
-"""Cosine of the angle between a link and the base's, beyond which it may go the other way round."""
 ROUNDING = 1e-12
 """Of the size of a signal: what moves by less than this stands still."""
 

@@ -219,7 +219,7 @@ class Signals:
         return coupling.parts(at)[part]
 
     def element_value(self, item: str, table: str, name: str) -> Any:
-        """An output of a force element, by its number from 1 in a list of the file."""
+        """An output of an element, by its number from 1 in a list of the file."""
         number = int(item) - 1 if item.isdecimal() else -1
         if not 0 <= number < len(getattr(self.machine, table)):
             raise _Missing
@@ -239,14 +239,14 @@ OF_MEMBERS: dict[str, Callable[..., Any]] = {
     "bearing force": Signals.bearing_force,
     "coupling part": Signals.coupling_part,
     "pressure angle": Signals.pressure_angle,
-    "force element": Signals.element_value,
+    "element": Signals.element_value,
 }
 """Values of members of families, by the names that `declared` looks them up by."""
 
 
 def _arm_of_center(link: str, found: Linkage) -> Any:
     """From a link's anchor to its centre of mass, in its axes, m."""
-    points = found.machine.points_of(link)
+    points = found.machine.assembled_points(link)
     center = found.machine.links[link].center_of_mass or (0.0, 0.0)
     return planar(center) - planar(points[found.anchors[link]])
 

@@ -15,7 +15,6 @@ from equipoise.codegen.terms import Pair
 from equipoise.codegen.trace import Trace
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array, State, p, size_of_bodies, u
-from equipoise.mechanism.parts.machine import FRAME
 
 STANDING = 1e-13
 """Of the size of the machine, or of a rotation: what moves by less than this stands still."""
@@ -46,7 +45,7 @@ def trace_prescribed(trace: Trace) -> None:
     """Add where each link is, and the numbers of dyads."""
     motion, linkage = PrescribedMotion(trace.linkage), trace.linkage
     size = float(size_of_bodies(linkage.machine))
-    for link in (FRAME, *linkage.machine.links):
+    for link in linkage.joints.bodies:
         anchor = linkage.anchors[link]
         for name in () if f"p({anchor})" in trace.state else p(anchor):
             trace.state[name] = _vector(trace, motion, name, size)

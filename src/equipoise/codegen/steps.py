@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.across import trace_across
-from equipoise.codegen.applied import Held, trace_element, trace_load, trace_preload
+from equipoise.codegen.applied import Held, trace_element, trace_limits, trace_load, trace_preload
 from equipoise.codegen.coupled import trace_coupling, trace_rolled
 from equipoise.codegen.followers import trace_displacement, trace_swung
 from equipoise.codegen.laws import trace_law
@@ -52,7 +52,12 @@ def trace_motion(trace: Trace) -> None:
         trace.put(p(name), (place, 0j, 0j))
     if trace.fixed:
         trace_prescribed(trace)
-        return
+    else:
+        _trace_steps(trace)
+    trace_limits(trace)
+
+
+def _trace_steps(trace: Trace) -> None:
     driven = {drive.link: _driven(trace, drive) for drive in trace.machine.driven}
     for link, (angle, *values) in ({FRAME: (0.0, 1 + 0j, 0.0, 0.0)} | driven).items():
         trace.put(u(link), values)
@@ -157,7 +162,7 @@ def trace_demands(trace: Trace) -> None:
     each = zip(machine.loads, loads, strict=True)
     outer = [held for load, held in each if load.reaction is None]
     _on_frame(trace, "frame", [*moving, *weights, *outer])
-    for link in machine.links:
+    for link in trace.linkage.joints.bodies[1:]:
         parts = [held for held in (*moving, *weights, *loads, *springs) if held[0] == link]
         force, moment = demand_names(link)
         state[force] = sum(force for _, force, _ in parts)

@@ -21,6 +21,8 @@ Array = np.ndarray[Any, Any]
 Read = Callable[[Linkage], Any]
 Body = tuple[Any, Any, Any, Any, Any, Any]
 """A body's anchor and rotation, each with two derivatives by the crank angle."""
+FAR = -0.5
+"""Cosine of the angle between a link and the base's, beyond which it may go the other way round."""
 FARTHEST = 3.0
 """rad: less than half a turn, from where an angle is told by the rotation."""
 
@@ -168,7 +170,7 @@ class Trace:
             anchor = self.linkage.anchors[link]
 
             def arm(found: Linkage) -> Any:
-                points = found.machine.points_of(link)
+                points = found.machine.assembled_points(link)
                 return planar(points[point]) - planar(points[anchor])
 
             slot = self.slot(f"arm({link}/{point})", arm, vector=True)

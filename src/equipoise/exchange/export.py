@@ -8,9 +8,10 @@ from math import isfinite
 
 from equipoise.balancing.balanced import Balanced
 from equipoise.errors import ChangePointError, RangeError, UsageError, needed, unknown
-from equipoise.exchange.formats import CAM, FORMATS, RACK, VARYING, Format, Job
+from equipoise.exchange.formats import CAM, FORMATS, RACK, SLOT, VARYING, Format, Job
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.files import printable, write
 from equipoise.studies.selection import write_designs
@@ -88,10 +89,12 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
 def _check_joints(machine: Machine, one: Format) -> None:
     """Refuse a machine with joints that a format lacks."""
     shapes = (f"gears[{k}].shape" for k, gear in enumerate(machine.gears, 1) if gear.shape)
+    slots = (f"{table}[1]" for table in joint_kinds(type(machine)) if getattr(machine, table))
     found = {
         CAM: "cams[1]" if machine.cams else None,
         RACK: "racks[1]" if machine.racks else None,
         VARYING: next(shapes, None),
+        SLOT: next(slots, None),
     }
     for joint, where in found.items():
         if where is not None and joint in one.lacks:

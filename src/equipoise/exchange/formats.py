@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parts.machine import Machine
 
 
-CAM, RACK, VARYING = "cam", "rack", "gears of varying ratio"
+CAM, RACK, VARYING, SLOT = "cam", "rack", "gears of varying ratio", "pin in a slot"
 """Joints that some formats lack."""
 
 
@@ -59,7 +59,7 @@ FORMATS: Mapping[str, Format] = {
             "bodies, pins, sliders, gears, belts, springs, linear torsion springs, constant loads, "
             "rows, the support on its mounts, the drive at constant speed",
             turns=True,
-            lacks=(CAM, RACK, VARYING),
+            lacks=(CAM, RACK, VARYING, SLOT),
         ),
         Format(
             "exudyn",
@@ -68,7 +68,7 @@ FORMATS: Mapping[str, Format] = {
             "a script that builds and runs bodies, pins, sliders, gears, belts, springs, constant "
             "loads, rows, the support on its mounts in the plane, the drive at constant speed",
             turns=True,
-            lacks=(CAM, RACK, VARYING),
+            lacks=(CAM, RACK, VARYING, SLOT),
         ),
         Format(
             "urdf",
@@ -76,7 +76,7 @@ FORMATS: Mapping[str, Format] = {
             "robots (URDF)",
             "the tree: links with masses, hinges, slides, gears and belts of two joints; loops are "
             "cut",
-            lacks=(CAM, RACK, VARYING),
+            lacks=(CAM, RACK, VARYING, SLOT),
         ),
         Format(
             "fmu",
@@ -95,7 +95,7 @@ FORMATS: Mapping[str, Format] = {
             "one flat model: equations of motion of each link, pins, sliders, gears, belts, "
             "springs, torsion springs, constant loads, the drive at constant speed",
             turns=True,
-            lacks=(CAM, RACK, VARYING),
+            lacks=(CAM, RACK, VARYING, SLOT),
         ),
         Format(
             "dxf",

@@ -34,6 +34,7 @@ from equipoise.keys.declaring import inside as inside
 from equipoise.keys.declaring import key as key
 from equipoise.keys.declaring import keys_of as keys_of
 from equipoise.keys.declaring import quantities_of as quantities_of
+from equipoise.keys.declaring import with_fields as with_fields
 from equipoise.keys.kinds import MOST_WHOLE as MOST_WHOLE
 from equipoise.keys.kinds import NO_INERTIA as NO_INERTIA
 from equipoise.keys.kinds import PLANES as PLANES

@@ -24,6 +24,7 @@ from equipoise.keys.kinds import (
 )
 from equipoise.quantities import SI
 
+Given = TypeVar("Given")
 Class = TypeVar("Class", bound=type)
 Result = TypeVar("Result")
 
@@ -307,3 +308,13 @@ def changed(
         rest = rest[1:]  # a table with one key, which the object has without it
     new = {one.field: changed(held, rest, change, make)}
     return make(value, **value.following(new))
+
+
+def with_fields(value: Given, **changes: Any) -> Given:
+    """A frozen value with fields changed, unchecked; what was kept with it is left behind."""
+    result = object.__new__(type(value))
+    kept = {key: item for key, item in vars(value).items() if not key.startswith("_")}
+    result.__dict__.update(kept, **changes)
+    if isinstance(result, Frozen):
+        result.follow()
+    return result

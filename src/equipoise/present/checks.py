@@ -60,7 +60,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     yield from bodies_tables(machine)
     parts = (
         *_joints(machine),
-        *_force_elements(motion),
+        *_elements(motion),
         *cams_told(machine, linkage.joints),
         *_drive_train(machine),
         *_support(machine),
@@ -99,12 +99,16 @@ HOW = {
 
 
 def _build_up(linkage: Linkage) -> Iterable[str]:
+    structure = linkage.joints
     for group in linkage.groups:
-        links = " and ".join(group.links)
+        links = " and ".join(link for link in group.links if link not in structure.riders)
+        shown = [r for r in group.reactions if not structure.hides(r.name, r.on, r.by)]
         joints = ", ".join(
-            f"{r.name} (slider)" if r.kind == "slider" else f"{r.name} ({r.kind} on {r.by})"
-            for r in group.reactions
-        )
+            f"{r.name} (slider)" if r.kind == "slider"
+            else f"{r.name} (pin in a slot)" if r.name in structure.riders
+            else f"{r.name} ({r.kind} on {r.by})"
+            for r in shown
+        )  # fmt: skip
         yield f"  {links}: {HOW.get(group.kind, group.kind)}; joints {joints}"
 
 
@@ -131,9 +135,9 @@ def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
         yield place, what, *where, Value(work.largest, dimension=kind), Value(work.net, work.both)
 
 
-def _force_elements(motion: Motion) -> Iterator[str]:
+def _elements(motion: Motion) -> Iterator[str]:
     """What each is; one that cannot act throughout the motion is refused."""
-    for table, place, element in motion.machine.force_elements:
+    for table, place, element in motion.machine.elements:
         motion.element_values(table, place)
         yield element.summary()
 

@@ -12,7 +12,7 @@ from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
 from equipoise.mechanism.dynamics.undecided import idle_told, undecided
 from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.mechanism.outputs.spoken import body_named, joint_named
-from equipoise.mechanism.parts.force_kinds import ForceElement, force_kinds
+from equipoise.mechanism.parts.element_kinds import Element, element_kinds
 from equipoise.quantities import Display, display
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest
@@ -35,14 +35,14 @@ def joint_blocks(analysis: Analysis) -> Iterator[Block]:
 
 
 def elements_tables(analysis: Analysis) -> Iterator[Table]:
-    """Outputs of force elements, smallest and largest, a table for each kind."""
-    for table, kind in force_kinds(type(analysis.machine)).items():
+    """Outputs of elements, smallest and largest, a table for each kind."""
+    for table, kind in element_kinds(type(analysis.machine)).items():
         if elements := getattr(analysis.machine, table):
             yield _elements_table(analysis, table, kind, elements)
 
 
 def _elements_table(
-    analysis: Analysis, table: str, kind: type[ForceElement], elements: Sequence[ForceElement]
+    analysis: Analysis, table: str, kind: type[Element], elements: Sequence[Element]
 ) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for number, element in enumerate(elements):

@@ -207,7 +207,7 @@ def _parts(machine: Machine) -> Iterator[str]:
             angle=angle(slider.direction),
         )
     yield from _couplings(machine)
-    yield from (element.sentence().said() for *_, element in machine.force_elements)
+    yield from (element.sentence().said() for *_, element in machine.elements)
     for load in machine.loads:
         if load.point is None:
             yield say("Load: a torque on {link}", link=load.link)

@@ -80,6 +80,8 @@ LOOKS = {
     "spoke": Look(None, "faint", 3.0),
     "groove": Look("paper", "lines", 1.4),
     "cam": Look("wheel", "lines", 1.4),
+    "path": Look("paper", "lines", 1.2),
+    "path-edge": Look(None, "lines", 1.2),
     "rib": Look(None, "lines", 1.0),
     "cam-edge": Look(None, "lines", 1.4),
     "rider": Look("paper", "lines", 1.4),
@@ -133,6 +135,8 @@ LAYERS = {
     "spiral": {"springs": "spiral"},
     "groove": {"wheels": "groove", "springs": "cam-edge"},
     "cam": {"wheels": "cam", "springs": "cam-edge"},
+    "path": {"wheels": "path", "springs": "path-edge"},
+    "path-edge": {"springs": "path-edge"},
     "rider": {"riders": "rider"},
     "face": {"riders": "face"},
 }

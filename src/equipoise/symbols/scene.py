@@ -18,7 +18,7 @@ from equipoise.mechanism.parts.machine import FRAME, Link
 from equipoise.symbols.cams import cams_of
 from equipoise.symbols.carrier import MOUNT, Carrier, Swing
 from equipoise.symbols.drives import Drive
-from equipoise.symbols.force_signs import force_signs
+from equipoise.symbols.element_signs import element_signs
 from equipoise.symbols.rows import ONE, Rows, rows_of
 from equipoise.symbols.shapes import Array, Mark, hull
 from equipoise.symbols.taut import racks_of, strands_of
@@ -105,7 +105,7 @@ class Scene:
     planned : springs that balancing may set, likewise.
     room : places besides that are to be in sight, complex, m.
     rows : those of its machine, where all of them are to be seen.
-    marks : cams with what rides on them, strands of belts, racks, and signs of force elements.
+    marks : cams with what rides on them, strands of belts, racks, and signs of elements.
     swing : how the support moves, where it is to be seen; places are in the frame's axes all along.
     """
 
@@ -135,14 +135,14 @@ class Scene:
         machine, joints = motion.machine, motion.linkage.joints
         places = {name: point.place for name, point in motion.points.items()}
         angles = {name: float(link.angle[0]) for name, link in motion.links.items()}
-        elements = (element for *_, element in machine.force_elements)
+        elements = (element for *_, element in machine.elements)
         planned = machine.balance.springs if machine.balance is not None else ()
         return cls(
             motion.crank_angle,
             tuple(machine.frame),
             tuple(bodies_of(machine.links)),
             places,
-            frozenset(joints.pins),
+            joints.pinned_points,
             motion.linkage.pin_radii,
             {name: center.place for name, center in motion.mass_centers.items()},
             tuple(wheels_of(joints, machine.bodies, angles)),
@@ -156,7 +156,7 @@ class Scene:
             marks=(
                 *cams_of(machine, joints),
                 *strands_of(joints, machine.bodies),
-                *force_signs(elements, joints, machine.bodies),
+                *element_signs(elements, joints, machine.bodies),
                 *racks_of(joints, machine.bodies, lambda one: motion.sliders[one.name].travel),
             ),
         )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from equipoise.mechanism.assembly.joints import Structure
@@ -15,11 +17,11 @@ END = 6.0
 """Units, of the straight end that holds on to the link."""
 
 
-def torsion_sign(spring: TorsionSpring, joints: Structure, bodies: Bodies) -> Mark:
+def torsion_sign(spring: TorsionSpring, joints: Structure, bodies: Bodies) -> Iterator[Mark]:
     """A spiral that turns with the link."""
     shared = joints.pins_between(spring.link, spring.on)
     point = shared[0] if shared else next(iter(bodies[spring.link]))
-    return Mark(spring.link, point, sign("spiral", 0j, spiral()))
+    yield Mark(spring.link, point, sign("spiral", 0j, spiral()))
 
 
 def spiral() -> Array:

@@ -16,6 +16,7 @@ from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.quantities import DIGITS, display
 from equipoise.symbols.cams import cams_of
 from equipoise.symbols.drives import Drive
+from equipoise.symbols.element_signs import element_signs
 from equipoise.symbols.scene import Guide, Scene, bodies_of
 from equipoise.symbols.shapes import Mark
 from equipoise.symbols.taut import racks_of, strands_of
@@ -252,7 +253,7 @@ def scene_of(sketch: Sketch) -> Scene:
         tuple(sketch.frame),
         tuple(bodies_of(sketch.links)),
         {name: place * one for name, place in sketch.places.items()},
-        frozenset(joints.pins),
+        joints.pinned_points,
         pin_radii(joints, sketch.rest.get("joints", ())),
         centers,
         tuple(_wheels(sketch)),
@@ -275,11 +276,12 @@ def _wheels(sketch: Sketch) -> list[Wheel]:
 
 
 def _taut(sketch: Sketch) -> list[Mark]:
-    """Strands of belts, racks, and cams, as far as these have their pins by now."""
+    """Strands of belts, racks, cams and signs of elements, as far as what they need is there."""
     try:
         cams = cams_of(sketch.machine(), sketch.joints) if sketch.rest.get("cams") else ()
         racks = racks_of(sketch.joints, sketch.bodies, sketch.travel)
-        return [*cams, *strands_of(sketch.joints, sketch.bodies), *racks]
+        held = element_signs(sketch.elements, sketch.joints, sketch.bodies)
+        return [*cams, *strands_of(sketch.joints, sketch.bodies), *racks, *held]
     except (EquipoiseError, StopIteration, ValueError):  # a rack without its guide, or its pin
         return []
 

@@ -279,8 +279,8 @@ def _moves(machine: Machine, joint: str, points: Iterable[str]) -> bool:
         return True
     while groups and groups[0].joint != joint:
         del groups[0]
-    links = [machine.links[link] for group in groups for link in group.links]
-    return any(point in link.points for link in links for point in points)
+    links = {link for group in groups for link in group.links} & machine.links.keys()
+    return any(point in machine.links[link].points for link in links for point in points)
 
 
 def _reaches(found: Solved, goals: Goals) -> bool:

@@ -144,6 +144,7 @@ SECTIONS = {
     "frame": to_say("frame"),
     "gears": to_say("gears"),
     "cams": to_say("cams"),
+    "circular_slots": to_say("circular slots"),
     "springs": to_say("springs"),
     "torsion_springs": to_say("torsion springs"),
     "joints": to_say("joints"),
@@ -189,7 +190,7 @@ def fields_of(design: Design) -> dict[str, Field]:
         _frame,
         _gears,
         _cams,
-        _force_elements,
+        _elements,
         _joints,
         _rows,
         _planting,
@@ -295,8 +296,8 @@ def _cams(machine: Machine) -> Iterator[Field]:
         yield from _numbers(("cams", str(number)), "cams", cam.name, cam, without)
 
 
-def _force_elements(machine: Machine) -> Iterator[Field]:
-    for table, number, element in machine.force_elements:
+def _elements(machine: Machine) -> Iterator[Field]:
+    for table, number, element in machine.elements:
         place, of = (table, str(number + 1)), element.label.said()
         yield from _numbers(place, table, of, element, element.idle_keys)
 

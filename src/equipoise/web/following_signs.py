@@ -13,10 +13,12 @@ import numpy as np
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.formulas.strands import LEFT, RIGHT
 from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.machine import FRAME
 from equipoise.symbols.pieces import Piece, pieces
 from equipoise.symbols.scene import WIDE, Guide, Scene
 from equipoise.symbols.shapes import Array, Shape
+from equipoise.symbols.slots import SLOTS
 from equipoise.web.block import Values
 
 SAME = 1e-9
@@ -47,9 +49,8 @@ def _tie(scene: Scene, motion: Motion, piece: Piece, shape: Shape) -> Values | N
     body = FRAME if piece.hold is None else piece.hold.link
     if not body:
         return None  # it moves with a guide, or is stretched between points
-    if shape.role in ("solid", "opening"):
-        keys = ("bodies", "points", "length", "sides")
-        return {"made_of": [f"links.{body}.{key}" for key in keys]}
+    if numbers := [*_shaping(motion, body, shape.role)]:
+        return {"made_of": numbers}
     if piece.layer == "drive" and piece.hold is not None:
         return _of_arrow(scene, body)
     if piece.part is not None and piece.part[0] != "slider":
@@ -58,6 +59,15 @@ def _tie(scene: Scene, motion: Motion, piece: Piece, shape: Shape) -> Values | N
     if shape.role in RIDING:
         return {**(tie or {}), "made_of": ["cams", *_of_shape(motion, shape.role)]}
     return tie
+
+
+def _shaping(motion: Motion, body: str, role: str) -> Iterator[str]:
+    """Numbers from which solids of a link, and slots in a body, are computed."""
+    if role in ("solid", "opening"):
+        yield from (f"links.{body}.{key}" for key in ("bodies", "points", "length", "sides"))
+    elif role in SLOTS:
+        yield from joint_kinds(type(motion.machine))
+        yield f"{FRAME}.points" if body == FRAME else f"links.{body}.points"
 
 
 def _of_shape(motion: Motion, role: str) -> Iterator[str]:

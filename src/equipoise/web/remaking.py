@@ -14,7 +14,7 @@ from equipoise.mechanism.assembly.named_joints import joint_names
 from equipoise.mechanism.checks import Bodies, unknown
 from equipoise.mechanism.parts.balance import Balance
 from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
-from equipoise.mechanism.parts.force_kinds import ForceElement
+from equipoise.mechanism.parts.element_kinds import Element
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.web.adding import (
     check_body,
@@ -175,7 +175,7 @@ def _there(sketch: Sketch, value: Any) -> bool:
 
 def _held(key: str, entry: Any, bodies: Bodies) -> bool:
     """Whether all that an entry names is there."""
-    if isinstance(entry, Coupling | ForceElement):
+    if isinstance(entry, Coupling | Element):
         ends = all(point in bodies.get(body, ()) for body, point in entry.points)
         return ends and {*entry.bodies} <= bodies.keys()
     points = [(entry.link, entry.point)] if entry.point is not None else []

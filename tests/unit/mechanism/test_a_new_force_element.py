@@ -22,12 +22,13 @@ from equipoise.keys import Table, Tables, Text, declared, key
 from equipoise.mechanism import Machine
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_link
 from equipoise.mechanism.outputs.declared import declaring, of_element
-from equipoise.mechanism.parts.force_kinds import Action, ForceElement, Placed
+from equipoise.mechanism.parts.element_kinds import Placed
+from equipoise.mechanism.parts.force_kinds import Action, ForceElement
 from equipoise.present.checks import machine_blocks
 from equipoise.schema.places import Context
 from equipoise.schema.reading import read_table
 from equipoise.schema.writing import Writer, toml_text
-from equipoise.symbols import force_signs
+from equipoise.symbols import element_signs
 from equipoise.symbols.pieces import pieces
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Mark, circle
@@ -172,10 +173,10 @@ def test_scripts_have_it(tmp_path: Path) -> None:
 def test_drawings_have_its_sign(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where it is given one."""
 
-    def sign(one: Magnet, *_: Any) -> Mark:
-        return Mark(one.link, one.point, circle("spiral", 0j, 0.01))
+    def sign(one: Magnet, *_: Any) -> Iterator[Mark]:
+        yield Mark(one.link, one.point, circle("spiral", 0j, 0.01))
 
-    monkeypatch.setitem(force_signs.SIGNS, Magnet, sign)  # type: ignore[call-overload]
+    monkeypatch.setitem(element_signs.SIGNS, Magnet, sign)  # type: ignore[call-overload]
     scene = Scene.of(eq.analyze(MACHINE, 12).motion)
     drawn = [shape for one in pieces(scene) for shape in one.shapes if shape.role == "spiral"]
     assert [shape.radius for shape in drawn] == [0.01]

@@ -35,6 +35,7 @@ from equipoise.mechanism.parts import (
     weights,
 )
 from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.machine import Frame, Machine, Position
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.mechanism.parts.springs import Spring
@@ -63,7 +64,8 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         bodies.Body, bodies.Hole, sliders.Bearing, sliders.Slider, gears.Gear,
         joint_properties.JointProperties,
         gear_shapes.GearShape, Belt, Rack, cams.Cam,
-        force_elements.Load, Spring, TorsionSpring, Position, field.Planting, field.PlantingArm,
+        CircularSlot, force_elements.Load, Spring, TorsionSpring, Position, field.Planting,
+        field.PlantingArm,
         field.Soil, support.Support,
         mounts.Mount, support.Row, balance.Balance, weights.CenterMove,
         weights.AddedMass, weights.Weight, counterweights.GearedWeight,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -162,7 +162,7 @@ class Builder:
 
     def arm(self, link: str, origin: str, point: str) -> complex:
         """Vector from one point of a link to another, in the link's axes."""
-        points = self.machine.points_of(link)
+        points = self.machine.assembled_points(link)
         return planar(points[point]) - planar(points[origin])
 
     def size(self) -> Any:
@@ -184,6 +184,19 @@ class Builder:
             return []
         self.running.add(body)
         return [RunningAngle(body)]
+
+    def anchored(self, group: Group, joints: Structure) -> Group:
+        """The group with anchors of its links that are points of their own, as the machine has
+        them, also where it was solved from one that stands for such a point in a joint.
+        """
+        for rider in joints.riders.values():
+            for link, held in rider.held.items():
+                own = held.get(self.anchors.get(link, "")) if link in group.links else None
+                if own is not None:
+                    steps = (*group.motion, *self.reach(link, own))
+                    group = replace(group, motion=steps)
+                    self.anchors[link] = own
+        return group
 
     def carrier_of(self, bodies: Iterable[str]) -> str:
         """Among the known bodies at a pin, the one that carries it: the first to be solved."""
@@ -229,7 +242,7 @@ def guide_reaction(guide: Guide, on: str, by: str, at: str) -> Reaction:
 def outer_joints(builder: Builder, joints: Structure, link: str) -> list[Outer]:
     """Joints of an unknown link to known bodies."""
     result = []
-    for point in builder.machine.links[link].points:
+    for point in builder.machine.assembled_points(link):
         known = [body for body in joints.pins.get(point, ()) if body in builder.rank]
         if known:
             result.append(Outer(link, builder.carrier_of(known), point))

@@ -20,8 +20,16 @@ from typing import Any, TypeVar
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.keys import Frozen, Quantity, changed, innermost, keys_of, quantities_of
-from equipoise.mechanism.assembly.joints import Structure
+from equipoise.keys import (
+    Frozen,
+    Quantity,
+    changed,
+    innermost,
+    keys_of,
+    quantities_of,
+    with_fields,
+)
+from equipoise.mechanism.assembly.joints import Structure, all_sliders
 from equipoise.mechanism.assembly.linkage import Linkage, ordered
 from equipoise.mechanism.assembly.steps import (
     Array,
@@ -39,7 +47,7 @@ from equipoise.mechanism.formulas.rolling import beside
 from equipoise.mechanism.parts.bodies import Body
 from equipoise.mechanism.parts.body_checks import outlined_by_columns
 from equipoise.mechanism.parts.couplings import coupling_kinds
-from equipoise.mechanism.parts.force_kinds import force_kinds
+from equipoise.mechanism.parts.element_kinds import element_kinds
 from equipoise.mechanism.parts.machine import FRAME, Machine, Vector
 
 Triple = tuple[Array, Array, Array]
@@ -99,7 +107,7 @@ class Family:
     def _arm(self, link: str, point: str) -> Array:
         """Vector from a link's anchor to a point of it, in the link's axes, (P, 1)."""
         if (link, point) not in self._arms:
-            bodies = (k.machine.points_of(link) for k in self.linkages)
+            bodies = (k.machine.assembled_points(link) for k in self.linkages)
             anchor = self.first.anchors[link]
             arms = (complex(*body[point]) - complex(*body[anchor]) for body in bodies)
             self._arms[link, point] = column(arms)
@@ -196,7 +204,7 @@ HOLDERS: Mapping[str, Set[str] | None] = {
     r"(sliders)\[([1-9]\d*)\]": {"direction", "angle"},
 }
 """What has numbers that may be columns, by its path in the model file, and their keys; None where
-these are names.  Couplings tell theirs, and all quantities of force elements may."""
+these are names.  Couplings tell theirs, and all quantities of elements may."""
 
 
 _LISTED = re.compile(r"\[[1-9]\d*\]$")
@@ -204,11 +212,11 @@ _LISTED = re.compile(r"\[[1-9]\d*\]$")
 
 
 def _listed_holders(of: type[Frozen]) -> Iterator[tuple[str, Set[str]]]:
-    """As `HOLDERS`, of the couplings and force elements of a class of machines."""
+    """As `HOLDERS`, of the couplings and elements of a class of machines."""
     for table, coupling in coupling_kinds(of).items():
         for inner, keys in coupling.columns.items():
             yield rf"({table})\[([1-9]\d*)\]" + (rf"\.({inner})" if inner else ""), keys
-    for table, kind in force_kinds(of).items():
+    for table, kind in element_kinds(of).items():
         known = keys_of(kind).items()
         names = {name for name, one in known if isinstance(innermost(one.kind), Quantity)}
         yield rf"({table})\[([1-9]\d*)\]", names
@@ -310,16 +318,6 @@ def _pair(place: Vector, parts: Mapping[str, Array]) -> tuple[Any, Any]:
     return parts.get("x", x), parts.get("y", y)
 
 
-def with_fields(value: Value, **changes: Any) -> Value:
-    """A frozen value with fields changed, unchecked; what was kept with it is left behind."""
-    result = object.__new__(type(value))
-    kept = {key: item for key, item in vars(value).items() if not key.startswith("_")}
-    result.__dict__.update(kept, **changes)
-    if isinstance(result, Frozen):
-        result.follow()
-    return result
-
-
 def linkage_of(machine: Machine, base: Linkage) -> Linkage:
     """The linkage of a machine with columns, in the order in which its base is solved."""
     needed = base.needed_references
@@ -330,7 +328,8 @@ def linkage_of(machine: Machine, base: Linkage) -> Linkage:
 
 def joints_of(machine: Machine, base: Linkage) -> Structure:
     """The joints of a machine with columns, those of its base but for their numbers."""
-    return replace(base.joints, sliders=machine.sliders, couplings=machine.couplings)
+    sliders = all_sliders(machine.sliders, machine.riders)
+    return replace(base.joints, sliders=sliders, couplings=machine.couplings)
 
 
 def massive_link(path: str) -> str | None:

@@ -207,8 +207,9 @@ def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Grou
     inner = Guide.seen_from(slider, other)
     line = guide.turn * inner.along
     if np.all(abs(line.imag) < 1e-9):
+        sliders = builder.machine.sliders
         raise ModelError(
-            f"sliders[{builder.machine.sliders.index(slider) + 1}]",
+            f"sliders[{sliders.index(slider) + 1}]" if slider in sliders else slider.name,
             f"its line is parallel to that of {guide.name!r}, which leaves {other!r} free to "
             "slide; turn one of them",
         )

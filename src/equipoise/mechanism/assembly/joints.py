@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import islice
 
 from equipoise.errors import MobilityError, ModelError
@@ -12,6 +12,7 @@ from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.assembly.steps import Reaction
 from equipoise.mechanism.checks import Bodies, bodies_at, form_of
 from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.joint_kinds import Rider, with_riders
 from equipoise.mechanism.parts.machine import FRAME, Machine, Slider
 
 MOST_SUBSETS = 10_000
@@ -24,6 +25,7 @@ class Structure:
     bodies : the frame, then the links in file order.
     pins : point -> bodies that share it, in the order of `bodies`; two at least.
     drives : how many there are.
+    riders : bodies inside of joints.
     """
 
     bodies: tuple[str, ...]
@@ -31,6 +33,7 @@ class Structure:
     sliders: tuple[Slider, ...]
     couplings: tuple[Coupling, ...]
     drives: int = 1
+    riders: Mapping[str, Rider] = field(default_factory=dict)
 
     def freedom(self, links: Iterable[str], known: Iterable[str]) -> int:
         """Free motions of some links when the known bodies move as they must."""
@@ -65,6 +68,20 @@ class Structure:
         first = {frozenset((one.link, one.on)): one for one in reversed(self.sliders)}
         return replace(self, sliders=tuple(s for s in self.sliders if s in first.values()))
 
+    def hides(self, joint: str, *bodies: str) -> bool:
+        """Whether a joint of these bodies is inside of another, and not what stands for that."""
+        return joint not in self.riders and not self.riders.keys().isdisjoint(bodies)
+
+    def shown(self, body: str) -> str:
+        """A body, or the one that holds it where it is inside of a joint."""
+        return self.riders[body].on if body in self.riders else body
+
+    @property
+    def pinned_points(self) -> frozenset[str]:
+        """Points at which bodies are pinned to each other or have a pin in a slot."""
+        riding = (rider.held[rider.link][name] for name, rider in self.riders.items())
+        return frozenset((*self.pins, *riding))
+
     def pins_between(self, a: str, b: str) -> list[str]:
         return [point for point, bodies in self.pins.items() if a in bodies and b in bodies]
 
@@ -72,7 +89,8 @@ class Structure:
 def structure(machine: Machine) -> Structure:
     """Read joints off the names that bodies share."""
     drives = [drive.link for drive in machine.driven]
-    result = replace(joined(machine.bodies, machine.sliders, machine.couplings), drives=len(drives))
+    whole = joined(machine.bodies, machine.sliders, machine.couplings, machine.riders)
+    result = replace(whole, drives=len(drives))
     _check_apart(machine, result.pins)
     _check_mobility(result, drives, _alike(machine.bodies, result.pins))
     return result
@@ -85,11 +103,20 @@ def name_in_outputs(joints: Structure, joint: Reaction) -> str:
 
 
 def joined(
-    bodies: Bodies, sliders: tuple[Slider, ...], couplings: tuple[Coupling, ...]
+    bodies: Bodies,
+    sliders: tuple[Slider, ...],
+    couplings: tuple[Coupling, ...],
+    riders: Mapping[str, Rider],
 ) -> Structure:
     """Joints of bodies, the frame first, whether or not they make a linkage."""
-    pins = {point: tuple(names) for point, names in bodies_at(bodies).items() if len(names) > 1}
-    return Structure((*bodies,), pins, sliders, couplings)
+    whole = with_riders(bodies, riders)
+    pins = {point: tuple(names) for point, names in bodies_at(whole).items() if len(names) > 1}
+    return Structure((*whole,), pins, all_sliders(sliders, riders), couplings, riders=riders)
+
+
+def all_sliders(sliders: tuple[Slider, ...], riders: Mapping[str, Rider]) -> tuple[Slider, ...]:
+    """Sliding joints with those inside of joints."""
+    return (*sliders, *(slide for rider in riders.values() for slide in rider.slides))
 
 
 def undetermined(joints: Structure, drives: Sequence[str]) -> list[str]:
@@ -230,12 +257,15 @@ def _check_mobility(joints: Structure, drives: Sequence[str], alike: Note | str)
 
 def _count(joints: Structure) -> Note | str:
     coupled = Counter(one.counted for one in joints.couplings)
+    inner = sum(len(rider.slides) for rider in joints.riders.values())
     parts = [
-        _number(len(joints.bodies) - 1, MOVING_LINKS),
-        _number(sum(len(bodies) - 1 for bodies in joints.pins.values()), PINS),
-        _number(len(joints.sliders), SLIDING_JOINTS),
+        _number(len(joints.bodies) - 1 - len(joints.riders), MOVING_LINKS),
+        _number(sum(len(bodies) - 1 for bodies in joints.pins.values()
+                    if joints.riders.keys().isdisjoint(bodies)), PINS),
+        _number(len(joints.sliders) - inner, SLIDING_JOINTS),
+        *([_number(len(joints.riders), SLOTS)] if joints.riders else ()),
         *(_number(count, words) for words, count in coupled.items()),
-    ]
+    ]  # fmt: skip
     return all_of(parts, commas=True)
 
 
@@ -295,6 +325,7 @@ def subsets(joints: Structure, links: list[str]) -> Iterator[tuple[str, ...]]:
 MOVING_LINKS = (to_say("{count} moving link"), to_say("{count} moving links"))
 PINS = (to_say("{count} pin"), to_say("{count} pins"))
 SLIDING_JOINTS = (to_say("{count} sliding joint"), to_say("{count} sliding joints"))
+SLOTS = (to_say("{count} pin in a slot"), to_say("{count} pins in slots"))
 
 
 def _number(count: int, words: tuple[str, str]) -> Note:

@@ -115,7 +115,11 @@ class Linkage(Brief):
     @cached_property
     def named_reactions(self) -> tuple[tuple[str, Reaction], ...]:
         """Joints by their names in outputs."""
-        return tuple((name_in_outputs(self.joints, one), one) for one in self.reactions)
+        return tuple(
+            (name_in_outputs(self.joints, one), one)
+            for one in self.reactions
+            if not self.joints.hides(one.name, one.on, one.by)
+        )
 
     @cached_property
     def pin_radii(self) -> Mapping[str, float]:
@@ -224,7 +228,7 @@ def _check_sides(machine: Machine, joints: Structure, grouping: Grouping) -> Non
     builder, groups, choices = grouping.builder, grouping.groups, grouping.choices
     held_kinds = ("pointed", "loops") if joints.surplus else ("pointed",)
     held_at = {point for group in groups if group.kind in held_kinds
-               for link in group.links for point in machine.links[link].points}  # fmt: skip
+               for link in group.links for point in machine.assembled_points(link)}  # fmt: skip
     asked = builder.sides | held_at  # of links that more joints hold lengths decide the side
     idle = [joint for joint in machine.assembly if joint not in asked]
     if choices:
@@ -334,7 +338,7 @@ def _grouped(
     if joints.surplus:
         surplus, joints = surplus_cranks(machine, joints), joints.needed
     builder.add({FRAME: drives[machine.drive.link], **drives})
-    unknown = [link for link in machine.links if link not in drives]
+    unknown = [link for link in (*machine.links, *joints.riders) if link not in drives]
     groups: list[Group] = []
     choices: list[sides.Choice] = []
     while unknown:
@@ -353,6 +357,7 @@ def _grouped(
         if group.joint in builder.missing:
             choices.append(sides.chosen(builder, group, assumed))
             group = choices[-1].group
+        group = builder.anchored(group, joints)
         groups.append(group)
         builder.motion += group.motion
         unknown = [link for link in unknown if link not in group.links]

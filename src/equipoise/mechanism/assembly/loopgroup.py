@@ -95,7 +95,7 @@ class Maker:
         self.anchors = {}
         self.holds: dict[str, int] = {}
         for link in self.links:
-            points = [*self.builder.machine.links[link].points]
+            points = [*self.builder.machine.assembled_points(link)]
             self.anchors[link] = next((pt for pt in points if pt in self.joints.pins), points[0])
 
     def end(self, body: str, point: str) -> End:
@@ -267,7 +267,7 @@ def _standing(loops: Sequence[Loop], starts: Mapping[str, float]) -> tuple[Loop,
 def _check_near(builder: Builder, poses: Poses, position: Position, group: LoopGroup) -> None:
     """A solution far from the position in the file may be another assembly of the links."""
     for link, anchor in zip(group.links, group.anchors, strict=True):
-        for name in builder.machine.links[link].points.keys() & position.points.keys():
+        for name in builder.machine.assembled_points(link).keys() & position.points.keys():
             found = complex(poses[link].place_of(builder.arm(link, anchor, name)))
             if abs(found - complex(*position.points[name])) > FAR * group.size:
                 raise ModelError(
@@ -286,14 +286,14 @@ def _guess(
     builder: Builder, group: LoopGroup, link: str, known: Poses, position: Position
 ) -> tuple[float, float, float]:
     """Rough position of a link's anchor and its angle, from the file and from known pins."""
-    points = builder.machine.links[link].points
+    points = builder.machine.assembled_points(link)
     given = [
         (complex(*points[name]), complex(*position.points[name]))
         for name in points
         if name in position.points
     ]
     for body, pose in known.items():
-        for name in builder.machine.points_of(body):
+        for name in builder.machine.assembled_points(body):
             if name in points and name not in position.points:
                 arm = builder.arm(body, builder.anchors[body], name)
                 given.append((complex(*points[name]), complex(pose.place_of(arm))))

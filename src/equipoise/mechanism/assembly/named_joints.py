@@ -21,6 +21,8 @@ def named_joints(joints: Structure, reactions: Sequence[Reaction]) -> ReactionsB
     """
     named: ReactionsByName = {}
     for one in reactions:
+        if joints.hides(one.name, one.on, one.by):
+            continue
         family = family_of(one.kind)
         for name in dict.fromkeys((name_in_outputs(joints, one), one.name)):
             named.setdefault(family + name, []).append(one)
@@ -29,8 +31,10 @@ def named_joints(joints: Structure, reactions: Sequence[Reaction]) -> ReactionsB
 
 def joint_names(joints: Structure) -> set[str]:
     """Names that forces of joints may have in outputs, in whatever order links are solved."""
-    names = {name for point in joints.pins for name in _pin_names(joints, point)}
-    names |= {family_of("slider") + one.name for one in joints.sliders}
+    names = {name for point, bodies in joints.pins.items() for name in _pin_names(joints, point)
+             if not joints.hides(point, *bodies)}  # fmt: skip
+    names |= {family_of("slider") + one.name for one in joints.sliders
+              if not joints.hides(one.name, one.link, one.on)}  # fmt: skip
     return names | {f"{one.table}.{one.name}" for one in joints.couplings}
 
 
@@ -40,6 +44,9 @@ def pin_radii(joints: Structure, given: Iterable[JointProperties]) -> dict[str, 
     by_name = {name: point for point in joints.pins for name in _pin_names(joints, point)}
     for one in given:
         if one.radius is not None and (point := by_name.get(one.joint)) is not None:
+            if point in joints.riders:
+                rider = joints.riders[point]
+                point = rider.held[rider.link][point]
             radii[point] = max(one.radius, radii.get(point, 0.0))
     return radii
 

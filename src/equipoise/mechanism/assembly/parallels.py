@@ -122,9 +122,9 @@ def _beyond(
     here, there = pair
     ways = []
     for link, pins in cranks:
-        points = machine.points_of(link)
+        points = machine.assembled_points(link)
         crank = abs(planar(points[pins[here]]) - planar(points[pins[there]]))
-        a, b = (planar(machine.points_of(body)[pins[body]]) for body in (here, there))
+        a, b = (planar(machine.assembled_points(body)[pins[body]]) for body in (here, there))
         ways.append((link, crank, a, b))
     (_, size, a0, b0), *others = ways
     if not others or others[0][2] == a0:

@@ -37,7 +37,7 @@ def wrong(machine: Machine, base: Linkage, columns: Columns) -> Array:
 def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
     """What has to be true of the numbers of a machine: flags, or columns of them."""
     for body in (FRAME, *machine.links):
-        points = machine.points_of(body)
+        points = machine.bodies[body]
         places = [planar(points[point]) for point in points if point in base.joints.pins]
         yield from (one != other for one, other in combinations(places, 2))
     for link in machine.links.values():
@@ -50,7 +50,7 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
     fits = fits_of(machine, joints_of(machine, base)) if machine.cams else ()
     yield from (can_be_made(fit) for fit in fits if np.ndim(fit.rest))
     yield from demands_across(machine)
-    for *_, element in machine.force_elements:
+    for *_, element in machine.elements:
         yield from element.demands()
 
 

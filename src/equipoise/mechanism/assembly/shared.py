@@ -291,7 +291,7 @@ def _span_of_joints(machine: Machine, joints: Structure, apart: set[str]) -> flo
         places: dict[str, list[complex]] = {}
         for body, point in named:
             if body not in apart:
-                places.setdefault(body, []).append(planar(machine.bodies[body][point]))
+                places.setdefault(body, []).append(planar(machine.assembled_points(body)[point]))
         return max((abs(a - b) for own in places.values() for a in own for b in own), default=0.0)
 
     return span(ends) or span(ends + through) or 1.0

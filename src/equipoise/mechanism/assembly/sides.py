@@ -168,7 +168,7 @@ def _places(builder: Builder, link: str, state: State) -> dict[str, complex]:
     """Places of a link's points."""
     anchor = builder.anchors[link]
     start, turn = state[f"p({anchor})"], state[f"u({link})"]
-    points = builder.machine.links[link].points
+    points = builder.machine.assembled_points(link)
     return {name: start + turn * builder.arm(link, anchor, name) for name in points}
 
 
@@ -188,9 +188,9 @@ def _in_position(builder: Builder, group: Group, state: State) -> Iterator[float
 def _as_drawn(builder: Builder, group: Group, state: State) -> Iterator[float]:
     """Distances of points from where the links' own axes have them, m."""
     for link in group.links:
-        own = builder.machine.links[link].points
-        for name, place in _places(builder, link, state).items():
-            yield float(abs(place - complex(*own[name])))
+        own = builder.machine.bodies.get(link, {})
+        places = _places(builder, link, state)
+        yield from (float(abs(places[name] - complex(*at))) for name, at in own.items())
 
 
 def decided(

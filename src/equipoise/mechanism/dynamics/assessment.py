@@ -77,6 +77,8 @@ def four_bar(machine: Machine) -> FourBar | None:
     for group in linkage.groups:
         if not any(isinstance(s, Call) and s.kernel in BARS for s in group.motion):
             continue
+        if not linkage.joints.riders.keys().isdisjoint(group.links):  # in a slot, so not of bars
+            continue
         first, second, inner = group.reactions
         if first.by == FRAME:
             first, second = second, first
@@ -242,7 +244,7 @@ def questions(linkage: Linkage) -> Iterator[Note | str]:
     yield from _odd_lengths(linkage)
     yield from _turned_axes(machine)
     used = {slider.through for slider in machine.sliders if slider.on == FRAME}
-    ends = (end for *_, element in machine.force_elements for end in element.points)
+    ends = (end for *_, element in machine.elements for end in element.points)
     used |= {point for body, point in ends if body == FRAME} | linkage.joints.pins.keys()
     used |= {*(machine.drive.between or ())}
     used |= {spring.to for spring in machine.balance.springs} if machine.balance else set()

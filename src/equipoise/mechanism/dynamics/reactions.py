@@ -78,6 +78,16 @@ class SliderForce(JointForce):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class SlotForce(JointForce):
+    """Force of a slot on a pin, N.
+
+    normal : it across the slot; positive away from the centre of a circular one.
+    """
+
+    normal: Array
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class CouplingForce(JointForce):
     """Force of a coupling on its driven body, N; of belts without what strands pull anyway.
 
@@ -223,6 +233,9 @@ class Pass:
         if order(on) < order(by):
             on, by, sign = by, on, -1
         force = full(self.motion, sign * self.state[reaction.force], complex)
+        if rider := self.motion.linkage.joints.riders.get(by):
+            normal = self.state[f"u({by})"] * rider.normal
+            return SlotForce(force, on, rider.on, kernels.dot(normal, force))
         if reaction.couple is None:
             return JointForce(force, on, by)
         slider = next(s for s in self.motion.machine.sliders if s.name == reaction.name)
@@ -280,7 +293,7 @@ def _pushed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) ->
 def _passed(motion: Motion, demands: Mapping[str, Demand], like: Pass | None) -> Pass:
     """The run over the joints, which ends at a torque on the drive's link."""
     state = dict(motion.state)
-    of_links = dict(demands)
+    of_links = dict.fromkeys(motion.linkage.joints.riders, (0j, 0.0)) | dict(demands)
     on_frame = of_links.pop(FRAME, (0j, 0.0))
     of_links[FRAME] = 0j, 0.0
     for link, (force, moment) in of_links.items():

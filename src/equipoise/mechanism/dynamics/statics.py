@@ -43,6 +43,11 @@ class Contact:
     plane: float
     bears: bool
 
+    @property
+    def ends(self) -> tuple[str, str]:
+        """Both bodies."""
+        return self.on, self.by
+
 
 def contacts(linkage: Any) -> tuple[Contact, ...]:
     """Every joint and push of a linkage, as `exerted_in` has them.
@@ -51,17 +56,21 @@ def contacts(linkage: Any) -> tuple[Contact, ...]:
     that of its link; one of two links that are alike midway between them.
     """
     machine, order = linkage.machine, linkage.joints.bodies.index
-    joints = [one for one in linkage.reactions if one.kind in JOINTS]
-    held = {end for one in joints for end in _ends(one) if FRAME in _ends(one)}
+    ends = {name: _ends(linkage, one) for name, one in linkage.named_reactions
+            if one.kind in JOINTS}  # fmt: skip
+    held = {end for both in ends.values() for end in both if FRAME in both}
     found = []
     for name, one in linkage.named_reactions:
         if one.kind not in JOINTS:
             plane = machine.links[one.on].plane
             found.append(Contact(name, one.on, one.by, plane, False))
             continue
-        by, on = sorted(_ends(one), key=order)
+        by, on = sorted(ends[name], key=order)
         points = {one.on: one.at, one.by: one.at}
-        if one.kind == "slider":
+        if rider := linkage.joints.riders.get(one.name):
+            points = {body: next(iter(own.values())) for body, own in rider.held.items()}
+            by, on = rider.on, rider.link
+        elif one.kind == "slider":
             slider = next(s for s in machine.sliders if s.name == one.name)
             points = {slider.link: slider.point, slider.on: slider.through}
         found.append(Contact(name, on, by, _plane_between(machine, points, held), True))
@@ -84,8 +93,9 @@ def pushing(linkage: Any) -> Iterator[Contact]:
         yield Contact(PUSH.format(drive.link), on, by, plane, False)
 
 
-def _ends(reaction: Any) -> tuple[str, str]:
-    return reaction.on, reaction.by
+def _ends(linkage: Any, reaction: Any) -> tuple[str, str]:
+    rider = linkage.joints.riders.get(reaction.name)
+    return (reaction.on, reaction.by) if rider is None else (rider.link, rider.on)
 
 
 def _plane_between(machine: Mechanism, points: Mapping[str, str], held: set[str]) -> float:
@@ -123,7 +133,7 @@ class Statics:
     @cached_property
     def open(self) -> tuple[str, ...]:
         """Names of joints whose couples statics leaves open."""
-        held = {end for one in self.bearing for end in _ends(one) if FRAME in _ends(one)}
+        held = {end for one in self.bearing for end in one.ends if FRAME in one.ends}
         free = [link for link in self.links if link not in held]
         return tuple(_open(self.machine, self.contacts, free))
 

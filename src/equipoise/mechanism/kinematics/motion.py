@@ -25,13 +25,16 @@ from equipoise.mechanism.checks import Named, Vector, bodies_at
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.rates import LinkMotion, PointMotion, SliderMotion
 from equipoise.mechanism.kinematics.swinging import middle_angle, solve_swinging
-from equipoise.mechanism.parts.force_kinds import ForceElement
+from equipoise.mechanism.parts.element_kinds import Element
+from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Machine, Slider
 from equipoise.quantities import HUGE, Dimension, in_si, told
 from equipoise.signals import Figures, JumpSampling, Periodic
 
 MOST_ANGLES = 400_000
 """In one analysis; it takes about a kilobyte for each crank angle and link."""
+ROUNDING = 1e-9
+"""Of margins at ends of slots that designs may touch."""
 MOST_KEPT = 4096
 """Crank angles up to which poses of the last few linkages are kept: some megabytes each."""
 
@@ -189,13 +192,13 @@ class Motion(Displayed):
         return fit.shape(np.asarray(ends[0] - ends[1])).surface_curvature
 
     def element_values(self, table: str, number: int) -> Mapping[str, Array]:
-        """Outputs (N,) of a force element, by name.
+        """Outputs (N,) of an element, by name.
 
         table, number : its list in the file, and its place there from 0.
         """
         known = self._element_values
         if (table, number) not in known:
-            element: ForceElement = getattr(self.machine, table)[number]
+            element: Element = getattr(self.machine, table)[number]
             values = element.values(PlacedBodies(self, f"{table}[{number + 1}]"))
             known[table, number] = {name: self._full(value) for name, value in values.items()}
         return known[table, number]
@@ -236,7 +239,8 @@ class Motion(Displayed):
         There the dyad's margin has to be smooth, and is it by being a little too small.
         """
         block, pivot = (self.state[f"p({reaction.at})"] for reaction in group.reactions[:2])
-        slider = next(one for one in self.machine.sliders if one.name == group.reactions[2].name)
+        sliders = self.linkage.joints.sliders
+        slider = next(one for one in sliders if one.name == group.reactions[2].name)
         along = self.state[f"u({slider.on})"] * np.exp(1j * slider.direction)
         way = block - pivot
         apart = np.abs(way) ** 2
@@ -277,7 +281,7 @@ class Motion(Displayed):
     def _attached(self, link: str, place: Vector) -> tuple[Array, ...]:
         """A point given in a link's axes, and its two derivatives."""
         anchor = self.linkage.anchors[link]
-        arm = complex(*place) - complex(*self.machine.points_of(link)[anchor])
+        arm = complex(*place) - complex(*self.machine.assembled_points(link)[anchor])
         known = [self.state[name] for name in (*p(anchor), *u(link))]
         values = kernels.point(*known, arm)  # type: ignore[call-arg]
         return tuple(self._full(value, complex) for value in values)
@@ -300,7 +304,7 @@ class Motion(Displayed):
 
 @dataclass(frozen=True, eq=False)
 class PlacedBodies:
-    """Bodies where a motion has them (N,), for what a force element exerts.
+    """Bodies where a motion has them (N,), for the outputs of an element and what it exerts.
 
     where : the element's place in the file.
     """
@@ -339,6 +343,25 @@ class PlacedBodies:
             )
         return angle
 
+    def turn(self, body: str) -> Array:
+        """Rotation of a body, complex of size 1."""
+        return np.asarray(self.motion.state[u(body)[0]])
+
+    def rate(self, body: str) -> Array:
+        """Angular velocity of a body, rad/s."""
+        return np.asarray(self.motion.state[u(body)[1]] * self.motion.speed)
+
+    def bearing(self, vector: Array, middle: float) -> Array:
+        """Angle of a vector, rad, within half a turn of `middle`."""
+        return np.asarray(middle + np.angle(vector * np.exp(-1j * middle)))
+
+    def within(self, value: Array, ends: tuple[float, float], wrong: str) -> None:
+        """Raise a `ModelError` where a value leaves its range by more than rounding."""
+        margin = np.minimum(value - ends[0], ends[1] - value)
+        if np.min(margin) < -ROUNDING:
+            angle = degrees(self.motion.crank_angle[int(np.argmin(margin))])
+            raise ModelError(self.where, Note(wrong, crank_angle=angle))
+
 
 def move(
     machine: Machine,
@@ -358,6 +381,7 @@ def move(
     Raises
     ------
     MotionError : the linkage cannot reach the crank angles.
+    ModelError : a pin would leave its slot.
     UsageError : the crank angles cannot be used.
     """
     linkage = assemble(machine)
@@ -366,14 +390,28 @@ def move(
     if isinstance(angles, int | np.integer):
         find = _poses if angles * linkage.cycle.turns > MOST_KEPT else _kept_poses
         theta, state = find(_CycleGrid(linkage, int(angles)))
-        return Motion(linkage, theta, *_rates(machine.drive, speed, acceleration), True, state)
+        rates = _rates(machine.drive, speed, acceleration)
+        return _in_slots(Motion(linkage, theta, *rates, True, state))
     theta = _given_angles(angles)
     rates = _rates(machine.drive, speed, acceleration)
     try:
         state = linkage.solve(theta)
     except (RangeError, ChangePointError) as error:
         state = solve_swinging(linkage, theta, error)
-    return Motion(linkage, theta, *rates, False, state)
+    return _in_slots(Motion(linkage, theta, *rates, False, state))
+
+
+def _in_slots(motion: Motion) -> Motion:
+    """The motion, in which pins stay in their slots.
+
+    Raises
+    ------
+    ModelError : one would leave its slot.
+    """
+    for table in joint_kinds(type(motion.machine)):
+        for number in range(len(getattr(motion.machine, table))):
+            motion.element_values(table, number)
+    return motion
 
 
 @dataclass(frozen=True, eq=False)

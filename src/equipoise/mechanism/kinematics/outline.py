@@ -18,6 +18,8 @@ from equipoise.mechanism.assembly.joints import Structure, joined
 from equipoise.mechanism.assembly.linkage import assemble, sides_at_position
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.couplings import Turning, coupling_kinds
+from equipoise.mechanism.parts.element_kinds import Element, element_kinds
+from equipoise.mechanism.parts.joint_kinds import JointKind
 from equipoise.mechanism.parts.machine import (
     FRAME,
     Drive,
@@ -125,7 +127,16 @@ class Outline:
     @property
     def joints(self) -> Structure:
         couplings = (one for key in coupling_kinds(Machine) for one in self.rest.get(key, ()))
-        return joined(self.bodies, self.sliders, tuple(couplings))
+        riders = {one.name: one.rider() for one in self.elements if isinstance(one, JointKind)}
+        return joined(self.bodies, self.sliders, tuple(couplings), riders)
+
+    @property
+    def elements(self) -> list[Element]:
+        """What declares itself, as far as the bodies and points that it names are there."""
+        there = self.bodies
+        ones = (one for table in element_kinds(Machine) for one in self.rest.get(table, ()))
+        return [one for one in ones if {*one.bodies} <= there.keys()
+                and all(point in there[body] for body, point in one.points)]  # fmt: skip
 
     @property
     def driven(self) -> list[str]:
@@ -136,7 +147,7 @@ class Outline:
     @property
     def mobility(self) -> int:
         """Count of free motions; each drive commands one of them."""
-        return self.joints.freedom(self.links, [FRAME])
+        return self.joints.mobility
 
     @property
     def size(self) -> float:

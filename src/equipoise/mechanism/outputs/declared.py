@@ -259,15 +259,22 @@ of_joint(
     compared=FORCE,
     yardstick="acting",
 )
+
+
+def _having(part: str) -> dict[str, Any]:
+    """Joints whose force has a part."""
+    return {"items": lambda found: [n for n, one in found.forces.joints.items()
+                                    if hasattr(one, part)]}  # fmt: skip
+
+
 RAILS: dict[str, Any] = {
-    "members": slider_names,
-    "items": lambda found: [n for n, one in found.forces.joints.items() if hasattr(one, "moment")],
     "reason": "{what} is only read; take the whole force in the joint instead",
 }
-of_joint(".normal", "force", to_say("normal force in joint {name}"), summed=False, **RAILS)
-of_joint(
-    ".moment", "torque", to_say("moment in joint {name}"), loop=looked_up("joint moment"), **RAILS
-)
+of_joint(".normal", "force", to_say("normal force in joint {name}"), summed=False,
+         members=lambda machine: [*slider_names(machine), *machine.riders],
+         **_having("normal"), **RAILS)  # fmt: skip
+of_joint(".moment", "torque", to_say("moment in joint {name}"), loop=looked_up("joint moment"),
+         members=slider_names, **_having("moment"), **RAILS)  # fmt: skip
 
 of_joint(
     ".tilting_moment",
@@ -351,15 +358,17 @@ of_shape("curvature", "per length", to_say("curvature of the cam {name}"))
 
 
 def of_element(table: str, name: str, dimension: Dimension, label: str) -> None:
-    """Declare an output of the force elements of a list of the file."""
+    """Declare an output of the elements of a list of the file."""
     alike(
         table + ".{}.",
         lambda name, found, item: found.motion.element_values(table, int(item) - 1)[name],
         members=lambda machine: [str(k + 1) for k in range(len(getattr(machine, table)))],
         needs="motion",
-    )(name, dimension, label, loop=lambda value: value("force element", table, name))
+    )(name, dimension, label, loop=lambda value: value("element", table, name))
 
 
+of_element("circular_slots", "angle", "angle", to_say("angle in circular slot {name}"))
+of_element("circular_slots", "speed", "speed", to_say("sliding speed in circular slot {name}"))
 of_element("springs", "pull", "force", to_say("pull of spring {name}"))
 of_element("springs", "length", "length", to_say("length of spring {name}"))
 of_element("torsion_springs", "torque", "torque", to_say("torque of torsion spring {name}"))

@@ -50,6 +50,7 @@ GROUPS = {
     "racks": to_say("racks"),
     "belts": to_say("belts"),
     "cams": to_say("cams"),
+    "circular_slots": to_say("circular slots"),
     "springs": to_say("springs"),
     "torsion_springs": to_say("torsion springs"),
     "rows": to_say("all rows together"),

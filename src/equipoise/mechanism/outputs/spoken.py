@@ -10,7 +10,7 @@ from equipoise.mechanism.checks import FRAME, bodies_at
 
 
 def joint_names(machine: Any) -> list[str]:
-    """Names of pins and sliders, as far as the names in the model tell.
+    """Names of pins, slots and sliders, as far as the names in the model tell.
 
     At a pin of several bodies each moving link has one; which of them carries the others is found
     only when the linkage is put together.
@@ -19,7 +19,7 @@ def joint_names(machine: Any) -> list[str]:
     pins = [point for point, bodies in shared if len(bodies) == 2]
     several = [(point, bodies) for point, bodies in shared if len(bodies) > 2]
     held = [f"{point}/{body}" for point, bodies in several for body in bodies if body != FRAME]
-    return [*pins, *held, *slider_names(machine)]
+    return [*pins, *held, *machine.riders, *slider_names(machine)]
 
 
 def slider_names(machine: Any) -> list[str]:
@@ -41,8 +41,13 @@ def named(name: str) -> str:
 
 
 def joint_named(name: str) -> str:
-    """A joint in words; a slider, such as ``ram on frame``, by its link and what it slides on."""
+    """A joint in words; a slider, such as ``ram on frame``, by its link and what it slides on, and
+    a pin in a slot, such as ``P in frame``, by its point and what has the slot.
+    """
     link, _, on = name.partition(" on ")
+    pin, _, slot = name.partition(" in ")
+    if slot:
+        return say("{pin} in {on}", pin=pin, on=body_named(slot))
     return say("{link} on {on}", link=link, on=body_named(on)) if on else name
 
 

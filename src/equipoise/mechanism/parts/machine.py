@@ -39,12 +39,14 @@ from equipoise.mechanism.checks import (
 )
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.cams import Cam
+from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
 from equipoise.mechanism.parts.drives import (
     Drive,
     Driven,
     FurtherDrive,
 )
+from equipoise.mechanism.parts.element_kinds import Element, element_kinds
 from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.force_elements import (
     Load,
@@ -52,6 +54,7 @@ from equipoise.mechanism.parts.force_elements import (
 )
 from equipoise.mechanism.parts.force_kinds import ForceElement, force_kinds
 from equipoise.mechanism.parts.gears import Gear
+from equipoise.mechanism.parts.joint_kinds import JointKind, Rider, joint_kinds, with_riders
 from equipoise.mechanism.parts.joint_properties import JointProperties
 from equipoise.mechanism.parts.links import (
     MASS_FIELDS,
@@ -105,9 +108,9 @@ class Machine(Driven, Displayed, Frozen):
 
     beside: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "description", "units", "gravity", "drive", "drives", "frame",
-                  "links", "bearings", "assembly", "sliders", "gears", "belts", "racks", "cams",
-                  "loads", "springs", "torsion_springs", "joints", "position", "planting",
-                  "support", "rows", "balance")  # fmt: skip
+                  "links", "bearings", "assembly", "sliders", "circular_slots", "gears", "belts",
+                  "racks", "cams", "loads", "springs", "torsion_springs", "joints", "position",
+                  "planting", "support", "rows", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(Table(Drive), "the link that is driven")
@@ -173,6 +176,10 @@ class Machine(Driven, Displayed, Frozen):
         Tables(Table(TorsionSpring)), "springs that turn links against each other", default=()
     )
 
+    circular_slots: tuple[CircularSlot, ...] = key(
+        Tables(Table(CircularSlot)), "pins in circular slots", default=()
+    )
+
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Machine:
         del given["schema"]
@@ -209,11 +216,33 @@ class Machine(Driven, Displayed, Frozen):
         return tuple(one for table in coupling_kinds(type(self)) for one in getattr(self, table))
 
     @property
+    def elements(self) -> Iterator[tuple[str, int, Element]]:
+        """What declares itself, with its list and its place from 0."""
+        return self._listed(element_kinds(type(self)))
+
+    @property
     def force_elements(self) -> Iterator[tuple[str, int, ForceElement]]:
         """What acts between bodies by where they are, with its list and its place from 0."""
-        for table in force_kinds(type(self)):
+        return self._listed(force_kinds(type(self)))
+
+    def _listed(self, tables: Iterable[str]) -> Iterator[tuple[str, int, Any]]:
+        for table in tables:
             for number, one in enumerate(getattr(self, table)):
                 yield table, number, one
+
+    @property
+    def riders(self) -> Mapping[str, Rider]:
+        """Bodies without mass inside of joints, by the names of these."""
+        listed: Iterator[tuple[str, int, JointKind]] = self._listed(joint_kinds(type(self)))
+        return {one.name: one.rider() for *_, one in listed}
+
+    @property
+    def assembled_bodies(self) -> Bodies:
+        """Points of all bodies that are put together, those inside of joints and the points at
+        which they are held among them.
+        """
+        riders = self.riders
+        return with_riders(self.bodies, riders) if riders else self.bodies
 
     @property
     def switches(self) -> bool:
@@ -325,3 +354,7 @@ class Machine(Driven, Displayed, Frozen):
     def points_of(self, body: str) -> Mapping[str, Vector]:
         """Points of a link, or of the frame."""
         return self.frame if body == FRAME else self.links[body].points
+
+    def assembled_points(self, body: str) -> Mapping[str, Vector]:
+        """Points of a body as it is put together, as of `assembled_bodies`."""
+        return self.assembled_bodies[body] if self.riders else self.points_of(body)

@@ -10,7 +10,8 @@ from equipoise.i18n import Note, to_say
 from equipoise.keys import Text, declared, key
 from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unknown_link
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.force_kinds import Action, ForceElement, Placed
+from equipoise.mechanism.parts.element_kinds import Placed
+from equipoise.mechanism.parts.force_kinds import Action, ForceElement
 from equipoise.quantities import told
 
 

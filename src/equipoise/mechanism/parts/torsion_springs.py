@@ -23,7 +23,8 @@ from equipoise.keys import (
     needs,
 )
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
-from equipoise.mechanism.parts.force_kinds import Action, ForceElement, Placed
+from equipoise.mechanism.parts.element_kinds import Placed
+from equipoise.mechanism.parts.force_kinds import Action, ForceElement
 from equipoise.quantities import told
 
 MOST_ROWS = 200

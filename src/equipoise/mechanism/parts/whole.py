@@ -10,9 +10,10 @@ from equipoise.keys import wrong_values
 from equipoise.mechanism.checks import Bodies, numbered, too_many, unknown_link, wrong_text
 from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.drive_checks import wrong_drive, wrong_further, wrong_together
+from equipoise.mechanism.parts.element_kinds import element_kinds
 from equipoise.mechanism.parts.field import wrong_planting
 from equipoise.mechanism.parts.force_elements import wrong_load
-from equipoise.mechanism.parts.force_kinds import force_kinds
+from equipoise.mechanism.parts.joint_kinds import JointKind, wrong_names
 from equipoise.mechanism.parts.joint_properties import wrong_joint
 from equipoise.mechanism.parts.links import wrong_link, wrong_points
 from equipoise.mechanism.parts.places import wrong_position
@@ -27,7 +28,7 @@ LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
     "sliders": wrong_slider,
     "loads": wrong_load,
 }
-"""What is wrong with each of the lists; couplings and force elements say it themselves."""
+"""What is wrong with each of the lists; couplings and elements say it themselves."""
 
 
 def problems_of(machine: Any) -> Iterator[ModelError]:
@@ -46,12 +47,18 @@ def problems_of(machine: Any) -> Iterator[ModelError]:
         for where, item in numbered(name, getattr(machine, name)):
             yield from wrong(where, item, bodies)
     kinds = coupling_kinds(type(machine))
-    for table in (*kinds, *force_kinds(type(machine))):
-        for where, item in numbered(table, getattr(machine, table)):
-            yield from item.problems(where, bodies)
+    placed: list[tuple[str, Any]] = [
+        one
+        for table in (*kinds, *element_kinds(type(machine)))
+        for one in numbered(table, getattr(machine, table))
+    ]
+    for where, item in placed:
+        yield from item.problems(where, bodies)
     for where, item in numbered("joints", machine.joints):
         yield from wrong_joint(where, item, ("joints", *kinds))
     sliders = [one.name for one in machine.sliders]
+    joints = [(where, one) for where, one in placed if isinstance(one, JointKind)]
+    yield from wrong_names(joints, bodies, sliders)
     for where, item in numbered("drives", machine.drives):
         yield from wrong_further(where, item, bodies, sliders)
     yield from wrong_position(machine.position, bodies)
@@ -69,7 +76,7 @@ def _too_much(machine: Any) -> Iterator[ModelError]:
     yield from too_many("points", points, MOST["points"])
     for what in ("sliders", "loads", "joints", "drives"):
         yield from too_many(what, getattr(machine, what), MOST[what])
-    for kinds in (coupling_kinds(type(machine)), force_kinds(type(machine))):
+    for kinds in (coupling_kinds(type(machine)), element_kinds(type(machine))):
         for table, kind in kinds.items():
             yield from too_many(table, getattr(machine, table), kind.most)
     yield from wrong_text("title", machine.title)

@@ -1,0 +1,139 @@
+"""Pins in circular slots, as frozen values with their checks.
+
+The rider of such a joint is a link without mass from the slot's centre to the pin, so that all of
+it is solved in closed form, by dyads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import degrees, pi
+from typing import Any, ClassVar
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import Listing, Quantity, Text, declared, key
+from equipoise.mechanism.checks import Bodies, unknown_point
+from equipoise.mechanism.parts.element_kinds import Placed
+from equipoise.mechanism.parts.joint_kinds import JointKind, Rider
+from equipoise.quantities import told
+
+BEYOND = to_say(
+    "the pin would leave its slot at crank angle {crank_angle:.4g} deg; make the arc longer, or "
+    "change lengths"
+)
+
+
+@declared
+class CircularSlot(JointKind):
+    """A pin at `point` of `link` in a slot of the body `on`, a circle about `center` of that."""
+
+    called = to_say("{what} of circular slot {number}")
+    file_order = ("link", "point", "on", "center", "radius", "arc", "label")
+
+    title = to_say("Circular slots, each with its crank angle; angles in the axes of their bodies")
+    headings: ClassVar[Mapping[str, tuple[str, str]]] = {
+        "angle": (to_say("smallest angle"), to_say("largest")),
+        "speed": (to_say("smallest sliding speed"), to_say("largest")),
+    }
+
+    link: str = key(Text(of="link"), "the link that has the pin", example="arm")
+    point: str = key(Text(of="point", on="link"), "its pin", example="P")
+    on: str = key(
+        Text(of="body"), 'the link that has the slot, or `"frame"`', example="frame",
+        word=to_say("other body"),
+    )  # fmt: skip
+    center: str = key(
+        Text(of="point", on="on"), "a point of that, the centre of the slot", example="S",
+        word=to_say("centre of the slot"),
+    )  # fmt: skip
+    radius: float = key("length", "of its middle line", example="60 mm", above=0)
+    arc: tuple[float, ...] = key(
+        Listing(Quantity("angle"), (2,)),
+        "angles of both ends of the slot from its centre, counterclockwise, in the axes of `on`, "
+        "between which the middle of the pin has to stay; all the way round if left out",
+        default=(),
+        example=["20 deg", "160 deg"],
+    )
+    own_name: str = key(
+        Text(), "its name in outputs and in the table of sides, `POINT in BODY` if left out",
+        name="label",
+        word=to_say("name"),
+        default="",
+    )  # fmt: skip
+
+    @property
+    def name(self) -> str:
+        """Its label, or its pin and what has the slot."""
+        return self.own_name or f"{self.point} in {self.on}"
+
+    @property
+    def bodies(self) -> tuple[str, str]:
+        """The link that has the pin, and the body that has the slot."""
+        return self.link, self.on
+
+    @property
+    def points(self) -> tuple[tuple[str, str], ...]:
+        """The pin and the centre, each with its body."""
+        return (self.link, self.point), (self.on, self.center)
+
+    @property
+    def route(self) -> tuple[str, str]:
+        """From the body that has the slot to the link."""
+        return self.on, self.link
+
+    def rider(self) -> Rider:
+        """A link from the centre to the pin."""
+        pin, center = self.name, f"centre of {self.name}"
+        points = {center: (0.0, 0.0), pin: (self.radius, 0.0)}
+        held = {self.link: {pin: self.point}, self.on: {center: self.center}}
+        return Rider(self.link, self.on, points, held, normal=1 + 0j)
+
+    @property
+    def middle(self) -> Any:
+        """Angle, rad, from which that of the pin is within half a turn."""
+        return 0.5 * (self.arc[0] + self.arc[1]) if self.arc else 0.0
+
+    def values(self, at: Placed) -> Mapping[str, Any]:
+        """Angle of the pin, rad, and its speed along the slot, m/s, both counterclockwise."""
+        angle = at.bearing(at.turn(self.name) * at.turn(self.on).conjugate(), self.middle)
+        if self.arc:
+            at.within(angle, (self.arc[0], self.arc[1]), BEYOND)
+        speed = self.radius * (at.rate(self.name) - at.rate(self.on))
+        return {"angle": angle, "speed": speed}
+
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with it in a machine of these bodies."""
+        yield from self.wrong_bodies(where, bodies)
+        for key_name, (body, point) in zip(("point", "center"), self.points, strict=True):
+            if body in bodies:
+                yield from unknown_point(f"{where}.{key_name}", point, body, bodies)
+        if self.arc and not 0 < self.arc[1] - self.arc[0] < 2 * pi:
+            first, last = map(degrees, self.arc)
+            wrong = Note(
+                "got {first:.4g} deg to {last:.4g} deg; give the ends counterclockwise, the second "
+                "less than a turn beyond the first",
+                first=first,
+                last=last,
+            )
+            yield ModelError(f"{where}.arc", wrong)
+
+    def demands(self) -> Iterator[Any]:
+        """What has to be true of its radius and its ends, or of columns of them."""
+        yield self.radius > 0
+        if self.arc:
+            wide = self.arc[1] - self.arc[0]
+            yield (wide > 0) & (wide < 2 * pi)
+
+    def sentence(self) -> Note:
+        """Its radius, its pin and its bodies, for a report."""
+        radius = told(self.radius, "length")
+        return Note("Circular slot: {point} of {link} at {radius} from {center} of {on}",
+                    point=self.point, link=self.link, radius=radius, center=self.center,
+                    on=self.on)  # fmt: skip
+
+    def summary(self) -> str:
+        """All its numbers, in a line of `check`."""
+        ends = ", from " + " to ".join(told(one, "angle") for one in self.arc) if self.arc else ""
+        held = f"{self.point} of {self.link} about {self.center} of {self.on}"
+        return f"circular slot: {held}, radius {told(self.radius, 'length')}{ends}"

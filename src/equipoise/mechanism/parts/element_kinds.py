@@ -1,0 +1,110 @@
+"""Kinds of elements of a machine that declare themselves: force elements, and kinds of joints.
+
+A kind has its keys, its outputs, and what can be wrong with it.  Whatever reads, shows or refuses a
+machine asks for `Element`, and for no kind of it.  What a kind computes is arithmetic, so that it
+runs on arrays and on terms alike.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+
+from equipoise.i18n import Note
+from equipoise.keys import Frozen
+from equipoise.keys.declaring import listed_types, once
+from equipoise.mechanism.checks import Bodies
+
+if TYPE_CHECKING:
+    from equipoise.errors import ModelError
+
+
+class Placed(Protocol):
+    """Bodies where they are, by numbers, arrays over the crank angle, or terms."""
+
+    def point(self, body: str, point: str) -> Any:
+        """A point of a body in the frame, complex, m."""
+
+    def angle(self, body: str, on: str, middle: Any) -> Any:
+        """Angle of a body from the x axis of another, rad, within half a turn of `middle`."""
+
+    def turn(self, body: str) -> Any:
+        """Rotation of a body, complex of size 1."""
+
+    def rate(self, body: str) -> Any:
+        """Angular velocity of a body, rad/s."""
+
+    def bearing(self, vector: Any, middle: Any) -> Any:
+        """Angle of a vector, rad, within half a turn of `middle`."""
+
+    def within(self, value: Any, ends: tuple[Any, Any], wrong: str) -> None:
+        """Refuse a motion in which a value does not stay between two ends.
+
+        wrong : the sentence, with ``{crank_angle}`` for where that is, deg.
+        """
+
+
+class Element(Frozen):
+    """What a machine has in a list of its file, and what declares itself.
+
+    most : that a machine may have.
+    title : of the table of their outputs.  headings : of those outputs that it shows, of the
+        smallest and of the largest value.
+    """
+
+    most: ClassVar[int] = 200
+    title: ClassVar[str]
+    headings: ClassVar[Mapping[str, tuple[str, str]]]
+
+    @property
+    @abstractmethod
+    def bodies(self) -> tuple[str, str]:
+        """The bodies between which it is, the link first."""
+
+    @property
+    def points(self) -> tuple[tuple[str, str], ...]:
+        """Bodies and points at which it holds on to them; empty where it has none."""
+        return ()
+
+    @property
+    def idle_keys(self) -> tuple[str, ...]:
+        """Keys whose values count for nothing beside the others."""
+        return ()
+
+    @property
+    @abstractmethod
+    def label(self) -> Note:
+        """What tells it from others of its kind."""
+
+    @property
+    @abstractmethod
+    def route(self) -> tuple[str, str]:
+        """From where to where it acts."""
+
+    @abstractmethod
+    def sentence(self) -> Note:
+        """What it is, for a report."""
+
+    @abstractmethod
+    def values(self, at: Placed) -> Mapping[str, Any]:
+        """Its outputs by name."""
+
+    @abstractmethod
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with it in a machine of these bodies."""
+
+    def demands(self) -> Iterator[Any]:
+        """What has to be true of its numbers, or of columns of them."""
+        return iter(())
+
+    @abstractmethod
+    def summary(self) -> str:
+        """What it is with all its numbers, in a line of `check`."""
+
+
+@once
+def element_kinds(of: type[Frozen]) -> Mapping[str, type[Element]]:
+    """Kinds of elements that a class of machines has, by field, in the order of the file."""
+    kinds = listed_types(of).items()
+    return {field: kind for field, kind in kinds if issubclass(kind, Element)}

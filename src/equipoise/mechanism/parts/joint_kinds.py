@@ -1,0 +1,99 @@
+"""Kinds of joints that declare themselves: a pin of one body that follows a path on another.
+
+Such a joint is a rider: a body without mass that is pinned to the one and held by the other as pins
+and guides hold bodies.  A machine is put together with its riders, so that its motion, its joint
+forces, compiled loops and scripts know no kind of joint; and nothing that is shown has them.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note
+from equipoise.keys import Frozen
+from equipoise.keys.declaring import once
+from equipoise.mechanism.checks import Bodies, Vector, unknown_body, unknown_link
+from equipoise.mechanism.parts.element_kinds import Element, element_kinds
+from equipoise.mechanism.parts.sliders import Slider
+
+
+@dataclass(frozen=True)
+class Rider:
+    """The body without mass inside of a joint; it goes by the joint's name.
+
+    link, on : the bodies that the joint holds together.
+    points : of the rider in its own axes, m; the one that goes by the joint's name is its pin.
+    held : body -> points of its own at which it holds the rider, by what the rider calls them.
+    slides : guides of the rider; those whose numbers may be columns are made by `with_fields`.
+    normal : across the path, complex of size 1, in the rider's axes.
+    """
+
+    link: str
+    on: str
+    points: Mapping[str, Vector]
+    held: Mapping[str, Mapping[str, str]]
+    slides: tuple[Slider, ...] = ()
+    normal: complex = 1j
+
+
+class JointKind(Element):
+    """A pin of a link that follows a path on another body."""
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """By which its force goes in outputs, and its side in the table of sides."""
+
+    @abstractmethod
+    def rider(self) -> Rider:
+        """What stands for it where a machine is put together."""
+
+    @property
+    def label(self) -> Note:
+        """Its name, by which it is told from others."""
+        return Note("{name}", name=self.name)
+
+    def wrong_bodies(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """What is wrong with the names of the bodies that it holds together."""
+        link, on = self.bodies
+        yield from unknown_link(f"{where}.link", link, bodies)
+        yield from unknown_body(f"{where}.on", on, bodies)
+        if link == on:
+            yield ModelError(f"{where}.on", Note("{link!r} cannot hold itself", link=link))
+
+
+@once
+def joint_kinds(of: type[Frozen]) -> Mapping[str, type[JointKind]]:
+    """Kinds of joints that a class of machines has, by field, in the order of the file."""
+    kinds = element_kinds(of).items()
+    return {field: kind for field, kind in kinds if issubclass(kind, JointKind)}
+
+
+def with_riders(bodies: Bodies, riders: Mapping[str, Rider]) -> Bodies:
+    """Bodies with the riders of joints behind the first of them, and with the points at which they
+    hold these.
+    """
+    found = {body: dict(points) for body, points in bodies.items()}
+    for rider in riders.values():
+        for body, held in rider.held.items():
+            found[body] |= {new: bodies[body][old] for new, old in held.items()}
+    (first, points), *others = found.items()
+    return {first: points, **{name: one.points for name, one in riders.items()}, **dict(others)}
+
+
+def wrong_names(
+    joints: Iterable[tuple[str, JointKind]], bodies: Bodies, others: Iterable[str]
+) -> Iterator[ModelError]:
+    """Report joints that go by the name of a body, a point or another joint.
+
+    joints : with the place of each in the file.  others : names of sliding joints.
+    """
+    taken = {*bodies, *(point for points in bodies.values() for point in points), *others}
+    for where, one in joints:
+        if one.name in taken:
+            wrong = Note("{name!r} is the name of something else; give it another", name=one.name)
+            yield ModelError(f"{where}.label", wrong)
+        taken |= {one.name, *one.rider().points}

@@ -1,0 +1,235 @@
+"""A kind of joint that this test declares, and then finds wherever joints are.
+
+It is a pin in a straight slot, which a machine may also have as a block without mass on a guide.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.figures import Figure
+from equipoise.codegen.javascript import javascript
+from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import Note
+from equipoise.keys import Table, Tables, Text, declared, key, with_fields
+from equipoise.mechanism import Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.checks import Bodies, unknown_point
+from equipoise.mechanism.outputs.declared import declaring, of_element
+from equipoise.mechanism.parts.element_kinds import Placed
+from equipoise.mechanism.parts.joint_kinds import JointKind, Rider
+from equipoise.mechanism.parts.machine import Link
+from equipoise.mechanism.parts.sliders import Slider
+from equipoise.present.checks import machine_blocks
+from equipoise.schema.places import Context
+from equipoise.schema.reading import read_table
+from equipoise.schema.writing import Writer, toml_text
+from equipoise.symbols import element_signs
+from equipoise.symbols.pieces import pieces
+from equipoise.symbols.scene import Scene
+from equipoise.symbols.shapes import Mark, circle
+from equipoise.web.design import Design
+from equipoise.web.fields import fields_of
+from equipoise.web.tables import tables_of
+from secondroute.test_javascript import run
+
+
+@declared
+class StraightSlot(JointKind):
+    """A pin of a link in a straight slot of a body."""
+
+    called = "{what} of straight slot {number}"
+    title = "Straight slots"
+    headings: ClassVar[Mapping[str, tuple[str, str]]] = {"travel": ("least", "most")}
+
+    link: str = key(Text(of="link"), "the link that has the pin", example="rocker")
+    point: str = key(Text(of="point", on="link"), "its pin", example="C")
+    on: str = key(Text(of="body"), "the body that has the slot", example="frame")
+    through: str = key(Text(of="point", on="on"), "a point of its middle line", example="S")
+    direction: float = key("angle", "of that, in the axes of the body", default=0.0)
+    shift: float = key("length", "of the line to the left", default=0.0)
+
+    @property
+    def name(self) -> str:
+        return f"{self.point} in {self.on}"
+
+    @property
+    def bodies(self) -> tuple[str, str]:
+        return self.link, self.on
+
+    @property
+    def points(self) -> tuple[tuple[str, str], ...]:
+        return (self.link, self.point), (self.on, self.through)
+
+    @property
+    def route(self) -> tuple[str, str]:
+        return self.on, self.link
+
+    def rider(self) -> Rider:
+        base = f"base of {self.name}"
+        points = {self.name: (0.0, 0.0), base: (0.0, -1.0 * self.shift)}
+        guide = f"guide of {self.name}"
+        slide = Slider(self.name, base, self.on, self.through, 0.0, label=guide)
+        slide = with_fields(slide, direction=self.direction)  # of which designs have columns
+        held = {self.link: {self.name: self.point}}
+        return Rider(self.link, self.on, points, held, (slide,))
+
+    def values(self, at: Placed) -> Mapping[str, Any]:
+        way = at.point(self.link, self.point) - at.point(self.on, self.through)
+        along = at.turn(self.on) * np.exp(1j * self.direction)
+        return {"travel": (along.conjugate() * way).real}
+
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        yield from self.wrong_bodies(where, bodies)
+        for body, point in self.points:
+            if body in bodies:
+                yield from unknown_point(f"{where}.point", point, body, bodies)
+
+    def sentence(self) -> Note:
+        return Note("Straight slot of {on}", on=self.on)
+
+    def summary(self) -> str:
+        return f"straight slot: {self.point} of {self.link} in {self.on}"
+
+
+@declared
+class Slotted(Machine):
+    """A machine that may have straight slots."""
+
+    straight_slots: tuple[StraightSlot, ...] = key(
+        Tables(Table(StraightSlot)), "straight slots", default=()
+    )
+
+
+SLOT = StraightSlot("rod", "C", "frame", "A", 0.1, 0.01)
+BASE = eq.load("slider-crank-engine")
+ROD = Link({"B": (0.0, 0.0), "C": (0.14, 0.0)}, mass=0.4, center_of_mass=(0.05, 0.01), inertia=1e-3)
+
+
+def slotted(*slots: StraightSlot) -> Slotted:
+    """A crank and a rod whose end is in a slot."""
+    given = {one.name: getattr(BASE, one.name) for one in fields(Machine)}
+    links = {"crank": BASE.links["crank"], "rod": ROD}
+    sides = {one.name: "forward" for one in slots}
+    given |= {"links": links, "sliders": (), "loads": (), "assembly": sides, "rows": (),
+              "support": None, "balance": None}  # fmt: skip
+    return Slotted(**given, straight_slots=slots)
+
+
+def with_block() -> Machine:
+    """The same with a block on a guide."""
+    block = Link({"C": (0.0, 0.0), "D": (0.0, -0.01)}, mass=0.0, center_of_mass=(0.0, 0.0),
+                 inertia=0.0)  # fmt: skip
+    bare = slotted(SLOT)
+    given = {one.name: getattr(bare, one.name) for one in fields(Machine)}
+    slider = Slider("block", "D", "frame", "A", 0.1)
+    given |= {"links": {**bare.links, "block": block}, "sliders": (slider,),
+              "assembly": {"C": "forward"}}  # fmt: skip
+    return Machine(**given)
+
+
+MACHINE = slotted(SLOT)
+
+
+@pytest.fixture(autouse=True)
+def outputs() -> Iterator[None]:
+    with declaring():
+        of_element("straight_slots", "travel", "length", "travel in straight slot {name}")
+        yield
+
+
+def test_it_is_read_written_and_refused() -> None:
+    text = toml_text(Slotted, Writer({}).content(Slotted, MACHINE))
+    assert '[[straight_slots]]\nlink = "rod"\npoint = "C"\non = "frame"\n' in text
+    assert read_table(Slotted, tomllib.loads(text), Context()) == MACHINE
+    wrong = text.replace('link = "rod"\npoint', 'link = "rodd"\npoint')
+    with pytest.raises(ModelError, match=r"^straight_slots\[1\]\.link: .* did you mean 'rod'"):
+        read_table(Slotted, tomllib.loads(wrong), Context())
+    with pytest.raises(ModelError, match=r"^straight_slots\[2\]\.label: 'C in frame' is the name"):
+        slotted(SLOT, SLOT)
+    with pytest.raises(ModelError, match=r"^straight_slots: got 201"):
+        slotted(*[SLOT] * 201)
+    with pytest.raises(eq.EquipoiseError, match=r"2 free motions .*2 moving links, 2 pins"):
+        eq.move(slotted())
+
+
+def test_analysis_has_its_force_and_its_outputs() -> None:
+    found, block = (eq.analyze(one, 90) for one in (MACHINE, with_block()))
+    for name in ("drive_torque", "frame_moment"):
+        wanted = getattr(block.forces, name)
+        np.testing.assert_allclose(getattr(found.forces, name), wanted, rtol=1e-12)
+    pushed, guided = found.forces.joints["C in frame"], block.forces.joints["block on frame"]
+    assert found.forces.joints.keys() == {"A", "B", "C in frame"}
+    assert (pushed.on, pushed.by) == ("rod", "frame")
+    np.testing.assert_allclose(pushed.value, guided.value, atol=1e-12 * np.max(guided.size))
+    np.testing.assert_allclose(pushed.normal, guided.normal, atol=1e-12 * np.max(guided.size))
+    travel = block.motion.sliders["block on frame"].travel
+    np.testing.assert_allclose(found.outputs["straight_slots.1.travel"].values, travel)
+    assert {*found.motion.links} == {"crank", "rod"}
+    assert {*found.motion.sliders} == set()
+    told = " ".join(str(block) for block in machine_blocks(MACHINE))
+    assert "straight slot: C of rod in frame" in told
+    assert "guide of" not in told
+
+
+def test_compiled_loops_have_designs_by_its_numbers() -> None:
+    names = ("drive_torque", "joints.C in frame", "straight_slots.1.travel")
+    wanted = [Figure(name, "peak") for name in names]
+    batch = Batch(MACHINE, ["straight_slots[1].direction", "straight_slots[1].shift"], wanted,
+                  angles=90)  # fmt: skip
+    sizes = [(0.1, 0.01), (0.2, -0.005)]
+    figures, reason = batch(np.array(sizes))
+    assert not np.any(reason)
+    for row, (direction, shift) in zip(figures, sizes, strict=True):
+        one = replace(SLOT, direction=direction, shift=shift)
+        summary = eq.analyze(slotted(one), 90).summary
+        np.testing.assert_allclose(row, [summary[name].peak for name in names], rtol=1e-9)
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="needs Node to run JavaScript")
+def test_scripts_have_it(tmp_path: Path) -> None:
+    linkage, names = assemble(MACHINE), ["drive_torque", "straight_slots.1.travel"]
+    script, found = javascript(linkage, names), eq.analyze(MACHINE, 24)
+    got = run(script, script.numbers(linkage), found.motion.crank_angle, tmp_path)
+    for name, values in zip(names, got, strict=True):
+        wanted = found.outputs[name].values
+        np.testing.assert_allclose(values, wanted, atol=1e-12 * np.max(np.abs(wanted)))
+
+
+def test_drawings_have_its_sign(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where it is given one; its pin has a sign in any case, its block none."""
+
+    def sign(one: StraightSlot, *_: Any) -> Iterator[Mark]:
+        yield Mark(one.on, one.through, circle("path-edge", 0j, 0.01))
+
+    monkeypatch.setitem(element_signs.SIGNS, StraightSlot, sign)  # type: ignore[call-overload]
+    scene = Scene.of(eq.analyze(MACHINE, 12).motion)
+    shapes = [shape for one in pieces(scene) for shape in one.shapes]
+    assert [shape.radius for shape in shapes if shape.role == "path-edge"] == [0.01]
+    assert "C" in scene.pins
+    assert not scene.guides
+
+
+def test_the_page_has_its_form_and_its_numbers() -> None:
+    tables = tables_of(MACHINE)
+    keys = [one["key"] for one in tables["forms"]["StraightSlot"]["controls"]]
+    assert keys == ["link", "point", "on", "through", "direction", "shift"]
+    (group,) = (one for one in tables["groups"] if one["place"] == ["straight_slots"])
+    assert len(group["entries"]) == 1
+    numbers = fields_of(Design("mine", MACHINE))
+    assert {"straight_slots.1.direction", "straight_slots.1.shift"} <= numbers.keys()
+
+
+def test_formats_without_it_say_so(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"^straight_slots\[1\]: a file of .* pin in a slot"):
+        eq.export(MACHINE, tmp_path / "mine.xml")
