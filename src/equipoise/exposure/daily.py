@@ -18,12 +18,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf, isfinite, sqrt
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.exposure.weighting import not_negative
+from equipoise.results.declaring import Declarations, ResultOutput, values_of
 from equipoise.results.result import Result
 
 EIGHT_HOURS = 28_800.0
@@ -118,6 +119,15 @@ def verdict_of(a8: float) -> Verdict:
     return "below the action value"
 
 
+def _time(meaning: str, name: str) -> ResultOutput:
+    """A time, s, that may have no end."""
+    return ResultOutput(
+        f"{meaning}; null where there is no vibration",
+        "time",
+        read=lambda times: _finite(getattr(times, name)),
+    )
+
+
 @dataclass(frozen=True)
 class WorkingTimes:
     """How long a day, s, one may work with a tool.
@@ -138,18 +148,25 @@ class WorkingTimes:
         return time_to_reach(LIMIT, self.a_hv)
 
     @property
+    def japanese_limit(self) -> float:
+        """By the Japanese guideline: 200/a^2 hours."""
+        return limit_time(self.a_hv)
+
+    @property
     def japanese(self) -> float:
         """By the Japanese guideline: 200/a^2 hours, but at most two."""
         return allowed_time(self.a_hv)
 
-    def to_dict(self) -> dict[str, float | None]:
+    declared: ClassVar[Declarations] = {
+        "time_to_action": _time("until A(8) is the action value", "to_action"),
+        "time_to_limit": _time("until A(8) is the limit value", "to_limit"),
+        "japanese_limit_time": _time("200/a² hours", "japanese_limit"),
+        "japanese_time": _time("200/a² hours, but at most two", "japanese"),
+    }
+
+    def to_dict(self) -> dict[str, Any]:
         """Plain data; None where there is no end to it."""
-        return {
-            "time_to_action": _finite(self.to_action),
-            "time_to_limit": _finite(self.to_limit),
-            "japanese_limit_time": _finite(limit_time(self.a_hv)),
-            "japanese_time": self.japanese,
-        }
+        return values_of(self, self.declared)
 
 
 @dataclass(frozen=True)
@@ -188,6 +205,26 @@ class Task:
     def times(self) -> WorkingTimes:
         """How long one may do this and nothing else."""
         return WorkingTimes(self.acceleration)
+
+
+@dataclass(frozen=True)
+class TaskShare:
+    """A task, and its share in the square of A(8)."""
+
+    task: Task
+    share: float
+
+    declared: ClassVar[Declarations] = {
+        "name": ResultOutput("of the task", read="task.name"),
+        "a_hv": ResultOutput("vibration total value", "acceleration", read="task.acceleration"),
+        "duration": ResultOutput("time a day", "time", read="task.duration"),
+        "partial": ResultOutput("partial exposure A_i(8)", "acceleration", read="task.partial"),
+        "share": ResultOutput("share in the square of A(8)"),
+        "points": ResultOutput("exposure points", read=lambda one: points(one.task.partial)),
+        "times": ResultOutput(
+            "of this task alone", of=WorkingTimes.declared, read="task.times", spliced=True
+        ),
+    }
 
 
 @dataclass(frozen=True, repr=False)
@@ -238,33 +275,33 @@ class Exposure(Result):
         """Share of a task in the square of A(8), which is what adds up."""
         return (task.partial / self.a8) ** 2 if self.a8 > 0 else 0.0
 
-    def to_dict(self) -> dict[str, Any]:
-        """Everything as plain data, in SI units; None where there is no end to a time."""
-        return {
-            "tasks": [
-                {
-                    "name": task.name,
-                    "a_hv": task.acceleration,
-                    "duration": task.duration,
-                    "partial": task.partial,
-                    "share": self.share(task),
-                    "points": points(task.partial),
-                    **task.times.to_dict(),
-                }
-                for task in self.tasks
-            ],
-            "duration": self.duration,
-            "a_hv": self.a_hv,
-            "a8": self.a8,
-            "points": points(self.a8),
-            "action": ACTION,
-            "limit": LIMIT,
-            "share_of_limit": self.a8 / LIMIT,
-            "verdict": self.verdict,
-            **self.times.to_dict(),
-            "years_to_white_finger": _finite(self.years),
-            "years_extrapolated": self.extrapolated,
-        }
+    @property
+    def parts(self) -> tuple[TaskShare, ...]:
+        """Each task with its share."""
+        return tuple(TaskShare(task, self.share(task)) for task in self.tasks)
+
+    declared: ClassVar[Declarations] = {
+        "tasks": ResultOutput("tasks of the day", of=TaskShare.declared, many=True, read="parts"),
+        "duration": ResultOutput("of all tasks", "time"),
+        "a_hv": ResultOutput(
+            "steady vibration that amounts to the same in all of the time", "acceleration"
+        ),
+        "a8": ResultOutput("A(8)", "acceleration"),
+        "points": ResultOutput("exposure points of the day", read=lambda day: points(day.a8)),
+        "action": ResultOutput("action value", "acceleration", read=lambda _: ACTION),
+        "limit": ResultOutput("limit value", "acceleration", read=lambda _: LIMIT),
+        "share_of_limit": ResultOutput(
+            "A(8) over the limit value", read=lambda day: day.a8 / LIMIT
+        ),
+        "verdict": ResultOutput(" or ".join(f'`"{one}"`' for one in get_args(Verdict))),
+        "times": ResultOutput("of this mix of tasks", of=WorkingTimes.declared, spliced=True),
+        "years_to_white_finger": ResultOutput(
+            "D_y, in years; null where there is no vibration", read=lambda day: _finite(day.years)
+        ),
+        "years_extrapolated": ResultOutput(
+            "whether it lies outside Table C.1", read="extrapolated"
+        ),
+    }
 
 
 def daily_exposure(tasks: Iterable[Task]) -> Exposure:

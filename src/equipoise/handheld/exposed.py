@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -29,7 +29,9 @@ from equipoise.handheld.response import (
     shakes,
 )
 from equipoise.handheld.studies import has, number_of
+from equipoise.handheld.sweep import SPEED
 from equipoise.i18n import Note
+from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.results.result import Result
 from equipoise.signals import Array
 
@@ -63,6 +65,20 @@ class Grip:
 
     acceleration: Array
     a_hw: Array
+
+    declared: ClassVar[Declarations] = {
+        **{
+            f"{key}_{side}": ResultOutput(
+                f"{meaning}, {side}",
+                "acceleration",
+                read=lambda grip, key=key, k=k: getattr(grip, key)[k],  # type: ignore[misc]
+                along="speed",
+            )
+            for key, meaning in (("acceleration", "RMS"), ("a_hw", "weighted RMS"))
+            for k, side in enumerate(PLANES)
+        },
+        "a_hv": ResultOutput("total value", "acceleration", along="speed"),
+    }
 
     @property
     def a_hv(self) -> Array:
@@ -131,28 +147,29 @@ class ToolExposure(Result):
         """Daily exposure A(8) of that hand, m/s2; None where no work is told."""
         return None if self.worst is None else self.days[self.worst].a8
 
-    def to_dict(self) -> dict[str, Any]:
-        """As plain values in SI units."""
-        planes = [*enumerate(PLANES)]
-        return {
-            "speed": self.speed,
-            "a_hv": self.a_hv,
-            "a8": self.a8,
-            "hands": {
-                name: {
-                    **{f"acceleration_{side}": grip.acceleration[k] for k, side in planes},
-                    **{f"a_hw_{side}": grip.a_hw[k] for k, side in planes},
-                    "a_hv": grip.a_hv,
-                }
-                for name, grip in self.grips.items()
-            },
-            "named": {
+    declared: ClassVar[Declarations] = {
+        "speed": replace(SPEED, column=None),
+        "a_hv": ResultOutput("total value of the worst hand", "acceleration", along="speed"),
+        "a8": ResultOutput("A(8) of the day; null without work", "acceleration"),
+        "hands": ResultOutput(
+            "of each hand", of=Grip.declared, family=True, read="grips", along="speed"
+        ),
+        "named": ResultOutput(
+            "total value of each hand at the speeds of `[operation]`",
+            "acceleration",
+            family=True,
+            read=lambda found: {
                 what: {name: float(grip.a_hv[0]) for name, grip in part.items()}
-                for what, part in self.named.items()
+                for what, part in found.named.items()
             },
-            "days": {name: day.to_dict() for name, day in self.days.items()},
-            "equivalents": self.equivalents,
-        }
+        ),
+        "days": ResultOutput(
+            "exposure of each hand in a day", of=Exposure.declared, family=True, table="exposure"
+        ),
+        "equivalents": ResultOutput(
+            "idling and racing as one value of each hand, ISO 22867", "acceleration", family=True
+        ),
+    }
 
 
 def expose_tool(tool: Tool, speeds: Array, duration: float | None = None) -> ToolExposure:

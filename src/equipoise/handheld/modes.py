@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from equipoise.handheld.frequencies import (
 from equipoise.handheld.layout import Field, Kind, Layout
 from equipoise.handheld.model import PLANES, Station, Tool
 from equipoise.i18n import Note, to_say
+from equipoise.results.declaring import NOTES, Declarations, ResultOutput
 from equipoise.results.result import Result
 from equipoise.signals import Array, highest_at
 
@@ -40,6 +41,17 @@ SAME = 1e-9
 """Share of each other within which two natural frequencies are one."""
 
 
+FREQUENCIES = ResultOutput(
+    "natural frequencies without damping; 0 for rigid motions",
+    "frequency",
+    read="cycles_per_second",
+)
+PARAMETERS = ResultOutput(
+    r"$\lambda = (m \omega^2 L^4 / EI)^{1/4}$ of each, with the shaft's mass and stiffness",
+    read="parameter",
+)
+
+
 @dataclass(frozen=True, eq=False)
 class DampedMode:
     """A free motion that grows as exp(eigenvalue * t).
@@ -50,6 +62,17 @@ class DampedMode:
 
     eigenvalue: complex
     shape: Array
+
+    declared: ClassVar[Declarations] = {
+        "eigenvalue": ResultOutput(
+            "growth as exp(eigenvalue t): real and imaginary part, 1/s",
+            read=lambda mode: [mode.eigenvalue.real, mode.eigenvalue.imag],
+        ),
+        "frequency": ResultOutput(
+            "frequency with which it swings", "frequency", read="cycles_per_second"
+        ),
+        "damping_ratio": ResultOutput("share of the critical damping"),
+    }
 
     @property
     def damping_ratio(self) -> float:
@@ -86,23 +109,18 @@ class PlaneModes:
         """Natural frequencies (K,), Hz."""
         return self.frequency / (2 * pi)
 
-    def to_dict(self) -> dict[str, Any]:
-        """As plain values in SI units; natural frequencies in Hz."""
-        return {
-            "natural_frequencies": self.cycles_per_second,
-            "eigenvalues": self.parameter,
-            "rigid": list(self.rigid),
-            "shapes": self.shapes,
-            "nodes": [nodes.tolist() for nodes in self.nodes],
-            "damped": [
-                {
-                    "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
-                    "frequency": mode.cycles_per_second,
-                    "damping_ratio": mode.damping_ratio,
-                }
-                for mode in self.damped
-            ],
-        }
+    declared: ClassVar[Declarations] = {
+        "natural_frequencies": FREQUENCIES,
+        "eigenvalues": PARAMETERS,
+        "rigid": ResultOutput("names of the rigid motions", read=lambda plane: list(plane.rigid)),
+        "shapes": ResultOutput("shape of each mode at `places`, 1 where it is largest"),
+        "nodes": ResultOutput(
+            "places that stand still in each mode",
+            "length",
+            read=lambda plane: [nodes.tolist() for nodes in plane.nodes],
+        ),
+        "damped": ResultOutput("modes with damping", of=DampedMode.declared, many=True),
+    }
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -125,16 +143,23 @@ class ToolModes(Result):
         """Whether both planes are the same."""
         return self.planes[0] is self.planes[1]
 
-    def to_dict(self) -> dict[str, Any]:
-        """As plain values in SI units; natural frequencies in Hz."""
-        first, *_ = planes = [plane.to_dict() for plane in self.planes]
-        return {
-            "natural_frequencies": first["natural_frequencies"],
-            "eigenvalues": first["eigenvalues"],
-            "places": self.places,
-            "planes": dict(zip(PLANES, planes, strict=True)),
-            "notes": list(map(str, self.notes)),
-        }
+    declared: ClassVar[Declarations] = {
+        "natural_frequencies": replace(FREQUENCIES, read="vertical.cycles_per_second"),
+        "eigenvalues": replace(PARAMETERS, read="vertical.parameter"),
+        "places": ResultOutput("places of the shapes, from the left end", "length"),
+        "planes": ResultOutput(
+            "the planes `vertical` and `lateral`",
+            of=PlaneModes.declared,
+            family=True,
+            read=lambda modes: dict(zip(PLANES, modes.planes, strict=True)),
+        ),
+        "notes": NOTES,
+    }
+
+    @property
+    def vertical(self) -> PlaneModes:
+        """Modes of the vertical plane."""
+        return self.planes[0]
 
 
 def vibrate_tool(tool: Tool, number: int = 6) -> ToolModes:

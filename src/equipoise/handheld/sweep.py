@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from operator import itemgetter
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -23,6 +24,8 @@ from equipoise.handheld.response import (
     shakes,
 )
 from equipoise.i18n import Note
+from equipoise.quantities import Dimension
+from equipoise.results.declaring import Declarations, ResultOutput, values_of
 from equipoise.results.result import Result
 from equipoise.signals import Array, highest_at
 
@@ -51,6 +54,30 @@ ZOOMS, ACROSS = 6, 33
 """How often a lowest place is looked at more closely, and at how many speeds each time."""
 
 
+SPEED = ResultOutput("speed of the engine", "angular speed", along="speed", column="speed")
+
+
+def _planes(
+    key: str, meaning: str, dimension: Dimension | None, read: str, **more: Any
+) -> dict[str, ResultOutput]:
+    """An output of the vertical plane, and that of the lateral one.
+
+    read : attribute with both.  column : of the CSV file, where there is one.
+    """
+    column = more.pop("column", None)
+    return {
+        key + ("_lateral" if plane else ""): ResultOutput(
+            f"{meaning}, {side}",
+            dimension,
+            read=lambda one, plane=plane: getattr(one, read)[plane],  # type: ignore[misc]
+            column=column and f"{column}_{side}",
+            rank=plane,
+            **more,
+        )
+        for plane, side in enumerate(PLANES)
+    }
+
+
 @dataclass(frozen=True, eq=False)
 class Transmission:
     """Force on the body at a station over the force that shakes, against speed.
@@ -63,6 +90,23 @@ class Transmission:
     ratio: Array
     quiet: tuple[Array, Array]
     lowest: tuple[Array, Array]
+
+    declared: ClassVar[Declarations] = {
+        **_planes(
+            "ratio",
+            "force over that which shakes",
+            None,
+            "size",
+            along="speed",
+            column="transmission",
+        ),
+        **_planes(
+            "phase", "by which the force is ahead", "angle", "phase", along="speed", column="phase"
+        ),
+        **_planes(
+            "quiet_speeds", "speeds of least force between resonances", "angular speed", "quiet"
+        ),
+    }
 
     @property
     def size(self) -> Array:
@@ -89,24 +133,17 @@ class Transmissions(Result):
     speed: Array
     stations: Mapping[str, Transmission]
 
-    def to_dict(self) -> dict[str, Any]:
-        """As plain values in SI units; speeds in rad/s."""
-        return {
-            "source": self.source,
-            "speed": self.speed,
-            "transmission": {
-                name: {
-                    f"{key}{suffix}": both[plane]
-                    for key, both in (
-                        ("ratio", one.size),
-                        ("phase", one.phase),
-                        ("quiet_speeds", one.quiet),
-                    )
-                    for plane, suffix in enumerate(("", "_lateral"))
-                }
-                for name, one in self.stations.items()
-            },
-        }
+    declared: ClassVar[Declarations] = {
+        "source": ResultOutput("station of the unit force"),
+        "speed": SPEED,
+        "transmission": ResultOutput(
+            "at each station that a hand, a harness or the ground holds",
+            of=Transmission.declared,
+            family=True,
+            read="stations",
+            column="{}.",
+        ),
+    }
 
 
 def source_of(tool: Tool) -> str:
@@ -186,6 +223,38 @@ class Places(NamedTuple):
     moment: Array
 
 
+def _over_speeds(key: str, meaning: str, dimension: Dimension) -> ResultOutput:
+    return ResultOutput(meaning, dimension, read=itemgetter(key), along="speed", column=key)
+
+
+AT_PLACE: Declarations = {
+    "position": ResultOutput("from the left end", "length", read=itemgetter("position")),
+    "displacement": _over_speeds("displacement", "RMS over time, planes together", "length"),
+    "velocity": _over_speeds("velocity", "RMS over time, planes together", "speed"),
+    "acceleration": _over_speeds("acceleration", "RMS over time, planes together", "acceleration"),
+    "moment": _over_speeds("moment", "bending moment, RMS over time, planes together", "torque"),
+}
+AT_STATION: Declarations = AT_PLACE | {
+    "forces": ResultOutput(
+        "force on hand, harness and ground, RMS over time, planes together",
+        "force",
+        family=True,
+        read=itemgetter("forces"),
+        along="speed",
+        column="force_{}",
+    ),
+    "power": ResultOutput(
+        "mean power into hand, harness, ground and absorber",
+        "power",
+        family=True,
+        read=itemgetter("power"),
+        along="speed",
+        column="power_{}",
+    ),
+}
+"""What a place of the shaft does over speeds (S,), and a station besides."""
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class ToolSweep(Result):
     """A tool over speeds (S,) of its engine, rad/s.
@@ -245,21 +314,9 @@ class ToolSweep(Result):
 
         wanted : keys that are needed of those that take time; None for all.
         """
-        found: dict[str, Any] = {"speed": self.speed}
-        if self.transmissions is not None:
-            found |= self.transmissions.to_dict()
-        if self.response is None:
-            return found
-        found["orders"] = self.response.orders
-        if wanted is None or "stations" in wanted:
-            found["stations"] = self._stations()
-        if wanted is None or "largest_moment" in wanted:
-            moment, place = self.largest_moment
-            found["largest_moment"] = {"moment": moment, "place": place}
-        found["further"] = self._told(self.further)
-        return found
+        return values_of(self, self.declared, wanted)
 
-    def _told(self, places: Sequence[float]) -> list[dict[str, Any]]:
+    def _moved(self, places: Sequence[float]) -> list[dict[str, Any]]:
         """What each of some places does, by name of the figure."""
         at = self.places(places)._asdict()
         return [
@@ -267,34 +324,63 @@ class ToolSweep(Result):
             for k, place in enumerate(places)
         ]
 
-    def _stations(self) -> dict[str, Any]:
+    @property
+    def station_values(self) -> dict[str, Any]:
+        """What each station does, and what holds it bears."""
         stations = self.tool.stations
-        told = zip(stations, self._told([one.position for one in stations]), strict=True)
+        moved = zip(stations, self._moved([one.position for one in stations]), strict=True)
         return {
             one.name: {**row, "forces": self.force(one.name), "power": self.power(one.name)}
-            for one, row in told
+            for one, row in moved
         }
 
-    def columns(self) -> list[tuple[str, str, Array]]:
-        """Figures against speed, as name, unit and values (S,)."""
-        found: list[tuple[str, str, Array]] = [("speed", "rad/s", self.speed)]
-        if self.transmissions is not None:
-            for name, one in self.transmissions.stations.items():
-                for plane, label in enumerate(PLANES):
-                    found.append((f"{name}.transmission_{label}", "1", one.size[plane]))
-                    found.append((f"{name}.phase_{label}", "rad", one.phase[plane]))
-        if self.response is not None:
-            rows = self._stations()
-            rows |= {f"{row['position']:.6g} m": row for row in self._told(self.further)}
-            for name, row in rows.items():
-                found += [(f"{name}.{key}", unit, row[key]) for key, unit in UNITS.items()]
-                for key, label, unit in (("forces", "force", "N"), ("power", "power", "W")):
-                    parts = row.get(key, {}).items()
-                    found += [(f"{name}.{label}_{part}", unit, each) for part, each in parts]
-        return found
+    @property
+    def further_values(self) -> list[dict[str, Any]]:
+        """What the further places do."""
+        return self._moved(self.further)
 
-
-UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "moment": "N m"}
+    declared: ClassVar[Declarations] = {
+        "speed": SPEED,
+        "transmissions": ResultOutput(
+            "of a unit force",
+            of=Transmissions.declared,
+            spliced=True,
+            present="transmissions",
+            column="",
+        ),
+        "orders": ResultOutput("events in a turn", read="response.orders", present="response"),
+        "stations": ResultOutput(
+            "of each station",
+            of=AT_STATION,
+            family=True,
+            read="station_values",
+            present="response",
+            slow=True,
+            column="{}.",
+        ),
+        "largest_moment": ResultOutput(
+            "of the largest bending moment",
+            of={
+                "moment": ResultOutput(
+                    "RMS over time", "torque", read=itemgetter(0), along="speed"
+                ),
+                "place": ResultOutput(
+                    "from the left end", "length", read=itemgetter(1), along="speed"
+                ),
+            },
+            present="response",
+            slow=True,
+        ),
+        "further": ResultOutput(
+            "of each place given by `--at`",
+            of=AT_PLACE,
+            many=True,
+            read="further_values",
+            named=lambda row: f"{row['position']:.6g} m",
+            present="response",
+            column="{}.",
+        ),
+    }
 
 
 def sweep_tool(tool: Tool, speed: Array, further: Sequence[float] = ()) -> ToolSweep:

@@ -70,7 +70,7 @@ class ResultOutput:
     dimension: Dimension | Own | None = None
     turned: Dimension | None = None
     read: Callable[[Any], Any] | str = ""
-    of: Mapping[str, ResultOutput] | None = None
+    of: dict[str, ResultOutput] | None = None
     many: bool = False
     family: bool = False
     members: Callable[[Any], Mapping[str, bool]] | None = None
@@ -129,7 +129,7 @@ def _with_nulls(values: Array) -> list[Any]:
     return list(found.tolist())
 
 
-Declarations = Mapping[str, ResultOutput]
+Declarations = dict[str, ResultOutput]
 TITLE = ResultOutput("title of the model")
 NOTES = ResultOutput(
     "what a reader has to know, in sentences", read=lambda result: list(map(str, result.notes))
@@ -148,6 +148,14 @@ def values_of(
         if one.is_in(holder) and (not one.slow or wanted is None or key in wanted):
             value = one.plain(one.value(key, holder))
             found |= value if one.spliced else {key: value}
+    return found
+
+
+def flat(declared: Declarations) -> Declarations:
+    """Declarations with those in the place of others among them, as keys of the JSON object."""
+    found: Declarations = {}
+    for key, one in declared.items():
+        found |= flat(one.of) if one.spliced and one.of is not None else {key: one}
     return found
 
 
@@ -286,9 +294,10 @@ def _rows(declared: Declarations, before: str) -> Iterator[str]:
         csv = "" if one.column is None or one.has_columns else "yes"
         if csv and (one.spliced or one.column != key):
             csv = f"`{one.column}`"
-        yield f"| `{path}` | {unit_shown(one)} | {one.meaning} | {csv} |\n"
+        if path and not (one.spliced and one.of and not one.table):
+            yield f"| `{path}` | {unit_shown(one)} | {one.meaning} | {csv} |\n"
         if one.of is not None and not one.table:
-            yield from _rows(one.of, f"{path}.")
+            yield from _rows(one.of, before if one.spliced else f"{path}.")
 
 
 def unit_shown(one: ResultOutput) -> str:

@@ -78,7 +78,8 @@ class Result(Displayed):
 
         Empty where it has none.
         """
-        return [*columns_of(self, self.declared, model=self.owner)]
+        found = columns_of(self, self.declared, model=self.owner)
+        return [*{column[0]: column for column in found}.values()]  # parts share an abscissa
 
     shown_in: ClassVar[str] = ""
     """Module that tells what it shows; ``blocks`` of its room where not given."""

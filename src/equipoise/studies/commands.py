@@ -19,7 +19,7 @@ from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import Call
 from equipoise.results.declaring import ALONG, PLACES
-from equipoise.studies.figures import Step, figure_name, resolve
+from equipoise.studies.figures import Step, answers_about_tools, figure_name, resolve
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
@@ -32,8 +32,6 @@ Wanted = Collection[str] | None
 
 MOST_ORDERS = 100
 """Of harmonics, as many as ``equipoise analyze --orders`` gives."""
-OVER_SPEEDS = {"speed", "a_hv", "hands"}
-"""Keys of a tool's exposure that run over a range of speeds; the others are at named ones."""
 SPLIT = {"by_cause", "by_link"}
 
 
@@ -72,14 +70,6 @@ def _balanced(model: Machine | Tool, wanted: Wanted) -> Values:
     return balance(cast("Machine", model)).to_dict(wanted)
 
 
-ANSWERS = {
-    "modes": "natural_frequencies eigenvalues places planes notes",
-    "respond": "speed source transmission orders stations largest_moment further",
-    "exposure": "a_hv a8 hands named days equivalents",
-}
-"""Keys of each answer about a tool."""
-
-
 def _of_tool(model: Machine | Tool, wanted: Wanted) -> Values:
     """`equipoise tool` without further options; only those of its answers that have the keys."""
     from equipoise.handheld.sweep import default_answers
@@ -87,13 +77,14 @@ def _of_tool(model: Machine | Tool, wanted: Wanted) -> Values:
     tool = cast("Tool", model)
     values: dict[str, Any] = {"title": tool.title}
     for name in default_answers(tool):
-        if wanted is None or not set(ANSWERS[name].split()).isdisjoint(wanted):
-            values |= _answer(tool, name, wanted)
+        left = None if wanted is None else set(wanted) - set(values)
+        if left is None or not left.isdisjoint(answers_about_tools()[name]):
+            values |= _answer(tool, name, left)
     return values
 
 
 def _answer(tool: Tool, name: str, wanted: Wanted) -> Values:
-    from equipoise.handheld.exposed import expose_tool
+    from equipoise.handheld.exposed import ToolExposure, expose_tool
     from equipoise.handheld.modes import vibrate_tool
     from equipoise.handheld.sweep import MODES, sweep_tool
 
@@ -101,12 +92,13 @@ def _answer(tool: Tool, name: str, wanted: Wanted) -> Values:
         return vibrate_tool(tool, MODES).to_dict()
     if name == "respond":
         return sweep_tool(tool, _speeds(tool)).to_dict(wanted)
-    if wanted is None or not OVER_SPEEDS.isdisjoint(wanted):
+    over_speeds = {key for key, one in ToolExposure.declared.items() if one.along}
+    if wanted is None or not over_speeds.isdisjoint(wanted):
         return expose_tool(tool, _speeds(tool)).to_dict()
     if tool.operation is None:
         raise ModelError("operation", "missing; add the table [operation]")
     values = expose_tool(tool, np.array([tool.operation.speed])).to_dict()
-    return {key: value for key, value in values.items() if key not in OVER_SPEEDS}
+    return {key: value for key, value in values.items() if key not in over_speeds}
 
 
 def _speeds(tool: Tool) -> np.ndarray[Any, Any]:

@@ -22,7 +22,14 @@ from equipoise.mechanism.kinematics.stroke_figures import declared_figures
 from equipoise.mechanism.kinematics.stroke_figures import dimension_of as of_stroke
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.planting.names import dimension_of as of_planting
-from equipoise.results.declaring import ALONG, FIGURES_OF_LISTS, PLACES, dimension_at
+from equipoise.results.declaring import (
+    ALONG,
+    FIGURES_OF_LISTS,
+    PLACES,
+    Declarations,
+    dimension_at,
+    flat,
+)
 from equipoise.signals import figures
 
 if TYPE_CHECKING:
@@ -255,21 +262,6 @@ KINDS: dict[str, dict[str, str | None]] = {
         r"added_mass|(before|after)\.mass": "mass",
         r"(?!before\.|after\.).*|.*\.area": None,
     },
-    "tool": {
-        rf"(.*\.)?({_AT})": "angular speed",
-        r"(equivalents|named)(\..*)?": "acceleration",
-        r"stations\..*\.forces\.[^.]*": "force",
-        r"stations\..*\.power\.[^.]*": "power",
-        r"(.*\.)?(a_hv|a8|(acceleration|a_hw)(_vertical|_lateral)?)": "acceleration",
-        r"(.*\.)?(natural_frequencies|frequency)": "frequency",
-        r"(.*\.)?(speed|quiet_speeds|quiet_speeds_lateral)": "angular speed",
-        r"(.*\.)?phase(_lateral)?": "angle",
-        r"(.*\.)?(position|displacement|places?|nodes)": "length",
-        r"(.*\.)?velocity": "speed",
-        r"(.*\.)?moment": "torque",
-        r"(.*\.)?(duration|time_to_(action|limit)|japanese_(limit_)?time)": "time",
-        ".*": None,
-    },
 }
 """Of each command: paths, without places in lists and what is told of a list, and what they are."""
 
@@ -285,10 +277,9 @@ def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
     whole = re.sub(r"\[[^\]]*\]", "", value).replace('"', "")
     if of not in ("plant", "respond", "balance", "tool"):
         of, whole = "analyze", whole.removeprefix("summary.").removeprefix("outputs.")
-    if of == "respond":
-        from equipoise.vibration.response import Response
-
-        return dimension_at(Response.declared, whole, model)
+    if of in ("respond", "tool"):
+        kinds = (dimension_at(one, whole, model) for one in declarations(of))
+        return next((kind for kind in kinds if kind), None)
     path = whole if of in ("plant", "balance") else _STATISTIC.sub("", whole)
     for pattern, dimension in KINDS[of].items():
         if re.fullmatch(pattern, path):
@@ -304,6 +295,29 @@ def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
     found = _of_support(model, kind, name) if of == "balance" and kind == "gauges" else None
     plain = of == "analyze" and first != "by_order"
     return found or _of_output(path if plain else _LAST.sub("", rest))
+
+
+def declarations(of: str) -> Iterator[Declarations]:
+    """What each result of a command declares."""
+    if of == "respond":
+        from equipoise.vibration.response import Response
+
+        yield Response.declared
+    else:
+        yield from answers_about_tools().values()
+
+
+def answers_about_tools() -> dict[str, Declarations]:
+    """What each answer about a tool declares."""
+    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.modes import ToolModes
+    from equipoise.handheld.sweep import ToolSweep
+
+    return {
+        "modes": ToolModes.declared,
+        "respond": flat(ToolSweep.declared),
+        "exposure": ToolExposure.declared,
+    }
 
 
 _STATISTIC = re.compile(rf"\.({'|'.join(FIGURES_OF_LISTS)})$")

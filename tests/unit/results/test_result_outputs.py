@@ -12,6 +12,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.exposure.daily import Exposure
+from equipoise.handheld.exposed import ToolExposure, expose_tool
+from equipoise.handheld.modes import ToolModes, vibrate_tool
+from equipoise.handheld.sweep import ToolSweep, Transmission, sweep_tool
 from equipoise.results.blocks import Table, Value
 from equipoise.results.declaring import Declarations, ResultOutput, documented
 from equipoise.results.result import Result
@@ -34,6 +38,10 @@ TABLES: dict[str, tuple[str, Declarations]] = {
     "speeds": ("output.md", Sweep.declared),
     "simulate": ("output.md", Transient.declared),
     "modes": ("output.md", FreeVibration.declared),
+    "tool-modes": ("tools.md", ToolModes.declared),
+    "tool-respond": ("tools.md", ToolSweep.declared),
+    "tool-exposure": ("tools.md", ToolExposure.declared),
+    "exposure": ("exposure.md", Exposure.declared),
 }
 """Tables of the documentation by name: their page, and the outputs that they list."""
 
@@ -123,6 +131,47 @@ CASES = {
         page="simulate",
     ),
 }
+CASES |= {
+    "tool modes": Case(
+        vibrate_tool, "brush-cutter", ToolModes.declared, "new", of="tool", page="tool-modes"
+    ),
+    "tool sweep": Case(
+        lambda tool: sweep_tool(tool, np.array([600.0, 700.0])),
+        "brush-cutter",
+        ToolSweep.declared,
+        "new",
+        "new [N]",
+        "speed",
+        of="tool",
+        page="tool-respond",
+    ),
+    "transmission": Case(
+        lambda tool: sweep_tool(tool, np.array([600.0, 700.0])),
+        "brush-cutter",
+        Transmission.declared,
+        "transmission.belt.new",
+        "belt.new [N]",
+        "phase",
+        of="tool",
+        page="tool-respond",
+        title="",
+    ),
+    "tool exposure": Case(
+        lambda tool: expose_tool(tool, np.array([600.0, 700.0])),
+        "brush-cutter",
+        ToolExposure.declared,
+        "new",
+        of="tool",
+        page="tool-exposure",
+    ),
+    "exposure": Case(
+        lambda tool: expose_tool(tool, np.array([700.0])).days["rear-grip"],
+        "brush-cutter",
+        Exposure.declared,
+        "new",
+        page="exposure",
+    ),
+}
 NEW = ResultOutput("quarter of a newton", "force", read=lambda _: 0.25, heading="largest")
 
 
@@ -168,10 +217,12 @@ def test_studies_have_it_and_know_its_dimension(case: Case) -> None:
         pytest.skip("no study runs that command")
     model = Template.load(case.model)
     assert dimension_of(model.base(), case.of, case.path) == "force"
-    vary = Vary("drive.speed", Range(10.0, 11.0), "angular speed")
+    speed = "operation.speed" if case.of == "tool" else "drive.speed"
+    own = model.number(speed)[0]
+    vary = Vary(speed, Range(own, 1.1 * own), "angular speed")
     outputs = (Output("new", case.of, case.path, "force", make="smallest"),)
     study = Study("Study", model, (vary,), outputs, Sampling("sobol", 2))
-    figures = OneByOne(study)(np.array([[10.0], [11.0]])).figures
+    figures = OneByOne(study)(np.array([[own], [1.1 * own]])).figures
     np.testing.assert_array_equal(figures, [[0.25], [0.25]])
 
 
@@ -179,7 +230,7 @@ def test_it_is_documented(case: Case) -> None:
     rows = documented(TABLES[case.page][1]).splitlines()
     csv = "yes" if case.csv else ""
     key = case.path.replace(".gauge.", ".NAME.").replace(".spring.", ".NAME.")
-    key = key.replace(".B.", ".NAME.")
+    key = key.replace(".B.", ".NAME.").replace(".belt.", ".NAME.")
     assert f"| `{key}` | N | quarter of a newton | {csv} |" in rows
 
 
