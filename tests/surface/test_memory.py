@@ -13,7 +13,7 @@ import ezdxf
 import numpy as np
 import pytest
 
-from surface.running import Result, command, equipoise, example_text, refused
+from surface.running import Result, command, equipoise, example_text, refused, succeeded
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 
@@ -130,6 +130,17 @@ def test_what_is_large_is_refused_before_it_begins(
     """With what follows from what was asked for, not when memory has run out."""
     monkeypatch.setenv("EQUIPOISE_MEMORY", "2 MB")
     assert re.search(message, refused(equipoise(words[0], turning(example, 20), *words[1:])))
+
+
+def test_a_study_takes_no_memory_for_outputs_that_it_does_not_want(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Forces by cause and by link take far more than all others."""
+    monkeypatch.setenv("EQUIPOISE_MEMORY", "20 MB")
+    named = STUDY.replace('"yamashita-1"', f'"{turning("yamashita-1", 20)}"')
+    few = named.replace("designs = 2000", "designs = 2").replace("\nangles = 180", "\nangles = 720")
+    Path("study.toml").write_text(few, encoding="utf-8")
+    succeeded(equipoise("sweep", "study.toml", "-o", "designs.zarr"))
 
 
 def test_a_limit_that_is_none() -> None:

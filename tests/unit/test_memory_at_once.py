@@ -13,6 +13,7 @@ from equipoise.balancing import box_bounds, multi_row
 from equipoise.balancing.box_bounds import largest_reading
 from equipoise.balancing.multi_row import Cost, RowSignals, Term
 from equipoise.balancing.phase_grid import Grid
+from equipoise.mechanism.assembly.least import least
 from equipoise.mechanism.parts.balance import Measure, Objective
 from equipoise.signals import Array, Periodic
 
@@ -79,3 +80,9 @@ def test_what_is_computed_in_parts_is_that_of_the_whole(
     assert some.values(phases) == pytest.approx(values, rel=1e-12)
     for part, whole in zip(largest_reading(some, total), readings, strict=True):
         assert part == pytest.approx(whole, rel=1e-12)
+
+
+def test_joint_forces_that_statics_leaves_open_at_many_crank_angles() -> None:
+    random = np.random.default_rng(7)
+    matrix, right = random.normal(size=(30_000, 12, 15)), random.normal(size=(30_000, 12, 1))
+    assert peak_of(lambda: least(matrix, right)) < 30

@@ -244,7 +244,7 @@ def _values(
 ) -> Mapping[str, Any]:
     if command != "analyze":
         return COMMANDS[command](model, wanted)
-    return analyzed(cast("Machine", model), study.angles or ANGLES, None)
+    return analyzed(cast("Machine", model), study.angles or ANGLES, wanted)
 
 
 def _resolved(study: Study, values: Mapping[str, Any], output: Output) -> tuple[Step, ...]:

@@ -15,6 +15,7 @@ from equipoise.mechanism.formulas.strands import LEFT, RIGHT
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.machine import FRAME
+from equipoise.mechanism.parts.racks import Rack
 from equipoise.symbols.pieces import Piece, pieces
 from equipoise.symbols.scene import WIDE, Guide, Scene
 from equipoise.symbols.shapes import Array, Shape
@@ -89,10 +90,11 @@ def _of_coupling(motion: Motion, piece: Piece, shape: Shape) -> Values | None:
     link = FRAME if piece.hold is None else piece.hold.link
     if table == "belts" and shape.role == "strand":
         return _strand(motion, shape, name)
-    if table == "cams" or (table == "racks" and link != coupling.driver):
+    pinion = coupling.pinion if isinstance(coupling, Rack) else ""
+    if table == "cams" or (pinion and link != pinion):
         return {"made_of": [*_made_of(motion, table, name)]}
-    driver = joints.pins_between(coupling.driver, coupling.carrier)[0]
-    if table == "racks":
+    driver = joints.pins_between(pinion or coupling.driver, coupling.carrier)[0]
+    if pinion:
         return {"turned": {"about": driver}}
     pins = coupling_pins(joints, coupling)
     about = driver if link == coupling.driver else pins[1]

@@ -16,10 +16,13 @@ from equipoise.errors import RangeError, UsageError
 from equipoise.exchange.export import made
 from equipoise.exchange.formats import FORMATS
 from equipoise.i18n import catalogue, speaking
+from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.schema.template import Template
 from equipoise.symbols.scene import Scene
 from equipoise.web.drawing import stage_of
+from equipoise.web.following_signs import ties_of
 from equipoise.web.interactive import Interactive, column_path
+from support import machines
 from support.interactive import NODE, evaluated
 
 ROOT = Path(__file__).parents[3]
@@ -324,3 +327,16 @@ def test_a_machine_without_masses_only_moves(tmp_path: Path) -> None:
     assert any("forces" in one for one in eq.export(bare, path))
     names = evaluated(path.read_text("utf-8"), "return machine.data.names;", tmp_path)
     assert "points.P.x" in names and "shaking_force.x" not in names
+
+
+@pytest.mark.parametrize("kind", ["rack_on_frame", "pinion_on_frame"])
+def test_pinions_turn_on_the_page_whether_they_drive_or_are_driven(
+    kind: str, tmp_path: Path
+) -> None:
+    machine = machines.make(kind, 0).machine
+    (rack,) = machine.racks
+    motion = eq.analyze(machine).motion
+    ties = [tie for sign in ties_of(Scene.of(motion), motion) for tie in sign if tie]
+    pins = assemble(machine).joints.pins_between(rack.pinion, rack.carrier)
+    assert {"turned": {"about": pins[0]}} in ties
+    assert page_of(machine)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from equipoise.decompositions import svd
@@ -13,12 +15,26 @@ CLEAR = 1e-8
 """The same of rows that clearly do not depend on each other."""
 APART = 1e5
 """By how much, at most, products of rows let errors grow."""
+AT_ONCE = 2**20
+"""Entries of matrices that are worked on at a time: what is in between takes several times that."""
 
 
 def least(matrix: Array, right: Array) -> Array:
-    """Least solutions (N, m, k) of equations (N, n, m) with right sides (N, n, k): by the products
-    of rows, and by the rows themselves where products lose digits.
-    """
+    """Least solutions (N, m, k) of equations (N, n, m) with right sides (N, n, k)."""
+    found = np.empty((matrix.shape[0], matrix.shape[2], right.shape[2]))
+    for some in in_blocks(matrix):
+        found[some] = _least_by_products(matrix[some], right[some])
+    return found
+
+
+def in_blocks(matrix: Array) -> Iterator[slice]:
+    """Slices of a stack of matrices (N, n, m), of as many as are worked on at a time."""
+    step = max(1, AT_ONCE // max(1, matrix[:1].size))
+    return (slice(begin, begin + step) for begin in range(0, len(matrix), step))
+
+
+def _least_by_products(matrix: Array, right: Array) -> Array:
+    """By the products of rows, and by the rows themselves where products lose digits."""
     across = np.swapaxes(matrix, -1, -2)
     products = matrix @ across
     probe = np.cos(np.arange(matrix.shape[1]))  # of no meaning: shows how much errors can grow
@@ -35,7 +51,7 @@ def least(matrix: Array, right: Array) -> Array:
 
 
 def _least_by_rows(matrix: Array, right: Array) -> Array:
-    """The same by QR, and by singular values where rows nearly depend on each other."""
+    """By QR, and by singular values where rows nearly depend on each other."""
     across, triangle = np.linalg.qr(np.swapaxes(matrix, -1, -2))
     sizes = np.abs(np.diagonal(triangle, axis1=-2, axis2=-1))
     clear = np.min(sizes, axis=-1) > CLEAR * np.max(sizes, axis=-1)

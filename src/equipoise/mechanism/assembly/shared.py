@@ -23,7 +23,7 @@ from equipoise.i18n import Note, all_of, to_say
 from equipoise.mechanism.assembly.agreeing import agreeing
 from equipoise.mechanism.assembly.builder import Builder, Group
 from equipoise.mechanism.assembly.joints import Structure, name_in_outputs, no_motion
-from equipoise.mechanism.assembly.least import least, parts_of
+from equipoise.mechanism.assembly.least import in_blocks, least, parts_of
 from equipoise.mechanism.assembly.loop_forces import LoopForces
 from equipoise.mechanism.assembly.loopgroup import Maker
 from equipoise.mechanism.assembly.loops import CouplingLoop, Poses, SlideLoop
@@ -147,12 +147,17 @@ class Shared(LoopForces):
         demand = self.demand(state) / rows
         right = np.moveaxis(demand.reshape(-1, *demand.shape[-2:]), 0, -1)
         if self.compliance:
-            told = self.by_stiffness(*parts_of(matrix), idle) @ right
+            told = np.concatenate(
+                [
+                    self.by_stiffness(*parts_of(matrix[some]), idle[some]) @ right[some]
+                    for some in in_blocks(matrix)
+                ]
+            )
         else:
             told = least(matrix, right)
-        told = told * ~idle[..., None]  # of rounding
+        told *= ~idle[..., None]  # of rounding
+        told *= units[:, None]
         found = np.moveaxis(told, (-1, 1), (1, 0)).reshape(len(units), *demand.shape[:-1])
-        found = found * units.reshape(-1, *np.ones(demand.ndim - 1, int))
         count = len(self.drives)
         state.update((f"torque({drive})", one)
                      for drive, one in zip(self.drives, found[-count:], strict=True))  # fmt: skip
