@@ -4,6 +4,7 @@ from . import handheld as handheld
 from . import measured as measured
 from . import mechanism as mechanism
 from . import planting as planting
+from . import running as running
 from . import schema as schema
 from . import signals as signals
 from . import studies as studies
@@ -29,6 +30,7 @@ from .mechanism.parts.support import Support as Support
 from .planting.summary import plant as plant
 from .present.composition import report as report
 from .results.analysis import analyze as analyze
+from .running.run import run as run
 from .schema.documents import dumps as dumps
 from .schema.documents import load as load
 from .schema.documents import loads as loads

@@ -53,7 +53,7 @@ ROOT = Path(__file__).parents[2]
 COMMANDS = (
     *["analyze", "animate", "balance", "best", "check", "completion", "decay", "examples"],
     *["export", "exposure", "import", "mcp", "modes", "new", "plant", "plot", "report", "respond"],
-    *["resume", "schema", "search", "serve", "simulate", "site", "sweep", "tolerance"],
+    *["resume", "run", "schema", "search", "serve", "simulate", "site", "sweep", "tolerance"],
     "tool",
 )
 LINK_KEYS = ["angle", "angular_velocity", "angular_acceleration"]
@@ -178,6 +178,10 @@ OPTIONS = {
     "report": ["FILE", "--out", "--language", "--pdf", "--speed", "--units"],
     "respond": ["FILE", "--model", "--speed", "--speeds", "--drive", "--full", *OUTPUTS],
     "resume": ["STORE", "--workers", "--cluster", *DRAWN],
+    "run": [
+        *["FILE", "DURATION", "--turns", "--speed", "--angle", "--off", "--off-turns", "--full"],
+        *OUTPUTS,
+    ],
     "schema": ["--tool", "--study"],
     "search": [
         *[

@@ -78,6 +78,7 @@ PICTURES = {
         *("response", "velocity", "acceleration", "resonance-map", "mounts")
     },
     "simulate yamashita-rig '0.2 s'": {"gauges", "mounts"},
+    "run yamashita-rig '0.2 s'": {"speed"},
     "modes yamashita-rig": {"mode-1"},
     "balance trade-off yamashita-1 --crank-counterweight "
     "shaking_force.x shaking_force.y --points 3": {"front"},

@@ -82,6 +82,7 @@ LINES = [
     "plant fit kim-chung-a targets.toml --out fitted.toml",
     "respond yamashita-rig --model exact",
     "respond riding-transplanter --speed '60 rpm : 150 rpm' --speeds 8",
+    "run yamashita-rig --turns 3 --full",
     "simulate yamashita-rig '0.3 s'",
     "sweep study.toml --out designs.zarr",
     "resume designs.zarr",

@@ -67,8 +67,8 @@ def test_a_name_means_one_thing() -> None:
         assert found.setdefault(name.rpartition(".")[2], one) is one, name
 
 
-COMMANDS = ("analyze", "balance", "export", "modes", "plant", "report", "respond", "search",
-            "simulate", "sweep", "tolerance")  # fmt: skip
+COMMANDS = ("analyze", "balance", "export", "modes", "plant", "report", "respond", "run",
+            "search", "simulate", "sweep", "tolerance")  # fmt: skip
 
 
 def test_what_a_command_does_is_found_under_its_name() -> None:

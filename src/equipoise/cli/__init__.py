@@ -46,7 +46,7 @@ MODULES = {
     "files": ["check", "completion", "examples", "new", "schema", "serve"],
     "handheld:app": ["tool"],
     "importing:import_file": ["import"],
-    "linkage": ["analyze", "modes", "respond", "simulate"],
+    "linkage": ["analyze", "modes", "respond", "run", "simulate"],
     "linkage:planting": ["plant"],
     "measured": ["decay", "exposure"],
     "pictures:app": ["plot"],

@@ -267,6 +267,56 @@ def simulate(
     outputs.give(found)
 
 
+def run(
+    file: File,
+    duration: Annotated[
+        float | None, size("time", "give a time of more than 0", "DURATION")
+    ] = None,
+    /,
+    *,
+    turns: Annotated[int | None, count(1, 10_000)] = None,
+    speed: Annotated[float | None, size("angular speed")] = None,
+    angle: Angle = None,
+    off: Annotated[float | None, size("time", "give a time of more than 0")] = None,
+    off_turns: Annotated[int | None, count(1, 10_000)] = None,
+    length: Length = Length(),
+    outputs: Outputs = Outputs(),
+) -> None:
+    """How a machine on a fixed frame runs when its motor, weight, springs and loads decide.
+
+    Parameters
+    ----------
+    duration
+        Time after which the run ends, such as "2 s"; without it and --turns, it ends when steady or
+        at a standstill.
+    turns
+        Turns of the crank after which the run ends.
+    speed
+        Speed of the crank at the start: 0 with a motor, else the file's, if not given.
+    angle
+        Crank angle at the start, 0 if not given.
+    off
+        Time at which the motor is switched off.
+    off_turns
+        Turns of the crank after which the motor is switched off.
+    """
+    from equipoise.running.run import run as follow
+
+    machine = linkage_of(file)
+    outputs.check(sources_of(machine, file))
+    with naming(file):
+        found = follow(
+            machine,
+            duration,
+            turns=turns,
+            speed=speed,
+            angle=angle or 0.0,
+            off=off,
+            off_turns=off_turns,
+        )
+    outputs.give(found, length)
+
+
 # -- planting --------------------------------------------------------------------------------------
 
 

@@ -24,6 +24,7 @@ Pictures = dict[str, Chart]
 CHARTS = {
     "Response": "vibration:response_charts",
     "Transient": "vibration:transient_charts",
+    "Run": "running:run_charts",
     "Sweep": "sweep:sweep_charts",
     "ToolModes": "tool_side:mode_pictures",
     "Transmissions": "tool_speeds:transmission_charts",

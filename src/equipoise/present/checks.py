@@ -169,6 +169,8 @@ def _curve(motor: Motor) -> str:
     if motor.table is not None:
         speeds = motor.table.speed
         return f"{len(speeds)} rows from {_rpm(speeds[0])} to {_rpm(speeds[-1])} rpm"
+    if motor.torque is not None:
+        return f"{told(motor.torque, 'torque', 'N m')} at every speed"
     assert motor.no_load_speed is not None
     assert motor.stall_torque is not None
     torque = told(motor.stall_torque, "torque", "N m")

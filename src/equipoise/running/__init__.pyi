@@ -1,1 +1,2 @@
-from .equation import CrankEquation as CrankEquation
+from .run import Run as Run
+from .run import run as run

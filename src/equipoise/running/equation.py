@@ -105,7 +105,7 @@ class CrankEquation:
 
     @cached_property
     def table(self) -> Tabulated:
-        """J', J, and the columns of each source one after the other."""
+        """J, and the columns of each source one after the other."""
 
         def functions(theta: Array) -> Array:
             motions = self.motions(theta)
@@ -113,21 +113,23 @@ class CrankEquation:
             columns = [inertia, *(c for one in self.sources for c in one.columns(motions))]
             return np.array([np.broadcast_to(column, theta.shape) for column in columns])
 
-        return Tabulated(functions, self.edges, slopes=1)
+        return Tabulated(functions, self.edges)
 
     @cached_property
     def slices(self) -> tuple[slice, ...]:
         """Of each source, its columns in the table."""
         few = self.motions(np.zeros(1))
         counts = [len(source.columns(few)) for source in self.sources]
-        ends = 2 + np.cumsum([0, *counts])
+        ends = 1 + np.cumsum([0, *counts])
         return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
 
-    def at(self, theta: float, speed: float) -> tuple[float, float, list[float]]:
+    def torques(self, columns: Array, speed: Array) -> Array:
+        """Torque (K, ...) of each source, N m, by columns (C, ...) of the table, at speeds."""
+        each = zip(self.sources, self.slices, strict=True)
+        found = [source.torque(columns[part], speed) for source, part in each]
+        return np.array(found) if found else np.zeros((0, *np.shape(speed)))
+
+    def at(self, theta: float, speed: float) -> tuple[float, float, Array]:
         """J, J' and the torque of each source at a crank angle and speed."""
-        values = self.table.at(theta)
-        torques = [
-            source.torque(values[part], speed)
-            for source, part in zip(self.sources, self.slices, strict=True)
-        ]
-        return values[1], values[0], torques
+        values, slopes = self.table.at(theta)
+        return float(values[0]), float(slopes[0]), self.torques(values, np.asarray(speed))

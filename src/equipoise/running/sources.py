@@ -13,13 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from equipoise.i18n import to_say
-from equipoise.mechanism.dynamics.acting import (
-    given_loads,
-    resistance,
-    spring_demands,
-)
+from equipoise.mechanism.dynamics.acting import against_soil, given_loads, spring_demands
 from equipoise.mechanism.dynamics.reactions import demands_of
 from equipoise.mechanism.dynamics.reduced import generalized_force, weight_torque
+from equipoise.mechanism.formulas.kernels import dot
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.kinematics.tip import surface_of
 from equipoise.mechanism.parts.field import Planting
@@ -44,8 +41,8 @@ class Source(ABC):
         """Smooth functions (N,) of the crank angle that it needs."""
 
     @abstractmethod
-    def torque(self, columns: Sequence[float], speed: float) -> float:
-        """Generalized force, N m, by these and the crank's speed, rad/s."""
+    def torque(self, columns: Array, speed: Array) -> Array:
+        """Generalized force (...), N m, by these (C, ...) and the crank's speed (...), rad/s."""
 
 
 @dataclass(frozen=True)
@@ -59,8 +56,9 @@ class ByAngle(Source):
     def columns(self, motions: Motions) -> list[Array]:
         return [np.asarray(sum(self.of(motion) for motion in motions))]
 
-    def torque(self, columns: Sequence[float], speed: float) -> float:
-        return columns[0]
+    def torque(self, columns: Array, speed: Array) -> Array:
+        torque: Array = columns[0]
+        return torque
 
 
 @dataclass(frozen=True)
@@ -73,25 +71,17 @@ class OfSoil(Source):
     label: str = to_say("soil")
 
     def columns(self, motions: Motions) -> list[Array]:
-        found = []
-        for motion in motions:
-            for arm in self.planting.every_arm:
-                tip = motion.point(arm.tip)
-                found += [self.surface - tip.y, tip.place_1.real, tip.place_1.imag]
-        return found
+        tips = [motion.point(arm.tip) for motion in motions for arm in self.planting.every_arm]
+        places = [self.surface - tip.y for tip in tips]
+        return [*places, *(tip.place_1.real for tip in tips), *(tip.place_1.imag for tip in tips)]
 
-    def torque(self, columns: Sequence[float], speed: float) -> float:
+    def torque(self, columns: Array, speed: Array) -> Array:
         assert self.planting.soil is not None
-        total, forward = 0.0, self.planting.forward(speed)
-        for k in range(0, len(columns), 3):
-            depth, x, y = columns[k : k + 3]
-            if depth > 0:
-                over_ground = complex(x * speed + forward, y * speed)
-                rate = abs(over_ground)
-                size = float(resistance(self.planting.soil, depth, rate))  # type: ignore[arg-type]
-                if rate > 0:
-                    total -= size / rate * (over_ground.real * x + over_ground.imag * y)
-        return total
+        depth, x, y = columns.reshape(3, -1, *columns.shape[1:])
+        way = x + 1j * y
+        over_ground = way * speed + self.planting.forward(speed)
+        force = against_soil(self.planting.soil, depth, over_ground)
+        return np.asarray(np.sum(dot(force, way), axis=0))
 
 
 def _of_loads(motion: Motion) -> Array:

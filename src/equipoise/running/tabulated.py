@@ -1,8 +1,8 @@
 """Smooth functions of the crank angle, interpolated to rounding by polynomials piece by piece.
 
-An integration asks for them ten thousand times, one crank angle at a time, while solving a linkage
-costs the same at one crank angle and at hundreds.  So it is solved at the nodes of all pieces at
-once, and pieces are halved until the last coefficients are rounding.
+The motion asks for them again in every turn, while solving a linkage costs the same at one crank
+angle and at hundreds.  So it is solved once, at the nodes of all pieces at once, and pieces are
+halved until the last coefficients are rounding.
 """
 
 from __future__ import annotations
@@ -27,29 +27,49 @@ HALVINGS = 9
 and what is left is a corner, whose share of an integral is nothing.
 """
 MOST_NODES = 200_000
+ROUNDING = 1e-12
+"""Of a period, within which a crank angle is the end of a piece."""
 
 POINTS = chebyshev.chebpts1(NODES)
 TO_CHEBYSHEV = np.linalg.inv(chebyshev.chebvander(POINTS, NODES - 1))
-TO_POWERS = np.zeros((NODES, NODES))
-for _k in range(NODES):
-    TO_POWERS[: _k + 1, _k] = chebyshev.cheb2poly(np.eye(NODES)[_k])
-EXPONENTS = np.arange(NODES)
+INTEGRAL = chebyshev.chebint(TO_CHEBYSHEV)
+"""(NODES + 1, NODES), Chebyshev coefficients of the antiderivative of values at the nodes."""
+DERIVATIVE = chebyshev.chebder(np.eye(NODES))
+ORDERS = np.arange(NODES + 1)
+
+
+def polynomials(x: Array | float) -> Array:
+    """Chebyshev's polynomials (..., NODES + 1) at places (...) within -1 and 1."""
+    return np.cos(np.multiply.outer(np.arccos(np.minimum(np.maximum(x, -1.0), 1.0)), ORDERS))
+
+
+def integral_to(x: Array | float, begin: float) -> Array:
+    """Weights (..., NODES) of the values at the nodes in their integral from `begin` to x, within
+    -1 and 1.
+    """
+    return np.asarray((polynomials(x) - polynomials(begin)) @ INTEGRAL)
+
+
+def roughness(values: Array) -> Array:
+    """Size (...) of the last two Chebyshev coefficients of values (..., NODES) at the nodes."""
+    return np.asarray(np.max(np.abs(values @ TO_CHEBYSHEV[-2:].T), axis=-1))
 
 
 class Tabulated:
     """Functions (C,) of the crank angle that repeat after a period, rad.
 
+    lows, highs : (P,) ends of the pieces, rad.  values : (C, P, NODES) at their nodes.
+    coefficients : (P, C, NODES) of Chebyshev's polynomials.
+
     functions : values (C, N) at crank angles (N,).
     edges : rising from 0 to the period, between which the functions are smooth.
-    slopes : how many of the functions, from the first on, have their derivative told as well, in
-        front of all others.
     """
 
-    def __init__(self, functions: Callable[[Array], Array], edges: Array, slopes: int = 0) -> None:
+    def __init__(self, functions: Callable[[Array], Array], edges: Array) -> None:
         self.period = float(edges[-1])
         lows, highs = edges[:-1], edges[1:]
-        pieces: list[tuple[Array, Array, Array]] = []  # lows, highs, coefficients of Chebyshev
-        scale: Array | None = None
+        pieces: list[tuple[Array, Array, Array]] = []
+        scale = np.zeros(1)
         for left in range(HALVINGS, -1, -1):
             middle, half = (highs + lows) / 2, (highs - lows) / 2
             theta = middle[:, None] + half[:, None] * POINTS
@@ -58,35 +78,32 @@ class Tabulated:
                     Note("what acts on the crank changes too often in a cycle to be followed")
                 )
             values = functions(theta.ravel()).reshape(-1, *theta.shape)
-            size = np.max(np.abs(values), axis=(1, 2))
-            scale = size if scale is None else np.maximum(scale, size)
-            found = values @ TO_CHEBYSHEV.T
-            rest = np.max(np.abs(found[..., -2:]), axis=2)
-            rough = (
-                np.any(rest > FINE * scale[:, None], axis=0) if left else np.zeros(len(lows), bool)
-            )
-            pieces.append((lows[~rough], highs[~rough], found[:, ~rough]))
+            scale = np.maximum(scale, np.max(np.abs(values), axis=(1, 2)))
+            rough = np.any(roughness(values) > FINE * scale[:, None], axis=0) & (left > 0)
+            pieces.append((lows[~rough], highs[~rough], values[:, ~rough]))
             if not np.any(rough):
                 break
             lows = np.concatenate([lows[rough], middle[rough]])
             highs = np.concatenate([middle[rough], highs[rough]])
-        begin = np.concatenate([one for one, _, _ in pieces])
-        end = np.concatenate([one for _, one, _ in pieces])
-        order = np.argsort(begin)
-        powers = np.concatenate([one for _, _, one in pieces], axis=1)[:, order] @ TO_POWERS.T
-        begin, end = begin[order], end[order]
-        derivatives = np.zeros((slopes, *powers.shape[1:]))
-        derivatives[..., :-1] = powers[:slopes, :, 1:] * EXPONENTS[1:]
-        derivatives *= (2 / (end - begin))[:, None]
-        self._starts: list[float] = begin.tolist()
-        self._middles: list[float] = ((begin + end) / 2).tolist()
-        self._per_half: list[float] = (2 / (end - begin)).tolist()
-        self._coefficients = [*np.moveaxis(np.concatenate([derivatives, powers]), 1, 0)]
+        low, high = (np.concatenate([piece[end] for piece in pieces]) for end in (0, 1))
+        values = np.concatenate([piece[2] for piece in pieces], axis=1)
+        order = np.argsort(low)
+        self.lows, self.highs, self.values = low[order], high[order], values[:, order]
+        self._starts: list[float] = self.lows.tolist()
+        self.coefficients = np.moveaxis(self.values @ TO_CHEBYSHEV.T, 1, 0)
 
-    def at(self, theta: float) -> list[float]:
-        """Derivatives, then values, at a crank angle."""
-        theta -= self.period * floor(theta / self.period)
-        k = bisect_right(self._starts, theta) - 1
-        x = (theta - self._middles[k]) * self._per_half[k]
-        found: list[float] = (self._coefficients[k] @ x**EXPONENTS).tolist()
-        return found
+    def piece(self, theta: float, direction: float) -> tuple[int, float]:
+        """Number of the piece in which the way goes on from a crank angle, and how many periods
+        that angle is ahead of it, as an angle, rad; direction is 1 or -1.
+        """
+        inside = theta + direction * ROUNDING * self.period
+        ahead = self.period * floor(inside / self.period)
+        return bisect_right(self._starts, inside - ahead) - 1, ahead
+
+    def at(self, theta: float) -> tuple[Array, Array]:
+        """Values and derivatives (C,) at a crank angle."""
+        k, ahead = self.piece(theta, 1.0)
+        half = (self.highs[k] - self.lows[k]) / 2
+        x = (theta - ahead - self.lows[k]) / half - 1
+        basis, coefficients = polynomials(x)[:NODES], self.coefficients[k]
+        return coefficients @ basis, coefficients @ (DERIVATIVE.T @ basis[:-1]) / half

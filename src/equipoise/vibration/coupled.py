@@ -23,7 +23,7 @@ from math import copysign, pi
 import numpy as np
 
 from equipoise.errors import ResponseError
-from equipoise.i18n import Note
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import size_of_bodies
 from equipoise.mechanism.parts.machine import Machine
@@ -203,6 +203,10 @@ MOST_EVALUATIONS, TO_SETTLE = 600_000, 60_000
 """Of the equations, in all; and for a guess."""
 RELATIVE, ABSOLUTE = 1e-9, 1e-12
 """Tolerances over the states, and over the size of the machine."""
+STALLS = to_say(
+    "the motor stalls at crank angle {angle:.1f} deg: the crank needs {needed:.4g} N m to go "
+    "on, and has {given:.4g} N m; give a stronger motor, a higher ratio or a larger flywheel"
+)
 SETTLING_TURNS = 40
 STANDSTILL = 1e-6
 """Speed backwards, over that of the file, at which a motor counts as stalled: above rounding."""
@@ -303,8 +307,7 @@ def _stalled(system: Coupled, table: Sums, states: Array, angle: float) -> Note:
         for torque in (system.needed_torque(table, states), system.drive_torque(table, states))
     )
     return Note(
-        "the motor stalls at crank angle {angle:.1f} deg: the crank needs {needed:.4g} N m to go "
-        "on, and has {given:.4g} N m; give a stronger motor, a higher ratio or a larger flywheel",
+        STALLS,
         angle=float(np.degrees(angle) % 360),
         needed=needed,
         given=given,

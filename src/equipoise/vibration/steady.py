@@ -200,10 +200,8 @@ def torque_on_crank(drive: Drive, way: float) -> Torque:
 
 def _rows(motor: Motor) -> tuple[Array, Array]:
     """Speeds and torques between which the motor's curve is straight."""
-    if motor.table is not None:
-        return np.array(motor.table.speed), np.array(motor.table.torque)
-    assert motor.no_load_speed is not None and motor.stall_torque is not None
-    return np.array([0.0, motor.no_load_speed]), np.array([motor.stall_torque, 0.0])
+    speeds, torques = motor.rows
+    return np.array(speeds), np.array(torques)
 
 
 def fastest(motor: Motor) -> float:

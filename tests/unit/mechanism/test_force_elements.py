@@ -17,7 +17,7 @@ FOUR = crank_rocker()
 LINE = Motor(300.0, 2.0)
 TABLE = MotorTable((0.0, 300.0), (2.0, 0.0))
 CURVE = Motor(table=TABLE)
-EITHER = "give either no_load_speed and stall_torque, or table"
+EITHER = "give either no_load_speed and stall_torque, or torque, or table"
 
 
 def wrong(where: str, words: str, motor: Motor) -> None:
@@ -32,6 +32,9 @@ def wrong(where: str, words: str, motor: Motor) -> None:
         (Motor(stall_torque=2.0), "", EITHER),
         (replace(LINE, table=TABLE), "", EITHER),
         (Motor(300.0, table=TABLE), "", EITHER),
+        (Motor(300.0, torque=1.0), "", EITHER),
+        (Motor(table=TABLE, torque=1.0), "", EITHER),
+        (Motor(torque=-1.0), ".torque", "got -1 N m; give more than 0"),
         (replace(LINE, no_load_speed=0.0), ".no_load_speed", "got 0 rad/s; give more than 0"),
         (replace(LINE, stall_torque=-2.0), ".stall_torque", "got -2 N m; give more than 0"),
         (replace(LINE, ratio=0.0), ".ratio", "got 0; give more than 0"),

@@ -47,6 +47,7 @@ RESULTS: dict[str, Callable[[], Any]] = {
     "exact response": lambda: eq.respond(eq.load("yamashita-rig"), model="exact"),
     "sweep": lambda: eq.vibration.sweep_speed(eq.load("yamashita-rig"), 5.0, 40.0, speeds=12),
     "free vibration": lambda: eq.modes(eq.load("riding-transplanter")),
+    "run": lambda: eq.run(eq.load("yamashita-rig"), turns=3),
     "transient": lambda: eq.simulate(eq.load("yamashita-rig"), 0.3),
     "balanced": lambda: eq.balance(eq.load("balance-crank")),
     "phases": lambda: eq.balance(eq.load("four-row-transplanter")),

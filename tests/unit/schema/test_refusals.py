@@ -172,7 +172,7 @@ PLANTING_BEYOND: Refusals = {
 QUICK = 'no_load_speed = "3000 rpm"'
 OF_MOTORS: Refusals = {
     # what is replaced, by what, the place, what is said
-    "half a line": (QUICK, "", "", "give either no_load_speed and stall_torque, or table"),
+    "half a line": (QUICK, "", "", "give either no_load_speed and stall_torque, or torque, or"),
     "line and table": (QUICK, f'{QUICK}\ntable = "motor.csv"', ".table", ""),
     "nothing": (MOTOR[MOTOR.index(QUICK):], "\n", "", "give either no_load_speed and stall_torque"),
     "ratio as text": (QUICK, f'{QUICK}\nratio = "12"', ".ratio", "got '12'; give a plain number"),

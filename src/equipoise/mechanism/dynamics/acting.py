@@ -120,11 +120,17 @@ def soil_force(motion: Motion, tip: str | None = None) -> Array:
         return np.zeros(len(motion.crank_angle), complex)
     point = motion.point(tip or planting.tip)
     depth = surface_of(motion.machine) - point.y
-    over_ground = point.velocity + planting.forward(motion.speed)
+    return against_soil(planting.soil, depth, point.velocity + planting.forward(motion.speed))
+
+
+def against_soil(soil: Soil, depth: Array, over_ground: Array) -> Array:
+    """Force (N,), N, complex, on a tip at depths (N,), m, with velocities over ground (N,), m/s,
+    complex; 0 above the surface.
+    """
     speed = np.abs(over_ground)
-    size = np.where(depth > 0, resistance(planting.soil, depth, speed), 0.0)
+    size = np.where(depth > 0, resistance(soil, depth, speed), 0.0)
     against = np.divide(-over_ground, speed, out=np.zeros_like(over_ground), where=speed > 0)
-    return size * against
+    return np.asarray(size * against)
 
 
 def resistance(soil: Soil, depth: Array, speed: Array) -> Array:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 from math import pi
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
@@ -201,7 +201,7 @@ class Planting(Frozen):
         """Hills planted in a row in one turn of the drive, by all arms."""
         return self.units_per_turn * (1 + len(self.arms))
 
-    def forward(self, speed: float) -> float:
+    def forward(self, speed: Any) -> Any:
         """Velocity of the machine along x, m/s, at a speed of the drive, rad/s."""
         if self.forward_speed is None:
             assert self.hill_spacing is not None

@@ -22,6 +22,8 @@ from equipoise.keys import (
     declared,
     inside,
     key,
+    lacks,
+    needs,
 )
 from equipoise.mechanism.checks import (
     Bodies,
@@ -175,16 +177,18 @@ class MotorTable(Frozen):
 class Motor(Frozen):
     """The motor or engine that turns the crank; its torque and speed are sizes.
 
-    Torque falls in a straight line from the one at standstill to zero at no load, or follows the
-    table.
+    Torque falls in a straight line from the one at standstill to zero at no load, is the same at
+    every speed, or follows the table.
     """
 
     called = to_say("{what} of the motor")
-    file_order = ("no_load_speed", "stall_torque", "table", "ratio", "inertia", "mean_speed")
+    file_order = ("no_load_speed", "stall_torque", "torque", "table", "ratio", "inertia",
+                  "mean_speed")  # fmt: skip
     conditions: ClassVar[Conditions] = {
         "oneOf": [
-            {"required": ["no_load_speed", "stall_torque"], "properties": {"table": False}},
-            {"required": ["table"], "properties": {"no_load_speed": False, "stall_torque": False}},
+            needs("no_load_speed", "stall_torque") | lacks("table", "torque"),
+            needs("table") | lacks("no_load_speed", "stall_torque", "torque"),
+            needs("torque") | lacks("no_load_speed", "stall_torque", "table"),
         ]
     }
 
@@ -217,6 +221,23 @@ class Motor(Frozen):
         "holds as it is, and the speed follows from it",
         default="held",
     )
+    torque: float | None = key(
+        "torque",
+        "of the motor at every speed, instead of a curve",
+        default=None,
+        example="0.5 N m",
+        above=0,
+    )
+
+    @property
+    def rows(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Speeds, rad/s, and torques, N m, between which and beyond its curve is straight."""
+        if self.table is not None:
+            return self.table.speed, self.table.torque
+        if self.torque is not None:
+            return (0.0, 1.0), (self.torque, self.torque)
+        assert self.no_load_speed is not None and self.stall_torque is not None
+        return (0.0, self.no_load_speed), (self.stall_torque, 0.0)
 
 
 # -- checks ----------------------------------------------------------------------------------------
@@ -328,8 +349,11 @@ def wrong_motor(where: str, motor: Motor) -> Iterator[ModelError]:
     """Everything that is wrong with a motor."""
     line, table = (motor.no_load_speed, motor.stall_torque), motor.table
     where_table = f"{where}.table"
-    if line.count(None) != (0 if table is None else 2):
-        yield ModelError(where, Note("give either no_load_speed and stall_torque, or table"))
+    given = [line.count(None) < 2, table is not None, motor.torque is not None]
+    if sum(given) != 1 or line.count(None) == 1:
+        yield ModelError(
+            where, Note("give either no_load_speed and stall_torque, or torque, or table")
+        )
     elif table is None:
         return
     elif len(table.speed) != len(table.torque):

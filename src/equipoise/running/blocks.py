@@ -1,0 +1,122 @@
+"""What a run shows: the verdict, its figures, where its energy went, and its events."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import degrees, pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from equipoise.i18n import Note, said, say, to_say
+from equipoise.quantities import PER_RPM, number, told
+from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value, broken_if
+from equipoise.running.run import DRIVE
+from equipoise.vibration.coupled import STALLS
+
+if TYPE_CHECKING:
+    from equipoise.running.run import Run
+
+EVENTS = {
+    "off": to_say("motor switched off"),
+    "reversal": to_say("turns back"),
+    "steady": to_say("steady"),
+    "standstill": to_say("stands still"),
+    "stall": to_say("motor stalls"),
+    "turns": to_say("end of the run"),
+    "time": to_say("end of the run"),
+}
+MOST_EVENTS = 20
+ROUNDING = 1e-9
+"""Share of the kinetic energy below which the drive gives none in a cycle."""
+
+
+def run_headline(run: Run, alone: bool = False) -> Iterator[Block]:
+    """Whether and how the machine runs; alone also its figures.
+
+    alone : whether nothing follows, as on a terminal.
+    """
+    yield Text(verdict(run), broken_if(run.end.kind == "stall"))
+    if alone and (lines := tuple(_figures(run))):
+        yield Facts(say("Last cycle"), lines)
+
+
+def verdict(run: Run) -> str:
+    """What came of the run, in a sentence."""
+    end, cycle, lacking = run.end, run.last_cycle, run.lacking_torque
+    if lacking is not None:
+        needed, given = lacking
+        at = degrees(end.crank_angle) % 360
+        return said(Note(STALLS, angle=at, needed=needed, given=given)) + "."
+    values = {"time": number(end.time), "turns": number(abs(run.turned))}
+    if end.kind == "standstill":
+        angle = number(degrees(end.crank_angle) % 360)
+        template = to_say(
+            "The machine stands still after {time} s and {turns} turns, at crank angle {angle} deg."
+        )
+        return say(template, **values, angle=angle)
+    if end.kind == "steady" and cycle is not None:
+        speed = number(cycle.mean_speed / PER_RPM)
+        share = f"{100 * cycle.fluctuation:.3g}"
+        if run.starting_time is None:
+            template = to_say("The machine runs at {speed} rpm, with a fluctuation of {share} %.")
+            return say(template, speed=speed, share=share)
+        template = to_say(
+            "The machine starts in {time} s and runs at {speed} rpm, with a fluctuation of "
+            "{share} %."
+        )
+        return say(template, time=number(run.starting_time), speed=speed, share=share)
+    speed = number(end.speed / PER_RPM)
+    template = to_say("After {time} s and {turns} turns the crank turns at {speed} rpm.")
+    return say(template, **values, speed=speed)
+
+
+def _figures(run: Run) -> Iterator[str]:
+    cycle = run.last_cycle
+    if cycle is None:
+        return
+    speeds = {"low": cycle.lowest, "mean": abs(cycle.mean_speed), "high": cycle.highest}
+    yield say(
+        "speed from {low} to {high} rpm, {mean} rpm in the mean",
+        **{name: number(speed / PER_RPM) for name, speed in speeds.items()},
+    )
+    gives = abs(cycle.energy) > ROUNDING * float(np.max(run.kinetic_energy))
+    yield say(
+        "drive: {energy} in a turn, {power} in the mean",
+        energy=told(cycle.energy_per_turn if gives else 0.0, "energy", "J"),
+        power=told(cycle.power if gives else 0.0, "power", "W"),
+    )
+
+
+def run_blocks(run: Run) -> Iterator[Block]:
+    """Figures, energies and events."""
+    if lines := tuple(_figures(run)):
+        yield Facts(say("Last cycle"), lines)
+    labels = {source.key: say(source.label) for source in run.equation.sources}
+    labels[DRIVE] = say("drive")
+    energy = run.kinetic_energy
+    rows = [(labels[name], Value(float(work[-1]))) for name, work in run.work.items()]
+    rows.append((say("kinetic energy"), Value(float(energy[-1] - energy[0]))))
+    columns = ("", Column(say("work"), "energy"))
+    yield Table.of(say("Energy from the start to the end"), columns, rows)
+    error = f"{run.energy_error:.1e}"
+    yield Text(say("Kinetic energy and work agree to {error} of the largest.", error=error))
+    events = [
+        (
+            say(EVENTS[event.kind]),
+            Value(event.time),
+            Value(event.crank_angle / (2 * pi)),
+            Value(event.speed),
+        )
+        for event in run.events[-MOST_EVENTS:]
+    ]
+    heads = (
+        "",
+        Column(say("time"), "time"),
+        say("turns"),
+        Column(say("crank speed"), "angular speed", "rpm"),
+    )
+    yield Table.of(say("Events"), heads, events)
+
+
+SHOWS = {"Run": run_blocks}

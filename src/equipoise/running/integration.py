@@ -1,0 +1,367 @@
+"""The crank's motion from a start on, from one piece of the crank angle to the next.
+
+While the crank turns, its angle is the clock: in each piece of the table the kinetic energy is the
+integral of the torques, and collocation at the table's own nodes needs no linkage between them.
+
+    E(q) = J q.^2 / 2,    dE/dq = Q(q, q.) + T(q.),    dt/dq = 1 / q.
+
+About standstill, where the angle is no clock, SciPy's DOP853 integrates in time to the piece's end:
+explicit and of order 8, because the equation is smooth and not stiff there, and tolerances are
+tight; LSODA takes three times as many steps at these, and Radau solves systems that nothing asks
+for.  The work of each source is integrated on the way, so that their sum can be held against the
+kinetic energy of the linkage itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from math import copysign, inf, pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ResponseError
+from equipoise.i18n import Note
+from equipoise.running.drivers import Driver
+from equipoise.running.equation import CrankEquation
+from equipoise.running.tabulated import NODES, POINTS, integral_to, polynomials, roughness
+from equipoise.signals import Array
+
+RELATIVE, ABSOLUTE = 1e-11, 1e-13
+"""Tolerances of a step in time, over the states and over their usual sizes."""
+RESOLVED = 1e-9
+"""Share of its largest value below which the last coefficients of 1 / speed have to lie in a piece
+whose angle is the clock."""
+CLOSE, MOST_ITERATIONS = 1e-13, 8
+"""Change of the kinetic energy, over its largest, at which a piece is solved; it takes 3 rounds."""
+NUDGE = 1e-6
+"""Share of a speed by which it is changed for slopes, which only set how fast rounds converge."""
+STEADY = 1e-6
+"""Share by which the speed may differ from that a cycle before, in a steady state."""
+MOST_PIECES, MOST_REVERSALS = 200_000, 200
+AT_REST = 1e-9
+"""Share of the largest torque below which nothing sets the crank in motion."""
+SAMPLES = 72
+"""In a cycle, from which sizes are read."""
+PATHS = {end: integral_to(POINTS, end) for end in (-1.0, 1.0)}
+PATIENCE, SLOW = 1000.0, 1e-6
+"""rad at its usual speed, after which a crank that creeps along is looked at; share of that speed
+below which it stands still then."""
+AT_EDGE = 1e-11
+"""rad, by which what is to happen has to be ahead."""
+SAME = 1e-9
+"""Of a cycle, within which a crank angle is its begin."""
+BETWEEN = 6
+"""Instants read in a step in time."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """What happens on the way.
+
+    kind : ``off``, ``reversal``, ``steady``, ``standstill``, ``stall``, ``turns`` or ``time``; the
+        last one of a run ended it.
+    time : s.  crank_angle : rad.  speed : rad/s.
+    """
+
+    kind: str
+    time: float
+    crank_angle: float
+    speed: float
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Where a run ends, and where its motor is switched off.
+
+    time, off_time : s.  turns, off_turns : of the crank from the start on.
+    steady : whether a run ends in a steady state.
+    """
+
+    time: float = inf
+    turns: float = inf
+    off_time: float = inf
+    off_turns: float = inf
+    steady: bool = True
+
+
+@dataclass(frozen=True)
+class Instant:
+    """State of a run: s, rad, rad/s, and the work so far of each source and of the drive, J."""
+
+    time: float
+    angle: float
+    speed: float
+    work: Array
+
+
+class Integration:
+    """Follow a machine's crank.
+
+    track : rows of time, angle, speed and works, at the nodes of the solution.
+    begins : instants at which a cycle begins.
+    """
+
+    def __init__(self, equation: CrankEquation, driver: Driver, limits: Limits) -> None:
+        self.equation, self.driver, self.limits = equation, driver, limits
+        self.table = equation.table
+        self.track: list[Array] = []
+        self.events: list[Event] = []
+        self.begins: list[Instant] = []
+        self.direction = 1.0
+
+    def follow(self, angle: float, speed: float) -> None:
+        """Run from a crank angle, rad, and speed, rad/s, until something ends it."""
+        equation = self.equation
+        self.start = angle
+        inertia = float(np.max(equation.inertia(np.linspace(0.0, equation.period, SAMPLES))[0]))
+        self.usual = usual = max(abs(speed), abs(equation.machine.drive.speed)) or 1.0
+        works = len(equation.sources) + 1
+        energy = inertia * usual**2 / 2
+        self.absolute = ABSOLUTE * np.array([1.0, usual, *[energy] * works])
+        now: Instant | None = Instant(0.0, angle, speed, np.zeros(works))
+        assert now is not None
+        self._record(now)
+        self.direction = copysign(1.0, speed)
+        if speed == 0.0 and not self._sets_off(now):
+            return
+        for _ in range(MOST_PIECES):
+            now = self._piece(now)
+            if now is None:
+                return
+        raise ResponseError(
+            Note("the motion takes too long to be followed; give a shorter time or fewer turns")
+        )
+
+    def _record(self, *instants: Instant) -> None:
+        rows = [[one.time, one.angle, one.speed, *one.work] for one in instants]
+        self.track.append(np.array(rows))
+
+    # -- at rest -----------------------------------------------------------------------------------
+
+    def torques_at_rest(self, angle: float) -> tuple[float, float]:
+        """Torque of all sources, and of the drive, on a crank that stands still, N m."""
+        acting = float(np.sum(self.equation.at(angle, 0.0)[2]))
+        return acting, float(self.driver.torque(np.zeros(())))
+
+    def _sets_off(self, now: Instant) -> bool:
+        """Choose the direction in which a crank at rest starts; note why where it does not."""
+        acting, driving = self.torques_at_rest(now.angle)
+        net = acting + driving
+        if abs(net) <= AT_REST * max(abs(acting), abs(driving)):
+            self._note("standstill", now)
+            return False
+        if self.driver.on and net * self.driver.sense < 0:
+            self._note("stall", now)
+            return False
+        self.direction = copysign(1.0, net)
+        return True
+
+    # -- a piece -----------------------------------------------------------------------------------
+
+    def _piece(self, begin: Instant) -> Instant | None:
+        """To the end of the piece of the table, or to what happens before; None at the end."""
+        k, ahead = self.table.piece(begin.angle, self.direction)
+        ends = float(self.table.lows[k]) + ahead, float(self.table.highs[k]) + ahead
+        solution = self._by_angle(begin, k, ends)
+        if solution is None:
+            return self._in_time(begin, ends[self.direction > 0])
+        at, within = solution
+        x, kind = self._first_in(begin, ends, at)
+        nodes = POINTS[:: int(self.direction)]
+        inside = within(nodes[(nodes - x) * self.direction < 0])
+        end = at(x)
+        self.track.append(inside)
+        self._record(end)
+        return self._happens(kind, end)
+
+    def _by_angle(
+        self, begin: Instant, k: int, ends: tuple[float, float]
+    ) -> tuple[Callable[[float], Instant], Callable[[Array], Array]] | None:
+        """The motion in a piece by places from -1 to 1 in it: an instant, and rows of the track;
+        None where the crank is so slow that the angle is no clock.
+        """
+        values = self.table.values[:, k]
+        inertia, half = values[0], (ends[1] - ends[0]) / 2
+        start = min(max((begin.angle - ends[0]) / half - 1, -1.0), 1.0)
+        paths = half * (PATHS[start] if start in PATHS else integral_to(POINTS, start))
+        began = self._inertia_at(k, start) * begin.speed**2 / 2
+        energy = np.full(len(POINTS), began)
+        inverse = None
+        for _ in range(MOST_ITERATIONS):
+            if not np.all(energy > 0):
+                return None
+            speed = self.direction * np.sqrt(2 * energy / inertia)
+            torques = self._torques(values, speed)
+            missed = began + paths @ np.sum(torques, axis=0) - energy
+            if np.max(np.abs(missed)) <= CLOSE * np.max(energy):
+                break
+            if inverse is None:
+                nudged = np.sum(self._torques(values, speed * (1 + NUDGE)) - torques, axis=0)
+                slopes = nudged / (2 * NUDGE * energy)
+                inverse = np.linalg.inv(np.eye(len(POINTS)) - paths * slopes)
+            energy = energy + inverse @ missed
+        else:
+            return None
+        pace = 1 / speed
+        if roughness(pace) > RESOLVED * np.max(np.abs(pace)):
+            return None
+        rates = np.array([pace, *torques])
+
+        def rows(x: Array) -> Array:
+            gained = half * integral_to(x, start) @ rates.T
+            angle = ends[0] + half * (x + 1)
+            energy = began + np.sum(gained[:, 1:], axis=1)
+            now = self.direction * np.sqrt(2 * energy / self._inertia_at(k, x))
+            work = begin.work + gained[:, 1:]
+            return np.column_stack([begin.time + gained[:, 0], angle, now, work])
+
+        def at(x: float) -> Instant:
+            time, angle, now, *work = rows(np.array([x]))[0].tolist()
+            angle = ends[0] if x == -1 else ends[1] if x == 1 else angle
+            return Instant(time, angle, now, np.array(work))
+
+        return at, rows
+
+    def _inertia_at(self, k: int, x: Array | float) -> Array:
+        return np.asarray(polynomials(x)[..., :NODES] @ self.table.coefficients[k][0])
+
+    def _torques(self, columns: Array, speed: Array) -> Array:
+        """Of each source and of the drive (K + 1, ...)."""
+        sources = self.equation.torques(columns, speed)
+        return np.concatenate([sources, self.driver.torque(speed)[None]])
+
+    def _first_in(
+        self, begin: Instant, ends: tuple[float, float], at: Callable[[float], Instant]
+    ) -> tuple[float, str]:
+        """Place in a piece at which something happens first, and what."""
+        from scipy.optimize import brentq
+
+        far, half = self.direction, (ends[1] - ends[0]) / 2
+        found: list[tuple[float, str]] = []
+        for kind, angle in self._angles():
+            if ends[0] <= angle <= ends[1] and (angle - begin.angle) * far > AT_EDGE:
+                found.append(((angle - ends[0]) / half - 1, kind))
+        for kind, time in self._times():
+            if begin.time < time <= at(far).time:
+                start = (begin.angle - ends[0]) / half - 1
+
+                def left(x: float, time: float = time) -> float:
+                    return at(x).time - time
+
+                found.append((brentq(left, start, far, xtol=1e-15), kind))
+        # of what happens at the edge itself the others come first
+        return min([*found, (far, "edge")], key=lambda one: one[0] * far)
+
+    def _angles(self) -> Iterator[tuple[str, float]]:
+        """Crank angles at which something is to happen."""
+        for kind, turns in (
+            ("turns", self.limits.turns),
+            ("off", self._off(self.limits.off_turns)),
+        ):
+            if turns < inf:
+                yield from ((kind, self.start + sign * 2 * pi * turns) for sign in (1, -1))
+
+    def _times(self) -> Iterator[tuple[str, float]]:
+        yield "time", self.limits.time
+        yield "off", self._off(self.limits.off_time)
+
+    def _off(self, limit: float) -> float:
+        return limit if self.driver.on else inf
+
+    # -- in time -----------------------------------------------------------------------------------
+
+    def _in_time(self, begin: Instant, edge: float) -> Instant | None:
+        """The motion in time to an edge, or to what happens before."""
+        from scipy.integrate import solve_ivp
+
+        marks = [(kind, angle) for kind, angle in [("edge", edge), *self._angles()]
+                 if (angle - begin.angle) * self.direction > AT_EDGE]  # fmt: skip
+        times = [(time, kind) for kind, time in self._times() if time > begin.time]
+        until, last = min(times)
+        events: list[Any] = [lambda _, y: self.direction * y[1]]
+        events += [lambda _, y, angle=angle: y[0] - angle for _, angle in marks]
+        for event in events:
+            event.terminal = True
+        events[0].direction = -1.0
+        span = begin.time, min(until, begin.time + PATIENCE / self.usual)
+        state = [begin.angle, begin.speed, *begin.work]
+        done = solve_ivp(
+            self._rates,
+            span,
+            state,
+            "DOP853",
+            dense_output=True,
+            events=events,
+            rtol=RELATIVE,
+            atol=self.absolute,
+        )
+        if not done.success or not np.all(np.isfinite(done.y)):
+            raise ResponseError(Note("the motion cannot be followed beyond {t:g} s", t=done.t[-1]))
+        shares = np.arange(1, BETWEEN + 1) / BETWEEN
+        time = (done.t[:-1, None] + np.diff(done.t)[:, None] * shares).ravel()
+        self.track.append(np.column_stack([time, done.sol(time).T]))
+        kind = last if done.t[-1] >= until else "rest"
+        for hit, (name, _) in zip(done.t_events, [("halt", 0.0), *marks], strict=True):
+            kind = name if hit.size else kind
+        angle, speed, *work = done.y[:, -1].tolist()
+        angle = edge if kind == "edge" else angle
+        return self._happens(kind, Instant(float(done.t[-1]), angle, speed, np.array(work)))
+
+    def _rates(self, _: float, state: Array) -> list[float]:
+        angle, speed = float(state[0]), float(state[1])
+        inertia, slope, torques = self.equation.at(angle, speed)
+        driving = float(self.driver.torque(np.asarray(speed)))
+        change = (float(np.sum(torques)) + driving - 0.5 * slope * speed * speed) / inertia
+        return [speed, change, *(torques * speed).tolist(), driving * speed]
+
+    # -- events ------------------------------------------------------------------------------------
+
+    def _happens(self, kind: str, now: Instant) -> Instant | None:
+        """Change what an event changes; the instant to go on from, None where the run is over."""
+        if kind == "edge":
+            return self._passes(now)
+        if kind == "halt":
+            return self._halts(now)
+        if kind == "rest":
+            if abs(now.speed) > SLOW * self.usual:
+                return now
+            kind = "standstill"
+        self._note(kind, now)
+        if kind != "off":
+            return None
+        self.driver.on = False
+        return now
+
+    def _passes(self, now: Instant) -> Instant | None:
+        """Over the edge of a piece, with which a cycle may begin, and a steady state be there."""
+        cycles = now.angle / self.equation.period
+        if abs(cycles - round(cycles)) > SAME:
+            return now
+        before = self.begins[-1] if self.begins else None
+        self.begins.append(now)
+        if not self.limits.steady or before is None or self._to_be_switched_off:
+            return now
+        if abs(now.speed - before.speed) > STEADY * abs(now.speed):
+            return now
+        self._note("steady", now)
+        return None
+
+    @property
+    def _to_be_switched_off(self) -> bool:
+        return min(self._off(self.limits.off_time), self._off(self.limits.off_turns)) < inf
+
+    def _halts(self, now: Instant) -> Instant | None:
+        """At speed 0: turn back, or stay."""
+        now = replace(now, speed=0.0)
+        if self.driver.on and self.direction == self.driver.sense:
+            self._note("stall", now)
+            return None
+        if not self._sets_off(now):
+            return None
+        self._note("reversal", now)
+        return now if len(self.events) < MOST_REVERSALS else None
+
+    def _note(self, kind: str, now: Instant) -> None:
+        self.events.append(Event(kind, now.time, now.angle, now.speed))

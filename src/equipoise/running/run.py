@@ -1,0 +1,267 @@
+"""A machine on a fixed frame that is set in motion by its motor, its weight, springs and loads."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf, pi
+from typing import Any, ClassVar
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.quantities import Dimension, in_si
+from equipoise.results.result import Result
+from equipoise.running.drivers import Driver
+from equipoise.running.equation import CrankEquation
+from equipoise.running.integration import Event, Instant, Integration, Limits
+from equipoise.signals import Array
+
+MOST_TURNS = 10_000
+TURNS = 300
+"""Turns after which a run ends where nothing else ends it."""
+STARTED = 0.95
+"""Share of the mean speed of a steady state at which a machine has started."""
+DRIVE = "drive"
+
+
+@dataclass(frozen=True)
+class LastCycle:
+    """The last whole cycle of a run.
+
+    mean_speed, highest, lowest : of the crank, rad/s.  turns : of the crank in the cycle.
+    energy : that the drive gives in it, J.  time : that it takes, s.
+    """
+
+    mean_speed: float
+    highest: float
+    lowest: float
+    turns: int
+    energy: float
+    time: float
+
+    @property
+    def fluctuation(self) -> float:
+        """Coefficient of fluctuation: highest minus lowest speed, over the mean."""
+        return (self.highest - self.lowest) / abs(self.mean_speed)
+
+    @property
+    def energy_per_turn(self) -> float:
+        """That the drive gives in a turn of the crank, J."""
+        return self.energy / self.turns
+
+    @property
+    def power(self) -> float:
+        """Mean power of the drive, W."""
+        return self.energy / self.time
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Run(Result):
+    """How a machine runs from a start on, at M instants that are not equally spaced.
+
+    time : (M,) s, rising.  crank_angle, crank_speed : (M,), rad and rad/s.
+    drive_torque : (M,), on the crank, N m.
+    work : what has acted -> work on the machine since the start (M,), J; the drive last.
+    events : what happened; the last one ended the run.
+    begins : instants at which a cycle began.
+    """
+
+    machine: Machine
+    equation: CrankEquation
+    time: Array
+    crank_angle: Array
+    crank_speed: Array
+    drive_torque: Array
+    work: Mapping[str, Array]
+    events: tuple[Event, ...]
+    begins: tuple[Instant, ...]
+    headline_in: ClassVar[str] = "running.blocks.run_headline"
+
+    @property
+    def end(self) -> Event:
+        """What ended the run."""
+        return self.events[-1]
+
+    @property
+    def turned(self) -> float:
+        """Turns of the crank from the start to the end."""
+        return float(self.crank_angle[-1] - self.crank_angle[0]) / (2 * pi)
+
+    @cached_property
+    def kinetic_energy(self) -> Array:
+        """(M,), J, from the linkage itself and not from what was integrated."""
+        return self.equation.energy(self.crank_angle, self.crank_speed)
+
+    @cached_property
+    def energy_error(self) -> float:
+        """Largest difference of kinetic energy and work done, over the largest of them all."""
+        energy, work = self.kinetic_energy, np.array([*self.work.values()])
+        missed = energy - energy[0] - np.sum(work, axis=0)
+        size = max(float(np.max(energy)), float(np.max(np.abs(work))))
+        return float(np.max(np.abs(missed))) / size if size else 0.0
+
+    @cached_property
+    def last_cycle(self) -> LastCycle | None:
+        """The last whole cycle; None where there was none."""
+        if len(self.begins) < 2:
+            return None
+        first, last = self.begins[-2:]
+        inside = (self.time >= first.time) & (self.time <= last.time)
+        speed, time = self.crank_speed[inside], last.time - first.time
+        turned = last.angle - first.angle
+        return LastCycle(
+            turned / time,
+            float(np.max(np.abs(speed))),
+            float(np.min(np.abs(speed))),
+            round(abs(turned) / (2 * pi)),
+            float(last.work[-1] - first.work[-1]),
+            time,
+        )
+
+    @cached_property
+    def starting_time(self) -> float | None:
+        """Until the speed first reaches 95 % of its mean in the steady state, s; None without one,
+        or where it began so fast.
+        """
+        cycle = self.last_cycle
+        if self.end.kind != "steady" or cycle is None:
+            return None
+        fast = np.abs(self.crank_speed) >= STARTED * abs(cycle.mean_speed)
+        k = int(np.argmax(fast))
+        if k == 0:
+            return None
+        ends = np.abs(self.crank_speed[k - 1 : k + 1])
+        share = (STARTED * abs(cycle.mean_speed) - ends[0]) / (ends[1] - ends[0])
+        return float(self.time[k - 1] + share * (self.time[k] - self.time[k - 1]))
+
+    @cached_property
+    def lacking_torque(self) -> tuple[float, float] | None:
+        """Where a motor stalls: torque that the crank needs to go on, and that the motor gives,
+        N m; None where it does not.
+        """
+        if self.end.kind != "stall":
+            return None
+        driver = Driver(self.machine)
+        acting = float(np.sum(self.equation.at(self.end.crank_angle, 0.0)[2]))
+        given = float(driver.torque(np.zeros(())))
+        return -driver.sense * acting, driver.sense * given
+
+    def columns(self) -> list[tuple[str, str, Array]]:
+        """Name, unit and values (M,) of every signal."""
+        return [
+            ("time", "s", self.time),
+            ("crank_angle", "rad", self.crank_angle),
+            ("crank_speed", "rad/s", self.crank_speed),
+            ("drive_torque", "N m", self.drive_torque),
+            ("kinetic_energy", "J", self.kinetic_energy),
+            *((f"work.{name}", "J", values) for name, values in self.work.items()),
+        ]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The machine-readable output, in SI units."""
+        cycle, lacking = self.last_cycle, self.lacking_torque
+        return {
+            "title": self.machine.title,
+            "end": self.end.kind,
+            "turns": self.turned,
+            "starting_time": self.starting_time,
+            "last_cycle": None
+            if cycle is None
+            else vars(cycle)
+            | {
+                "fluctuation": cycle.fluctuation,
+                "energy_per_turn": cycle.energy_per_turn,
+                "power": cycle.power,
+            },
+            "stall": None
+            if lacking is None
+            else {"torque_needed": lacking[0], "torque_given": lacking[1]},
+            "energy_error": self.energy_error,
+            "events": [vars(event) for event in self.events],
+            "time": self.time,
+            "crank_angle": self.crank_angle,
+            "crank_speed": self.crank_speed,
+            "drive_torque": self.drive_torque,
+            "kinetic_energy": self.kinetic_energy,
+            "work": dict(self.work),
+        }
+
+
+def run(
+    machine: Machine,
+    duration: float | str | None = None,
+    *,
+    turns: float | None = None,
+    speed: float | str | None = None,
+    angle: float | str = 0.0,
+    off: float | str | None = None,
+    off_turns: float | None = None,
+) -> Run:
+    """Let a machine run on a fixed frame: its crank follows from motor, weight, springs and loads.
+
+    The motor's curve holds as it is, whatever its `mean_speed`.
+
+    Parameters
+    ----------
+    duration : s, or a text such as ``"2 s"``; where neither it nor `turns` is given the run ends in
+        a steady state, in a standstill, or after 300 turns.
+    turns : of the crank, after which the run ends.
+    speed : of the crank at the start, rad/s, or a text such as ``"300 rpm"``; 0 with a motor, that
+        of the drive without one, where not given.
+    angle : crank angle at the start, rad, or a text.
+    off : time at which the motor is switched off, s, or a text.
+    off_turns : turns of the crank from the start after which it is.
+
+    Raises
+    ------
+    MassError : a link has no mass given.
+    MotionError : the crank cannot turn fully.
+    UsageError : a value cannot be used, or the machine is not driven by one crank.
+    ResponseError : the motion cannot be followed.
+    """
+    positive = {"duration": duration, "turns": turns, "off": off, "off_turns": off_turns}
+    dimensions: dict[str, Dimension] = {"duration": "time", "off": "time"}
+    sizes = {}
+    for name, value in positive.items():
+        number = in_si(value, dimensions[name], name) if name in dimensions else value
+        if number is not None and not 0 < float(number) < inf:
+            raise UsageError(f"got {value!r} for {name}; give a finite number of more than 0")
+        sizes[name] = inf if number is None else float(number)
+    if turns is not None and turns > MOST_TURNS:
+        raise UsageError(f"got {turns!r} for turns; give at most {MOST_TURNS}")
+    first = 0.0 if machine.drive.motor is not None else machine.drive.speed
+    start = [
+        first if speed is None else in_si(speed, "angular speed", "speed"),
+        in_si(angle, "angle", "angle"),
+    ]
+    if not np.all(np.isfinite(start)):
+        raise UsageError(f"got {speed!r} and {angle!r} for speed and angle; give finite numbers")
+    free = min(sizes["duration"], sizes["turns"]) == inf
+    limits = Limits(
+        sizes["duration"],
+        TURNS if free else sizes["turns"],
+        sizes["off"],
+        sizes["off_turns"],
+        steady=free,
+    )
+    equation, driver = CrankEquation(machine), Driver(machine)
+    found = Integration(equation, driver, limits)
+    found.follow(float(start[1]), float(start[0]))
+    time, crank_angle, crank_speed, *work = np.vstack(found.track).T
+    switched = next((event.time for event in found.events if event.kind == "off"), inf)
+    torque = np.where(time <= switched, Driver(machine).torque(crank_speed), 0.0)
+    names = [*(source.key for source in equation.sources), DRIVE]
+    return Run(
+        machine,
+        equation,
+        time,
+        crank_angle,
+        crank_speed,
+        torque,
+        dict(zip(names, work, strict=True)),
+        tuple(found.events),
+        tuple(found.begins),
+    )

@@ -1,0 +1,147 @@
+"""Runs on a fixed frame: motions with a known answer, energy, and SciPy on the same equation."""
+
+from __future__ import annotations
+
+from math import acos, pi
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.special import ellipk
+
+import equipoise as eq
+from equipoise.errors import UsageError
+from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.running.drivers import Driver
+from equipoise.running.equation import CrankEquation
+from support.analyses import subject_of
+
+MASS, ARM, OWN, GRAVITY = 2.0, 0.3, 0.05, 9.81
+INERTIA = OWN + MASS * ARM**2
+WEIGHT = MASS * GRAVITY * ARM
+"""Torque of the weight on a level crank, N m."""
+
+
+def crank(motor: Motor | None = None, speed: float = 10.0, gravity: float = GRAVITY) -> eq.Machine:
+    """One turning link, whose weight hangs straight down at crank angle -90 deg."""
+    link = eq.Link({"A": (0.0, 0.0), "B": (1.0, 0.0)}, MASS, (ARM, 0.0), OWN)
+    return eq.Machine(
+        "crank",
+        eq.Drive("crank", speed, motor=motor),
+        {"A": (0.0, 0.0)},
+        {"crank": link},
+        gravity=(0.0, -gravity),
+    )
+
+
+def test_a_constant_torque_without_resistance() -> None:
+    found = eq.run(crank(Motor(torque=4.0), gravity=0.0), turns=5)
+    rate = 4.0 / INERTIA
+    assert found.end.kind == "turns"
+    assert found.end.time == pytest.approx(np.sqrt(2 * 10 * pi / rate), rel=1e-9)
+    assert found.crank_speed == pytest.approx(rate * found.time, rel=1e-8)
+    assert found.work["drive"][-1] == pytest.approx(4.0 * 10 * pi, rel=1e-9)
+
+
+def test_a_motor_of_a_straight_line_starts_exponentially() -> None:
+    motor = Motor(300.0, 20.0, ratio=3.0, inertia=0.01)
+    found = eq.run(crank(motor, -10.0, 0.0))
+    tau = (INERTIA + 9 * 0.01) / (9 * 20.0 / 300.0)
+    assert found.end.kind == "steady"
+    wanted = -100.0 * (1 - np.exp(-found.time / tau))
+    assert found.crank_speed == pytest.approx(wanted, abs=1e-6)
+    assert found.starting_time == pytest.approx(-tau * np.log(0.05), rel=1e-3)
+
+
+@pytest.mark.parametrize("amplitude", [0.1, 1.5, 3.0])
+def test_a_pendulum_swings_as_it_has_to(amplitude: float) -> None:
+    found = eq.run(crank(), "20 s", speed=0.0, angle=amplitude - pi / 2)
+    times = [event.time for event in found.events if event.kind == "reversal"]
+    half = 2 * ellipk(np.sin(amplitude / 2) ** 2) / np.sqrt(WEIGHT / INERTIA)
+    assert len(times) >= 5
+    assert times == pytest.approx(half * np.arange(1, len(times) + 1), rel=1e-8)
+    assert found.energy_error < 1e-9
+
+
+def test_a_weak_motor_stalls_where_its_work_is_used_up() -> None:
+    """It lifts the weight from the lowest place as far as its work goes."""
+    torque = 0.6 * WEIGHT
+    found = eq.run(crank(Motor(torque=torque)), angle=-pi / 2)
+    assert found.end.kind == "stall"
+    turned = found.end.crank_angle + pi / 2
+    assert torque * turned == pytest.approx(WEIGHT * (1 - np.cos(turned)), rel=1e-8)
+    assert found.lacking_torque == pytest.approx((WEIGHT * np.sin(turned), torque), rel=1e-8)
+
+
+def test_a_motor_that_cannot_even_begin() -> None:
+    found = eq.run(crank(Motor(torque=0.5 * WEIGHT)))
+    assert (found.end.kind, found.end.time) == ("stall", 0.0)
+    assert found.lacking_torque == pytest.approx((WEIGHT, 0.5 * WEIGHT))
+
+
+def test_nothing_sets_a_hanging_crank_in_motion() -> None:
+    assert eq.run(crank(gravity=0.0), speed=0.0).end.kind == "standstill"
+
+
+def test_over_the_top_and_not() -> None:
+    """From the lowest place it gets over the highest one with twice its weight's energy."""
+    needed = np.sqrt(4 * WEIGHT / INERTIA)
+    over = eq.run(crank(), "3 s", speed=1.001 * needed, angle=-pi / 2)
+    under = eq.run(crank(), "3 s", speed=0.999 * needed, angle=-pi / 2)
+    assert over.turned > 1
+    height = np.max(under.crank_angle) + pi / 2
+    assert height == pytest.approx(acos(1 - 2 * 0.999**2), rel=1e-6)
+
+
+def test_switched_off_it_keeps_its_energy() -> None:
+    found = eq.run(crank(Motor(torque=5.0)), turns=6, off_turns=2.5, angle=-pi / 2)
+    assert [event.kind for event in found.events] == ["off", "turns"]
+    assert found.work["drive"][-1] == pytest.approx(5.0 * 5 * pi, rel=1e-9)
+    by_time = eq.run(crank(Motor(torque=5.0)), turns=6, off=found.events[0].time, angle=-pi / 2)
+    assert by_time.end.time == pytest.approx(found.end.time, rel=1e-8)
+
+
+SUBJECTS = ["crank_rocker:0", "slider_crank:1", "quick_return:0", "crank_rocker in soil:0"]
+SUBJECTS += ["watt-six-bar", "cam-pusher", "four-stroke-engine", "transplanter"]
+
+
+def motored(name: str) -> eq.Machine:
+    """With a motor that turns it at least as fast as its file says."""
+    machine = subject_of(name).machine
+    motion = eq.move(machine, 90)
+    need = float(np.max(np.abs(eq.forces(motion).drive_torque)))
+    return machine.with_drive(motor=Motor(3 * abs(machine.drive.speed), 4 * need))
+
+
+@pytest.mark.parametrize("name", SUBJECTS)
+def test_energy_and_time_integration(name: str) -> None:
+    """Work done is the linkage's own kinetic energy, and SciPy on the same equation in time, with
+    no angle for a clock, comes to the same.
+    """
+    machine = motored(name)
+    found = eq.run(machine, turns=4)
+    assert found.end.kind == "turns"
+    assert found.energy_error < 1e-9
+    equation, driver = CrankEquation(machine), Driver(machine)
+
+    def rates(_: float, y: np.ndarray) -> list[float]:
+        inertia, slope, torques = equation.at(y[0], y[1])
+        torque = float(np.sum(torques) + driver.torque(np.asarray(y[1])))
+        return [y[1], (torque - slope * y[1] ** 2 / 2) / inertia]
+
+    time = found.time[-1] / 4  # where soil sets in DOP853 is slow
+    done = solve_ivp(rates, (0.0, time), [0.0, 0.0], "DOP853", rtol=1e-9, atol=1e-11)
+    k = int(np.searchsorted(found.time, time))
+    nearest = found.crank_angle[k] - found.crank_speed[k] * (found.time[k] - time)
+    slope = abs(done.y[1, -1]) * abs(found.time[k] - found.time[k - 1])
+    assert abs(nearest - done.y[0, -1]) < 1e-6 * abs(done.y[0, -1]) + 0.02 * slope
+
+
+def test_values_that_cannot_be_used() -> None:
+    for values in ({"duration": 0.0}, {"turns": -1}, {"off": float("nan")}, {"turns": 1e9}):
+        with pytest.raises(UsageError):
+            eq.run(crank(), **values)  # type: ignore[arg-type]
+    with pytest.raises(UsageError):
+        eq.run(crank(), speed=float("inf"))
+    with pytest.raises(UsageError, match="one crank"):
+        eq.run(eq.load("hydraulic-loader"))
