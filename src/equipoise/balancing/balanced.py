@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from itertools import chain
 from math import isclose, sqrt
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -24,13 +24,25 @@ from equipoise.balancing.workshop import Change
 from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import move
+from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.balance import Balance, Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import ROWS
+from equipoise.planting.names import dimension_of as of_planting
+from equipoise.quantities import Dimension
 from equipoise.results.analysis import Analysis
+from equipoise.results.declaring import (
+    NOTES,
+    TITLE,
+    Declarations,
+    ResultOutput,
+    dimension_at,
+    values_of,
+)
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
 from equipoise.signals import Array
+from equipoise.vibration.response import GaugeSignals, of_support
 
 GONE, ROUNDING = 1e-9, 1e-7
 """Share of a figure before below which it is rounding; share of all for a price."""
@@ -54,6 +66,27 @@ class Price:
     def active(self) -> bool:
         """Whether the limit stands in the way."""
         return self.price > 0
+
+
+WHY = "see [Balancing](balancing.md#why-nothing-is-better)"
+
+
+def _changes(found: Balanced) -> list[dict[str, Any]]:
+    return [change.to_dict() for change in found.changes]
+
+
+def _dimension_of(model: Any, figure: str) -> Dimension | None:
+    """Dimension of a figure that is compared, such as ``shaking_force.x.rms``."""
+    if figure == "mass":
+        return "mass"
+    if figure.startswith("planting."):
+        return of_planting(figure.removeprefix("planting."))
+    output, _, measure = figure.rpartition(".")
+    if output.startswith("gauges."):
+        gauges = {"gauges": of_support("gauges", "", GaugeSignals.declared)}
+        return dimension_at(gauges, f"{output}.rms", model)
+    known = declared(output)
+    return None if known is None or measure == "area" else known[0].dimension
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -241,18 +274,11 @@ class Balanced(Result):
             if name.startswith(("shaking_", ROWS)) and new.get(name, 0.0) > GONE * old[name] > 0
         }
 
-    def _advised(self) -> dict[str, Any]:
-        """What is large, whether the change is offered, and what was tried."""
-        assert self.advice is not None
-        return {
-            "offered": self.advice.offered,
-            "large": [one.to_dict() for one in self.advice.before],
-            "tried": [_tried(one) for one in self.tried],
-            "flywheel": self.advice.flywheel,
-        }
-
-    def _phased(self, phasing: Phasing) -> dict[str, Any]:
+    @property
+    def _phased(self) -> dict[str, Any]:
         """What phases bring, with the objectives as they are reported."""
+        phasing = self.phasing
+        assert phasing is not None
         objectives = [
             {"name": name, "before": old, "after": new}
             for name, (old, new) in self.reported.items()
@@ -265,39 +291,99 @@ class Balanced(Result):
 
         wanted : keys that are needed of those that take time; None for all.
         """
-        asked = wanted is None or "sensitivities" in wanted
-        pairs = {name: {"before": old, "after": new} for name, (old, new) in self.reported.items()}
-        return {
-            "title": self.original.title,
-            "speed": self.original.drive.speed,
-            "objectives": pairs,
-            "method": str(self.method),
-            "cost": self.cost,
-            "bound": self.bound,
-            "gap": self.gap,
-            "scope": " and ".join(map(str, self.scope)),
-            "changes": [change.to_dict() for change in self.changes],
-            "prices": {name: asdict(price) for name, price in self.limits.items()},
-            "added_mass": self.added_mass,
-            "before": self.before,
-            "after": self.after,
-            "worse": [
+        return values_of(self, self.declared, wanted)
+
+    declared: ClassVar[Declarations] = {
+        "title": TITLE,
+        "speed": ResultOutput("speed of the crank", "angular speed", read="original.drive.speed"),
+        "objectives": ResultOutput(
+            'objective, such as `"rms of shaking_force.y"`: `before` and `after`, in SI units; a '
+            "whole signal's measure as `before` and `after` have it",
+            family=True,
+            read=lambda found: {
+                name: {"before": old, "after": new} for name, (old, new) in found.reported.items()
+            },
+        ),
+        "method": ResultOutput("how it was found", read=lambda found: str(found.method)),
+        "cost": ResultOutput(WHY),
+        "bound": ResultOutput(WHY),
+        "gap": ResultOutput(WHY),
+        "scope": ResultOutput(
+            "of what the bound is proved, where that is not all that the plan allows",
+            read=lambda found: " and ".join(map(str, found.scope)),
+        ),
+        "changes": ResultOutput("list of what to change, see below", read=_changes),
+        "prices": ResultOutput(
+            'of each limit, of `"mass on LINK"` where `at_most` is given, and of `"added mass"`: '
+            "`at_most`, `used` and `price`, which is the fall of the objective for one SI unit "
+            "more of the limit, in the unit of the objective, or over its value before where "
+            "there are several",
+            family=True,
+            read=lambda found: {name: asdict(price) for name, price in found.limits.items()},
+        ),
+        "added_mass": ResultOutput("mass that is added", "mass"),
+        "before": ResultOutput("figures of the whole machine, see below", lookup=_dimension_of),
+        "after": ResultOutput("figures of the new machine", lookup=_dimension_of),
+        "worse": ResultOutput(
+            "list of `figure`, `before`, `after`: every figure that got larger by more than 1 %, "
+            "the important ones first",
+            read=lambda found: [
                 {"figure": one.objective.name, "before": one.before, "after": one.after}
-                for one in self.worse
+                for one in found.worse
             ],
-            "equivalent_speeds": self.equivalent_speeds,
-            "planting_kept": self.planting_kept,
-            **({"sensitivities": self.sensitivities} if asked else {}),
-            **({} if self.phasing is None else {"rows": self._phased(self.phasing)}),
-            **({} if self.advice is None else self._advised()),
-            "notes": list(map(str, self.notes)),
-        }
-
-
-def _tried(one: Balanced) -> dict[str, Any]:
-    """A remedy that was tried, in short."""
-    changes = [change.to_dict() for change in one.changes]
-    return {"gain": one.gain, "worth": one.helps, "changes": changes}
+        ),
+        "equivalent_speeds": ResultOutput(
+            "speed of the crank at which the new machine has the old figure; of shaking forces "
+            "and moments, and of all rows; absent where nothing is left",
+            "angular speed",
+            family=True,
+        ),
+        "planting_kept": ResultOutput(
+            "whether the planting figures are what they were; null where there are none"
+        ),
+        "sensitivities": ResultOutput(
+            "the object of `sensitivities`, see below, of each objective that is a component of "
+            "the shaking force or of a rocking moment, the shaking moment or the drive torque",
+            family=True,
+            slow=True,
+        ),
+        "rows": ResultOutput(
+            "where phases were free: `phases` (rad), `remaining_orders`, `lateral` with `before` "
+            "and `after`, `combinations`, `step`, `objectives`, `combined`, `bound` (of "
+            "`combined`, proved), `looked_at` (boxes of phases), `notes`",
+            read="_phased",
+            present="phasing",
+        ),
+        "offered": ResultOutput(
+            "where the file does not say what may be changed: whether the change is offered",
+            read="advice.offered",
+            present="advice",
+        ),
+        "large": ResultOutput(
+            "there: list of `figure`, `value`, `unit`, `yardstick`, `against`, `ratio`, "
+            "`crank_angle`: figures [against their yardsticks](balancing.md#without-a-plan), the "
+            "largest ratio first; `figure` is its path in the summary of `analyze`, or in the "
+            "output of `respond` for gauges",
+            read=lambda found: [one.to_dict() for one in found.advice.before],
+            present="advice",
+        ),
+        "tried": ResultOutput(
+            "there: list of `gain`, `worth`, `changes`: what was tried, the share of the aims that "
+            "each takes away, and whether it is offered",
+            read=lambda found: [
+                {"gain": one.gain, "worth": one.helps, "changes": _changes(one)}
+                for one in found.tried
+            ],
+            present="advice",
+        ),
+        "flywheel": ResultOutput(
+            "there: moment of inertia of a flywheel that would keep the speed steady, or null",
+            "inertia",
+            read="advice.flywheel",
+            present="advice",
+        ),
+        "notes": NOTES,
+    }
 
 
 def result_of(machine: Machine, plan: Balance, found: Solution) -> Balanced:

@@ -16,7 +16,9 @@ from equipoise.signals import Array
 
 Value = TypeVar("Value")
 
-SHARED = ("surface", "speed", "forward_speed", "hill_spacing", "planting_frequency")
+OF_DRIVE = ("speed", "forward_speed", "hill_spacing", "planting_frequency")
+"""Figures of the machine that follow from its drive."""
+SHARED = ("surface", *OF_DRIVE)
 """Figures that are the same of all arms."""
 SHAKING = {name.partition(".")[0] for name in SHAKEN}
 """First parts of the names of what inertia does."""

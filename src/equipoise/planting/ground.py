@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.tip import TipCurve, crossings, integral, lowest_within
 from equipoise.planting.stroke import wrapped
+from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.signals import Array
 
 STILL = 1e-9
@@ -46,6 +47,17 @@ class Loop:
     width: float
     area: float
     in_soil: bool
+
+    declared: ClassVar[Declarations] = {
+        "first": ResultOutput("crank angle of the first pass of the crossing", "angle"),
+        "second": ResultOutput("crank angle of the second pass", "angle"),
+        "way": ResultOutput("crank angle turned in between", "angle"),
+        "y": ResultOutput("height of the crossing in the frame", "length"),
+        "height": ResultOutput("height of the loop", "length"),
+        "width": ResultOutput("width of the loop", "length"),
+        "area": ResultOutput("area of the loop, m2"),
+        "in_soil": ResultOutput("whether the crossing lies below the surface"),
+    }
 
 
 class GroundPath:

@@ -96,7 +96,6 @@ OTHERS = (
 """Further ones that a search tells before and after."""
 DIMENSIONS: dict[str, Dimension] = {
     **dict.fromkeys(("surface", "soil.ground_advance"), "length"),
-    **dict.fromkeys(("visits.depth", "loops.y", "loops.height", "loops.width"), "length"),
     "speed": "angular speed",
     "forward_speed": "speed",
     "limit": "acceleration",

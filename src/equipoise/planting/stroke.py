@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from equipoise.mechanism.assembly.family import column
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.tip import TipCurve, crossings, roots
 from equipoise.planting.twins import nearly_alike
+from equipoise.results.declaring import Declarations, ResultOutput
 from equipoise.signals import EQUAL, Array, highest_at, within_period
 
 Figures = dict[str, Array]
@@ -90,6 +91,13 @@ class Visit:
     exit: float
     deepest: float
     depth: float
+
+    declared: ClassVar[Declarations] = {
+        "entry": ResultOutput("crank angle at which the tip goes into the soil", "angle"),
+        "exit": ResultOutput("crank angle at which it comes out", "angle"),
+        "deepest": ResultOutput("crank angle of the lowest point in between", "angle"),
+        "depth": ResultOutput("depth of that point", "length"),
+    }
 
 
 def visits(curve: TipCurve) -> tuple[Visit, ...]:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from math import isfinite, pi
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -18,14 +18,18 @@ from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import MOST_ANGLES, Motion, move
 from equipoise.mechanism.kinematics.rates import PointMotion
 from equipoise.mechanism.kinematics.tip import TipCurve
+from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.planting.arms import SHARED, hills, of_arm
 from equipoise.planting.figures import tip_figures
 from equipoise.planting.ground import GroundPath, Loop
+from equipoise.planting.names import dimension_of
 from equipoise.planting.shaking import shaking
 from equipoise.planting.stroke import Visit, finger_base, tray_crossings, visits, wrapped
 from equipoise.planting.twins import nearly_alike
+from equipoise.quantities import Dimension
+from equipoise.results.declaring import NOTES, PLACES, TITLE, Declarations, ResultOutput, values_of
 from equipoise.results.result import Result
 from equipoise.signals import Array, Figures
 
@@ -62,6 +66,64 @@ def soil_forces(machine: Machine, angles: int = 720) -> SoilForces | None:
     motion = resolved(move(machine, angles))
     dry = replace(motion, linkage=motion.linkage.of(machine.with_planting(soil=None)))
     return SoilForces(motion, forces(motion), forces(dry))
+
+
+OF_LINKS = ("ratio.", "clearance.soil.", "clearance.tray.")
+"""Begins of names in which a link follows, which may be called anything, with dots too."""
+
+
+def nested(figures: Iterable[tuple[str, float]]) -> dict[str, Any]:
+    """Figures by dotted name as nested tables."""
+    result: dict[str, Any] = {}
+    for name, value in figures:
+        _nest(result, name, value)
+    return result
+
+
+def _nest(result: dict[str, Any], name: str, value: float) -> None:
+    """Put a figure where its name says; ``curve.height`` becomes ``{"curve": {"height": ...}}``."""
+    begin = next((begin for begin in OF_LINKS if name.startswith(begin)), "")
+    path, _, last = name.removeprefix(begin).rpartition(".")
+    keys = [*begin.split(".")[:-1], path] if begin else name.split(".")[:-1]
+    for key in keys:
+        result = result.setdefault(key, {})
+    result[last] = value
+
+
+def _dimension_of_force(_: Any, path: str) -> Dimension | None:
+    """Dimension of a figure of a force, such as ``joints.A.in_soil.peak``."""
+    whole, _, figure = path.rpartition(".")
+    known = declared(whole.removesuffix(".in_air").removesuffix(".in_soil"))
+    return "angle" if figure in PLACES else known and known[0].dimension
+
+
+OF_ARM: Declarations = {
+    "tip": ResultOutput("point of the finger"),
+    "finger_from": ResultOutput(
+        "other point of the finger; null where the tip's link has no other",
+        read=lambda found: finger_base(found.curve),
+    ),
+    "figures": ResultOutput(
+        "figures by name, see below",
+        spliced=True,
+        read="_nested",
+        lookup=lambda _, path: dimension_of(path),
+    ),
+    "visits": ResultOutput(
+        "every stay in the soil, the deepest first", of=Visit.declared, many=True
+    ),
+    "loops": ResultOutput("loops of the path over ground", of=Loop.declared, many=True),
+    "cusps": ResultOutput(
+        "crank angles at which the tip stands still over ground",
+        "angle",
+        read=lambda found: list(found.cusps),
+    ),
+    "tray_crossings": ResultOutput(
+        "crank angles at which the tip passes the tray's edge",
+        "angle",
+        read=lambda found: list(found.tray_crossings),
+    ),
+}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -125,44 +187,43 @@ class PlantingFigures(Result):
 
         wanted : keys that are needed of those that take time; None for all.
         """
-        result: dict[str, Any] = {"title": self.machine.title, **self._of_arm()}
-        if self.further:
-            result["arms"] = {
-                one.tip: {key: value for key, value in one._of_arm().items() if key not in SHARED}
-                for one in self.further
-            }
-        if (wanted is None or "forces" in wanted) and self.forces is not None:
-            result["forces"] = {
+        return values_of(self, self.declared, wanted)
+
+    @property
+    def _nested(self) -> dict[str, Any]:
+        """The figures of the first arm and of the machine, by nested keys."""
+        return nested((n, x) for n, x in self.figures.items() if not n.startswith("arms."))
+
+    @property
+    def _nested_of_arm(self) -> dict[str, Any]:
+        """The figures of the arm alone, by nested keys."""
+        return nested((n, x) for n, x in self.figures.items() if n not in SHARED)
+
+    declared: ClassVar[Declarations] = {
+        "title": TITLE,
+        **OF_ARM,
+        "arms": ResultOutput(
+            "the same of each further arm, without what belongs to the machine",
+            of={**OF_ARM, "figures": replace(OF_ARM["figures"], read="_nested_of_arm")},
+            family=True,
+            read=lambda found: {one.tip: one for one in found.further},
+            present="further",
+            table="plant",
+        ),
+        "forces": ResultOutput(
+            "`drive_torque` and each `joints.NAME`: `in_air` and `in_soil`, each with figures as "
+            "in the `summary` of `equipoise analyze`, but `peak_to_peak`; absent without soil or "
+            "masses",
+            lookup=_dimension_of_force,
+            read=lambda found: {
                 name: {"in_air": _of(air), "in_soil": _of(soil)}
-                for name, (air, soil) in self.forces.compared().items()
-            }
-        result["notes"] = list(map(str, self.notes))
-        return result
-
-    def _of_arm(self) -> dict[str, Any]:
-        result: dict[str, Any] = {"tip": self.tip, "finger_from": finger_base(self.curve)}
-        for name, value in self.figures.items():
-            if not name.startswith("arms."):
-                _nest(result, name, value)
-        result["visits"] = [asdict(visit) for visit in self.visits]
-        result["loops"] = [asdict(loop) for loop in self.loops]
-        result["cusps"] = list(self.cusps)
-        result["tray_crossings"] = list(self.tray_crossings)
-        return result
-
-
-OF_LINKS = ("ratio.", "clearance.soil.", "clearance.tray.")
-"""Begins of names in which a link follows, which may be called anything, with dots too."""
-
-
-def _nest(result: dict[str, Any], name: str, value: float) -> None:
-    """Put a figure where its name says; ``curve.height`` becomes ``{"curve": {"height": ...}}``."""
-    begin = next((begin for begin in OF_LINKS if name.startswith(begin)), "")
-    path, _, last = name.removeprefix(begin).rpartition(".")
-    keys = [*begin.split(".")[:-1], path] if begin else name.split(".")[:-1]
-    for key in keys:
-        result = result.setdefault(key, {})
-    result[last] = value
+                for name, (air, soil) in found.forces.compared().items()
+            },
+            present="forces",
+            slow=True,
+        ),
+        "notes": NOTES,
+    }
 
 
 def plant(machine: Machine, speed: float | str | None = None) -> PlantingFigures:

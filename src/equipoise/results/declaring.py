@@ -52,7 +52,7 @@ class ResultOutput:
     named : name of an entry of a list in columns of the CSV file.
     lookup : dimension of what stands below by names that are declared elsewhere.
     spliced : whether the outputs below it stand in the place of its key.
-    present : attribute of an object that is not None, nor an empty mapping, where it has this.
+    present : attribute of an object that is not None nor empty where it has this.
     slow : whether it is left out where only other keys are wanted.
     along : key of the abscissa of its lists.
     nulls : whether its arrays become lists with None for what is not finite.
@@ -97,7 +97,7 @@ class ResultOutput:
     def is_in(self, holder: Any) -> bool:
         """Whether an object has it at all."""
         value = attrgetter(self.present)(holder) if self.present else True
-        return bool(value) if isinstance(value, Mapping) else value is not None
+        return bool(value) if isinstance(value, Mapping | tuple) else value is not None
 
     def plain(self, value: Any) -> Any:
         """The value as plain data."""
@@ -220,7 +220,8 @@ def _matching(
         for after, turns in _members(one, rest, model) if one.family else [(rest, turned)]:
             kind = one.kind(own, turns)
             if one.lookup is not None:
-                yield one.lookup(model, after)
+                if (known_elsewhere := one.lookup(model, after)) is not None:
+                    yield known_elsewhere
             elif one.of is not None:
                 yield from _matching(one.of, after, model, kind, turns)
             elif after in ("", *FIGURES_OF_LISTS):

@@ -178,10 +178,6 @@ def _of_command(study: Study, numbers: Sequence[int], command: str) -> list[Requ
     raise ModelError(where, f"equipoise {command} cannot compute the model: {first}") from first
 
 
-OF_ONE = {"visits", "loops", "cusps", "tray_crossings", "forces", "arms"} | {
-    *("speed", "forward_speed", "hill_spacing", "planting_frequency")
-}
-"""Keys of what `plant` reads off one machine, not off a curve of many."""
 EACH_ITS_OWN = {"planting.depth", "planting.forward_speed", "planting.hill_spacing"}
 """Numbers of the field that may differ from machine to machine of a curve."""
 
@@ -190,13 +186,17 @@ def _parted(study: Study, model: Machine | Tool, asked: Request) -> list[Request
     """What can be had of many designs at once, and the rest."""
     if asked.command != "plant":
         return [asked]
+    from equipoise.planting.arms import OF_DRIVE
+    from equipoise.planting.summary import PlantingFigures
+
+    of_one = {*PlantingFigures.declared, *OF_DRIVE}  # what is no figure of a curve
     machine = cast("Machine", model)
     field = {path for path in study.paths if path.startswith("planting.")}
     alike = field <= EACH_ITS_OWN and not machine.gears
     alike = alike and all(isinstance(step, Call) for step in assemble(machine).motion)
     parts: dict[str, list[int]] = {"planted": [], "plant": []}
     for k, steps in enumerate(asked.steps):
-        parts["planted" if alike and steps[0] not in OF_ONE else "plant"].append(k)
+        parts["planted" if alike and steps[0] not in of_one else "plant"].append(k)
     return [
         Request(
             command,

@@ -21,7 +21,6 @@ from equipoise.mechanism.dynamics.cam_contacts import CamFigures
 from equipoise.mechanism.kinematics.stroke_figures import declared_figures
 from equipoise.mechanism.kinematics.stroke_figures import dimension_of as of_stroke
 from equipoise.mechanism.outputs.declared import declared
-from equipoise.planting.names import dimension_of as of_planting
 from equipoise.results.declaring import (
     ALONG,
     FIGURES_OF_LISTS,
@@ -35,7 +34,6 @@ from equipoise.signals import figures
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.parts.machine import Machine
-    from equipoise.mechanism.parts.support import Support
 
 Array = np.ndarray[Any, Any]
 Values = Mapping[str, Any]
@@ -242,28 +240,16 @@ def _listed(names: Any, most: int = 12) -> str:
 # -- what it is ------------------------------------------------------------------------------------
 
 _AT = "|".join(PLACES)
-KINDS: dict[str, dict[str, str | None]] = {
-    "analyze": {
-        r"four_bar\.[abcd]|about\..*": "length",
-        r"four_bar\.(transmission_min|transmission_max|swing)|crank_angle": "angle",
-        rf"by_order\..*\.phases|.*\.({_AT})": "angle",
-        r"four_bar\..*|turns|by_order\.(.*\.)?orders": None,
-        "speed": "angular speed",
-        "acceleration": "angular acceleration",
-        **{rf"cams\..*\.{f.name}": f.metadata["dimension"] for f in declared_figures(CamFigures)},
-    },
-    "plant": {
-        r"visits\.depth|loops\.(y|height|width)": "length",
-        r"loops\.(area|in_soil.*)": None,
-        rf"(cusps|tray_crossings)(\..*)?|(visits|loops)\..*|forces\..*\.({_AT})": "angle",
-    },
-    "balance": {
-        r"speed|equivalent_speeds\..*": "angular speed",
-        r"added_mass|(before|after)\.mass": "mass",
-        r"(?!before\.|after\.).*|.*\.area": None,
-    },
+KINDS: dict[str, str | None] = {
+    r"four_bar\.[abcd]|about\..*": "length",
+    r"four_bar\.(transmission_min|transmission_max|swing)|crank_angle": "angle",
+    rf"by_order\..*\.phases|.*\.({_AT})": "angle",
+    r"four_bar\..*|turns|by_order\.(.*\.)?orders": None,
+    "speed": "angular speed",
+    "acceleration": "angular acceleration",
+    **{rf"cams\..*\.{f.name}": f.metadata["dimension"] for f in declared_figures(CamFigures)},
 }
-"""Of each command: paths, without places in lists and what is told of a list, and what they are."""
+"""Of an analysis beside its outputs: paths without figures of lists, and their dimensions."""
 
 
 def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
@@ -277,24 +263,19 @@ def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
     whole = re.sub(r"\[[^\]]*\]", "", value).replace('"', "")
     if of not in ("plant", "respond", "balance", "tool"):
         of, whole = "analyze", whole.removeprefix("summary.").removeprefix("outputs.")
-    if of in ("respond", "tool"):
+    if of != "analyze":
         kinds = (dimension_at(one, whole, model) for one in declarations(of))
         return next((kind for kind in kinds if kind), None)
-    path = whole if of in ("plant", "balance") else _STATISTIC.sub("", whole)
-    for pattern, dimension in KINDS[of].items():
+    path = _STATISTIC.sub("", whole)
+    for pattern, dimension in KINDS.items():
         if re.fullmatch(pattern, path):
             return dimension
     first, _, rest = path.partition(".")
-    if of == "plant" and first != "forces":
-        return of_planting(path)
-    if of == "balance" and rest.startswith("planting."):
-        return of_planting(rest.removeprefix("planting."))
-    if first in ("by_cause", "by_link", "strokes"):
-        return of_stroke(cast("Machine", model), rest) if first == "strokes" else _of_part(rest)
-    kind, _, name = rest.partition(".")
-    found = _of_support(model, kind, name) if of == "balance" and kind == "gauges" else None
-    plain = of == "analyze" and first != "by_order"
-    return found or _of_output(path if plain else _LAST.sub("", rest))
+    if first == "strokes":
+        return of_stroke(cast("Machine", model), rest)
+    if first in ("by_cause", "by_link"):
+        return _of_part(rest)
+    return _of_output(_LAST.sub("", rest) if first == "by_order" else path)
 
 
 def declarations(of: str) -> Iterator[Declarations]:
@@ -303,6 +284,14 @@ def declarations(of: str) -> Iterator[Declarations]:
         from equipoise.vibration.response import Response
 
         yield Response.declared
+    elif of == "balance":
+        from equipoise.balancing.balanced import Balanced
+
+        yield Balanced.declared
+    elif of == "plant":
+        from equipoise.planting.summary import PlantingFigures
+
+        yield PlantingFigures.declared
     else:
         yield from answers_about_tools().values()
 
@@ -321,7 +310,7 @@ def answers_about_tools() -> dict[str, Declarations]:
 
 
 _STATISTIC = re.compile(rf"\.({'|'.join(FIGURES_OF_LISTS)})$")
-_LAST = re.compile(r"(\.in_air|\.in_soil)?\.[^.]*$")
+_LAST = re.compile(r"\.[^.]*$")
 
 
 def _of_output(name: str) -> str | None:
@@ -334,20 +323,3 @@ def _of_part(path: str) -> str | None:
     words = path.split(".")
     names = (".".join(words[:count]) for count in range(len(words), 0, -1))
     return next((found[0].dimension for found in map(declared, names) if found), None)
-
-
-def _of_support(model: Machine | Tool, first: str, rest: str) -> str | None:
-    """Of what a gauge or mount reads; names may hold dots, so the longest that fits it is."""
-    support: Support | None = getattr(model, "support", None)
-    places: Mapping[str, Any] = getattr(support, first, {}) if first in ("gauges", "mounts") else {}
-    name = max((name for name in places if f"{rest}.".startswith(f"{name}.")), key=len, default="")
-    if not name:
-        return None
-    turns = places[name].axis is not None
-    if first == "mounts":
-        return "torque" if turns else "force"
-    rate = rest.removeprefix(f"{name}.").partition(".")[0]
-    if rate in ("velocity", "acceleration"):
-        linear = "speed" if rate == "velocity" else "acceleration"
-        return f"angular {linear}" if turns else linear
-    return "angle" if turns else "length"

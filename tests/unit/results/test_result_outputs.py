@@ -12,10 +12,12 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.balancing.balanced import Balanced
 from equipoise.exposure.daily import Exposure
 from equipoise.handheld.exposed import ToolExposure, expose_tool
 from equipoise.handheld.modes import ToolModes, vibrate_tool
 from equipoise.handheld.sweep import ToolSweep, Transmission, sweep_tool
+from equipoise.planting.summary import PlantingFigures
 from equipoise.results.blocks import Table, Value
 from equipoise.results.declaring import Declarations, ResultOutput, documented
 from equipoise.results.result import Result
@@ -38,6 +40,8 @@ TABLES: dict[str, tuple[str, Declarations]] = {
     "speeds": ("output.md", Sweep.declared),
     "simulate": ("output.md", Transient.declared),
     "modes": ("output.md", FreeVibration.declared),
+    "plant": ("output.md", PlantingFigures.declared),
+    "balance": ("output.md", Balanced.declared),
     "tool-modes": ("tools.md", ToolModes.declared),
     "tool-respond": ("tools.md", ToolSweep.declared),
     "tool-exposure": ("tools.md", ToolExposure.declared),
@@ -132,6 +136,12 @@ CASES = {
     ),
 }
 CASES |= {
+    "plant": Case(
+        eq.plant, "kim-chung-a", PlantingFigures.declared, "new", of="plant", page="plant"
+    ),
+    "balance": Case(
+        eq.balance, "balance-crank", Balanced.declared, "new", of="balance", page="balance"
+    ),
     "tool modes": Case(
         vibrate_tool, "brush-cutter", ToolModes.declared, "new", of="tool", page="tool-modes"
     ),
