@@ -68,9 +68,10 @@ browser: $(VENV)/.installed-test
 	-@$(BIN)/python page/bundle.py
 	$(TEST) tests/browser
 
-# The snippets of the pages, and the site that is made of them.
+# The snippets of the pages, the site that is made of them, and the gallery of all pictures.
 documentation: $(VENV)/.installed-test
-	$(TEST) -m documentation README.md docs tests/surface/test_site.py
+	$(TEST) -m documentation README.md docs tests/surface/test_site.py \
+		tests/unit/figures/test_pictures.py
 
 # What a release has to pass: every machine where a few show the same on every change, and more seeds.
 test-all: $(VENV)/.installed-test

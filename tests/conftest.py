@@ -112,8 +112,9 @@ def _thinned(mark: pytest.Mark, seeds: int | None, every: bool) -> pytest.Mark:
                 continue
         kept.append(k)
     how = dict(mark.kwargs)
-    if isinstance(how.get("ids"), list | tuple):
-        how["ids"] = [how["ids"][k] for k in kept]
+    ids = how.get("ids")
+    if ids is not None and not callable(ids):
+        how["ids"] = [one for k, one in enumerate(ids) if k in kept]
     return pytest.mark.parametrize(mark.args[0], [values[k] for k in kept], *rest, **how).mark
 
 

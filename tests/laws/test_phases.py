@@ -22,6 +22,7 @@ from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import Phasing, choose_phases
 from equipoise.errors import UsageError
 from equipoise.mechanism.parts.balance import Objective, Phases
+from support.chosen import few
 from support.machines import make
 from support.rows_in_time import anyhow, in_time, measured, side_by_side, value_of
 from unit.vibration.build import Array
@@ -101,7 +102,7 @@ def chosen(case: str) -> tuple[eq.Machine, Phasing]:
     return machine, choose_phases(machine, wishes, combine=combine)
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", few(CASES, [*CASES][::2]))
 def test_nothing_better_is_found_by_evolution(case: str) -> None:
     """1e-6 of the value: sampled peaks are too low by up to 1e-7 times the square of the order."""
     count, wishes, combine = CASES[case]

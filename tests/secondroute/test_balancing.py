@@ -41,6 +41,7 @@ from support.balancing_reference import (
     plate,
     signals_of,
 )
+from support.chosen import few
 from support.conformance import compared
 from support.machines import KINDS, make
 from support.sources import BLIND_SEARCH
@@ -284,6 +285,9 @@ RANDOM = (
 )
 """Seeds of machines of different kinds."""
 CASES = {**PAPERS, **{f"random {seed}": seed for seed in RANDOM}}
+every_case = pytest.mark.parametrize(
+    "name", few(CASES, {*PAPERS, *(f"random {seed}" for seed in RANDOM[::3])})
+)
 
 
 def case_of(name: str) -> tuple[Machine, Balance]:
@@ -300,7 +304,7 @@ def balanced(name: str) -> eq.balancing.Balanced:
 
 
 @compared(BLIND_SEARCH, "least cost, over that before; differential evolution", SEARCHED)
-@pytest.mark.parametrize("name", CASES)
+@every_case
 def test_no_other_is_better(name: str) -> None:
     machine, plan = case_of(name)
     found, problem = balanced(name), Problem(machine, plan)
@@ -324,7 +328,7 @@ def test_no_other_is_better(name: str) -> None:
     assert cost <= found.cost + (1e-3 if peaks and loads_jump(machine) else SEARCHED) * whole
 
 
-@pytest.mark.parametrize("name", CASES)
+@every_case
 def test_values_before_and_after(name: str) -> None:
     machine, plan = case_of(name)
     found, problem = balanced(name), Problem(machine, plan)

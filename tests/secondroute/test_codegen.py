@@ -19,6 +19,7 @@ from equipoise.mechanism.parts.laws import LengthLaw
 from equipoise.mechanism.parts.machine import Gear, Machine
 from support import machines_cams
 from support.batches import by_numpy, every_dyad, known_of, same_figures, signals_of, wanted_of
+from support.chosen import DISTINCT, few
 from support.designs import design, drawn, named, numbers_of, paths_of, reason_of
 from support.machines import KINDS, make
 from support.machines_planes import set_apart
@@ -77,7 +78,7 @@ def compared(
     return moved
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", few(EXAMPLES, DISTINCT))
 def test_example(name: str, numpy_engine: None) -> None:
     base = eq.load(name)
     assert compared(base, 3, 1)

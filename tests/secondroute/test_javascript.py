@@ -18,6 +18,7 @@ from equipoise.errors import UsageError
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.newton import LoopGroup
 from support.batches import signals_of
+from support.chosen import DISTINCT, few
 from support.designs import design, drawn, numbers_of
 
 NODE = shutil.which("node")
@@ -68,7 +69,7 @@ def size(values: Any) -> Any:
 
 
 @node
-@pytest.mark.parametrize("name", written())
+@pytest.mark.parametrize("name", few(written(), DISTINCT))
 def test_example(name: str, tmp_path: Path) -> None:
     """1e-13 of the same terms by NumPy; further from an analysis only where dyads are weak."""
     machine = eq.load(name)
@@ -92,7 +93,7 @@ def test_example(name: str, tmp_path: Path) -> None:
 
 
 @node
-@pytest.mark.parametrize("name", [name for name in written() if has_forces(name)])
+@pytest.mark.parametrize("name", few(filter(has_forces, written()), DISTINCT))
 def test_numbers_that_are_changed(name: str, tmp_path: Path) -> None:
     """Lengths, masses and speed that are handed over, against a machine with these numbers."""
     base = eq.load(name)

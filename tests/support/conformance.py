@@ -239,7 +239,8 @@ def cases(test: Test) -> list[str]:
     """Names of what a test is done with; random machines of a kind are one case."""
     (mark,) = (mark for mark in test.pytestmark if mark.name == "parametrize")  # type: ignore[attr-defined]
     names: dict[str, int] = {}
-    for name in mark.kwargs.get("ids") or mark.args[1]:
+    for one in mark.kwargs.get("ids") or mark.args[1]:
+        (name,) = one.values if isinstance(one, type(pytest.param())) else (one,)
         kind, _, seed = name.partition(":")
         names[kind] = names.get(kind, 0) + bool(seed)
     return [

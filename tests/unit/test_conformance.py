@@ -40,7 +40,7 @@ TOTALS = (
 HEAD = """# Conformance
 
 Every published number that Equipoise is held against, every other program and every second route,
-with what comes out here. The tests write this page and hold each row of it: `make test` fails where
+with what comes out here. The tests write this page and hold each row of it: `make test-all` fails where
 one is no longer met.
 
 {totals}. Another {drawn} are

@@ -56,6 +56,7 @@ def of_odd(name: str) -> dict[str, Chart]:
     return rooms[room](kind)
 
 
+@pytest.mark.documentation  # the gallery has all of them
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_pictures_of_bundled_models(name: str, tmp_path: Path) -> None:
     """All of them are kept in the gallery, and in some languages drawn anew."""

@@ -16,6 +16,7 @@ from equipoise.mechanism.parts.machine import FRAME
 from equipoise.planting.designs import Designs
 from equipoise.planting.goals import Goal, Problem
 from equipoise.planting.search import Fit, fit_planting
+from support.chosen import EXHAUSTIVE
 from support.machines import make
 from unit.planting.build import two_arms
 
@@ -40,6 +41,7 @@ def figures_of_a() -> eq.planting.PlantingFigures:
     return eq.plant(eq.load("kim-chung-a"))
 
 
+@EXHAUSTIVE
 def test_mechanism_a_is_recovered_from_its_figures(
     figures_of_a: eq.planting.PlantingFigures,
 ) -> None:

@@ -11,6 +11,7 @@ from equipoise.i18n import Note, speaking
 from equipoise.results.outputs import figure_named
 from equipoise.schema.template import Template
 from equipoise.studies.blocks import Unit, named_together
+from support.chosen import DISTINCT, few
 
 MODELS = (*eq.examples("linkage"), *eq.examples("tool"))
 NO_DESIGN = re.compile(r"design\.|position\.|.*\.mounts\..*\.direction\[")
@@ -58,7 +59,7 @@ def test_words_in_other_languages() -> None:
     assert said("yamashita-1", path, "ko") == "crank의 질량중심, y"
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", few(MODELS, {*MODELS} - {*eq.examples("linkage")} | {*DISTINCT}))
 def test_words_tell_every_number_of_a_model_from_the_others(name: str) -> None:
     """But for the length of a body, which is a coordinate and a distance at once."""
     paths = [path for path in Template.load(name).numbers() if not NO_DESIGN.match(path)]

@@ -21,6 +21,7 @@ from equipoise.vibration.forced import chosen_model, excitation_model_of, respon
 from equipoise.vibration.resonance import around
 from equipoise.vibration.response import MODELS, Model
 from equipoise.vibration.sweep import sweep_speed
+from support.chosen import few
 from unit.vibration.build import PIVOT, SPEED, Mount, block, cart, rig, rocking, short_rig, springs
 
 LINE = Motor(26.0, 6.0)
@@ -283,7 +284,7 @@ def amplified(machine: eq.Machine, speed: float) -> float:
     return float(force / (2 * np.abs(np.fft.fft(moment))[1] / 720 / 1.35))
 
 
-@pytest.mark.parametrize("model", ["linear", "torque", "moment", "coupled", "exact"])
+@pytest.mark.parametrize("model", few(MODELS, ("linear", "exact")))
 def test_what_the_frame_bears_itself_shakes_no_mount(model: Model) -> None:
     """Nor do rocking moments where the support moves in the plane alone."""
     machine = eq.load("yamashita-rig")

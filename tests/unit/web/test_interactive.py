@@ -23,6 +23,7 @@ from equipoise.web.drawing import stage_of
 from equipoise.web.following_signs import ties_of
 from equipoise.web.interactive import Interactive, column_path
 from support import machines
+from support.chosen import DISTINCT, few
 from support.interactive import NODE, evaluated
 
 ROOT = Path(__file__).parents[3]
@@ -72,7 +73,7 @@ def compare(figures: Any, analysis: eq.Analysis, tolerance: float) -> None:
 
 
 @node
-@pytest.mark.parametrize("name", eq.examples("linkage"))
+@pytest.mark.parametrize("name", few(eq.examples("linkage"), DISTINCT))
 def test_figures_are_those_of_an_analysis(name: str, tmp_path: Path) -> None:
     machine = eq.load(name)
     got = evaluated(page_of(machine), FIGURES, tmp_path)

@@ -39,7 +39,7 @@ junk: st.SearchStrategy[Any] = st.recursive(
     max_leaves=12,
 )
 fuzz = settings(
-    max_examples=60, deadline=None, derandomize=True, database=None,
+    max_examples=30, deadline=None, derandomize=True, database=None,
     suppress_health_check=list(HealthCheck),
 )  # fmt: skip
 OPENED = {name: opened_example(name) for name in MACHINES}

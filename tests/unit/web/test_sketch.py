@@ -12,6 +12,7 @@ import equipoise as eq
 from equipoise.web.desk import Desk
 from equipoise.web.messages import message_of
 from equipoise.web.session import Session
+from support.chosen import DISTINCT, few
 from unit.web.pages import ask, edit, move, opened, refusal, state
 
 Content = dict[str, Any]
@@ -450,9 +451,13 @@ def test_a_new_machine_takes_the_place_of_a_tool() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["transplanter", "balance-spring", "balance-geared-a", "brush-cutter-engine",
-             "spring-balanced-crank", "planetary-planting-arm", "riding-transplanter",
-             "cam-pusher", "hydraulic-loader"]
+    "name",
+    few(
+        ["transplanter", "balance-spring", "balance-geared-a", "brush-cutter-engine",
+         "spring-balanced-crank", "planetary-planting-arm", "riding-transplanter",
+         "cam-pusher", "hydraulic-loader"],
+        DISTINCT,
+    ),
 )  # fmt: skip
 def test_whatever_names_a_point_or_a_link_gets_its_new_name(name: str) -> None:
     """A machine with all names changed and changed back is the same."""
