@@ -40,8 +40,8 @@ TOTALS = (
 HEAD = """# Conformance
 
 Every published number that Equipoise is held against, every other program and every second route,
-with what comes out here. The tests write this page and hold each row of it: `make test-all` fails where
-one is no longer met.
+with what comes out here. The tests write this page and hold each row of it: `make test-all`
+fails where one is no longer met.
 
 {totals}. Another {drawn} are
 drawn in print without being told as numbers. Printed equations are held by {equations} tests, and
