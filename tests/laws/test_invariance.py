@@ -40,6 +40,7 @@ def scaled(
     """Outputs as another description must give them."""
     ahead = (r.name for r in found.motion.machine.racks if r.drives == "pinion")
     straight = ["cams/", *(f"racks/{rack}/" for rack in ahead)]
+    straight += [f"joints/{slot.name}/" for slot in found.motion.machine.circular_slots]
     for name, value in outputs(found):
         if np.iscomplexobj(value):
             yield name, (np.conj(value) if flip else value) * force

@@ -17,6 +17,7 @@ from equipoise.keys import Frozen, Kind, Point, Table, innermost
 from equipoise.keys.declaring import declarations
 from equipoise.mechanism.parts.balance import Limit
 from equipoise.mechanism.parts.cams import Cam
+from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Vector
 from equipoise.mechanism.parts.objectives import quantity_of
@@ -95,6 +96,10 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
             for cam in machine.cams
         ),
         loads=tuple(turned_load(load, angle) for load in machine.loads),
+        circular_slots=tuple(
+            turned_slot(slot, angle) if slot.on == FRAME else slot
+            for slot in machine.circular_slots
+        ),
         torsion_springs=tuple(
             turned_torsion(spring, angle) if spring.on == FRAME else spring
             for spring in machine.torsion_springs
@@ -235,6 +240,10 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
         racks=tuple(replace(r, angle=-r.angle, side=flip[r.side]) for r in machine.racks),
         cams=tuple(mirrored_cam(cam) for cam in machine.cams),
         loads=tuple(mirrored_load(load) for load in machine.loads),
+        circular_slots=tuple(
+            replace(slot, arc=tuple(-end for end in slot.arc[::-1]))
+            for slot in machine.circular_slots
+        ),
         torsion_springs=tuple(mirrored_torsion(spring) for spring in machine.torsion_springs),
         gravity=vector(np.conj, machine.gravity),
         position=position,
@@ -306,6 +315,10 @@ def mirrored_load(load: eq.Load) -> eq.Load:
         stop=None if load.start is None else -load.start,
         table=given,
     )
+
+
+def turned_slot(slot: CircularSlot, angle: float) -> CircularSlot:
+    return replace(slot, arc=tuple(end + angle for end in slot.arc))
 
 
 def turned_torsion(spring: TorsionSpring, angle: float) -> TorsionSpring:
@@ -475,6 +488,10 @@ def with_axes(machine: eq.Machine, link: str, angle: float, shift: complex) -> e
             )
             for cam in machine.cams
         ),
+        circular_slots=tuple(
+            turned_slot(slot, -angle) if slot.on == link else slot
+            for slot in machine.circular_slots
+        ),
         torsion_springs=tuple(
             turned_torsion(s, angle * (int(s.link == link) - (s.on == link)))
             for s in machine.torsion_springs
@@ -546,6 +563,15 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
                     point=None if load.point is None else names(load.point))
             for load in machine.loads
         ),
+        circular_slots=tuple(
+            replace(slot, link=names(slot.link), point=names(slot.point), on=body(slot.on),
+                    center=names(slot.center), own_name=names(slot.name))
+            for slot in machine.circular_slots
+        ),
+        joints=tuple(
+            replace(one, joint=f"joints.{names(one.joint.removeprefix('joints.'))}")
+            for one in machine.joints
+        ),
         torsion_springs=tuple(
             replace(spring, link=names(spring.link), on=body(spring.on))
             for spring in machine.torsion_springs
@@ -563,8 +589,10 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
 def reordered(machine: eq.Machine) -> eq.Machine:
     """Write links, points, sliders, gears, loads and springs in the opposite order.
 
-    "left" and "right" are told from the dyad's earlier link to the later one, so they change too.
+    "left" and "right" are told from the dyad's earlier link to the later one, so they change too;
+    but where a slot is one of both, which always is the later.
     """
+    slots = {slot.name: {} for slot in machine.circular_slots}
     flip = {"left": "right", "right": "left"}
     return replace(
         machine,
@@ -573,7 +601,10 @@ def reordered(machine: eq.Machine) -> eq.Machine:
             name: replace(link, points=dict(reversed(link.points.items())))
             for name, link in reversed(machine.links.items())
         },
-        assembly={joint: flip.get(side, side) for joint, side in machine.assembly.items()},
+        assembly={
+            joint: slots.get(joint, flip).get(side, side)
+            for joint, side in machine.assembly.items()
+        },
         sliders=machine.sliders[::-1],
         gears=machine.gears[::-1],
         belts=machine.belts[::-1],

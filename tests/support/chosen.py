@@ -17,6 +17,7 @@ DISTINCT = (
     "class-three",  # a group of three dyads that are solved at once
     "straw-walker",  # more links than hold it
     "cam-pusher",
+    "flap-folder",  # a pin in a circular slot, and a torsion spring
     "knife-drive",  # a belt and a rack
     "hydraulic-loader",  # driven to and fro by a cylinder
     "geared-counterweight",  # over several turns

@@ -66,6 +66,7 @@ def plain_of(machine: Machine) -> Plain:
             {"base_radius": c.base_radius, "roller_radius": c.roller_radius, "normal": c.normal}
             for c in machine.cams
         ],
+        "circular_slots": [{"radius": slot.radius} for slot in machine.circular_slots],
         "torsion_springs": [
             {key: getattr(s, key) for key in ("stiffness", "angle", "preload")}
             for s in machine.torsion_springs
@@ -96,7 +97,16 @@ def machine_of(base: Machine, plain: Plain) -> Machine:
             replace(value, **changes)
             for value, changes in zip(getattr(base, key), plain[key], strict=True)
         )
-        for key in ("sliders", "gears", "belts", "racks", "cams", "springs", "torsion_springs")
+        for key in (
+            "sliders",
+            "gears",
+            "belts",
+            "racks",
+            "cams",
+            "springs",
+            "torsion_springs",
+            "circular_slots",
+        )
     }
     listed["gears"] = tuple(
         replace(gear, shape=shaped and replace(gear.shape, **shaped))

@@ -164,14 +164,14 @@ class _Group:
         machine = self.machine
         assert machine.position is not None
         for link, anchor in zip(self.group.links, self.group.anchors, strict=True):
-            for name in machine.links[link].points:
+            for name in machine.assembled_points(link):
                 if name not in machine.position.points:
                     continue
 
                 def arm(
                     found: Linkage, link: str = link, name: str = name, to: str = anchor
                 ) -> Any:
-                    points = found.machine.links[link].points
+                    points = found.machine.assembled_points(link)
                     return planar(points[name]) - planar(points[to])
 
                 vector = self.trace.slot(f"arm({link}/{name})", arm, vector=True)

@@ -15,6 +15,7 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.exchange.formats import Job
+from equipoise.mechanism.assembly.joints import Structure, joined
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.forces import massless
@@ -141,7 +142,7 @@ def trees(job: Job) -> tuple[Tree, ...]:
     MotionError : it cannot be drawn there.
     UsageError : sliders alone make a loop.
     """
-    machine, joints = job.machine, assemble(job.machine).joints
+    machine, joints = job.machine, _joints(job.machine)
     for slider in joints.sliders:
         if slider not in joints.needed.sliders:
             job.leave_out(
@@ -225,14 +226,19 @@ def _tree(machine: Machine, crank_angle: float, row: Row, suffix: str) -> Tree:
     return Tree(machine, crank_angle, links, loose, row, suffix)
 
 
+def _joints(machine: Machine) -> Structure:
+    """Pins and guides, without what is inside of joints in slots, which no file holds."""
+    return joined(machine.bodies, machine.sliders, machine.couplings, {})
+
+
 def _edges(machine: Machine) -> Iterator[Edge]:
     """Joints, those first that are to be in the tree."""
-    linkage = assemble(machine)
-    yield Edge(FRAME, machine.drive.link, pin=linkage.pivot)
-    yield from (Edge(one.on, one.link, slider=one) for one in linkage.joints.needed.sliders)
-    for pin, (first, *others) in linkage.joints.pins.items():
+    pivot, joints = assemble(machine).pivot, _joints(machine)
+    yield Edge(FRAME, machine.drive.link, pin=pivot)
+    yield from (Edge(one.on, one.link, slider=one) for one in joints.needed.sliders)
+    for pin, (first, *others) in joints.pins.items():
         for other in others:
-            if (pin, other) != (linkage.pivot, machine.drive.link):
+            if (pin, other) != (pivot, machine.drive.link):
                 yield Edge(first, other, pin=pin)
 
 

@@ -87,8 +87,10 @@ def test_it_does_what_a_link_without_mass_does() -> None:
     assert slot.summary["joints.C in frame"].peak == np.max(pushed.size)
 
 
-@pytest.mark.parametrize("machine", [MACHINE, on_crank(CircularSlot("rocker", "C", "crank", "B",
-                                                                    0.0715))])  # fmt: skip
+ON_CRANK = on_crank(CircularSlot("rocker", "C", "crank", "B", 0.0715))
+
+
+@pytest.mark.parametrize("machine", [MACHINE, ON_CRANK, eq.load("flap-folder")])
 def test_motion_and_forces_by_a_second_route(machine: Machine) -> None:
     """Newton's method on |PC| = R, and all free bodies with one push along PC."""
     found = eq.analyze(machine, angles=ANGLES)
@@ -111,7 +113,7 @@ def test_motion_and_forces_by_a_second_route(machine: Machine) -> None:
 
 def test_the_slot_does_no_work() -> None:
     """Power fed in is what kinetic energy and height take."""
-    machine = on_crank(CircularSlot("rocker", "C", "crank", "B", 0.0715))
+    machine = ON_CRANK
     found = eq.analyze(machine, angles=ANGLES)
     taken = 0.0
     for name, link in machine.links.items():

@@ -109,7 +109,7 @@ def _guided(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Posi
     now = poses_in(builder.now, builder.anchors.items())
     body, guide = guides[0]
     turn = complex(now[body].turn[0][0] * guide.along * guide.turn)
-    label = next(iter(builder.machine.links[link].points))
+    label = next(iter(builder.machine.assembled_points(link)))
     rows, ways = [], []
     for one in outers:
         at = now[one.body].place_of(builder.arm(one.body, builder.anchors[one.body], one.point))[0]

@@ -70,7 +70,7 @@ class Closed:
 
 def closed_by(builder: Builder, first: Outer, second: Outer, pin: str) -> Closed | None:
     """The four-bar that two links with a pin between them close, if it is one."""
-    points = builder.machine.points_of
+    points = builder.machine.assembled_points
     for here in (body for body in builder.rank if first.point in points(body)):
         for there in (body for body in builder.rank if second.point in points(body)):
             for pivot in () if here == there else points(here).keys() & points(there).keys():
