@@ -20,6 +20,7 @@ from equipoise.mechanism.parts.balance import Measure, Objective
 from equipoise.mechanism.parts.force_elements import Load, LoadTable
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
+from support.chosen import EXHAUSTIVE
 
 
 def four_rows(machine: Machine) -> Machine:
@@ -108,6 +109,7 @@ def test_slopes_at_tops_and_sides_of_jumps() -> None:
         )
 
 
+@EXHAUSTIVE
 def test_phases_for_the_least_peak() -> None:
     """As good as what 40 searches without slopes from places by chance come to, 4.1501 N m.
 

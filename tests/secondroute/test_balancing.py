@@ -286,7 +286,7 @@ RANDOM = (
 """Seeds of machines of different kinds."""
 CASES = {**PAPERS, **{f"random {seed}": seed for seed in RANDOM}}
 every_case = pytest.mark.parametrize(
-    "name", few(CASES, {*PAPERS, *(f"random {seed}" for seed in RANDOM[::3])})
+    "name", few(CASES, {*PAPERS, *(f"random {seed}" for seed in RANDOM[::5])})
 )
 
 
@@ -475,7 +475,7 @@ def test_optimum_by_a_first_order_solver(name: str) -> None:
 
 REAL = [*CASES, *(f"convex: {name}" for name in CONVEX if name not in CASES)]
 every_real = pytest.mark.parametrize(
-    "name", few(REAL, {*REAL} - {f"random {seed}" for seed in RANDOM if seed not in RANDOM[::3]})
+    "name", few(REAL, {*REAL} - {f"random {seed}" for seed in RANDOM if seed not in RANDOM[::5]})
 )
 
 

@@ -139,7 +139,7 @@ def test_an_undamped_resonance() -> None:
     assert read("respond", wheel(exact))
 
 
-@pytest.mark.parametrize("model", ["linear", "moment", "exact"])
+@pytest.mark.parametrize("model", few(["linear", "moment", "exact"], {"linear", "moment"}))
 def test_a_range_over_an_undamped_resonance(model: str) -> None:
     """That one speed has no answer does not take away those of the others."""
     exact = HEAVE.replace('"5 kN/m"', '"1024 N/m"')
@@ -218,7 +218,7 @@ ONE_SIDED = ("planetary-planting-arm", "geared-counterweight", "kim-chung-b")
 """On which a mount may let go; to look for that takes ten times as long."""
 
 
-@pytest.mark.parametrize("name", few(CARRIED, {*CARRIED} - {"transplanter"}))
+@pytest.mark.parametrize("name", few(CARRIED, {*CARRIED} - {"transplanter", "slider-crank-engine"}))
 def test_any_linkage_on_a_support(name: str) -> None:
     """Geared ones with cycles of several turns, loads with windows, soil."""
     held = () if name in ONE_SIDED else (("one_sided = true\n", ""),)

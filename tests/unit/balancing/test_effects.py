@@ -39,7 +39,7 @@ from equipoise.mechanism.parts.balance import (
     Weight,
 )
 from equipoise.vibration.linear import Linear
-from support.chosen import EXHAUSTIVE
+from support.chosen import EXHAUSTIVE, few
 from support.machines import make
 
 EXACT = 1e-9
@@ -307,7 +307,9 @@ def blind(machine: eq.Machine, objective: Objective, room: float, most: float) -
     )
 
 
-@pytest.mark.parametrize("objective", [RIPPLE, WIDTH], ids=["ripple", "peak to peak"])
+@pytest.mark.parametrize(
+    "objective", few([RIPPLE, WIDTH], [RIPPLE]), ids=["ripple", "peak to peak"]
+)
 def test_nothing_better_is_found_on_the_rig(objective: Objective) -> None:
     """By 1e-7 of the value before; and polishing comes as near as a kink lets it."""
     found = eq.balance(RIG, Balance(masses=(POINT,), objectives=(objective,)))

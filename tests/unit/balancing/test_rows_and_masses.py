@@ -27,6 +27,7 @@ from equipoise.mechanism.parts.balance import (
 )
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
+from support.chosen import EXHAUSTIVE
 from support.rows_in_time import in_time, side_by_side
 
 TYPE_II = eq.load("yamashita-2")
@@ -192,6 +193,7 @@ def test_mass_that_does_nothing_is_not_added() -> None:
     assert found.gap <= CLOSE * (1 + 1e-6)
 
 
+@EXHAUSTIVE
 def test_gauges_at_several_speeds() -> None:
     """Masses that only move, so that the support carries the same."""
     end = Objective("gauges.left_end", speeds=(20.0, 25.0))

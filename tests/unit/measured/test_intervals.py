@@ -58,7 +58,7 @@ CASES = {
 NAMES = ("natural_angular_frequency", "damping_ratio", "coulomb_displacement")
 
 
-@pytest.mark.parametrize("case", few(CASES.values(), [*CASES.values()][::2]), ids=CASES)
+@pytest.mark.parametrize("case", few(CASES.values(), [CASES["Coulomb only"]]), ids=CASES)
 def test_intervals_hold_the_truth_as_often_as_they_say(case: tuple[float, float, float]) -> None:
     """Nineteen times in twenty; the line's frequency more often, its intervals being wide."""
     truth = dict(zip(NAMES, (OMEGA, *case[:2]), strict=True))

@@ -26,6 +26,7 @@ from equipoise.studies.executors import Cluster, Processes, StoppedError, Thread
 from equipoise.studies.outcomes import Block
 from equipoise.studies.sampling import samples
 from support import studies
+from support.chosen import few
 from support.studies import Formulas, Orders, short_study
 
 STUDY = short_study(sampling=Sampling("monte-carlo", 200))  # in no need of slow imports
@@ -113,7 +114,7 @@ with closing(Processes(orders.task, 2)) as pool:  # not below a question for __m
 """
 
 
-@pytest.mark.parametrize("begun", [0, 2])
+@pytest.mark.parametrize("begun", few([0, 2], {2}))
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
 def test_processes_end_with_the_one_that_started_them(
     tmp_path: Path, number: int, begun: int

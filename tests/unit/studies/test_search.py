@@ -19,6 +19,7 @@ from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Evaluator, Outcome, kept, non_dominated
 from equipoise.studies.searching import search, search_size
 from equipoise.studies.study import Study
+from support.chosen import EXHAUSTIVE
 from unit.studies.samples import LENGTH, MASS, PATHS, study
 
 Array = np.ndarray[Any, Any]
@@ -230,6 +231,7 @@ def test_nothing_can_be_computed() -> None:
 # -- a machine -------------------------------------------------------------------------------------
 
 
+@EXHAUSTIVE
 def test_a_four_bar_against_every_design() -> None:
     """Of a grid of designs the search finds the whole front; between them it finds better ones."""
     rocker = "links.rocker.points.C.x"
