@@ -8,9 +8,11 @@ from math import isfinite
 
 from equipoise.balancing.balanced import Balanced
 from equipoise.errors import ChangePointError, RangeError, UsageError, needed, unknown
-from equipoise.exchange.formats import CAM, FORMATS, RACK, SLOT, VARYING, Format, Job
+from equipoise.exchange.formats import FORMATS, RACK, SLOT, Format, Job
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.checks import numbered
+from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.files import printable, write
@@ -77,9 +79,10 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
     _check_joints(machine, one)
     job = Job(machine, crank_angle, changes)
     if RACK in one.lacks:
-        for belt in machine.belts:
-            if belt.tension is not None:
-                job.leave_out(f"the tension of the belt {belt.name}, which its pins bear")
+        for coupling in machine.couplings:
+            if coupling.preload:
+                lost = f"the tension of the {coupling.noun} {coupling.name}"
+                job.leave_out(f"{lost}, which its pins bear")
     if machine.pushers:
         job.leave_out("what pushes the machine, and its stroke")
     data: str | bytes = import_module(one.maker).made(job)
@@ -88,17 +91,15 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
 
 def _check_joints(machine: Machine, one: Format) -> None:
     """Refuse a machine with joints that a format lacks."""
-    shapes = (f"gears[{k}].shape" for k, gear in enumerate(machine.gears, 1) if gear.shape)
-    slots = (f"{table}[1]" for table in joint_kinds(type(machine)) if getattr(machine, table))
-    found = {
-        CAM: "cams[1]" if machine.cams else None,
-        RACK: "racks[1]" if machine.racks else None,
-        VARYING: next(shapes, None),
-        SLOT: next(slots, None),
-    }
-    for joint, where in found.items():
-        if where is not None and joint in one.lacks:
-            raise UsageError(f"{where}: a file of {one.title} has no {joint}; give another format")
+    slots = [table for table in joint_kinds(type(machine)) if getattr(machine, table)]
+    if slots and SLOT in one.lacks:
+        raise UsageError(f"{slots[0]}[1]: a file of {one.title} has no {SLOT}; give another format")
+    for table in coupling_kinds(type(machine)):
+        for where, coupling in numbered(table, getattr(machine, table)):
+            if coupling.special in one.lacks:
+                raise UsageError(
+                    f"{where}: a file of {one.title} has no {coupling.special}; give another format"
+                )
 
 
 def check_turning(machine: Machine, title: str) -> None:

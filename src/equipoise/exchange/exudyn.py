@@ -130,10 +130,10 @@ def _geared(tree: Tree) -> list[Data]:
 
     Raises
     ------
-    UsageError : gears or belts sit on three bodies of which none follows another or stands still.
+    UsageError : a coupling is of three bodies of which none follows another or stands still.
     """
     shares: dict[str, dict[str, float]] = {}
-    for gear in (*tree.machine.gears, *tree.machine.belts):
+    for gear in tree.machine.couplings:
         ratio = gear.speed_ratio
         total = dict[str, float]()
         for body, share in ((gear.driver, ratio), (gear.carrier, 1 - ratio)):

@@ -172,7 +172,7 @@ def _sliders(model: Flat, motion: Motion) -> None:
 
 def _gears(model: Flat, motion: Motion) -> None:
     """What teeth do, as couples on driver, driven and carrier that do no work together."""
-    for number, gear in enumerate((*model.machine.gears, *model.machine.belts), 1):
+    for number, gear in enumerate(model.machine.couplings, 1):
         ratio = gear.speed_ratio
         couple = f"G_{number}"
         shares = ((gear.driven, 1.0), (gear.driver, -ratio), (gear.carrier, ratio - 1.0))

@@ -123,7 +123,7 @@ class Tree:
     @property
     def gears(self) -> Iterator[tuple[str, dict[str, float]]]:
         """Of each pair of gears its name, and link -> factor of its hinge in a sum that is 0."""
-        for gear in (*self.machine.gears, *self.machine.belts):
+        for gear in self.machine.couplings:
             ratio = gear.speed_ratio
             factors = dict[str, float]()
             shares = ((gear.driven, 1.0), (gear.driver, -ratio), (gear.carrier, ratio - 1))

@@ -59,8 +59,7 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
         return
     yield from force_blocks(analysis)
     yield from joint_blocks(analysis)
-    if machine.belts:
-        yield from belt_blocks(analysis.resolved.forces)
+    yield from belt_blocks(analysis.resolved.forces)
     yield from question_blocks(analysis)
 
 

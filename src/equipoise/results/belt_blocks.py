@@ -18,6 +18,8 @@ from equipoise.signals import highest_at
 def belt_blocks(forces: Forces) -> Iterator[Block]:
     """Strands of all belts."""
     rows: list[tuple[Cell, ...]] = []
+    if not forces.belts:
+        return
     for belt in forces.belts.values():
         ends = f"{body_named(belt.by)} → {body_named(belt.on)}"
         for strand, tension in ((say("left"), belt.left), (say("right"), belt.right)):

@@ -58,7 +58,7 @@ def _elements_table(
 
 
 def contact_named(forces: Forces, name: str) -> str:
-    """A joint, a cam, a mesh of teeth or a belt, by the kind of its contact."""
+    """A joint or coupling, by the kind of its contact."""
     if name in forces.joints:
         return joint_named(name)
     return say("cam") if name in forces.cams else say("teeth")

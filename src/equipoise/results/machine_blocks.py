@@ -11,7 +11,7 @@ import numpy as np
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs.spoken import body_named
 from equipoise.mechanism.parts.bodies import inertia_of, material_of, together
-from equipoise.quantities import Dimension, Display, angle, display, number, told
+from equipoise.quantities import Dimension, Display, angle, display, told
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
 from equipoise.signals import Array, Figures
 
@@ -206,53 +206,13 @@ def _parts(machine: Machine) -> Iterator[str]:
             through=slider.through,
             angle=angle(slider.direction),
         )
-    yield from _couplings(machine)
+    yield from (coupling.sentence().said() for coupling in machine.couplings)
     yield from (element.sentence().said() for *_, element in machine.elements)
     for load in machine.loads:
         if load.point is None:
             yield say("Load: a torque on {link}", link=load.link)
         else:
             yield say("Load: a force at {point} of {link}", point=load.point, link=load.link)
-
-
-def _couplings(machine: Machine) -> Iterator[str]:
-    for one in (*machine.gears, *machine.belts):
-        named = {
-            "what": say("Gears") if one.table == "gears" else say("Belt"),
-            "driver": body_named(one.driver),
-            "driven": one.driven,
-            "carrier": body_named(one.carrier),
-        }
-        low, high = one.ratios
-        if low == high:
-            yield say(
-                "{what}: {driver} drives {driven} on {carrier} with the speed ratio {ratio}",
-                ratio=number(low),
-                **named,
-            )
-        else:
-            yield say(
-                "{what}: {driver} drives {driven} on {carrier} with a speed ratio from {low} to "
-                "{high}",
-                low=number(low),
-                high=number(high),
-                **named,
-            )
-    for rack in machine.racks:
-        yield say(
-            "Rack: {driver} drives {driven} on {carrier}, pitch radius {radius}",
-            driver=rack.driver,
-            driven=rack.driven,
-            carrier=body_named(rack.carrier),
-            radius=told(rack.radius, "length"),
-        )
-    for cam in machine.cams:
-        yield say(
-            "Cam: {cam} moves {follower} on {carrier}",
-            cam=body_named(cam.driver),
-            follower=cam.driven,
-            carrier=body_named(cam.carrier),
-        )
 
 
 def _support(machine: Machine) -> Iterator[str]:

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
+from itertools import repeat
+from math import dist
 
 import numpy as np
 
 from equipoise.i18n import say
 from equipoise.mechanism.assembly.joints import Structure, coupling_pins
 from equipoise.mechanism.checks import Bodies
-from equipoise.mechanism.parts.belts import Belt
-from equipoise.mechanism.parts.couplings import Law
+from equipoise.mechanism.parts.couplings import Coupling, Law
 from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.machine import FRAME
-from equipoise.mechanism.parts.racks import Rack
 from equipoise.symbols.shapes import Array
 
 CORNERS = 180
@@ -52,28 +53,25 @@ def wheels_of(joints: Structure, bodies: Bodies, angles: Mapping[str, float]) ->
 
     angles : of the links in one pose, rad, which tell how curves lie that are no circles.
     """
-    for gear in joints.couplings:
-        part = gear.table, gear.name
-        if isinstance(gear, Belt):
-            links = zip((gear.driver, gear.driven), coupling_pins(joints, gear), strict=True)
-            for (link, pin), radius in zip(links, gear.pitch_radii, strict=True):
-                yield Wheel(link, pin, radius, part)
-        elif isinstance(gear, Rack):
-            for pin in joints.pins_between(gear.pinion, gear.carrier):
-                yield Wheel(gear.pinion, pin, gear.radius, part)
-        if not isinstance(gear, Gear):
-            continue
-        pins = coupling_pins(joints, gear)
-        driver, driven = (complex(*bodies[gear.carrier][pin]) for pin in pins)
-        links = zip((gear.driver, gear.driven), pins, strict=True)
-        if gear.law is not None:
-            curves = _curves(gear, gear.law, driver - driven, angles)
-            for (link, pin), curve in zip(links, curves, strict=True):
-                yield Wheel(link, pin, float(np.max(np.abs(curve))), part, curve)
-            continue
-        radius = abs(driver - driven) / abs(1 - gear.speed_ratio)
-        for (link, pin), share in zip(links, (abs(gear.speed_ratio), 1.0), strict=True):
-            yield Wheel(link, pin, radius * share, part)
+    for one in joints.couplings:
+        wheels = [*one.circles(partial(_distance, joints, bodies, one))]
+        shared = [joints.pins_between(body, one.carrier) for body, _ in wheels]
+        if not all(shared):
+            continue  # a sketch may lack a pin
+        pins = [points[0] for points in shared]
+        curves: Iterable[Array | None] = repeat(None)
+        if isinstance(one, Gear) and one.law is not None:
+            driver, driven = (complex(*bodies[one.carrier][pin]) for pin in pins)
+            curves = _curves(one, one.law, driver - driven, angles)
+        for (body, radius), pin, curve in zip(wheels, pins, curves, strict=False):
+            size = radius if curve is None else float(np.max(np.abs(curve)))
+            yield Wheel(body, pin, size, (one.table, one.name), curve)
+
+
+def _distance(joints: Structure, bodies: Bodies, coupling: Coupling) -> float:
+    """Of the pins of driver and driven body, m."""
+    points = bodies[coupling.carrier]
+    return dist(*(points[pin] for pin in coupling_pins(joints, coupling)))
 
 
 def _curves(gear: Gear, law: Law, centres: complex, angles: Mapping[str, float]) -> Curves:

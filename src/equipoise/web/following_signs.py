@@ -7,6 +7,7 @@ what they stand for.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +16,6 @@ from equipoise.mechanism.formulas.strands import LEFT, RIGHT
 from equipoise.mechanism.kinematics.motion import Motion
 from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.machine import FRAME
-from equipoise.mechanism.parts.racks import Rack
 from equipoise.symbols.pieces import Piece, pieces
 from equipoise.symbols.scene import WIDE, Guide, Scene
 from equipoise.symbols.shapes import Array, Shape
@@ -38,7 +38,7 @@ def ties_of(scene: Scene, motion: Motion) -> list[list[Values | None]]:
     hull : true where corners are those around all points of the link.
     turned : moves with a point that it is ``about``; larger and turned as the vector ``between``
         two points is, in the axes of the body ``of``, where these are given.
-    strand : side of a belt's strand, its pins ``between`` and the pulleys' radii.
+    strand : its side, its pins ``between`` and the pulleys' radii.
     made_of : beginnings of paths of numbers; where one of these is another, the shape is left out.
     """
     return [
@@ -79,7 +79,7 @@ def _of_shape(motion: Motion, role: str) -> Iterator[str]:
 
 
 def _of_coupling(motion: Motion, piece: Piece, shape: Shape) -> Values | None:
-    """What is drawn of gears, belts, racks and cams."""
+    """What is drawn of couplings."""
     table, name = piece.part or ("", "")
     joints = motion.linkage.joints
     coupling = next(
@@ -88,19 +88,15 @@ def _of_coupling(motion: Motion, piece: Piece, shape: Shape) -> Values | None:
         if (coupling.table, coupling.name) == (table, name)
     )
     link = FRAME if piece.hold is None else piece.hold.link
-    if table == "belts" and shape.role == "strand":
-        return _strand(motion, shape, name)
-    pinion = coupling.pinion if isinstance(coupling, Rack) else ""
-    if table == "cams" or (pinion and link != pinion):
+    if shape.role == "strand":
+        return _strand(motion, shape, coupling)
+    if link not in dict(coupling.circles(lambda: 1.0)):
         return {"made_of": [*_made_of(motion, table, name)]}
-    driver = joints.pins_between(pinion or coupling.driver, coupling.carrier)[0]
-    if pinion:
-        return {"turned": {"about": driver}}
-    pins = coupling_pins(joints, coupling)
-    about = driver if link == coupling.driver else pins[1]
-    if table == "belts":
+    about = joints.pins_between(link, coupling.carrier)[0]
+    if not coupling.grows:
         return {"turned": {"about": about}}
-    return {"turned": {"about": about, "between": [*pins], "of": coupling.carrier}}
+    pins = [*coupling_pins(joints, coupling)]
+    return {"turned": {"about": about, "between": pins, "of": coupling.carrier}}
 
 
 def _of_points(scene: Scene, piece: Piece, shape: Shape, body: str) -> Values | None:
@@ -154,10 +150,8 @@ def _ends(scene: Scene, guide: Guide) -> tuple[complex, complex]:
     return scene.local(body, ends[0]), scene.local(body, ends[1])
 
 
-def _strand(motion: Motion, shape: Shape, name: str) -> Values | None:
-    joints = motion.linkage.joints
-    belt = next(belt for belt in motion.machine.belts if belt.name == name)
-    pins = coupling_pins(joints, belt)
+def _strand(motion: Motion, shape: Shape, belt: Any) -> Values | None:
+    pins = coupling_pins(motion.linkage.joints, belt)
     points = motion.machine.bodies[belt.carrier]
     start, end = (complex(*points[pin]) for pin in pins)
     strands = belt.strands(end - start)

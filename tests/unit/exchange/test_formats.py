@@ -64,7 +64,7 @@ def test_joints_that_a_format_lacks(name: str, tmp_path: Path) -> None:
     for joint, where, example in (
         (CAM, "cams[1]", "cam-pusher"),
         (RACK, "racks[1]", "knife-drive"),
-        (VARYING, "gears[1].shape", "elliptic-quick-return"),
+        (VARYING, "gears[1]", "elliptic-quick-return"),
     ):
         if joint not in FORMATS[name].lacks:
             assert (name, joint) == ("fmu", RACK)

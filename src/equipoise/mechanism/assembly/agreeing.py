@@ -1,4 +1,4 @@
-"""Flanks of teeth, and strands of belts, where joints share forces: those that push as they lie.
+"""Flanks of teeth, and strands, where joints share forces: those that push as they lie.
 
 Along which line teeth push depends on the sign of their push, and where joints share, how large
 the push is depends on all these lines.  From the flanks that pushes without any slant ask for,

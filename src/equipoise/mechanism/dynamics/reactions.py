@@ -89,7 +89,7 @@ class SlotForce(JointForce):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CouplingForce(JointForce):
-    """Force of a coupling on its driven body, N; of belts without what strands pull anyway.
+    """Force of a coupling on its driven body, N, without preloads.
 
     parts : of it, by name, as `Coupling.parts` has them; attributes too, such as `tangential`.
     """
@@ -222,9 +222,7 @@ class Pass:
 
     @property
     def flanks(self) -> State:
-        """Which flank of each pair of gears is in contact, and which strand of each belt pulls, by
-        name in the state.
-        """
+        """Which side of each coupling bears, a flank or a strand, by name in the state."""
         return {name: value for name, value in self.state.items() if name.startswith("flank(")}
 
     def _joint(self, reaction: Reaction) -> JointForce:

@@ -1,1 +1,1 @@
-"""The formulas, each written once: of dyads, joints, cams, rolling gears, belts and motion laws."""
+"""The formulas, each written once: of dyads, joints, couplings and motion laws."""

@@ -39,6 +39,7 @@ class Belt(Turning):
 
     table: ClassVar[str] = "belts"
     noun = to_say("belt")
+    heading = Note("Belt")
     pushes = False
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"start", "tension"}}
     counted = to_say("{count} belt"), to_say("{count} belts")
@@ -134,6 +135,10 @@ class Belt(Turning):
         """Pulleys that lie apart, and a tension that pulls."""
         yield distance() > sum(self.pitch_radii)
         yield self.tension is None or self.tension > 0
+
+    def circles(self, distance: Callable[[], Any]) -> Iterator[tuple[str, Any]]:
+        """Both pulleys."""
+        return zip((self.driver, self.driven), self.pitch_radii, strict=True)
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with a belt, but for where its pulleys are."""

@@ -33,6 +33,7 @@ class Cam(Coupling):
     table: ClassVar[str] = "cams"
     noun = to_say("cam")
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"base_radius", "roller_radius", "normal"}}
+    special = "cam"
     counted = to_say("{count} cam"), to_say("{count} cams")
     most = 100
     start: ClassVar[float] = 0.0
@@ -123,6 +124,15 @@ class Cam(Coupling):
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         """Along the normal away from the cam; below 0 where the follower is held back."""
         return {"normal": at.push}
+
+    def sentence(self) -> Note:
+        """Its bodies."""
+        return Note(
+            "Cam: {cam} moves {follower} on {carrier}",
+            cam=Note("frame") if self.driver == FRAME else self.driver,
+            follower=self.driven,
+            carrier=Note("frame") if self.carrier == FRAME else self.carrier,
+        )
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with a cam."""

@@ -20,6 +20,7 @@ from equipoise.keys import Frozen, Key, Keys, Listing, Text, declared, inside, k
 from equipoise.keys.declaring import listed_types, once
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body
 from equipoise.mechanism.formulas.rolling_kernels import followed
+from equipoise.quantities import number
 
 Relation = tuple[Callable[..., tuple[Any, ...]], tuple[Any, ...]]
 """Kernel and its numbers: called with angle, first and second derivative of the driver, then of the
@@ -59,6 +60,9 @@ class Coupling(Frozen):
     most : that a machine may have.  noun : what one is called.  counted : how one, and several, are
         counted.  pushes : whether it is one force at one place, told as a whole and in parts.
     preload : what its sides pull with where no torque is passed on, N.
+    special : what it is called by formats of other programs, some of which lack it; empty of what
+        turns both in a fixed ratio.
+    grows : whether its pitch circles are as large as the distance of its pins sets them.
     columns : numbers that columns of designs may have, and of what is inside of it by its key.
     driver, driven, carrier : names of bodies.
     start : angle of the driven body in the frame at crank angle 0, rad.
@@ -72,6 +76,8 @@ class Coupling(Frozen):
     most: ClassVar[int] = 200
     pushes: ClassVar[bool] = True
     preload: ClassVar[Any] = 0.0
+    special: ClassVar[Any] = ""
+    grows: ClassVar[bool] = False
     columns: ClassVar[Mapping[str, Set[str]]] = {}
 
     if TYPE_CHECKING:  # fields of some kinds, and properties of others
@@ -144,6 +150,18 @@ class Coupling(Frozen):
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         """Parts of its force by the names of their outputs, N."""
 
+    @abstractmethod
+    def sentence(self) -> Note:
+        """What it is, for a report."""
+
+    def circles(self, distance: Callable[[], Any]) -> Iterator[tuple[str, Any]]:
+        """Bodies with the radii of their pitch circles about their pins on the carrier, m; the mean
+        where the ratio varies.
+
+        distance : of the pins of driver and driven body, m.
+        """
+        return iter(())
+
     def preload_rate(self, distance: Any) -> Any:
         """Force by which its preload draws the pins of driver and driven body together, over their
         distance, N/m.
@@ -171,7 +189,10 @@ def coupling_kinds(of: type[Frozen]) -> Mapping[str, type[Coupling]]:
 
 @declared
 class Turning(Coupling):
-    """What turns two links that are pinned to the same carrier: gears, and belts."""
+    """What turns two links that are pinned to the same carrier.
+
+    heading : of its sentence in a report.
+    """
 
     beside: ClassVar[Keys] = {
         "between": Key(
@@ -182,6 +203,8 @@ class Turning(Coupling):
             example=["crank", "wheel"],
         )
     }
+    heading: ClassVar[Note]
+
     driver: str = inside(Text())
     driven: str = inside(Text())
     carrier: str = key(
@@ -206,6 +229,28 @@ class Turning(Coupling):
     @classmethod
     def to_table(cls, value: Self) -> dict[str, Any]:
         return {"between": (value.driver, value.driven), **super().to_table(value)}
+
+    def sentence(self) -> Note:
+        """Its bodies and the ratio of their speeds."""
+        low, high = self.ratios
+        named = {
+            "what": self.heading,
+            "driver": Note("frame") if self.driver == FRAME else self.driver,
+            "driven": self.driven,
+            "carrier": Note("frame") if self.carrier == FRAME else self.carrier,
+        }
+        if low == high:
+            return Note(
+                "{what}: {driver} drives {driven} on {carrier} with the speed ratio {ratio}",
+                ratio=number(low),
+                **named,
+            )
+        return Note(
+            "{what}: {driver} drives {driven} on {carrier} with a speed ratio from {low} to {high}",
+            low=number(low),
+            high=number(high),
+            **named,
+        )
 
     @property
     def ratios(self) -> tuple[float, float]:

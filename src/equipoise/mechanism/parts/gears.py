@@ -61,6 +61,8 @@ class Gear(Turning):
         "": {"start", "pressure_angle"},
         "shape": {"eccentricity", "phase", "cosines", "sines"},
     }
+    heading = Note("Gears")
+    grows = True
     counted = to_say("{count} gear"), to_say("{count} gears")
 
     ratio: float | None = key(
@@ -161,6 +163,16 @@ class Gear(Turning):
             from equipoise.mechanism.parts.pitch_curves import can_roll
 
             yield can_roll(self.shape, self)
+
+    @property
+    def special(self) -> str:
+        return "gears of varying ratio" if self.shape else ""
+
+    def circles(self, distance: Callable[[], Any]) -> Iterator[tuple[str, Any]]:
+        """Both gears."""
+        radius = distance() / abs(1 - self.speed_ratio)
+        yield self.driver, radius * abs(self.speed_ratio)
+        yield self.driven, radius
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with a pair of gears."""

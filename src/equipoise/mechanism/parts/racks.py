@@ -19,6 +19,7 @@ from equipoise.mechanism.parts.couplings import (
     is_pressure_angle,
     pressure_angle,
 )
+from equipoise.quantities import told
 
 HANDS = ("left", "right")
 ENDS = ("pinion", "rack")
@@ -33,6 +34,7 @@ class Rack(Coupling):
     table: ClassVar[str] = "racks"
     noun = to_say("rack")
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"angle", "travel", "pressure_angle"}}
+    special = "rack"
     counted = to_say("{count} rack"), to_say("{count} racks")
 
     pinion: str = key(Text(of="body"), "link that turns", example="rocker")
@@ -130,6 +132,20 @@ class Rack(Coupling):
     def demands(self, distance: Callable[[], Any]) -> Iterator[Any]:
         """A pressure angle that there is."""
         yield is_pressure_angle(self.pressure_angle)
+
+    def sentence(self) -> Note:
+        """Its bodies and the radius of its pinion."""
+        return Note(
+            "Rack: {driver} drives {driven} on {carrier}, pitch radius {radius}",
+            driver=self.driver,
+            driven=self.driven,
+            carrier=Note("frame") if self.carrier == FRAME else self.carrier,
+            radius=told(self.radius, "length"),
+        )
+
+    def circles(self, distance: Callable[[], Any]) -> Iterator[tuple[str, Any]]:
+        """The pinion."""
+        yield self.pinion, self.radius
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with a rack, but for how it is guided."""

@@ -15,9 +15,8 @@ from equipoise.mechanism.checks import (
     unknown_link,
     unknown_point,
 )
-from equipoise.mechanism.parts.belts import Belt
+from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
-from equipoise.mechanism.parts.gears import Gear
 from equipoise.mechanism.parts.links import Link
 from equipoise.mechanism.parts.support import Row, Support
 
@@ -81,9 +80,7 @@ class Mechanism(Protocol):
     @property
     def sliders(self) -> Sequence[Slider]: ...
     @property
-    def gears(self) -> Sequence[Gear]: ...
-    @property
-    def belts(self) -> Sequence[Belt]: ...
+    def couplings(self) -> Sequence[Coupling]: ...
     @property
     def rows(self) -> Sequence[Row]: ...
     @property
