@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import Field, dataclass
-from functools import partial
+from functools import partial, wraps
 from math import isfinite
-from typing import Any
+from typing import Any, TypeVar
+from weakref import WeakKeyDictionary
 
 from equipoise.errors import EquipoiseError
 from equipoise.figures import render
@@ -35,6 +36,7 @@ from equipoise.web.edits import Solved
 from equipoise.web.figures import chart, gauge_choice, text_of, was_of
 
 Values = dict[str, Any]
+R = TypeVar("R")
 SAMPLES = 360
 """In a turn."""
 
@@ -44,12 +46,30 @@ def can_be_shaken(machine: Machine) -> bool:
     return machine.support is not None and not massless(machine)
 
 
+def kept_with_design(make: Callable[..., R]) -> Callable[..., R]:
+    """A function of a design whose result is kept as long as the design is."""
+    results: WeakKeyDictionary[Solved, R] = WeakKeyDictionary()
+
+    @wraps(make)
+    def result_of(shown: Solved, *more: Any) -> R:
+        if shown not in results:
+            results[shown] = make(shown, *more)
+        return results[shown]
+
+    return result_of
+
+
+@kept_with_design
 def responded(shown: Solved) -> Response:
-    """The response of a design at its own speed, with the errors of `respond`; kept with it."""
-    found: Response | None = shown.__dict__.get("_response")
-    if found is None:
-        found = shown.__dict__["_response"] = respond(shown.analysis.machine)
-    return found
+    """The response of a design at its own speed, with the errors of `respond`."""
+    return respond(shown.analysis.machine)
+
+
+@kept_with_design
+def _curves(shown: Solved, speed: float, progress: Callable[[int, int], None]) -> Sweep:
+    """The response of a design over speeds around one, rad/s."""
+    ends = around(shown.analysis.machine.drive, speed)
+    return sweep_speed(shown.analysis.machine, *ends, speeds=COARSE, progress=progress)
 
 
 def response_of(shown: Solved) -> tuple[Values, bytes] | None:
@@ -78,14 +98,9 @@ def swept(shown: Solved, progress: Callable[[int, int], None]) -> tuple[Values, 
 
     progress : as of `sweep_speed`; what it raises ends the work.
     """
-    machine = shown.analysis.machine
     try:
         found = responded(shown)
-        curves: Sweep | None = shown.__dict__.get("_sweep")
-        if curves is None:
-            ends = around(machine.drive, found.speed)
-            curves = sweep_speed(machine, *ends, speeds=COARSE, progress=progress)
-            shown.__dict__["_sweep"] = curves
+        curves = _curves(shown, found.speed, progress)
     except EquipoiseError:  # of which `response_of` has told
         return None
     block = Block()
@@ -296,12 +311,10 @@ def _plants(found: Solved) -> bool:
     return machine.planting is not None and machine.drive.speed != 0
 
 
+@kept_with_design
 def planted(shown: Solved) -> PlantingFigures:
-    """What a design plants, with the errors of `plant`; kept with it."""
-    found: PlantingFigures | None = shown.__dict__.get("_planted")
-    if found is None:
-        found = shown.__dict__["_planted"] = plant(shown.analysis.machine)
-    return found
+    """What a design plants, with the errors of `plant`."""
+    return plant(shown.analysis.machine)
 
 
 def _planted(found: Solved) -> _Figures:

@@ -7,7 +7,10 @@ import pytest
 
 import equipoise as eq
 from equipoise.quantities import change, display, display_rules, number, typeset
+from equipoise.web.design import Design
+from equipoise.web.edits import solved
 from equipoise.web.openings import opened_example, titles
+from equipoise.web.shaken import responded
 from surface.running import example_text, massless
 from unit.web.pages import ask, edit, opened
 
@@ -281,3 +284,11 @@ def test_a_six_bar_shows_what_its_output_does() -> None:
     (state_of_it, *_) = ask(session, "compare", on=False)
     outputs = [one for one in state_of_it.content["arrays"] if one.startswith("output.")]
     assert outputs == ["output.sliders.ram on frame.travel"]
+
+
+def test_what_takes_long_is_computed_once_and_not_written_into_the_design() -> None:
+    shown = solved(Design("rig", eq.load("yamashita-rig")))
+    before = set(vars(shown))
+    assert responded(shown) is responded(shown)
+    assert set(vars(shown)) == before
+    assert responded(solved(shown.design)) is not responded(shown)
