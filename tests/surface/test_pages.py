@@ -174,7 +174,7 @@ CLAIMS = {
         f"A model file may have {LARGEST // 1_000_000} MB",
     ],
     "output.md": [
-        f"{transient.SAMPLES_PER_TURN} numbers for each turn and {transient.LEAST_SAMPLES} at "
+        f"{transient.SAMPLES_PER_TURN} instants for each turn and {transient.LEAST_SAMPLES} at "
         "least",
         f"at most {USUAL // 2**30} GiB of memory (and {THREAD // 2**20} MiB for each processor)",
     ],
