@@ -6,6 +6,7 @@ figures by whole analyses.
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from functools import cache
 from itertools import combinations
@@ -16,12 +17,14 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+import support.found
 from equipoise.balancing.advice import advise
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.told import worse_told
 from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.support import Gauge, Row
+from equipoise.results.blocks import Facts, Text
 from equipoise.results.outputs import output_named
 from laws.test_vibration_laws import supported
 from support.chosen import DISTINCT, few
@@ -215,6 +218,36 @@ def test_random_machines_with_loads(kind: str, seed: int) -> None:
     """Of 42 of them; `--seeds 5` looks at 210."""
     for number in range(IN_A_BATCH):
         check(advise(loaded(kind, IN_A_BATCH * seed + number)))
+
+
+ADVISED = Path(support.found.__file__).parent / "advised"
+ANSWERS = {
+    "excavator": r"trouble here is force of the cylinder E to F.* a lever twice as long",
+    "inline-3": r"Rocking moment, RMS: 3240 → .* z = -111.5 mm.* z = 111.5 mm",
+    "inline-3-rows": r"All rows: roll moment, RMS: 1665 → ",
+    "press": r"trouble here is drive torque.* A flywheel of .* turns \d+ times as fast as crank",
+    "pump-jack": r"A weight of 9\d\d kg m on crank.* off the swing of the drive torque",
+    "sieve-eccentric": r"Shaking force, RMS: 547 → .* eccentric: add a ",
+    "sieve-short": r"Leave the masses .* shaking force y, peak, from 50\.9 to \d+ N",
+    "transplanter-close": r"Leave the masses .* transmission angle at C comes to 28",
+    "walking-beam": r"Drive torque, RMS about the mean: 70\.2 → .* second: add a ",
+}
+"""What a designer would say of each."""
+
+
+def test_every_advised_machine_has_its_answer() -> None:
+    assert ANSWERS.keys() == {file.stem for file in ADVISED.glob("*.toml")}
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_machines_of_other_trades(name: str) -> None:
+    """A digger, engines, a press, pumps, sieves and conveyors, which nobody here had modelled."""
+    found = advise(eq.load(ADVISED / f"{name}.toml"))
+    check(found)
+    blocks = found.headline(alone=True)
+    lines = [one.text if isinstance(one, Text) else " ".join(one.items)
+             for one in blocks if isinstance(one, Text | Facts)]  # fmt: skip
+    assert re.search(ANSWERS[name], " ".join(lines)), lines
 
 
 @pytest.mark.parametrize("name", few(BUNDLED, DISTINCT))

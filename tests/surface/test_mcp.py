@@ -144,7 +144,7 @@ def test_a_machine_is_made_analysed_balanced_and_drawn(session: Session) -> None
     assert "links" not in told["values"], "of which long lists are all"
     assert told["files"] == ["all.csv"]
     assert "lists of more than" in told["values"]["left_out"]
-    assert "What to look at next" in text(answers["analysed"])
+    assert "Look at next" in text(answers["analysed"])
     whole = values(answers["whole"])["values"]
     assert len(whole["crank_angle"]) == 90 and "by_order" in whole
     assert values(answers["balanced"])["files"] == ["new.toml"]

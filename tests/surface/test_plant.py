@@ -138,7 +138,7 @@ def test_soil_and_limits_have_tables() -> None:
     values = 'depth = "4 cm"\nacceleration_limit = "150 m/s^2"\nsoil.per_depth = "300 N/m"'
     text = succeeded(equipoise("plant", changed("kim-chung-a", ('depth = "4 cm"', values))))
     assert "Limits of the tip's acceleration" in text
-    assert cells(text, "all the way")[:2] == ["150.0", "209.1 broken"]
+    assert cells(text, "all the way")[:2] == ["150.0", "209.1, over the limit"]
     assert "Peaks of drive torque and joint forces" in text
     figures = plant(eq.load("model.toml"))
     assert figures.forces is not None

@@ -12,14 +12,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from functools import cached_property
 
 from equipoise.balancing.balanced import Balanced, Price
+from equipoise.balancing.beyond_masses import Beyond, beyond_masses
 from equipoise.balancing.headlines import (
     Advice,
     AssessedMachine,
     Pairs,
     assessed,
-    flywheel_for,
     headline_objectives,
     watched_of,
 )
@@ -49,6 +50,7 @@ from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective, Phases
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, ROWS
+from equipoise.results.yardsticks import FigureAssessment
 from equipoise.vibration.forced import check_moving
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.resonance import resonances
@@ -59,6 +61,9 @@ Remedy = tuple[Machine, tuple[Change, ...], Balance]
 
 CLEAR = 0.5
 """Share of the most that any remedy scores from which a simpler one is offered."""
+AIMED = 0.5
+"""Share of its yardstick from which something is tried against a figure that shakes: what costs
+little is worth building there too."""
 NOTICED = 0.01
 """Share of an aim from which a change of it is told."""
 ROUNDING = 1e-9
@@ -158,13 +163,14 @@ class _Adviser:
         if self.own.objectives:
             yield self.own.objectives
             return
-        large = [one for one in self.before.headline if one.is_large and one.is_shaking]
+        large = [one for one in self.before.headline if _is_aim(one)]
         gauges = [one for one in large if one.output.startswith(GAUGES)]
         if gauges and (aims := gauge_aims(self.machine)):
             yield aims
         for one in large:
             if one not in gauges:
-                yield (Objective(one.output.removeprefix(ROWS)),)
+                output = one.output.removeprefix(ROWS)
+                yield (Objective(output, "rms" if one.is_shaking else "ripple"),)
 
     def remedies(self, plan: Balance) -> Iterator[Balanced]:
         """What is tried, the simplest first; nothing more where half of the aim is gone."""
@@ -280,8 +286,12 @@ class _Adviser:
     def advice(self, after: AssessedMachine, worse: Pairs = (), offered: bool = False) -> Advice:
         """What a machine with a remedy is judged by."""
         before = self.before.headline
-        flywheel = flywheel_for(self.before.analysis, before)
-        return Advice(before, after.headline, worse, offered, flywheel)
+        return Advice(before, after.headline, worse, offered, self.beyond)
+
+    @cached_property
+    def beyond(self) -> Beyond:
+        """What helps beyond masses."""
+        return beyond_masses(self.before.analysis, self.before.headline)
 
     def keeps_limits(self, found: Balanced) -> bool:
         """Whether the limits that the file gives are kept."""
@@ -293,6 +303,11 @@ class _Adviser:
         plan = replace(self.own, objectives=objectives)
         found = self.result(self.machine, (), plan)
         return replace(found, advice=self.advice(self.before))
+
+
+def _is_aim(one: FigureAssessment) -> bool:
+    """Whether masses are tried against it: what shakes, and a torque, which weights may steady."""
+    return one.ratio >= AIMED if one.is_shaking else one.is_large and one.is_torque
 
 
 def _score(found: Balanced) -> float:

@@ -377,9 +377,27 @@ class Balanced(Result):
             present="advice",
         ),
         "flywheel": ResultOutput(
-            "there: moment of inertia of a flywheel that would keep the speed steady, or null",
-            "inertia",
-            read="advice.flywheel",
+            "there: a flywheel that would keep the speed steady: `inertia`, kg m^2, on a shaft "
+            "that turns `ratio` times as fast as the crank; or null",
+            read=lambda found: _plain(found.advice.beyond.flywheel),
+            present="advice",
+        ),
+        "counterbalance": ResultOutput(
+            "there: a weight on a slow crank: `moment`, kg m, `direction`, rad, in the axes of the "
+            "crank, and `gain`; or null",
+            read=lambda found: _plain(found.advice.beyond.counterbalance),
+            present="advice",
+        ),
+        "shafts": ResultOutput(
+            "there: two balance shafts as fast as the crank: unbalances `forward` and `backward`, "
+            "kg m, and `gain`; or null",
+            read=lambda found: _plain(found.advice.beyond.shafts),
+            present="advice",
+        ),
+        "lever": ResultOutput(
+            "there: of the cylinder whose force is largest: `arm`, m, beside the pin `pivot`, at "
+            "`crank_angle`, rad; or null",
+            read=lambda found: _plain(found.advice.beyond.lever),
             present="advice",
         ),
         "notes": NOTES,
@@ -484,3 +502,8 @@ def _notes(found: Solution) -> Iterator[Note]:
             "the search ended before it had proved that nothing better exists; "
             "the gap tells how far it came"
         )
+
+
+def _plain(answer: Any) -> dict[str, Any] | None:
+    """An answer beyond masses as plain data."""
+    return None if answer is None else asdict(answer)

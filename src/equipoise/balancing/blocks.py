@@ -8,15 +8,21 @@ from typing import TYPE_CHECKING, Any
 
 from equipoise.balancing.compared import FAINT, WORSE
 from equipoise.balancing.objectives import unit_of as si_unit
-from equipoise.balancing.outcome import advice_blocks, large_sentences, nothing_told
+from equipoise.balancing.outcome import (
+    advice_blocks,
+    large_figures,
+    nothing_told,
+    sentences_beyond_masses,
+)
 from equipoise.balancing.told import (
     capital,
     figure_named,
     figure_unit,
     proof_told,
     worse_told,
+    worst_told,
 )
-from equipoise.balancing.workshop import sentences
+from equipoise.balancing.workshop import in_short, sentences
 from equipoise.i18n import said, say, to_say
 from equipoise.mechanism.parts.objectives import ROWS
 from equipoise.quantities import Dimension, change, display, number, percent
@@ -34,8 +40,10 @@ from equipoise.results.blocks import (
     worse_if,
 )
 from equipoise.results.drive_blocks import driven
+from equipoise.results.headline import look_at_next
 from equipoise.results.machine_blocks import rows_table
 from equipoise.results.outputs import DIMENSIONS, objective_named
+from equipoise.results.yardsticks import sentence
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced, Price
@@ -75,28 +83,34 @@ def balanced_headline(found: Balanced, alone: bool = False) -> Iterator[Block]:
         if alone:
             yield from map(Text, nothing_told(found))
             yield Text(driven(found.original, found.original.drive.speed))
-            yield from map(Text, large_sentences(found.advice, found.original.crank_turns))
+            yield _large(found)
+            yield look_at_next("balance --objective OUTPUT", "balance --full")
         return
     aims = tuple(_aims(found))
     if aims:
         yield Text(say("{sentence}.", sentence=aims[0]))
     if not alone:
         return
-    yield Text(driven(found.original, found.original.drive.speed))
+    lines = tuple(line for change in found.changes for line in in_short(change))
+    title = say("Changes; places and directions in the axes of each link")
+    yield Facts(title, lines, is_whole=True)
     if aims[1:]:
         yield Facts(say("What else was made small"), aims[1:])
-    lines = tuple(line for change in found.changes for line in sentences(change))
-    yield Facts(say("Changes; places and directions in the axes of each link"), lines)
-    yield from (Text(line, "worse") for line in worse_told(found))
+    yield from (Text(line, "worse") for line in worst_told(found))
+    yield from map(Text, sentences_beyond_masses(found))
     if found.notes:
         yield Notes(found.notes[:MOST_NOTES])
-    yield Facts(
-        say("What to look at next"),
-        (
-            say("balance --out FILE: the machine with these changes"),
-            say("balance --full: every figure before and after, and what is proved"),
-        ),
-    )
+    yield look_at_next("balance --out FILE", "balance --full")
+
+
+def _large(found: Balanced) -> Facts:
+    """What is large on an advised machine."""
+    assert found.advice is not None
+    large, few = large_figures(found.advice)
+    lines = tuple(sentence(one, found.original.crank_turns) for one in few)
+    largest = to_say("What is large, each beside its own yardstick")
+    nearest = to_say("What comes nearest to its yardstick")
+    return Facts(say(largest if large else nearest), lines)
 
 
 def _aims(found: Balanced) -> Iterator[str]:

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import floor, log10
 
-import numpy as np
-
+from equipoise.balancing.beyond_masses import Beyond
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.remedies import HeadlineLimit
 from equipoise.errors import ModelError, ResponseError
-from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.balance import Objective
 from equipoise.mechanism.parts.machine import Machine
@@ -24,12 +21,6 @@ GROWTH, GROWTH_OF_PART, TRIFLE = 1.01, 1.05, 0.1
 """Times its value before, a headline figure may be after, and that of a single joint or component,
 of which the life of a bearing falls by a seventh; share of its yardstick up to which a figure may
 grow."""
-STEADY = 0.05
-"""Share of its mean by which a crank's speed may swing where a flywheel is advised: between 0.02 of
-engines and 0.2 of presses and crushers (Norton, Design of Machinery, table 11-4)."""
-DIGITS, LITTLE = 2, 0.1
-"""Of a flywheel that is advised; share of it that nobody misses."""
-
 Assessment = tuple[FigureAssessment, ...]
 Pairs = tuple[tuple[FigureAssessment, FigureAssessment], ...]
 """Figures before and after."""
@@ -42,15 +33,14 @@ class Advice:
     before, after : figures against their yardsticks, the largest first.
     worse : figures that are worse, before and after: headline figures, single joints, components.
     offered : whether the remedy gains enough for its mass, and leaves no figure worse.
-    flywheel : moment of inertia, kg m2, of one that would keep the crank's speed steady; None where
-        the swing of the drive's torque is not what is large, or it is there already.
+    beyond : what helps beyond masses.
     """
 
     before: tuple[FigureAssessment, ...]
     after: tuple[FigureAssessment, ...]
     worse: Pairs
     offered: bool
-    flywheel: float | None = None
+    beyond: Beyond
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,31 +151,3 @@ def headline_objectives(entries: Assessment) -> tuple[Objective, ...]:
             name = one.output.removeprefix(ROWS)
             return (Objective(name, measure),)
     return (Objective("shaking_force"),)
-
-
-def flywheel_for(analysis: Analysis, entries: Assessment) -> float | None:
-    """Moment of inertia (kg m2) on the crank that keeps its speed within `STEADY` of the mean,
-    beside what turns with it already; None where the drive's torque is not the largest figure,
-    nothing is missing, or a disc as large as the largest link would be heavier than all links.
-
-    The torque of the drive at constant speed, less its mean, does the work that speeds the crank
-    up: I = (largest less smallest work) / (`STEADY` w^2).
-    """
-    machine = analysis.machine
-    largest = next(iter(entries), None)
-    if largest is None or not machine.has_crank or not largest.is_swing_about_mean:
-        return None
-    torque = analysis.outputs[largest.output].values
-    step = abs(2 * np.pi * analysis.motion.turns) / len(torque)
-    work = np.cumsum(torque - np.mean(torque)) * step
-    needed = float(np.ptp(work)) / (STEADY * analysis.motion.speed**2)
-    motor = machine.drive.motor
-    there = machine.drive.flywheel + (motor.inertia * motor.ratio**2 if motor else 0.0)
-    missing = needed - there
-    heavy = 2 * missing / size_of_links(machine) ** 2 > machine.mass
-    return None if heavy or missing < LITTLE * needed else _rounded_up(missing)
-
-
-def _rounded_up(value: float) -> float:
-    unit = 10.0 ** (floor(log10(value)) - DIGITS + 1)
-    return float(np.ceil(value / unit * (1 - 1e-9)) * unit)

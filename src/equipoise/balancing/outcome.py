@@ -8,7 +8,8 @@ from collections.abc import Iterator
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from equipoise.balancing.headlines import STEADY, Advice
+from equipoise.balancing.beyond_masses import STEADY, Beyond
+from equipoise.balancing.headlines import Advice
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.remedies import LEAST_GAIN
 from equipoise.balancing.told import (
@@ -21,7 +22,7 @@ from equipoise.balancing.told import (
 )
 from equipoise.balancing.workshop import sentences
 from equipoise.i18n import say, to_say
-from equipoise.quantities import change, percent, told
+from equipoise.quantities import angle, change, display, percent, told
 from equipoise.results.blocks import Block, Cell, Change, Column, Table, Text
 from equipoise.results.outputs import objective_named, shown_in
 from equipoise.results.yardsticks import FigureAssessment, sentence
@@ -58,7 +59,7 @@ def helps_told(balanced: Balanced) -> Iterator[str]:
     yield from proof_told(balanced)
     if balanced.planting_kept:
         yield say("The planting figures stay as they are.")
-    yield from flywheel_sentences(balanced)
+    yield from sentences_beyond_masses(balanced)
 
 
 def _heavy(balanced: Balanced) -> Iterator[str]:
@@ -82,7 +83,7 @@ def nothing_told(found: Balanced) -> Iterator[str]:
     """That balancing brings nothing; how small the aims are, and what is proved."""
     if found.advice is not None:
         yield from reasons_to_leave(found)
-        yield from flywheel_sentences(found)
+        yield from sentences_beyond_masses(found)
         return
     for one, (before, _) in found.aims.items():
         unit = shown_in(unit_of(one, found.original), [before])
@@ -105,61 +106,117 @@ def good_already(found: Balanced) -> str:
 
 # -- where nobody said what may be changed ---------------------------------------------------------
 
-MOST_LARGE = 3
-"""Large figures that are named."""
+POOR = 1.1
+"""Times the usual limit, 35 degrees, from which a transmission angle is mentioned here."""
+MOST_LARGE, MOST_WORSE = 3, 2
+"""Large figures, and those that a remedy would make worse, that are named."""
+
+
+def large_figures(advice: Advice) -> tuple[bool, list[FigureAssessment]]:
+    """Whether anything is large; and what is, or else what comes nearest to its yardstick."""
+    large = [one for one in advice.before if one.is_large][:MOST_LARGE]
+    return bool(large), large or [*advice.before[:1]]
 
 
 def large_sentences(advice: Advice, crank_turns: bool) -> Iterator[str]:
     """What is large on the machine; where nothing is, how large the largest figure is."""
-    large = [one for one in advice.before if one.is_large][:MOST_LARGE]
-    for one in large:
-        yield say("Large here: {figure}.", figure=sentence(one, crank_turns))
-    if not large and advice.before:
-        largest = sentence(advice.before[0], crank_turns)
-        yield say("Nothing is large beside its yardstick. {figure}.", figure=largest)
+    large, few = large_figures(advice)
+    template = to_say("Large here: {figure}.")
+    nearest = to_say("What comes nearest to its yardstick: {figure}.")
+    for one in few:
+        yield say(template if large else nearest, figure=sentence(one, crank_turns))
 
 
 def reasons_to_leave(found: Balanced) -> Iterator[str]:
     """Why the masses are best left as they are."""
     advice = found.advice
     assert advice is not None
-    if not any(one.is_large and one.is_shaking for one in advice.before):
+    if found.changes:
         yield say(
-            "Leave the masses as they are: what shakes the frame is small here, and counterweights "
-            "hardly act on anything else."
+            "Leave the masses as they are: the best that can be built in the room that there is, "
+            "{remedy}, takes {gain} % off {aims}; {why}.",
+            aims=aims_told(found),
+            remedy=remedy_named(found),
+            gain=percent(max(found.gain, 0.0), 1),
+            why=why_not(found),
         )
-        return
-    if not found.changes:
+    elif not (largest := next(iter(advice.before), None)) or not largest.is_large:
+        yield say("Leave the machine as it is: nothing is large beside its yardstick.")
+    elif largest.is_shaking:
         yield say(
             "Leave the masses as they are: in the room that there is, no change of a mass about a "
             "pivot of the frame makes {aims} noticeably smaller.",
             aims=aims_told(found),
         )
-        return
-    yield say(
-        "Leave the masses as they are: nothing that can be built in the room that there is takes "
-        "away {least} % of {aims}, and as large a share of it as it adds to the mass of the moving "
-        "links, without making a headline figure worse.",
-        least=percent(LEAST_GAIN, 0),
-        aims=aims_told(found),
-    )
-    yield say(
-        "The most, {gain} %, would be taken away by {remedy}; {why}.",
-        gain=percent(max(found.gain, 0.0), 1),
-        remedy=remedy_named(found),
-        why=why_not(found),
-    )
-
-
-def flywheel_sentences(found: Balanced) -> Iterator[str]:
-    """A flywheel against the swing of the drive's torque, where one helps."""
-    if found.advice is not None and found.advice.flywheel is not None:
+    else:
         yield say(
-            "A flywheel of {inertia} more on {link} would keep its speed within {share} % of the "
-            "mean.",
-            inertia=told(found.advice.flywheel, "inertia", digits=2),
-            link=found.original.drive.link,
-            share=percent(STEADY, 0),
+            "Leave the masses as they are: the trouble here is {figure}, on which no counterweight "
+            "that fits acts noticeably.",
+            figure=largest.label.said(),
+        )
+
+
+def sentences_beyond_masses(found: Balanced) -> Iterator[str]:
+    """What helps beyond masses: a flywheel and balance shafts; where masses do not help, a weight
+    on a slow crank, a longer lever, other lengths.
+    """
+    if found.advice is None:
+        return
+    beyond, crank = found.advice.beyond, found.original.drive.link
+    if (flywheel := beyond.flywheel) is not None:
+        inertia = told(flywheel.inertia, "inertia", digits=2)
+        share = percent(STEADY, 0)
+        on_crank = to_say(
+            "A flywheel of {inertia} more on {crank} would keep its speed within {share} % of the "
+            "mean."
+        )
+        geared = to_say(
+            "A flywheel of {inertia} on a shaft that turns {ratio} times as fast as {crank} would "
+            "keep the speed within {share} % of the mean."
+        )
+        template = on_crank if flywheel.ratio == 1 else geared
+        yield say(template, inertia=inertia, crank=crank, share=share, ratio=flywheel.ratio)
+    if (shafts := beyond.shafts) is not None:
+        yield say(
+            "Two balance shafts as fast as {crank}, of {forward} with it and {backward} against "
+            "it, would take {gain} % off the shaking force.",
+            crank=crank,
+            forward=told(shafts.forward, "unbalance", "kg mm", digits=2),
+            backward=told(shafts.backward, "unbalance", "kg mm", digits=2),
+            gain=percent(shafts.gain, 0),
+        )
+    if not found.helps:
+        yield from _instead_of_masses(found, beyond)
+
+
+def _instead_of_masses(found: Balanced, beyond: Beyond) -> Iterator[str]:
+    assert found.advice is not None
+    if (weight := beyond.counterbalance) is not None:
+        yield say(
+            "A weight of {moment} on {crank}, at {direction} in its axes, would take {gain} % off "
+            "the swing of the drive torque.",
+            moment=told(weight.moment, "unbalance", "kg m", digits=2),
+            crank=found.original.drive.link,
+            direction=angle(weight.direction, 0),
+            gain=percent(weight.gain, 0),
+        )
+    if (lever := beyond.lever) is not None:
+        yield say(
+            "It pushes {arm} beside {pivot} where its force is largest, at {angle} of the cycle: a "
+            "lever twice as long there halves the force and doubles the stroke.",
+            arm=told(lever.arm, "length", digits=3),
+            pivot=lever.pivot,
+            angle=angle(lever.crank_angle),
+        )
+    poor = (one for one in found.advice.before if one.yardstick_kind == "transmission")
+    if (worst := next(poor, None)) is not None and worst.ratio >= POOR:
+        yield say(
+            "The transmission angle at {joint} comes to {value}, beyond the usual limit of "
+            "{limit}, which makes forces in joints large; other lengths or places of pivots mend "
+            "that, masses do not.",
+            joint=worst.item,
+            value=angle(worst.value),
+            limit=angle(worst.yardstick),
         )
 
 
@@ -180,17 +237,24 @@ def why_not(found: Balanced) -> str:
     if found.gain < LEAST_GAIN:
         return say("that is too little")
     if advice.worse:
-        return say("{figures} would grow", figures=listed(map(_grown, advice.worse)))
-    return say("{mass} would be added", mass=told(found.added_mass, "mass", digits=3))
+        figures = [_grown(pair) for pair in advice.worse[:MOST_WORSE]]
+        if more := len(advice.worse) - len(figures):
+            figures.append(say("{count} more", count=more))
+        return say("{figures} would grow", figures=listed(figures))
+    return say(
+        "{mass} would be added, too much for that", mass=told(found.added_mass, "mass", digits=3)
+    )
 
 
 def _grown(pair: tuple[FigureAssessment, FigureAssessment]) -> str:
     was, new = pair
-    what = was.label.said()
-    if not was.value:
-        return what
-    growth = percent(abs(new.value / was.value) - 1, 0)
-    return say("{what}, by {share} %", what=what, share=growth)
+    shown = display(was.dimension, [was.value, new.value], was.shown_unit)
+    return say(
+        "{what}, from {before} to {after}",
+        what=was.label.said(),
+        before=shown.text(was.value, max(was.value, new.value), 3),
+        after=shown.with_unit(shown.text(new.value, digits=3)),
+    )
 
 
 # -- what was tried --------------------------------------------------------------------------------
@@ -204,7 +268,7 @@ def advice_blocks(found: Balanced) -> Iterator[Block]:
     if not found.helps:
         yield from map(Text, nothing_told(found))
     else:
-        yield from map(Text, flywheel_sentences(found))
+        yield from map(Text, sentences_beyond_masses(found))
     for aims, same in groupby(found.tried, key=aims_told):
         rows: tuple[tuple[Cell, ...], ...] = tuple(
             (remedy_named(one), Change(1.0, 1 - one.gain), why_not(one)) for one in same

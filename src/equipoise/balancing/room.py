@@ -33,6 +33,8 @@ body, and from the middle of a pin whose radius is not given; the second alone f
 SIZE, LARGER = 0.25, 2.0
 """Over the size of the largest link, and over the reach of its own link, up to twice that share of
 the largest link: how far a counterweight reaches at most, where its link does not reach farther."""
+LARGEST = 0.6
+"""m: beyond which nobody cuts a counterweight of plate."""
 DIRECTIONS = 360
 """In which the room is known: whole degrees."""
 
@@ -100,6 +102,7 @@ def room_about(machine: Machine, link: str, plane: float | None = None) -> Room:
     turn = np.exp(-1j * motion.links[link].angle)
     reach = _reach(own, at)
     most = max(reach, SIZE * size, min(LARGER * reach, LARGER * SIZE * size))
+    most = min(most, LARGEST)
     thick = _most_thick(machine, link, most)
     free = np.full(DIRECTIONS, min(most, _over_ground(machine, pivot)))
     own_wheels, wheels = _wheels(motion, link, at)

@@ -57,6 +57,20 @@ def worse_told(found: Balanced) -> Iterator[str]:
         )
 
 
+MOST_WORST = 3
+"""Figures that are named in short."""
+
+
+def worst_told(found: Balanced) -> Iterator[str]:
+    """In one sentence the figures that grew most."""
+    worse = sorted(found.worse, key=lambda one: -one.growth)
+    if worse:
+        figures = [_grown(found, one) for one in worse[:MOST_WORST]]
+        if more := len(worse) - len(figures):
+            figures.append(say("and {count} more", count=more))
+        yield say("In exchange these become larger: {figures}.", figures=say("; ").join(figures))
+
+
 def _grown(found: Balanced, one: Worse) -> str:
     aim, rows = one.objective, len(found.original.rows)
     what = figure_named(f"{aim.output}.{aim.measure}", rows)

@@ -136,7 +136,11 @@ def sentences(change: Change) -> Iterator[str]:
             what = say("{what}, in the plane z = {plane}", what=what, plane=plane)
         yield what
         for piece in values["pieces"]:
-            yield say("{link}, made as: {piece}", link=link, piece=_made(piece, values["center"]))
+            yield say(
+                "{link}, made as: {piece}",
+                link=link,
+                piece=_made(piece, place_told(values["center"])),
+            )
     elif change.kind == "removed mass":
         yield _taken_off(link, values)
     elif change.kind == "spring":
@@ -147,6 +151,24 @@ def sentences(change: Change) -> Iterator[str]:
         *others, last = values["phases"]
         phases = ", ".join([*(_direction(one, named=False) for one in others), _direction(last)])
         yield say("Rows: set the phases to {phases}", phases=phases)
+
+
+def in_short(change: Change) -> Iterator[str]:
+    """What to change: of an added mass that is cut from plate its pieces alone, which say all; of
+    another one mass and place alone.
+    """
+    link, values = change.link, dict(change.values)
+    first = next(sentences(change))
+    pieces = values.get("pieces", ())
+    if not pieces or any(one["shape"] == "point" for one in pieces):
+        yield first
+        return
+    for piece in pieces:
+        what = say("{link}: add a {piece}", link=link, piece=_made(piece, values["at"]))
+        if "plane" in values:
+            plane = told(values["plane"], "length")
+            what = say("{what}, in the plane z = {plane}", what=what, plane=plane)
+        yield what
 
 
 def _added(link: str, values: dict[str, Any]) -> str:
@@ -189,7 +211,7 @@ def _taken_off(link: str, values: dict[str, Any]) -> str:
     )
 
 
-def _made(piece: Piece, center: tuple[float, float]) -> str:
+def _made(piece: Piece, center: str) -> str:
     """A piece in words; rings and sectors are told about the centre of their room."""
     shape = piece["shape"]
     sizes = ("radius", "outer_radius", "thickness")
@@ -203,7 +225,7 @@ def _made(piece: Piece, center: tuple[float, float]) -> str:
             **words,
         )
     unit = display("length", [piece["outer_radius"]])
-    words |= {"at": place_told(center), "inner": unit.text(piece["inner_radius"])}
+    words |= {"at": center, "inner": unit.text(piece["inner_radius"])}
     words["outer"] = words.pop("outer_radius")
     if shape == "ring":
         return say(

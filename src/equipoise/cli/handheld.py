@@ -26,6 +26,7 @@ from equipoise.cli.options import (
     time_a_day,
 )
 from equipoise.cli.outputs import (
+    BRIEF,
     MORE,
     Drawings,
     Drawn,
@@ -224,6 +225,7 @@ def _give(
     """
     from equipoise.handheld.blocks import summary_blocks
     from equipoise.results.blocks import Text
+    from equipoise.results.headline import look_at_next
 
     def values() -> Mapping[str, Any]:
         told = {name: one for part in parts for name, one in part.to_dict().items()}
@@ -236,11 +238,13 @@ def _give(
         for part in reversed(parts) if length is not None else ():  # the hands before the shaft
             yield from part.headline(alone)
         if alone:
+            further = ("tool --exposure", "tool --modes", "tool --respond", "tool sensitivities")
+            yield look_at_next(*further)
             yield Text(say(MORE))
         else:
             yield from chain(summary_blocks(tool), *(part.blocks() for part in parts))
 
-    outputs.print(tool, values, blocks)
+    outputs.print(tool, values, blocks, BRIEF if length is not None and not length.full else None)
 
 
 # -- other questions -------------------------------------------------------------------------------

@@ -120,14 +120,16 @@ def analyze(
         from equipoise.schema.files import to_csv
 
         write_text(csv, to_csv(analysis, chosen))
+    asked = orders is not None or chosen or held is not None
     outputs.print(
         machine,
         lambda: analysis.to_dict(split, chosen) | further,
         lambda: (
             analysis.blocks(orders=orders, zero=zero, outputs=chosen, dwells=held)
-            if orders is not None or chosen or held is not None
+            if asked
             else length.blocks(analysis)
         ),
+        None if asked else length.most(analysis),
     )
 
 

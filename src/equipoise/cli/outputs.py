@@ -46,6 +46,8 @@ Drawings = Callable[[], "Mapping[str, Picture]"]
 
 MORE = to_say("--full prints all tables, --json every number.")
 """Below what stands first of a result."""
+BRIEF = 15
+"""Lines of what stands first, on a terminal that is 80 signs wide."""
 heard: ContextVar[list[str] | None] = ContextVar("heard", default=None)
 """Gets the JSON of what is printed in tables, for who wants both."""
 
@@ -60,10 +62,10 @@ class Shown:
     @contextmanager
     def showing(self, of: Any = None) -> Iterator[None]:
         """Inside, values are shown in the units that are chosen, else in those of a file."""
-        from equipoise.mechanism.parts.shown_units import units_of
-        from equipoise.quantities import showing, showing_by_default
+        from equipoise.quantities import showing
+        from equipoise.results.own_words import in_own_words
 
-        with showing(self.units or {}), showing_by_default(units_of(of)):
+        with showing(self.units or {}), in_own_words(of):
             yield
 
 
@@ -75,10 +77,11 @@ class Printed(Shown):
     json: bool = False
     """Print one JSON object in SI units, and nothing else."""
 
-    def print(self, of: Any, values: Values, blocks: Blocks) -> None:
+    def print(self, of: Any, values: Values, blocks: Blocks, most: int | None = None) -> None:
         """Print values as JSON, or a title and blocks below it.
 
         of : the machine, tool or study; its title where there is none.
+        most : lines; any if None.
         """
         from equipoise.schema.files import json_text
 
@@ -93,7 +96,7 @@ class Printed(Shown):
                 both.append(json_text(dict(values())))
 
             with self.showing(of):
-                show_blocks(of if isinstance(of, str) else of.title, blocks())
+                show_blocks(of if isinstance(of, str) else of.title, blocks(), most=most)
 
     def show(self, found: Result, **options: Any) -> None:
         """Print a result; further arguments as of its `blocks`."""
@@ -126,7 +129,11 @@ class Length:
     def show(self, found: Result, outputs: Printed, **options: Any) -> None:
         """Print a result so; options of its `blocks`."""
         of = found.title if found.owner is None else found.owner
-        outputs.print(of, found.to_dict, lambda: self.blocks(found, **options))
+        outputs.print(of, found.to_dict, lambda: self.blocks(found, **options), self.most(found))
+
+    def most(self, found: Result) -> int | None:
+        """Lines that are printed of a result; None for any number."""
+        return BRIEF if found.headline_in and not self.full else None
 
 
 @Parameter(name="*")

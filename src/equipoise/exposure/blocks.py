@@ -167,6 +167,12 @@ def _hours(times: WorkingTimes) -> tuple[Cell, ...]:
     return tuple(say("over 24") if time > DAY else Value(time / 3600) for time in allowed)
 
 
+def _judged(a8: float) -> Value:
+    """An exposure, beside the limit value where that is broken."""
+    above = limit_broken(a8)
+    return Value(a8, emphasis=above, limit=LIMIT if above else None)
+
+
 def _tasks(day: Exposure) -> Table:
     """Every task with its part of the day, and how long a day one may do it alone."""
     rows: list[tuple[Cell, ...]] = [
@@ -174,16 +180,16 @@ def _tasks(day: Exposure) -> Table:
             shortened(task.name),
             Value(task.acceleration),
             Value(task.duration / 3600),
-            Value(task.partial, emphasis=limit_broken(task.partial)),
+            _judged(task.partial),
             Value(100 * day.share(task), after=0),
             *_hours(task.times),
         )
         for task in day.tasks
     ]
     if len(rows) > 1:
-        whole = Value(day.a8, emphasis=limit_broken(day.a8))
-        cells = (Value(day.a_hv), Value(day.duration / 3600), whole, Value(100.0, after=0))
-        rows.append((say("all of them"), *cells, *_hours(day.times)))
+        cells = (Value(day.a_hv), Value(day.duration / 3600), _judged(day.a8))
+        whole = Value(100.0, after=0)
+        rows.append((say("all of them"), *cells, whole, *_hours(day.times)))
     columns = (
         Column(say("task")),
         _acceleration(say("total value a_hv")),

@@ -48,13 +48,6 @@ def exposure_headline(found: ToolExposure, alone: bool = False) -> Iterator[Bloc
         return
     if lines := tuple(_hands(found)):
         yield Facts(say("Vibration of the hands, total value a_hv"), lines)
-    yield Facts(
-        say("What to look at next"),
-        (
-            say("tool --exposure: the day, task by task"),
-            say("tool sensitivities: what each number of the tool does to the hands"),
-        ),
-    )
 
 
 def _time_left(to_action: float, to_limit: float) -> Iterator[Block]:
@@ -103,8 +96,8 @@ def modes_headline(found: ToolModes, alone: bool = False) -> Iterator[Block]:
         if told and not (lines and found.alike):
             lines.append(say(SIDES[side], list=told))
     if lines:
-        yield Facts(say("Lowest natural frequencies"), tuple(lines))
-    yield Facts("", (say("tool --modes: all of them, with shapes and damping"),))
+        told = say("; ").join(lines)
+        yield Text(say("Lowest natural frequencies: {list}.", list=told))
 
 
 def sweep_headline(found: ToolSweep, alone: bool = False) -> Iterator[Block]:
@@ -116,18 +109,15 @@ def sweep_headline(found: ToolSweep, alone: bool = False) -> Iterator[Block]:
         return
     if found.transmissions is not None:
         passed = found.transmissions
-        lines = []
-        for name, one in passed.stations.items():
-            size = np.max(one.size, axis=0)
-            k = int(highest_at(size, smooth=False))
-            lines.append(
-                say(
-                    "{name}: up to {ratio} times, at {speed} rpm",
-                    name=name,
-                    ratio=brief(float(size[k])),
-                    speed=rpm(float(passed.speed[k])),
-                )
+        sizes = {name: np.max(one.size, axis=0) for name, one in passed.stations.items()}
+        name = max(sizes, key=lambda one: float(np.max(sizes[one])))
+        k = int(highest_at(sizes[name], smooth=False))
+        yield Text(
+            say(
+                "Of a force at {source}, up to {ratio} times passes to {name}, at {speed} rpm.",
+                source=passed.source,
+                ratio=brief(float(sizes[name][k])),
+                name=name,
+                speed=rpm(float(passed.speed[k])),
             )
-        title = say("What passes of a force at {source}", source=passed.source)
-        yield Facts(title, tuple(lines))
-    yield Facts("", (say('tool --respond "2000 rpm : 9000 rpm": over speed'),))
+        )

@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
 from importlib import resources
+from types import MappingProxyType
 from typing import Any, Self
 
 from equipoise.i18n.particles import with_particles
@@ -19,6 +20,7 @@ LANGUAGES = {"en": "English", "ja": "日本語", "ko": "한국어"}
 """Code of a language -> its own name."""
 
 _spoken = ContextVar("spoken", default="en")
+_wording: ContextVar[Mapping[str, str]] = ContextVar("wording", default=MappingProxyType({}))
 
 
 def say(text: str, /, **values: Any) -> str:
@@ -27,6 +29,7 @@ def say(text: str, /, **values: Any) -> str:
     text : in English, as in the catalogues; one that is in none of them stays English.
     """
     language = _spoken.get()
+    text = _wording.get().get(text, text)
     said = catalogue(language).get(text, text)
     if values:
         said = said.format(**values)
@@ -50,7 +53,7 @@ class Note(str):
     values: Mapping[str, Any]
 
     def __new__(cls, template: str, /, **values: Any) -> Self:
-        with speaking("en"):
+        with speaking("en"), wording({}):
             made = super().__new__(cls, _said(template, values))
         made.template, made.values = template, values
         return made
@@ -183,6 +186,19 @@ def speaking(language: str) -> Iterator[None]:
         yield
     finally:
         _spoken.reset(token)
+
+
+@contextmanager
+def wording(instead: Mapping[str, str]) -> Iterator[None]:
+    """Inside, `say` says other texts, in any language, for those that do not fit what it is about.
+
+    instead : texts by the text for which they are said.
+    """
+    token = _wording.set(instead)
+    try:
+        yield
+    finally:
+        _wording.reset(token)
 
 
 def spoken() -> str:

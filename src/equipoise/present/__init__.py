@@ -34,15 +34,18 @@ def show(
 
 
 def show_blocks(
-    title: str | None, blocks: Iterable[Block | Section], width: int | None = None
+    title: str | None,
+    blocks: Iterable[Block | Section],
+    width: int | None = None,
+    most: int | None = None,
 ) -> None:
     """Print blocks below a title, or where that is None below what was printed before.
 
-    width : as of `show`.
+    width : as of `show`.  most : lines, for which lists lose their last items; any if None.
     """
     from equipoise.present.terminal import print_blocks
 
-    print_blocks(title, blocks, width)
+    print_blocks(title, blocks, width, most)
 
 
 def html_of(value: Displayed) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import compress
 from math import isfinite, isnan
 
-from equipoise.i18n import Note, say, spoken
+from equipoise.i18n import Note, listed, say, spoken
 from equipoise.quantities import Dimension, Display, change, display, fixed, typeset
 from equipoise.quantities.numbers import ROUNDING
 from equipoise.results.blocks import Cell, Change, Column, Emphasis, Many, Span, Table, Value
@@ -30,16 +30,21 @@ class Text:
     """A cell as text.
 
     at : where the value holds.  number : whether it is set to the right.
+    limit : that the value breaks, where it is told.
     """
 
     text: str = ""
     at: str = ""
     number: bool = False
     emphasis: Emphasis | None = None
+    limit: str = ""
 
     @property
     def told(self) -> str:
-        """As print has it: the value, and behind it where it holds."""
+        """As print has it: the value, and behind it where it holds, or the limit that it breaks."""
+        if self.limit:
+            over = say("over the limit of {limit}", limit=self.limit)
+            return listed(self.text, over)
         return f"{self.text}\N{NO-BREAK SPACE}({self.at})" if self.at else self.text
 
 
@@ -217,7 +222,8 @@ def _text(
     if cell.at is not None:
         place = Value(cell.at, after=1 if column.at[0] == "angle" else None)
         at = _number(place, shown[column.at], column.at[0])
-    return Text(text, at, number=True, emphasis=cell.emphasis)
+    limit = "" if cell.limit is None else f"{cell.limit * shown[kind].factor:.4g}"
+    return Text(text, at, number=True, emphasis=cell.emphasis, limit=limit)
 
 
 def _number(

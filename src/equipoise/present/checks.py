@@ -53,7 +53,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     yield from map(Text, _build_up(linkage))
     crank = machine.crank_turns
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
-    after = turns if crank else f"{angle(2 * pi * cycle.turns, 0)} of crank angle"
+    after = turns if crank else f"{angle(2 * pi * cycle.turns, 0)} of the cycle"
     repeats = "motion repeats" if turns_given(machine) == 1 else "motion and loads repeat"
     fully = "the crank turns fully; " if crank else ""
     yield Text(f"{fully}the {repeats} after {after}")

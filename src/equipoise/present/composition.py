@@ -16,7 +16,6 @@ from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
 from equipoise.handheld.model import Tool
 from equipoise.i18n import LANGUAGES, Note, said, say, speaking, to_say
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.planting.blocks import planting_blocks
 from equipoise.present.drawing import drawings
 from equipoise.present.findings import Findings, ToolFindings, find
@@ -27,7 +26,7 @@ from equipoise.present.sources import sources
 from equipoise.present.summary import answers, check_whole_cycle, tiles
 from equipoise.present.tool_headlines import judged
 from equipoise.present.tool_summary import tool_answers, tool_tiles
-from equipoise.quantities import PER_RPM, chosen_units, number, showing_by_default
+from equipoise.quantities import PER_RPM, chosen_units, number
 from equipoise.results.analysis import Analysis
 from equipoise.results.analysis_blocks import force_blocks, motion_blocks, question_blocks
 from equipoise.results.blocks import (
@@ -44,6 +43,7 @@ from equipoise.results.drive_blocks import driven
 from equipoise.results.headline import verdict_blocks
 from equipoise.results.joint_blocks import joint_blocks
 from equipoise.results.machine_blocks import angles_told, model_blocks
+from equipoise.results.own_words import in_own_words
 from equipoise.vibration.blocks import model_told, response_blocks
 from equipoise.vibration.sweep_blocks import resonances_table
 
@@ -85,7 +85,7 @@ def build(
     ------
     UsageError : the analysis does not cover whole turns; errors of it otherwise.
     """
-    with speaking(language), showing_by_default(units_of(found.owner)):
+    with speaking(language), in_own_words(found.owner):
         if isinstance(found, ToolFindings):
             made = _of_tool(found, language, command)
         else:

@@ -186,6 +186,8 @@ def caused(analysis: Analysis, number: int = 1) -> str:
     scale = scale_of(analysis, drive.effort_in)
     if analysis.summary[output].peak <= NOTHING * scale or not share:
         return ""
+    if share > 1:  # parts that cancel in part have no shares that anybody can picture
+        return say("Most of the swing comes from: {cause}", cause=say(CAUSES[name]))
     values = {"share": percent(share), "cause": say(CAUSES[name])}
     of_force = to_say("{share} % of the swing of the drive force comes from: {cause}")
     of_torque = to_say("{share} % of the swing of the drive torque comes from: {cause}")

@@ -18,7 +18,7 @@ from equipoise.results.blocks import Emphasis
 GAP, HEAD, DEEPER = 2, 14, 2
 """Places between columns, of a line of a heading with short words, and by which further lines of a
 cell stand to the right."""
-WORDS: dict[Emphasis, str] = {"broken": to_say("broken"), "worse": to_say("worse")}
+WORDS: dict[Emphasis, str] = {"broken": to_say("over the limit"), "worse": to_say("worse")}
 """What is said beside what stands out, where there is no colour."""
 CODES = {"title": "1", "section": "1;4", "head": "2", "broken": "1;31", "worse": "1;31"}
 """How a terminal with colours is told to show a part."""
@@ -34,9 +34,13 @@ class Looks:
         """A text as a part of `CODES`."""
         return f"\x1b[{CODES[part]}m{text}\x1b[0m" if self.coloured and part and text else text
 
-    def word(self, emphasis: Emphasis | None) -> str:
-        """What is said behind what stands out."""
-        return "" if self.coloured or emphasis is None else f" {say(WORDS[emphasis])}"
+    def word(self, emphasis: Emphasis | None, limit: str = "") -> str:
+        """What is said behind what stands out.  limit : that is broken, where it is told."""
+        if emphasis is None or (self.coloured and not limit):
+            return ""
+        if limit:
+            return f", {say('over the limit of {limit}', limit=limit)}"
+        return f"{',' * (emphasis == 'broken')} {say(WORDS[emphasis])}"
 
 
 # -- lines -----------------------------------------------------------------------------------------
@@ -171,7 +175,7 @@ class _Column:
 def _columns(told: Grid, room: int, looks: Looks) -> Iterator[_Column]:
     for place, head in enumerate(told.heads):
         cells, words = [row[place] for row in told.rows], told.is_words(place)
-        tails = [looks.word(cell.emphasis) for cell in cells]
+        tails = [looks.word(cell.emphasis, cell.limit) for cell in cells]
         texts = [*_aligned(cells)]
         if words:
             texts = [f"{plain(cell.text)}{tail}" for cell, tail in zip(cells, tails, strict=True)]

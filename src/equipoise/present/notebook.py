@@ -17,21 +17,20 @@ from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.kinematics.swings import swing
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.present.pages import part_of_page
-from equipoise.quantities import showing_by_default
 from equipoise.results.analysis import ANGLES, Analysis
 from equipoise.results.analysis_blocks import force_blocks, motion_blocks
 from equipoise.results.blocks import Block, Text
 from equipoise.results.joint_blocks import joint_blocks
 from equipoise.results.machine_blocks import model_blocks
+from equipoise.results.own_words import in_own_words
 from equipoise.results.result import Result
 
 
 def html_of(value: Displayed) -> str:
     """A value as a part of a page, in the units of its file."""
     owner = _owner(value)
-    with showing_by_default(units_of(owner)):
+    with in_own_words(owner):
         if isinstance(value, Result):
             return part_of_page(said(value.title), (*value.headline(), *value.blocks()))
         title = said(owner.title)

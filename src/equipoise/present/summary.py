@@ -7,7 +7,7 @@ from math import pi
 
 from equipoise.balancing.compared import WORSE
 from equipoise.balancing.outcome import good_already, helps_told
-from equipoise.balancing.told import capital, worse_told
+from equipoise.balancing.told import capital, listed, worse_told
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs.spoken import joint_named, named
@@ -25,7 +25,7 @@ from equipoise.quantities import (
     percent,
     told,
 )
-from equipoise.results.analysis_blocks import display_of_totals, scale_of, shares
+from equipoise.results.analysis_blocks import CANCELLING, display_of_totals, scale_of, shares
 from equipoise.results.blocks import worse_if
 from equipoise.results.drive_blocks import pushed_named
 from equipoise.results.joint_blocks import display_of_joints
@@ -197,7 +197,7 @@ def _why(found: Findings) -> Iterator[str]:
     by_link = shares(split.by_link("shaking_force"), motion)
     if any(by_link.values()):
         yield say("The shaking force comes from: {parts}.", parts=_parts(by_link))
-        if min(by_link.values()) <= -SMALL:
+        if -CANCELLING < min(by_link.values()) <= -SMALL:
             yield say("A minus means that the link works against the others.")
     drive = found.machine.drive
     effort = analysis.summary[analysis.whole(drive.effort)]
@@ -231,7 +231,16 @@ def _why(found: Findings) -> Iterator[str]:
 
 
 def _parts(shares: Mapping[str, float]) -> str:
-    """Those of some size, each with its share."""
+    """Those of some size, each with its share; where they mostly cancel, which against which."""
+    if min(shares.values()) <= -CANCELLING:
+        ahead, against = ({name: abs(share) for name, share in shares.items()
+                           if sign * share >= SMALL} for sign in (1, -1))  # fmt: skip
+        return say(
+            "{ahead}; of that {share} % is taken away again by {against}",
+            ahead=listed(ahead),
+            share=percent(sum(against.values()) / sum(ahead.values()), 0),
+            against=listed(against),
+        )
     return say(", ").join(
         say("{name} {share} %", name=name, share=percent(share))
         for name, share in shares.items()

@@ -6,9 +6,10 @@ import os
 import shutil
 import sys
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import TextIO, get_args
 
-from equipoise.i18n import Note, say
+from equipoise.i18n import said, say
 from equipoise.present.cells import grid
 from equipoise.present.layout import Looks, plain, table_lines, wrapped
 from equipoise.results.blocks import Block, Emphasis, Facts, Listing, Notes, Picture, Section, Table
@@ -24,21 +25,52 @@ def print_blocks(
     title: str | None,
     blocks: Iterable[Block | Section],
     width: int | None = None,
+    most: int | None = None,
 ) -> None:
     """Print a title and what stands below it; all of it, or nothing where a block has an error.
 
     title : none if empty; None where it goes on below something else.
     width : signs in a line; those of the terminal if None.
+    most : lines for which lists lose their last items, the last lists first; any if None.
     """
     if width is None:
         width = shutil.get_terminal_size().columns
     if sys.stdout is None:  # where the shell has closed it
         return
-    printer = _Printer(max(width, LEAST), Looks(coloured(sys.stdout)), begun=title is None)
-    if title:
-        printer.words(title, "title")
-    printer.blocks(blocks)
-    sys.stdout.write("".join(f"{line}\n" for line in printer.lines))
+
+    def printed(shown: Iterable[Block | Section]) -> list[str]:
+        printer = _Printer(max(width, LEAST), Looks(coloured(sys.stdout)), begun=title is None)
+        if title:
+            printer.words(title, "title")
+        printer.blocks(shown)
+        return printer.lines
+
+    shown = [*blocks] if most is not None else blocks
+    lines = printed(shown)
+    while most is not None and len(lines) > most and (shorter := _shortened([*shown])):
+        shown = shorter
+        lines = printed(shown)
+    sys.stdout.write("".join(f"{line}\n" for line in lines))
+
+
+def _shortened(blocks: list[Block | Section]) -> list[Block | Section]:
+    """Blocks without the last item of the last list that has several, then without notes, then
+    without a whole list; empty where nothing is left to leave out.
+    """
+    for least in (1, 0):
+        for k in reversed(range(len(blocks))):
+            block = blocks[k]
+            rest: Block
+            if isinstance(block, Facts) and len(block.items) > 1 and not block.is_whole:
+                rest = replace(block, items=block.items[:-1], more=block.more + 1)
+            elif isinstance(block, Notes) and len(block.notes) > least:
+                rest = replace(block, notes=block.notes[:-1], more=block.more + 1)
+            else:
+                continue
+            return [*blocks[:k], rest, *blocks[k + 1 :]]
+    kinds = (block for block in enumerate(blocks) if isinstance(block[1], Notes | Facts))
+    lists = [k for k, one in kinds if not getattr(one, "is_whole", False)]
+    return [*blocks[: lists[-1]], *blocks[lists[-1] + 1 :]] if lists else []
 
 
 def coloured(stream: TextIO) -> bool:
@@ -49,6 +81,11 @@ def coloured(stream: TextIO) -> bool:
         return True
     known = os.name != "nt" or "WT_SESSION" in os.environ  # what else Windows has, prints codes
     return stream.isatty() and known and os.environ.get("TERM") not in ("dumb", "unknown")
+
+
+def _with_more(text: str, more: int) -> str:
+    """What stands above a list or ends it, with how many items are left out."""
+    return say("{what} (and {count} more)", what=text, count=more) if more else text
 
 
 class _Printer:
@@ -80,13 +117,16 @@ class _Printer:
         elif isinstance(block, Facts):
             if block.title:
                 self.space()
-                self.words(block.title, "title")
+                self.words(_with_more(block.title, block.more), "title")
             for item in block.items:
                 self.words(f"  {item}")
         elif isinstance(block, Notes):
             self.space()
-            for note in block.notes:
-                self.words(f"note: {note.said() if isinstance(note, Note) else note}")
+            for place, note in enumerate(block.notes, 1):
+                more = block.more if place == len(block.notes) else 0
+                self.words(_with_more(f"note: {said(note)}", more))
+            if not block.notes and block.more:
+                self.words(say("notes left out here: {count}", count=block.more))
         elif isinstance(block, Listing):
             self.space()
             if block.title:

@@ -226,8 +226,17 @@ def _by_link(analysis: Analysis) -> Table:
         )
         for name, share in shares(parts, analysis.motion).items()
     )
-    peak, share = Column(say("peak"), "force"), Column(say("share of the mean square"), unit="%")
-    return Table.of(say("Shaking force by link"), (say("link"), peak, share), rows)
+    columns = say("link"), Column(say("peak"), "force")
+    every = tuple(rows)
+    if any(row[2].value <= -100 * CANCELLING for row in every):
+        title = say("Shaking force by link; these parts mostly cancel")
+        return Table.of(title, columns, (row[:2] for row in every))
+    share = Column(say("share of the mean square"), unit="%")
+    return Table.of(say("Shaking force by link"), (*columns, share), every)
+
+
+CANCELLING = 0.5
+"""Share below 0 from which the parts of a force mostly cancel, and shares tell a reader nothing."""
 
 
 def shares(parts: Mapping[str, Array], motion: Motion) -> dict[str, float]:

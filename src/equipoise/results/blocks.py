@@ -42,6 +42,7 @@ class Value:
     digits : significant ones; after : digits behind the point instead, where given.
     emphasis : why it stands out, if it does.
     dimension, unit : as of `Column`, where the numbers of a column are not all alike.
+    limit : that the value breaks, in the same unit, where no other column has it.
     """
 
     value: float
@@ -52,6 +53,7 @@ class Value:
     emphasis: Emphasis | None = None
     dimension: Dimension | None = None
     unit: str | None = None
+    limit: float | None = None
 
 
 @dataclass(frozen=True)
@@ -119,11 +121,17 @@ class Text:
 
 @dataclass(frozen=True)
 class Facts:
-    """Sentences of a kind; `title` stands above them where there is one."""
+    """Sentences of a kind; `title` stands above them where there is one.
+
+    more : how many further ones there are, which are left out.
+    is_whole : whether none may be left out, such as of what has to be changed.
+    """
 
     kind: ClassVar[str] = "facts"
     title: str
     items: tuple[str, ...]
+    more: int = 0
+    is_whole: bool = False
 
 
 @dataclass(frozen=True)
@@ -144,10 +152,14 @@ class Table:
 
 @dataclass(frozen=True)
 class Notes:
-    """What a reader has to know of the result."""
+    """What a reader has to know of the result.
+
+    more : how many further notes there are, which are left out.
+    """
 
     kind: ClassVar[str] = "notes"
     notes: tuple[Note | str, ...]
+    more: int = 0
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from equipoise.i18n import say
+from equipoise.i18n import Note, said, say
+from equipoise.mechanism.assembly.cycle import turns_given
 from equipoise.mechanism.outputs.spoken import joint_named
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.laws import Law
@@ -21,6 +22,12 @@ def driven(machine: Machine, speed: float) -> str:
     """How the drive runs."""
     drive = machine.drive
     law = drive.stroke or drive.motion
+    if machine.drives and all(one.pushes for one in machine.driven):
+        return say(
+            "{drives}, {rate} cycles a minute",
+            drives=say(", ").join(map(drive_told, machine.driven)),
+            rate=number(abs(speed) / PER_RPM / turns_given(machine)),
+        )
     if machine.drives or (law is not None and law.windings):
         return say(
             "crank angle at {speed} rpm ({rate} rad/s): {drives}",
@@ -74,6 +81,11 @@ def told_between(law: Law) -> dict[str, str]:
 
 def pushed_named(drive: Drive | FurtherDrive) -> str:
     """What pushes, in words."""
+    return said(pushing(drive))
+
+
+def pushing(drive: Drive | FurtherDrive) -> Note | str:
+    """What pushes: a cylinder by its ends, or a sliding joint."""
     if drive.between is None:
         return joint_named(drive.slider)
-    return say("cylinder {a} to {b}", a=drive.between[0], b=drive.between[1])
+    return Note("cylinder {a} to {b}", a=drive.between[0], b=drive.between[1])

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from equipoise.i18n import Note, say, to_say
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.quantities import told
 from equipoise.results.blocks import Block, Facts, Notes, Text, broken_if
-from equipoise.results.drive_blocks import driven, pushed_named
+from equipoise.results.drive_blocks import driven
 from equipoise.results.yardsticks import (
     FigureAssessment,
     GaugeReading,
@@ -26,14 +25,13 @@ from equipoise.results.yardsticks import (
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
 
-MOST_LARGE, MOST_SMALL = 4, 2
+MOST_LARGE, MOST_SMALL = 3, 2
 """Figures that are told beside the verdict: of those that are large, and where none is."""
 MOST_NOTES = 3
 """Notes that stand first; the others follow with all tables."""
-TITLES = {
-    True: to_say("What else is large, each beside its own yardstick"),
-    False: to_say("Nothing else is large; what comes nearest to its yardstick"),
-}
+ELSE_LARGE = to_say("What else is large, each beside its own yardstick")
+NEXT_TO_ONE = to_say("Nothing else is large; what comes nearest to its yardstick")
+NEXT_TO_NONE = to_say("Nothing is large; what comes next to its yardstick")
 
 
 def analysis_headline(analysis: Analysis, alone: bool = False) -> Iterator[Block]:
@@ -49,12 +47,18 @@ def analysis_headline(analysis: Analysis, alone: bool = False) -> Iterator[Block
     rest = [one for one in entries if one is not first]
     large = [one for one in rest if one.is_large]
     if shown := large[:MOST_LARGE] or rest[:MOST_SMALL]:
-        lines = tuple(_said(analysis, one) for one in shown)
-        yield Facts(say(TITLES[bool(large)]), lines)
+        lines = tuple(sentence(one, analysis.machine.crank_turns) for one in shown)
+        small = NEXT_TO_ONE if first is not None and first.is_large else NEXT_TO_NONE
+        yield Facts(say(ELSE_LARGE if large else small), lines)
     if alone and (notes := analysis.notes):
         yield Notes(notes[:MOST_NOTES])
     if alone:
-        yield Facts(say("What to look at next"), tuple(_next(analysis, first)))
+        yield look_at_next(*_next(analysis, first))
+
+
+def look_at_next(*commands: str) -> Text:
+    """Commands that show more, in a line."""
+    return Text(say("Look at next: {commands}.", commands="; ".join(commands)))
 
 
 def verdict_blocks(
@@ -66,17 +70,8 @@ def verdict_blocks(
     """
     first = verdict(assess(analysis, readings))
     if first is not None:
-        words = say("{sentence}.", sentence=_said(analysis, first))
+        words = say("{sentence}.", sentence=sentence(first, analysis.machine.crank_turns))
         yield Text(words, broken_if(first.is_limit and first.is_large))
-
-
-def _said(analysis: Analysis, entry: FigureAssessment) -> str:
-    """A figure beside its yardstick, in the words of this machine: cylinders push, cranks turn."""
-    machine = analysis.machine
-    if machine.drive.pushes and entry.output == machine.drive.effort:
-        label = Note("force of the {what}, peak", what=pushed_named(machine.drive))
-        entry = replace(entry, label=label)
-    return sentence(entry, machine.crank_turns)
 
 
 def what_it_is(analysis: Analysis) -> str:
@@ -100,18 +95,14 @@ def what_it_is(analysis: Analysis) -> str:
 def _next(analysis: Analysis, first: FigureAssessment | None) -> Iterator[str]:
     """Commands that show more of what is large, and what to do about it."""
     machine = analysis.machine
-    shown = _output_of(analysis, first)
-    if shown:
-        name = shlex.quote(shown) if " " in shown else shown
-        of_crank = to_say("analyze --output {name}: it over crank angle")
-        of_cycle = to_say("analyze --output {name}: it over the cycle")
-        yield say(of_crank if machine.crank_turns else of_cycle, name=name)
+    if shown := _output_of(analysis, first):
+        yield f"analyze --output {shlex.quote(shown) if ' ' in shown else shown}"
     if machine.planting is not None:
-        yield say("plant: the path over ground, and what the soil adds")
+        yield "plant"
     if machine.support is not None and not massless(machine):
-        yield say("respond: what this does to the support")
+        yield "respond"
     if not massless(machine):
-        yield say("balance: what to change so that it shakes less")
+        yield "balance"
 
 
 def _output_of(analysis: Analysis, first: FigureAssessment | None) -> str:

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, cast
 import numpy as np
 
 from equipoise.displays import Displayed, room
-from equipoise.mechanism.parts.shown_units import units_of
-from equipoise.quantities import column_heading, showing_by_default
+from equipoise.quantities import column_heading
 from equipoise.results.declaring import Declarations, columns_of, figures_of, values_of
+from equipoise.results.own_words import in_own_words
 from equipoise.signals import Array
 
 if TYPE_CHECKING:
@@ -54,8 +54,8 @@ class Result(Displayed):
         return "" if self.owner is None else str(self.owner.title)
 
     def in_own_units(self) -> AbstractContextManager[None]:
-        """Inside, values are shown in the units of the file, where no others are chosen."""
-        return showing_by_default(units_of(self.owner))
+        """Inside, values are shown in the units and words of the machine, as of `in_own_words`."""
+        return in_own_words(self.owner)
 
     def to_dict(self) -> Values:
         """The machine-readable output, in SI units: dicts, numbers and arrays.

@@ -17,7 +17,9 @@ declared with them (`yardstick` in `mechanism.outputs.declared`):
     limit         a limit that is declared: of a gauge, of the speed at which a follower lifts off
     vibration     the velocity of a gauge without a limit: RMS, over 4.5 mm/s
 
-A ratio of 1 is the yardstick itself, and more is large.  Weights are by standard gravity where a
+A ratio of 1 is the yardstick itself.  More is large; of what a machine always has of its kind,
+more than `LARGE_FROM`: a joint carries what acts on it, and a torque without a mean swings to both
+sides.  Weights are by standard gravity where a
 machine lies flat.  The support counts where there is one.  30 and 45 deg of pressure and 40 deg of
 transmission are the usual limits (Norton, Design of Machinery, 8.6 and 4.10); 4.5 mm/s is where
 ISO 20816-3 ends zone B for machines of 15 to 300 kW on flexible supports.
@@ -37,14 +39,18 @@ from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assembly.steps import size_of_links
 from equipoise.mechanism.dynamics import acting
 from equipoise.mechanism.outputs.declared import DECLARED, declared
+from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.machine import STANDARD_GRAVITY, Machine
 from equipoise.mechanism.parts.objectives import GAUGES
 from equipoise.quantities import SI, Dimension, angle, number, percent, told
 from equipoise.results.analysis import Analysis
+from equipoise.results.drive_blocks import pushing
 from equipoise.results.outputs import FIGURES, Output
 
 LARGE, NOTHING = 1.0, 1e-9
 """Ratio from which a figure is large, and up to which it is rounding."""
+LARGE_FROM: Mapping[str, float] = {"acting": 2.0, "effort": 1.5}
+"""By yardstick, where it is another: a joint bears a load and what holds against it."""
 PRESSURE, SWINGING_PRESSURE, TRANSMISSION = radians(30), radians(45), radians(40)
 """Largest pressure angles of a cam, and smallest transmission angle of a dyad, rad."""
 LOAD_SHARE = 0.25
@@ -128,14 +134,25 @@ class FigureAssessment:
         return self.yardstick_kind in SHAKING
 
     @property
+    def is_torque(self) -> bool:
+        """Whether it is a torque of the drive."""
+        return self.yardstick_kind == "effort" and self.dimension == "torque"
+
+    @property
     def is_swing_about_mean(self) -> bool:
         """Whether it is a torque that swings about the mean that does the work."""
         return self.yardstick_kind == "effort" and self.against == MEAN
 
     @property
+    def excess(self) -> float:
+        """Its ratio over that from which it is large, by which figures are ranked."""
+        about_mean = self.is_swing_about_mean
+        return self.ratio / (LARGE if about_mean else LARGE_FROM.get(self.yardstick_kind, LARGE))
+
+    @property
     def is_large(self) -> bool:
-        """Whether it is at its yardstick or beyond."""
-        return self.ratio >= LARGE
+        """Whether it is as large as figures of its kind are from where on they count."""
+        return self.excess >= LARGE
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, SI units and radians."""
@@ -146,6 +163,7 @@ class FigureAssessment:
             "yardstick": self.yardstick,
             "against": str(self.against),
             "ratio": self.ratio,
+            "large": self.is_large,
             "crank_angle": self.crank_angle,
         }
 
@@ -153,7 +171,7 @@ class FigureAssessment:
 def assess(
     analysis: Analysis, readings: Mapping[str, GaugeReading] | None = None
 ) -> tuple[FigureAssessment, ...]:
-    """Figures of a machine against their yardsticks, the largest ratio first.
+    """Figures of a machine against their yardsticks, the largest first.
 
     Of each family, such as all joints, the largest member alone; of several rows the figures of
     all rows together.  A machine without masses has only what its motion tells; one without any
@@ -171,7 +189,7 @@ def assess(
     entries = [*worst.values(), *_of_cams(analysis)]
     for name, reading in (readings or {}).items():
         entries += _of_gauge(analysis.machine, name, reading)
-    return tuple(sorted(entries, key=lambda entry: -entry.ratio))
+    return tuple(sorted(entries, key=lambda entry: -entry.excess))
 
 
 def assess_parts(analysis: Analysis) -> tuple[FigureAssessment, ...]:
@@ -233,7 +251,7 @@ def sentence(entry: FigureAssessment, crank_turns: bool = True) -> str:
     if entry.dimension in ANGLES_AND_SPEEDS or entry.is_limit:
         limit = told(entry.yardstick, entry.dimension, entry.shown_unit, digits=3)
         return say("{what}: {value}; {against}: {limit}", limit=limit, **values)
-    if entry.is_large:
+    if entry.ratio >= 1:
         ratio = number(entry.ratio, digits=2)
         return say("{what}: {value}, {ratio} times {against}", ratio=ratio, **values)
     share = percent(entry.ratio, 0 if entry.ratio >= FEW else 1)
@@ -406,12 +424,22 @@ def _entry(
         ratio = abs(value) / yardstick
     places = {"peak": "peak_at", "max": "max_at", "min": "min_at"}
     at = getattr(figures, places.get(measure, "peak_at"))
+    pusher = pusher_of(output.analysis.machine, output.name)
     what = output.declared.note(output.item)
+    if pusher is not None:
+        what = Note("force of the {what}", what=pushing(pusher))
     label = Note("{what}, {part}", what=what, part=Note(FIGURES[measure]))
     return FigureAssessment(
         f"{output.name}.{measure}", label, value, output.dimension, yardstick, against, ratio,
         output.name, output.item, float(at),
     )  # fmt: skip
+
+
+def pusher_of(machine: Machine, output: str) -> Drive | FurtherDrive | None:
+    """The drive whose force an output is: a cylinder, which pushes and turns nothing."""
+    each = {f"drives.{one.link}.force": one for one in machine.driven if one.pushes}
+    first = {machine.drive.effort: machine.drive} if machine.drive.pushes else {}
+    return (each | first).get(output)
 
 
 def _weight(scales: _Scales, output: Output) -> FigureAssessment | None:
@@ -513,10 +541,13 @@ def _of_gauge(machine: Machine, name: str, reading: GaugeReading) -> Iterator[Fi
     most = VIBRATION / (_reach_of_support(machine) if reading.rotation else 1.0)
     value = float(reading.velocity.vibration_rms)
     label = Note("velocity at {name}, RMS", name=name)
+    of_turns = Note("what moves the farthest mount at the limit of ISO 20816-3")
     against = Note("the limit of ISO 20816-3 for lasting operation")
+    against = of_turns if reading.rotation else against
     yield FigureAssessment(
-        f"{output}.velocity.rms", label, value, rate, most, against, value / most, output, name
-    )
+        f"{output}.velocity.rms", label, value, rate, most, against, value / most, output, name,
+        shown_unit=None if reading.rotation else "mm/s",
+    )  # fmt: skip
 
 
 def _reach_of_support(machine: Machine) -> float:

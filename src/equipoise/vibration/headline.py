@@ -11,6 +11,7 @@ from equipoise.quantities import PER_RPM, brief
 from equipoise.results.analysis import analyze
 from equipoise.results.blocks import Block, Facts, Notes, Text, broken_if
 from equipoise.results.drive_blocks import driven
+from equipoise.results.headline import look_at_next
 from equipoise.results.outputs import shown_in
 from equipoise.results.yardsticks import assess, sentence, verdict
 from equipoise.vibration.forced import excitation_model_of
@@ -44,19 +45,11 @@ def response_headline(response: Response, alone: bool = False) -> Iterator[Block
     yield Text(say("Model {model}: {what}", model=response.model, what=say(MODELS[response.model])))
     if response.gauges:
         yield Facts(say("What the gauges read, peak to peak"), tuple(_readings(response)))
-    if lines := tuple(_resonances(response)):
-        yield Facts(say("Resonances"), lines)
+    yield from map(Text, _resonances(response))
     if response.notes:
         yield Notes(response.notes[:MOST_NOTES])
-    template = to_say('respond --speed "{low} rpm : {high} rpm": over speed')
     low, high = sorted(abs(one) / PER_RPM for one in around(machine.drive, response.speed))
-    yield Facts(
-        say("What to look at next"),
-        (
-            say(template, low=f"{low:.3g}", high=f"{high:.3g}"),
-            say("balance: what to change so that it shakes less"),
-        ),
-    )
+    yield look_at_next(f'respond --speed "{low:.3g} rpm : {high:.3g} rpm"', "balance")
 
 
 def _readings(response: Response) -> Iterator[str]:
@@ -75,7 +68,7 @@ def _resonances(response: Response) -> Iterator[str]:
         return
     if met:
         text = said(resonance_note(met, response.speed))
-        yield text[:1].upper() + text[1:]
+        yield say("{sentence}.", sentence=text[:1].upper() + text[1:])
 
 
 def sweep_headline(sweep: Sweep, alone: bool = False) -> Iterator[Block]:
@@ -106,7 +99,7 @@ def sweep_headline(sweep: Sweep, alone: bool = False) -> Iterator[Block]:
         yield Text(say("There is no resonance in this range."))
     if sweep.notes:
         yield Notes(sweep.notes[:MOST_NOTES])
-    yield Facts(say("What to look at next"), (say("respond --speed: at one of these speeds"),))
+    yield look_at_next("respond --speed")
 
 
 def _peaks(sweep: Sweep) -> Iterator[str]:

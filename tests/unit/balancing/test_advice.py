@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from math import pi
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import equipoise as eq
+import support.found
 from equipoise.balancing.advice import advise, running_speeds
 from equipoise.balancing.balanced import Balanced
+from equipoise.balancing.beyond_masses import STEADY, Beyond, flywheel_for
 from equipoise.balancing.blocks import outcome_blocks
-from equipoise.balancing.headlines import STEADY, flywheel_for, worse_headlines
+from equipoise.balancing.headlines import worse_headlines
 from equipoise.balancing.outcome import helps_told
 from equipoise.balancing.remedies import LEAST_GAIN, plate_of, sectors
 from equipoise.balancing.remedies import Sector as SectorShape
@@ -24,6 +28,7 @@ from equipoise.mechanism.parts.balance import AddedMass, Balance, Limit, Objecti
 from equipoise.mechanism.parts.bodies import Body
 from equipoise.mechanism.parts.machine import Drive, Link, Slider
 from equipoise.mechanism.parts.sliders import Bearing
+from equipoise.results.yardsticks import assess
 from equipoise.vibration.linear import Linear
 
 RIG, RIDING = eq.load("yamashita-rig"), eq.load("riding-transplanter")
@@ -96,15 +101,15 @@ def test_where_nothing_large_shakes_the_masses_are_left_as_they_are(name: str) -
     """However large a counterweight would be: a half disc of 360 kg against 2 % of the load."""
     machine = bare(name)
     found = advise(machine)
-    assert not found.helps and found.machine.links == machine.links and not found.tried
-    told = " ".join(helps_told(found))
-    assert "Leave the masses as they are: what shakes the frame is small here" in told
+    assert not found.helps and not any(one.helps for one in found.tried)
+    assert re.search("Leave the (masses|machine) as (they are|it is)", " ".join(helps_told(found)))
 
 
 def test_all_that_is_large_is_named_first() -> None:
     first, *_ = helps_told(advise(bare("hydraulic-loader")))
     assert first == (
-        "Large here: Drive force, peak: 25.6 kN at 17.0° of the cycle, 6.4 times the largest load."
+        "Large here: Force of the cylinder A to B, peak: 25.6 kN at 17.0° of the cycle, 6.4 times "
+        "the largest load."
     )
 
 
@@ -261,10 +266,10 @@ def test_what_leaves_a_headline_figure_worse_is_not_offered() -> None:
     swings = [float(np.ptp(eq.analyze(one).forces.drive_torque))
               for one in (found.original, found.machine)]  # fmt: skip
     assert was.output == "drive_torque" and new.value == pytest.approx(swings[1], rel=1e-3)
-    growth = round(100 * (swings[1] / swings[0] - 1))
     told = " ".join(helps_told(found))
-    assert growth > 10
-    assert f"drive torque, peak to peak, by {growth} %" in told and "would grow" in told
+    assert swings[1] > 1.1 * swings[0]
+    grown = f"drive torque, peak to peak, from {swings[0]:.2f} to {swings[1]:.2f} N m"
+    assert grown in told and "would grow" in told
 
 
 @pytest.mark.parametrize(
@@ -352,10 +357,12 @@ def test_a_flywheel_stores_the_work_that_the_torque_swings_by() -> None:
     """By the angular momentum that a crank would gain: the speed swings within the share told."""
     machine = bare("brush-cutter-engine")
     found = advise(machine)
-    assert found.advice is not None and found.advice.flywheel is not None
+    assert found.advice is not None
+    flywheel = found.advice.beyond.flywheel
+    assert flywheel is not None and flywheel.ratio == 1
     analysis = eq.analyze(machine, 7200)
     torque, speed = analysis.forces.drive_torque, machine.drive.speed
-    whole = machine.drive.flywheel + found.advice.flywheel
+    whole = machine.drive.flywheel + flywheel.inertia
     gained = np.cumsum(np.mean(torque) - torque) * (2 * pi * analysis.motion.turns / len(torque))
     speeds = np.sqrt(speed**2 + 2 * gained / whole)
     assert np.ptp(speeds) / np.mean(speeds) == pytest.approx(STEADY, rel=0.05)
@@ -395,3 +402,118 @@ def test_mounts_without_a_steady_state_leave_what_shakes() -> None:
     with pytest.raises(EquipoiseError):
         eq.respond(loose)
     assert not any(one.output.startswith("gauges") for one in advise(loose).plan.objectives)
+
+
+# -- beyond masses ---------------------------------------------------------------------------------
+
+ADVISED = Path(support.found.__file__).parent / "advised"
+
+
+def advised(name: str) -> eq.Machine:
+    return eq.load(ADVISED / f"{name}.toml")
+
+
+def beyond(machine: eq.Machine) -> Beyond:
+    found = advise(machine)
+    assert found.advice is not None
+    return found.advice.beyond
+
+
+def test_a_flywheel_of_a_slow_crank_sits_on_a_faster_shaft() -> None:
+    """As of a press: on its crank it would weigh more than the press."""
+    machine = advised("press")
+    flywheel = beyond(machine).flywheel
+    assert flywheel is not None and flywheel.ratio > 1
+    analysis = eq.analyze(machine, acceleration=0.0)
+    torque, sampling = analysis.forces.drive_torque, analysis.motion
+    work = np.cumsum(torque - sampling.mean(torque)) * 2 * pi / len(torque)
+    on_crank = np.ptp(work) / (STEADY * machine.drive.speed**2)
+    assert flywheel.inertia * flywheel.ratio**2 == pytest.approx(on_crank, rel=0.1)
+    heavy = machine.mass * 0.42**2 / 2
+    assert flywheel.inertia <= heavy < on_crank / (flywheel.ratio - 1) ** 2
+
+
+def test_a_weight_on_a_slow_crank_takes_the_torque_of_order_1() -> None:
+    """With it on the crank the swing is what is told, by a whole analysis."""
+    machine = advised("pump-jack")
+    weight = beyond(machine).counterbalance
+    assert weight is not None
+    place = weight.moment / 1500 * np.exp(1j * weight.direction)
+    link = machine.links["crank"].with_added(1500.0, (place.real, place.imag), 0.0)
+    changed = machine.with_link("crank", mass=link.mass, center_of_mass=link.center_of_mass,
+                                inertia=link.inertia)  # fmt: skip
+    swings = [float(np.std(eq.analyze(one).forces.drive_torque)) for one in (machine, changed)]
+    assert 1 - swings[1] / swings[0] == pytest.approx(weight.gain, abs=1e-6)
+    fast = machine.with_drive(speed=60 * RPM)
+    assert beyond(fast).counterbalance is None
+
+
+def test_balance_shafts_take_the_force_of_order_1() -> None:
+    """Two unbalances that turn with and against the crank, put beside the machine's own force."""
+    machine = bare("four-stroke-engine")
+    shafts = beyond(machine).shafts
+    assert shafts is not None
+    analysis = eq.analyze(machine, acceleration=0.0)
+    force, angle = analysis.forces.shaking_force.value, analysis.motion.crank_angle
+    mean = analysis.motion.mean
+    square = machine.drive.speed**2
+    ahead, against = square * shafts.forward, square * shafts.backward
+    left = min(
+        float(np.sqrt(mean(np.abs(force + s * ahead * np.exp(1j * angle)
+                                  + t * against * np.exp(-1j * angle)) ** 2)))
+        for s in np.exp(1j * np.radians(np.arange(0, 360, 5)))
+        for t in np.exp(1j * np.radians(np.arange(0, 360, 5)))
+    )  # fmt: skip
+    whole = float(np.sqrt(mean(np.abs(force) ** 2)))
+    assert 1 - left / whole == pytest.approx(shafts.gain, abs=2e-3)
+    assert beyond(bare("yamashita-1")).shafts is None
+
+
+def test_the_lever_of_a_cylinder_is_that_of_virtual_work() -> None:
+    """dL = r dtheta, by differences of its length over the angle of the boom."""
+    machine = bare("hydraulic-loader")
+    lever = beyond(machine).lever
+    assert lever is not None and lever.pivot == "P"
+    motion = eq.move(machine, [lever.crank_angle - 1e-3, lever.crank_angle + 1e-3])
+    length = np.abs(motion.points["B"].place - motion.points["A"].place)
+    turned = np.diff(motion.links["boom"].angle)
+    assert lever.arm == pytest.approx(abs(float((np.diff(length) / turned)[0])), rel=1e-4)
+    of_stick = beyond(advised("excavator")).lever
+    assert of_stick is not None and of_stick.pivot == "Q"
+
+
+def test_a_torque_that_weights_can_steady_is_an_aim() -> None:
+    found = advise(advised("walking-beam"))
+    assert found.helps and found.plan.objectives == (Objective("drive_torque", "ripple"),)
+    swings = [
+        float(np.std(eq.analyze(one).forces.drive_torque))
+        for one in (found.original, found.machine)
+    ]
+    assert swings[1] < 0.5 * swings[0]
+
+
+def test_no_counterweight_of_plate_is_larger_than_a_person_can_cut() -> None:
+    assert room_about(advised("pump-jack"), "beam").largest <= 0.6
+
+
+def test_a_joint_that_bears_its_load_is_not_large() -> None:
+    """The pin of a press, 99 % of the load, and a sieve's, 1.1 times the force of inertia."""
+    for machine in (advised("press"), advised("sieve-short"), bare("sieve")):
+        analysis = eq.analyze(machine)
+        assert not any(one.is_large for one in assess(analysis) if one.output.startswith("joints"))
+
+
+def test_an_inertia_that_follows_from_bodies_has_no_wrong_unit() -> None:
+    """Nor a pulley on a shaft of a short throw."""
+    for name in ("sieve-short", "sieve-eccentric"):
+        assert not any("gyration" in str(one) for one in eq.analyze(advised(name)).notes)
+
+
+def test_a_crank_that_jams_on_its_way_is_refused_by_all() -> None:
+    """A walking beam whose second lever is too short."""
+    machine = advised("walking-beam").with_point("second", "F", (0.2, 0.0))
+    for compute in (eq.analyze, eq.move, advise):
+        with pytest.raises(EquipoiseError) as caught:
+            compute(machine)
+        assert "it stops at -103.09 deg" in str(caught.value)
+        assert "motion = { between = " in str(caught.value)

@@ -248,7 +248,7 @@ def test_what_breaks_a_limit_stands_out(monkeypatch: pytest.MonkeyPatch) -> None
     table = table_of(Value(7.0, emphasis="broken"), Value(1.0), Change(1.0, 2.0, "worse"))
     sentence = Text("Nobody may be exposed to this.", "broken")
     assert shown([table, sentence]).splitlines()[-5:] == [
-        "row 0      7000 broken",
+        "row 0      7000, over the limit",
         "row 1      1000",
         "row 2  +100.0 % worse",
         "",
@@ -261,7 +261,7 @@ def test_what_breaks_a_limit_stands_out(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setenv("FORCE_COLOR", "1")
     text = shown([table, sentence])
     assert "\x1b[1;31m    7000\x1b[0m\n" in text and "\x1b[1;31m+100.0 %\x1b[0m\n" in text
-    assert "\x1b[1;31mNobody may" in text and not re.search("broken|worse|!", text)
+    assert "\x1b[1;31mNobody may" in text and not re.search("over the limit|worse|!", text)
     day = words(result("exposure").blocks())
     assert "above the limit value of 5 m/s^2 (2002/44/EC)" in day and "nobody may be exposed" in day
 
@@ -269,15 +269,15 @@ def test_what_breaks_a_limit_stands_out(monkeypatch: pytest.MonkeyPatch) -> None
 def test_a_daily_exposure_beyond_the_limit_value_stands_out() -> None:
     """In the table also of a day with one task, and in the tile of a report, by colour and word."""
     day = daily_exposure([Task("mowing", 20.0, 3600.0)])
-    assert "7.071 broken" in words(day.blocks())
+    assert "7.071, over the limit of 5" in words(day.blocks())
     allowed = daily_exposure([Task("mowing", 5.0, 8 * 3600.0)])
-    assert "broken" not in words(allowed.blocks())
+    assert "over the limit" not in words(allowed.blocks())
     tile = next(one for one in tool_tiles(found("brush-cutter")) if "A(8)" in one.label)
     assert tile.emphasis == "broken"
     document = Document("en", "", "", "", (tile, replace(tile, emphasis=None)), (), "", ())
     html = page(document)
     assert html.count(f'class="value strong">{tile.value} ') == 1
-    assert html.count("m/s² broken</span>") == 1
+    assert html.count("m/s², over the limit</span>") == 1
     assert pdf(document) != pdf(replace(document, tiles=(replace(tile, emphasis=None),) * 2))
 
 

@@ -51,7 +51,9 @@ def test_figures_are_those_of_the_machine_readable_output(name: str) -> None:
     values = analysis.to_dict()
     readings = eq.respond(machine) if name in WITH_GAUGES else None
     found = assess(analysis, readings and readings.gauges)
-    assert found and [one.ratio for one in found] == sorted((e.ratio for e in found), reverse=True)
+    assert found and [one.excess for one in found] == sorted(
+        (e.excess for e in found), reverse=True
+    )
     for one in found:
         name, _, measure = one.figure.rpartition(".")
         if one.output.startswith("gauges."):

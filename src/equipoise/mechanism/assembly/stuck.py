@@ -26,7 +26,9 @@ DIGITS = 3
 """Of the range, to which the ends of a swing are rounded."""
 
 WITH_LINES = to_say("{reason}; {cure}; the motion below {room}{lines}")
-KEEPS_ANGLES = Note("keeps transmission angles of 40 deg and more")
+KEEPS_ANGLES = Note(
+    "keeps transmission angles of {least:.4g} deg and more", least=degrees(TRANSMISSION)
+)
 KEEPS_AWAY = Note("stays a tenth of the range away from both ends, near which forces grow without "
                   "bound")  # fmt: skip
 KEEPS_SHORT = Note("stays 2 % of the range away from both ends, near which forces grow without "

@@ -9,7 +9,7 @@ from math import acos, asin, degrees, isclose, pi, sqrt
 from equipoise.errors import ChangePointError, MotionError, RangeError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
-from equipoise.mechanism.assembly.steps import Call
+from equipoise.mechanism.assembly.steps import Call, size_of_links
 from equipoise.mechanism.checks import bodies_at, numbered
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.dynamics.statics import statics
@@ -222,25 +222,7 @@ def questions(linkage: Linkage) -> Iterator[Note | str]:
                 f"the dyad at {joint} comes within {transmission:.1f} deg of its dead position, at "
                 f"crank angle {degrees(angle):.1f} deg; joint forces are large there"
             )
-    for name, link in machine.links.items():
-        size = size_of(link.points)
-        if not link.mass or link.inertia is None or link.center_of_mass is None or not size:
-            continue
-        gyration = sqrt(link.inertia / link.mass)
-        if not NARROW_INERTIA * size < gyration < WIDE_INERTIA * size and gyration:
-            yield Note(
-                "links.{link}.inertia gives a radius of gyration of {gyration}, for a link of "
-                "{size}; check its unit",
-                link=name,
-                gyration=f"{gyration * 1e3:.4g} mm",
-                size=f"{size * 1e3:.4g} mm",
-            )
-        x, y = link.center_of_mass
-        px, py = next(iter(link.points.values()))
-        if sqrt((x - px) ** 2 + (y - py) ** 2) > WIDE_INERTIA * size:
-            yield Note(
-                "links.{link}.center_of_mass lies far outside the link; check its unit", link=name
-            )
+    yield from _odd_masses(machine)
     yield from _odd_lengths(linkage)
     yield from _turned_axes(machine)
     used = {slider.through for slider in machine.sliders if slider.on == FRAME}
@@ -251,6 +233,33 @@ def questions(linkage: Linkage) -> Iterator[Note | str]:
     for point in machine.frame:
         if point not in used:
             yield f"frame.points.{point} is not used by any joint or spring"
+
+
+def _odd_masses(machine: Machine) -> Iterator[Note]:
+    """Links whose moment of inertia or centre of mass may have another unit."""
+    for name, link in machine.links.items():
+        wide = size = size_of(link.points)
+        if name == machine.drive.link:  # a short throw sits on a shaft, with a pulley or a flywheel
+            wide = max(size, size_of_links(machine) / 2)
+        if not link.mass or link.inertia is None or link.center_of_mass is None or not size:
+            continue
+        if link.bodies:  # of which the numbers follow
+            continue
+        gyration = sqrt(link.inertia / link.mass)
+        if not NARROW_INERTIA * size < gyration < WIDE_INERTIA * wide and gyration:
+            yield Note(
+                "links.{link}.inertia gives a radius of gyration of {gyration}, for a link of "
+                "{size}; check its unit",
+                link=name,
+                gyration=f"{gyration * 1e3:.4g} mm",
+                size=f"{size * 1e3:.4g} mm",
+            )
+        x, y = link.center_of_mass
+        px, py = next(iter(link.points.values()))
+        if sqrt((x - px) ** 2 + (y - py) ** 2) > WIDE_INERTIA * wide:
+            yield Note(
+                "links.{link}.center_of_mass lies far outside the link; check its unit", link=name
+            )
 
 
 def _odd_lengths(linkage: Linkage) -> Iterator[Note]:
