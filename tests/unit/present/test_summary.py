@@ -161,7 +161,7 @@ def test_where_balancing_brings_nothing_that_is_said_and_not_drawn():
     before, after = next(iter(found.balanced.objectives.values()))
     assert after == before
     told = text_of(found)
-    assert "no change of a mass about a pivot of the frame makes shaking force, RMS at " in told
+    assert "the trouble here is drive torque, peak to peak, on which no counterweight" in told
     assert "add a counterweight" not in told
     assert [*tiles(found)][-1].note == "leave the masses as they are"
     assert "balance" not in {one.section for one in pictures(found)}
@@ -171,8 +171,8 @@ def test_a_remedy_that_makes_something_far_worse_is_told_and_not_recommended():
     found = found_of("watt-six-bar")
     assert not found.helped and found.after is None
     told = text_of(found)
-    assert "Leave the masses as they are: nothing that can be built" in told
-    assert "drive torque, peak to peak, by " in told and " would grow." in told
+    assert "Leave the masses as they are: the best that can be built" in told
+    assert "drive torque, peak to peak, from " in told and " would grow." in told
     assert "add a counterweight" not in told
     assert [*tiles(found)][-1].value == "0"
 
