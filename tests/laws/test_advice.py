@@ -222,10 +222,10 @@ def test_random_machines_with_loads(kind: str, seed: int) -> None:
 
 ADVISED = Path(support.found.__file__).parent / "advised"
 ANSWERS = {
-    "excavator": r"trouble here is force of the cylinder E to F.* a lever twice as long",
+    "excavator": r"trouble is force of the cylinder E to F.* a lever twice as long",
     "inline-3": r"Rocking moment, RMS: 3240 → .* z = -111.5 mm.* z = 111.5 mm",
     "inline-3-rows": r"All rows: roll moment, RMS: 1665 → ",
-    "press": r"trouble here is drive torque.* A flywheel of .* turns \d+ times as fast as crank",
+    "press": r"trouble is drive torque.* A flywheel of .* turns \d+ times as fast as crank",
     "pump-jack": r"A weight of 9\d\d kg m on crank.* off the swing of the drive torque",
     "sieve-eccentric": r"Shaking force, RMS: 547 → .* eccentric: add a ",
     "sieve-short": r"Leave the masses .* shaking force y, peak, from 50\.9 to \d+ N",

@@ -150,8 +150,7 @@ def reasons_to_leave(found: Balanced) -> Iterator[str]:
         )
     else:
         yield say(
-            "Leave the masses as they are: the trouble here is {figure}, on which no counterweight "
-            "that fits acts noticeably.",
+            "No counterweight that fits helps here: the trouble is {figure}.",
             figure=largest.label.said(),
         )
 
@@ -167,19 +166,19 @@ def sentences_beyond_masses(found: Balanced) -> Iterator[str]:
         inertia = told(flywheel.inertia, "inertia", digits=2)
         share = percent(STEADY, 0)
         on_crank = to_say(
-            "A flywheel of {inertia} more on {crank} would keep its speed within {share} % of the "
-            "mean."
+            "A flywheel of {inertia} more on {crank} would keep its speed within {share} %, from "
+            "slowest to fastest."
         )
         geared = to_say(
             "A flywheel of {inertia} on a shaft that turns {ratio} times as fast as {crank} would "
-            "keep the speed within {share} % of the mean."
+            "keep the speed within {share} %, from slowest to fastest."
         )
         template = on_crank if flywheel.ratio == 1 else geared
         yield say(template, inertia=inertia, crank=crank, share=share, ratio=flywheel.ratio)
     if (shafts := beyond.shafts) is not None:
         yield say(
-            "Two balance shafts as fast as {crank}, of {forward} with it and {backward} against "
-            "it, would take {gain} % off the shaking force.",
+            "{forward} on {crank}, or on a shaft that turns with it, and a shaft of {backward} "
+            "against it would take {gain} % off the shaking force of the machine as it is.",
             crank=crank,
             forward=told(shafts.forward, "unbalance", "kg mm", digits=2),
             backward=told(shafts.backward, "unbalance", "kg mm", digits=2),
@@ -212,8 +211,7 @@ def _instead_of_masses(found: Balanced, beyond: Beyond) -> Iterator[str]:
     if (worst := next(poor, None)) is not None and worst.ratio >= POOR:
         yield say(
             "The transmission angle at {joint} comes to {value}, beyond the usual limit of "
-            "{limit}, which makes forces in joints large; other lengths or places of pivots mend "
-            "that, masses do not.",
+            "{limit}; other lengths or places of pivots mend that, masses do not.",
             joint=worst.item,
             value=angle(worst.value),
             limit=angle(worst.yardstick),

@@ -161,7 +161,9 @@ def test_where_balancing_brings_nothing_that_is_said_and_not_drawn():
     before, after = next(iter(found.balanced.objectives.values()))
     assert after == before
     told = text_of(found)
-    assert "the trouble here is drive torque, peak to peak, on which no counterweight" in told
+    assert (
+        "No counterweight that fits helps here: the trouble is drive torque, peak to peak." in told
+    )
     assert "add a counterweight" not in told
     assert [*tiles(found)][-1].note == "leave the masses as they are"
     assert "balance" not in {one.section for one in pictures(found)}
