@@ -216,17 +216,13 @@ def _local_tops(values: Array, enough: Array, rounding: Array) -> tuple[Array, A
     curve, even one with a kink, may come up to what is `enough` (M,); and whether it rises above
     the sample.
     """
-    count = values.shape[-1]
-    up = np.empty_like(values)
-    np.subtract(values[:, 1:], values[:, :-1], out=up[:, :-1])
-    np.subtract(values[:, 0], values[:, -1], out=up[:, -1])
-    # no top rises by more than the steepest step, which leaves a few samples of each signal
-    steepest = np.maximum(np.max(up, axis=-1), -np.min(up, axis=-1))
-    row, k = np.divmod(np.flatnonzero(values >= (enough - steepest)[:, None]), count)
-    before, after = up[row, k - 1], up[row, k]
-    top = (after <= rounding[row]) & (before >= -rounding[row])
-    row, k = row[top], k[top]
-    rise = np.abs(before[top] + after[top]) / 2
+    up = np.diff(values, axis=-1, append=values[:, :1])
+    no_further = up <= rounding[:, None]
+    from_below = up >= -rounding[:, None]
+    no_further[:, 1:] &= from_below[:, :-1]
+    no_further[:, 0] &= from_below[:, -1]
+    row, k = np.nonzero(no_further)
+    rise = np.abs(up[row, k - 1] + up[row, k]) / 2
     near = values[row, k] + rise >= enough[row]
     row, k, rise = row[near], k[near], rise[near]
     return row, k, rise > rounding[row]
