@@ -17,7 +17,7 @@ import numpy as np
 
 from equipoise.balancing.cone_solver import usual_solver
 from equipoise.errors import EquipoiseError
-from equipoise.signals import Array, stencils_above
+from equipoise.signals import Array
 
 Cone = Literal["zero", "nonnegative", "second-order"]
 
@@ -67,13 +67,6 @@ class Affine:
         """Some of the rows."""
         return Affine(self.factors[places], self.columns, self.constant[places])
 
-    def weighted(self, places: Array, weights: Array) -> Affine:
-        """Sums (K S,) of rows at places (K, n, S), with weights (K, n)."""
-        factors = np.einsum("knsc,kn->ksc", self.factors[places], weights)
-        constant = np.einsum("kns,kn->ks", self.constant[places], weights)
-        count = constant.size
-        return Affine(factors.reshape(count, self.factors.shape[1]), self.columns, constant.ravel())
-
     __array_ufunc__: ClassVar[None] = None  # NumPy's numbers leave arithmetic to this class
 
     def __add__(self, other: Affine) -> Affine:
@@ -115,8 +108,6 @@ class Block:
     slope : its derivative by that limit, rows for rows.
     lift : place of the number that it keeps above a square, where it does that.
     local : name of what it cuts off near the last solution only; blocks of that name come and go.
-    peaks : of how far each cone is broken (G,), round a cycle, and a value: tops of it above that,
-        as places of cones and weights (K, n) of these.
     """
 
     cone: Cone
@@ -126,7 +117,6 @@ class Block:
     slope: Affine | None = None
     lift: int | None = None
     local: str = ""
-    peaks: Callable[[Array, float], tuple[Array, Array]] = stencils_above
 
     @property
     def groups(self) -> int:
@@ -138,12 +128,6 @@ class Block:
         places = (groups[:, None] * self.size + np.arange(self.size)).ravel()
         slope = None if self.slope is None else self.slope.of_rows(places)
         return replace(self, rows=self.rows.of_rows(places), slope=slope)
-
-    def between(self, groups: Array, weights: Array) -> Block:
-        """Cones or rows that are weighted sums of others (K, n), as those between samples are."""
-        places = groups[..., None] * self.size + np.arange(self.size)
-        slope = None if self.slope is None else self.slope.weighted(places, weights)
-        return replace(self, rows=self.rows.weighted(places, weights), slope=slope)
 
     def slack(self, x: Array) -> Array:
         """By how much each cone or row (G,) is kept; below 0 where it is broken."""
@@ -197,7 +181,7 @@ class Program:
         self.blocks.append(Block("second-order", rows, size, name, slope))
 
     def gradually(self, block: Block) -> None:
-        """A block of many rows round a cycle, few of which will matter, and those between them."""
+        """A block of many rows, equally spaced round a cycle, few of which will matter."""
         self.waiting.append(block)
         self.blocks.append(block.of(np.arange(0, block.groups, STRIDE)))
 
@@ -260,13 +244,13 @@ class Program:
             self.parent._cut(cuts)
 
     def _broken(self, x: Array) -> Iterator[Block]:
-        """Rows of the waiting blocks, and between them, that a solution breaks most, each among its
-        neighbours.
-        """
+        """Rows of the waiting blocks that a solution breaks most, each among its neighbours."""
         for block in self.waiting:
-            groups, weights = block.peaks(-block.slack(x), BROKEN)
-            if len(groups):
-                yield block.between(groups, weights)
+            slack = block.slack(x)
+            lowest = (slack <= np.roll(slack, 1)) & (slack < np.roll(slack, -1))
+            broken = np.flatnonzero(lowest & (slack < -BROKEN))
+            if broken.size:
+                yield block.of(broken)
 
     def _solve(self) -> Solved:
         matrix, right, cones = self._assembled()

@@ -94,7 +94,7 @@ def jumps_alike(linkage: Linkage, paths: Collection[str]) -> bool:
 
 def _grid(theta: Array, turns: int) -> JumpSampling:
     """Crank angles (N,), each with the same share in sums."""
-    return JumpSampling(theta, np.zeros(len(theta)), theta, turns, 0, np.empty(0))
+    return JumpSampling(theta, np.zeros(len(theta)), theta, turns, 0)
 
 
 def grid_of(source: Source, theta: Array, shares: Array | None = None) -> Array:

@@ -15,9 +15,9 @@ from equipoise.figures.shared import (
     crank_axis,
     extent,
     extremes,
-    extremes_of,
     groups,
     numbers,
+    sampled_extremes,
     told_angles,
     told_speed,
 )
@@ -26,7 +26,6 @@ from equipoise.i18n import say
 from equipoise.mechanism.dynamics.reactions import JointForce, SliderForce
 from equipoise.results.charts import DEGREES, Array, Axis, Chart, Curve, Mark, Panel, quantity
 from equipoise.results.joint_blocks import contact_named, display_of_joints
-from equipoise.signals import Figures
 
 if TYPE_CHECKING:
     from equipoise.mechanism.dynamics.forces import Forces
@@ -74,11 +73,6 @@ def over(analysis: Analysis, values: Array) -> tuple[Array, Array]:
     if not motion.whole_cycle:
         return theta, values
     return closed(theta, values, 2 * np.pi * motion.turns)
-
-
-def with_figures(analysis: Analysis, values: Array) -> tuple[Array, Array, Figures]:
-    """Crank angles and values as of `over`, and the figures of a signal (N,)."""
-    return *over(analysis, values), analysis.motion.figures(values)
 
 
 def angle_axis(analysis: Analysis) -> Axis:
@@ -218,7 +212,7 @@ def _over_angle(analysis: Analysis, joint: Joint, every: Iterable[Joint]) -> Pan
         values, most = np.abs(joint.values), 1
         unit = display_of_joints(analysis).unit
         y = Axis.of(say("force"), "force", beside, unit, low=0.0, room=ROOM)
-    places = extremes_of(analysis.motion.figures(values))[:most]
+    places = sampled_extremes(*over(analysis, values))[:most]
     return Panel(
         angle_axis(analysis),
         y,

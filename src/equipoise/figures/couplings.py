@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.figures.analysis import ALL, angle_axis, title, with_figures
+from equipoise.figures.analysis import ALL, angle_axis, over, title
 from equipoise.figures.points import FORBIDDEN, outputs_chart
 from equipoise.figures.shared import compared
 from equipoise.figures.style import short
@@ -32,7 +32,7 @@ def ratios(analysis: Analysis) -> Iterator[Chart]:
         if low != high and np.all(driver != 0):
             names = {"link": short(gear.driven, 16), "drive": short(gear.driver, 16)}
             label = say("angular velocity ratio, {link} / {drive}", **names)
-            signal = {ALL: with_figures(analysis, driven / driver)}
+            signal = {ALL: over(analysis, driven / driver)}
             panel = compared(angle_axis(analysis), label, None, signal)
             what = say("Speed ratio of gears on their carrier")
             name = f"gears-{gear.driven.translate(FORBIDDEN)}"

@@ -14,7 +14,6 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.parts.machine import Drive
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Panel
-from equipoise.signals import figures
 
 Pair = Mapping[str, Array]
 """``before`` and ``after``, or the latter alone."""
@@ -67,8 +66,5 @@ def compare(
     """
     period = float(angles[-1] + angles[1] - angles[0])
     axis = crank_axis(short(drive.crank, 16), drive.speed, round(period / (2 * np.pi)))
-    drawn = {
-        role: (*closed(angles, values, period), figures(angles, values, period))
-        for role, values in roles_of(pair).items()
-    }
+    drawn = {role: closed(angles, values, period) for role, values in roles_of(pair).items()}
     return compared(axis, label, dimension, drawn, **rest)

@@ -16,7 +16,7 @@ from equipoise.figures.shared import (
     crank_axis,
     degrees_told,
     extremes,
-    extremes_of,
+    sampled_extremes,
 )
 from equipoise.figures.style import free_name, short
 from equipoise.i18n import say, to_say
@@ -236,7 +236,7 @@ def _air_and_soil(
     names = {"air": say("in the air"), "soil signal": say("in the soil")}
     marks: list[Mark] = []
     for role, values in reversed([*pair.items()]):
-        places = extremes_of(motion.figures(values))
+        places = sampled_extremes(*motion.shown(values))
         if both:
             marks += extremes(y, values, places, role)
         elif role == "soil signal":

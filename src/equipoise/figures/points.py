@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.figures.analysis import ALL, angle_axis, over, title, with_figures
+from equipoise.figures.analysis import ALL, angle_axis, over, title
 from equipoise.figures.shared import (
     angle_step,
     compared,
@@ -214,7 +214,7 @@ def outputs_chart(
     x = angle_axis(analysis)
     panels = []
     for one in ones:
-        drawn = {ALL: with_figures(analysis, one.drawn)}
+        drawn = {ALL: over(analysis, one.drawn)}
         beside = np.ravel([other.drawn for other in ones if other.dimension == one.dimension])
         panel = compared(x, "", one.dimension, drawn, beside=beside)
         panels.append(replace(panel, title=replace(panel.y, label=one.label()).text))

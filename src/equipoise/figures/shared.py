@@ -9,11 +9,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from equipoise import signals
 from equipoise.figures.style import KINDS, short
 from equipoise.i18n import say
 from equipoise.quantities import Dimension
 from equipoise.results.charts import DEGREES, RPM, Array, Axis, Chart, Curve, Mark, Panel, shown
-from equipoise.signals import Figures
 
 One = TypeVar("One")
 
@@ -145,16 +145,17 @@ def extremes(
     return tuple(found)
 
 
-def extremes_of(found: Figures) -> list[tuple[float, float]]:
-    """Where a signal is largest and where smallest: crank angle, rad, and value."""
-    return [(found.max_at, found.max), (found.min_at, found.min)]
+def sampled_extremes(theta: Array, values: Array) -> list[tuple[float, float]]:
+    """The largest and the smallest of samples (N,): crank angle, rad, and value."""
+    told = signals.figures(theta, values)
+    return [(told.max_at, told.max), (told.min_at, told.min)]
 
 
 def compared(
     x: Axis,
     label: str,
     dimension: Dimension | None,
-    drawn: Mapping[str, tuple[Array, Array, Figures]],
+    drawn: Mapping[str, tuple[Array, Array]],
     low: float | None = None,
     beside: Any = (),
     unit: str | None = None,
@@ -162,17 +163,16 @@ def compared(
 ) -> Panel:
     """Signals of one quantity by their roles over crank angle, with the extremes of each.
 
-    drawn : role -> crank angles (N,), rad, and values (N,), SI units, and the signal's figures.
-    low : where the axis begins.
+    drawn : role -> crank angles (N,), rad, and values (N,), SI units.  low : where the axis begins.
     beside : values of the same quantity in other panels, so that all have one unit.
     unit : as of `Axis.of`.  rest : of the panel.
     """
-    every = np.concatenate([values for _, values, _ in drawn.values()])
+    every = np.concatenate([values for _, values in drawn.values()])
     axis = Axis.of(label, dimension, np.append(every, beside), unit, room=ROOM, low=low)
     marks: list[Mark] = []
-    for role, (_, values, found) in reversed(tuple(drawn.items())):
-        marks += extremes(axis, values, extremes_of(found), role)
-    curves = tuple(Curve(theta, values, "", role) for role, (theta, values, _) in drawn.items())
+    for role, (theta, values) in reversed(tuple(drawn.items())):
+        marks += extremes(axis, values, sampled_extremes(theta, values), role)
+    curves = tuple(Curve(theta, values, "", role) for role, (theta, values) in drawn.items())
     if not np.any(every):
         rest["message"] = say("zero at every crank angle")
     return Panel(x, axis, curves, tuple(marks), **rest)

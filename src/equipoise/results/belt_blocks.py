@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from equipoise.i18n import Note, say
 from equipoise.mechanism.dynamics.forces import Forces
 from equipoise.mechanism.outputs.spoken import body_named
 from equipoise.quantities import angle, told
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
 from equipoise.results.machine_blocks import largest, smallest
+from equipoise.signals import highest_at
 
 
 def belt_blocks(forces: Forces) -> Iterator[Block]:
@@ -32,17 +35,17 @@ def belt_blocks(forces: Forces) -> Iterator[Block]:
 
 def slack(forces: Forces) -> Iterator[Note]:
     """Where a belt would have to push, which it cannot."""
-    motion = forces.motion
-    for belt in motion.machine.belts:
+    theta = forces.motion.crank_angle
+    for belt in forces.motion.machine.belts:
         found = forces.belts[belt.name]
-        left, right = motion.figures(found.left), motion.figures(found.right)
-        least = min(left, right, key=lambda strand: strand.min)
-        if belt.tension is not None and least.min < 0:
+        least = np.minimum(found.left, found.right)
+        if belt.tension is not None and np.min(least) < 0:
+            at = highest_at(-least)
             yield Note(
                 "the belt {name} hangs loose: at crank angle {angle} its slack strand would have "
                 "to push with {push}; give it a tension of more than {tension}",
                 name=belt.name,
-                angle=angle(least.min_at),
-                push=told(-least.min, "force"),
-                tension=told(motion.figures(found.pull).peak / 2, "force"),
+                angle=angle(float(theta[at])),
+                push=told(float(-least[at]), "force"),
+                tension=told(float(np.max(np.abs(found.pull))) / 2, "force"),
             )

@@ -85,14 +85,9 @@ def joint_table(analysis: Analysis) -> Table:
     for name, joint in joints.items():
         couple = None
         if isinstance(joint, SliderForce):
-            couple = Value(analysis.motion.figures(joint.moment).peak, scale)
+            couple = Value(float(np.max(np.abs(joint.moment))), scale)
         rows.append(
-            (
-                contact_named(forces, name),
-                *_told(analysis, joint),
-                couple,
-                _peak(analysis, tilting.get(name)),
-            )
+            (contact_named(forces, name), *_told(analysis, joint), couple, _peak(tilting.get(name)))
         )
     for name, joint in across.bearings.items() if across is not None else ():
         rows.append((say("bearing {name}", name=name), *_told(analysis, joint), None, None))
@@ -115,5 +110,5 @@ def _told(analysis: Analysis, joint: JointForce) -> tuple[Cell, ...]:
     return ends, Value(found.mean), Value(found.rms), largest(found)
 
 
-def _peak(analysis: Analysis, moment: JointForce | None) -> Value | None:
-    return None if moment is None else Value(analysis.motion.figures(moment.size).peak)
+def _peak(moment: JointForce | None) -> Value | None:
+    return None if moment is None else Value(float(np.max(moment.size)))

@@ -130,9 +130,7 @@ def _of_order(numbers: Any, order: float, orders: Any, key: Step) -> Any:
 def _figure(numbers: Any, of: Of, whole: Values) -> float:
     samples = np.asarray(numbers, dtype=float)
     along = _abscissa(whole, len(samples))
-    turns = whole.get("turns") if along is whole.get("crank_angle") else None
-    period = None if turns is None else 2 * pi * turns
-    found = figures(np.full(len(samples), nan) if along is None else along, samples, period)
+    found = figures(np.full(len(samples), nan) if along is None else along, samples)
     return float(getattr(found, of.name))
 
 

@@ -210,6 +210,8 @@ class LinearValues:
         if self.measure in {"rms", "ripple"}:
             matrix, vector = mean_square_rows(signal, self.measure)
             return np.asarray(np.linalg.norm(changes @ matrix.T + vector, axis=1))
+        if self.measure == "peak":
+            return np.concatenate([_peaks(signal.shown, one) for one in _parts(changes)])
         each = (
             measured_each(signal.at(one), self.measure, signal.sampling) for one in _parts(changes)
         )
@@ -243,6 +245,14 @@ class LinearValues:
 
 def _parts(changes: Array) -> Iterator[Array]:
     return (changes[k : k + AT_ONCE] for k in range(0, len(changes), AT_ONCE))
+
+
+def _peaks(signal: Signal, changes: Array) -> Array:
+    """Largest size (P,) of a signal for changes (P, K); of a vector by its two components."""
+    squares = np.square(changes @ signal.columns.real + signal.start.real)
+    if np.iscomplexobj(signal.start):
+        squares += np.square(changes @ signal.columns.imag + signal.start.imag)
+    return np.asarray(np.sqrt(np.max(squares, axis=1)))
 
 
 def _differ_in_masses(base: Machine, others: Sequence[Machine], of: Objective) -> bool:

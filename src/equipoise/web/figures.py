@@ -58,7 +58,7 @@ def _rms(motion: Motion, values: Array) -> float:
 
 
 def _peak(motion: Motion, values: Array) -> float:
-    return motion.figures(np.abs(values)).peak
+    return float(np.max(np.abs(motion.shown(values)[1])))
 
 
 def _signed(measure: str, values: Array, size: float) -> float:
