@@ -21,6 +21,7 @@ from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.bodies import inertia_of
+from equipoise.mechanism.parts.couplings import Turning
 from equipoise.mechanism.parts.machine import FRAME, Link, Load, Machine, Slider, Vector
 from equipoise.mechanism.parts.support import Row, Support
 from equipoise.vibration.free import modes
@@ -124,6 +125,8 @@ class Tree:
     def gears(self) -> Iterator[tuple[str, dict[str, float]]]:
         """Of each pair of gears its name, and link -> factor of its hinge in a sum that is 0."""
         for gear in self.machine.couplings:
+            if not isinstance(gear, Turning):
+                continue
             ratio = gear.speed_ratio
             factors = dict[str, float]()
             shares = ((gear.driven, 1.0), (gear.driver, -ratio), (gear.carrier, ratio - 1))

@@ -37,6 +37,13 @@ def run_headline(run: Run, alone: bool = False) -> Iterator[Block]:
     alone : whether nothing follows, as on a terminal.
     """
     yield Text(verdict(run), broken_if(run.end.kind == "stall"))
+    if run.machine.drive.motor is None:
+        yield Text(
+            say(
+                "It has no motor: it goes on from the speed at the start, as its weight, springs "
+                "and loads let it; a table [drive.motor] drives it."
+            )
+        )
     if alone and (lines := tuple(_figures(run))):
         yield Facts(say("Last cycle"), lines)
 
