@@ -12,6 +12,7 @@ from scipy.special import ellipk
 import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.mechanism.parts.force_elements import Motor
+from equipoise.running.blocks import verdict
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
 from support.analyses import subject_of
@@ -145,3 +146,16 @@ def test_values_that_cannot_be_used() -> None:
         eq.run(crank(), speed=float("inf"))
     with pytest.raises(UsageError, match="one crank"):
         eq.run(eq.load("hydraulic-loader"))
+
+
+def test_nothing_is_switched_off_that_is_not_there() -> None:
+    for values in ({"off": 0.1}, {"off_turns": 1.0}):
+        with pytest.raises(UsageError, match=r"drive\.motor: missing"):
+            eq.run(crank(), turns=1, **values)
+
+
+def test_a_crank_that_swings_on_is_said_to_swing() -> None:
+    """It ended \"at 0 rpm\", between two swings."""
+    swinging = eq.run(eq.load("transplanter"))
+    turned_back = [event for event in swinging.events if event.kind == "reversal"]
+    assert f"turned back {len(turned_back)} times" in verdict(swinging)

@@ -119,7 +119,7 @@ OF_MACHINES = {
     "simulate model.toml '0.2 s' --json": 3,
     "simulate model.toml '0.5 s' --drive": 3,
     "run model.toml --json": 3,
-    "run model.toml '0.5 s' --speed '90 rpm' --off-turns 0.5 --csv r.csv": 2,
+    "run model.toml '0.5 s' --speed '90 rpm' --csv r.csv": 2,
     "balance model.toml --json": 1,
     "balance model.toml --crank-counterweight --objective 'peak shaking_moment' -o new.toml; "
     "analyze new.toml": 1,

@@ -62,6 +62,13 @@ def verdict(run: Run) -> str:
             "The machine stands still after {time} s and {turns} turns, at crank angle {angle} deg."
         )
         return say(template, **values, angle=angle)
+    if end.kind == "reversal":
+        turned_back = sum(event.kind == "reversal" for event in run.events)
+        template = to_say(
+            "The crank swings to and fro: it has turned back {count} times in {time} s, and the "
+            "run ends there."
+        )
+        return say(template, count=turned_back, time=values["time"])
     if end.kind == "steady" and cycle is not None:
         speed = number(cycle.mean_speed / PER_RPM)
         share = f"{100 * cycle.fluctuation:.3g}"

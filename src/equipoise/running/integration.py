@@ -7,8 +7,7 @@ integral of the torques, and collocation at the table's own nodes needs no linka
 
 About standstill, where the angle is no clock, SciPy's DOP853 integrates in time to the piece's end:
 explicit and of order 8, because the equation is smooth and not stiff there, and tolerances are
-tight; LSODA takes three times as many steps at these, and Radau solves systems that nothing asks
-for.  The work of each source is integrated on the way, so that their sum can be held against the
+tight.  The work of each source is integrated on the way, so that their sum can be held against the
 kinetic energy of the linkage itself.
 """
 

@@ -232,6 +232,9 @@ def run(
         sizes[name] = inf if number is None else float(number)
     if turns is not None and turns > MOST_TURNS:
         raise UsageError(f"got {turns!r} for turns; give at most {MOST_TURNS}")
+    switched_off = off is not None or off_turns is not None
+    if switched_off and machine.drive.motor is None:
+        raise UsageError("drive.motor: missing; without a motor there is nothing to switch off")
     first = 0.0 if machine.drive.motor is not None else machine.drive.speed
     start = [
         first if speed is None else in_si(speed, "angular speed", "speed"),
