@@ -1,8 +1,8 @@
-"""Eigenvalues of a tool: counted without damping, so that none is missed; by a contour with it."""
+"""Eigenvalues of a tool: counted without damping, by elements and Newton's method with it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from itertools import pairwise
 from math import atan
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.chain import carry, count, log_determinant
 from equipoise.handheld.duals import Dual
+from equipoise.handheld.elements import rough_eigenvalues
 from equipoise.handheld.layout import Layout
 from equipoise.handheld.model import Tool
 from equipoise.i18n import Note
@@ -137,23 +138,20 @@ def _count(layout: Layout, frequency: Array) -> Array:
     return np.broadcast_to(total, frequency.shape)
 
 
-Curve = Callable[[Array], Array]
-"""Complex frequencies, 1/s, at places from 0 to 1."""
-
 ROOT_STEPS, CLOSE, SAME = 60, 1e-13, 1e-7
 """Steps of the iteration at most; the relative step at which it has arrived, and the distance at
 which a zero is one that is known."""
-NEAR, APART = 0.01, 1e-4
-"""Damping ratio at which the iteration begins, and how much further up each that follows."""
-POINTS, TURN, REFINED = 256, 0.8, 24
-"""Points of a contour at first; turn (rad) from one to the next that is small enough; how often
-the distance between them is halved where it is not."""
-REAL = 1e-7
-"""Share of its size that the imaginary part of an eigenvalue must have for it to swing."""
+SLOWEST = 1e-4
+"""Smallest eigenvalue looked for, over the lowest natural frequency and that of the bare shaft."""
+AROUND = 1.1
+"""How far beyond the sizes that are looked for the iteration begins."""
+REAL, BARELY = 1e-7, 0.1
+"""Share of its size that the imaginary part of an eigenvalue must have for it to swing, and that up
+to which finite elements may have taken a pair for two that do not swing, or the other way round."""
 WEDGE, LOSSES = 0.1, 1.5
 """With hysteresis eigenvalues nearer than this angle (rad), or than so many times that by which
 hysteresis turns a stiffness, to the negative real axis are not looked for."""
-TRIES, FINER, HALVINGS = 6, 3, 52
+HALVINGS = 52
 
 
 def characteristic(layout: Layout, s: Array) -> tuple[Array, Array]:
@@ -167,42 +165,46 @@ def characteristic(layout: Layout, s: Array) -> tuple[Array, Array]:
     return logarithm, slope
 
 
-def eigenvalues(
-    layout: Layout, natural: Array, radii: tuple[float, Array]
-) -> tuple[list[Array], list[int]]:
-    """Eigenvalues of each plane, by size: those that swing, above the real axis, and real ones.
+def eigenvalues(layout: Layout, natural: Array, high: Array) -> list[Array]:
+    """Eigenvalues (1/s) of each plane, by size: those that swing, above the real axis, and others.
 
-    layout : fine enough for twice the largest radius.
-    natural : natural frequencies (2, K) without damping, rad/s, from which the search begins.
-    radii : smallest size of an eigenvalue that is looked for, rad/s, and the largest of both
-        planes (2,), between two of the eigenvalues' sizes as well as can be.
+    Finite elements say roughly where they are, and how many; there the characteristic function is
+    zero.  A loss factor is a model for motions that swing; with it those that do not are not looked
+    for.
 
-    Returns
-    -------
-    lists of both planes : eigenvalues (1/s); how many there are besides that were not found, by the
-        turns of the characteristic function around all that were looked for.
-
-    A loss factor is a model for motions that swing; with it those that do not are not looked for.
+    layout : fine enough for twice the largest size.
+    natural : natural frequencies (2, K) without damping, up to the largest size, rad/s.
+    high : largest size of an eigenvalue of both planes (2,), rad/s, between two of the eigenvalues'
+        sizes as well as can be.
     """
-    low, high = radii
-    total = [_number(layout, plane, low, float(high[plane])) for plane in range(2)]
-    weight = 1 if layout.tool.shaft.loss_factor else 2  # zeros counted for each that swings
-    swinging, real = [np.empty(0, complex)] * 2, [np.empty(0)] * 2
-    starts = natural * (1j - NEAR) * (1 + APART * np.arange(natural.shape[1]))
-    random = np.random.default_rng(0)
-    for attempt in range(TRIES):
-        roots = _roots(layout, starts, swinging)
-        for plane in range(2):
-            kept = _within(layout, _merged(swinging[plane], roots[plane]), low, high[plane])
-            swinging[plane] = kept
-            real[plane] = overdamped(layout, plane, (low, float(high[plane])), FINER**attempt)
-        lacking = [total[p] - len(real[p]) - weight * len(swinging[p]) for p in range(2)]
-        if max(lacking) <= 0:
-            break
-        size = high[:, None] * np.sqrt(random.random((2, 2 * max(lacking))))
-        starts = size * np.exp(1j * np.pi * (0.5 + 0.5 * random.random(size.shape)))
-    both = (np.concatenate(parts) for parts in zip(swinging, real, strict=True))
-    return [one[np.argsort(np.abs(one), kind="stable")] for one in both], lacking
+    lowest = float(np.min(natural[natural > 0], initial=scale_of(layout.tool)))
+    low, number = SLOWEST * lowest, natural.shape[1]
+    still = zip(rigid_modes(layout.tool), floating(layout.tool), strict=True)
+    rough = [
+        rough_eigenvalues(layout, plane, number, lowest=lowest, rigid=len(motions) + len(names))
+        for plane, (motions, names) in enumerate(still)
+    ]
+    swinging = [_swinging(rough[plane], low, float(high[plane])) for plane in range(2)]
+    starts = np.full((2, max(map(len, swinging))), np.nan, complex)
+    for plane in range(2):
+        starts[plane, : len(swinging[plane])] = swinging[plane]
+    found = []
+    for plane, roots in enumerate(_roots(layout, starts)):
+        own = _within(layout, _distinct(roots), low, high[plane])
+        real = _overdamped(layout, plane, rough[plane], (low, float(high[plane])))
+        both = np.concatenate([own, real])
+        found.append(both[np.argsort(np.abs(both), kind="stable")])
+    return found
+
+
+def _swinging(rough: Array, low: float, high: float) -> Array:
+    """Where the search for eigenvalues that swing begins: also between two that just do not."""
+    size = np.abs(rough)
+    rough = rough[(size > low / AROUND) & (size < high * AROUND)]
+    real = np.sort(np.abs(rough[np.abs(rough.imag) <= REAL * np.abs(rough)]))
+    pairs = [(a, b) for a, b in pairwise(real) if b - a < BARELY * b]
+    between = [(1j * BARELY - 1) * (a + b) / 2 for a, b in pairs]
+    return np.concatenate([rough[rough.imag > REAL * np.abs(rough)], np.array(between, complex)])
 
 
 def _within(layout: Layout, roots: Array, low: float, high: float) -> Array:
@@ -219,107 +221,72 @@ def _wedge(layout: Layout) -> float:
     return max(WEDGE, LOSSES * atan(layout.tool.shaft.loss_factor))
 
 
-def _roots(layout: Layout, starts: Array, known: list[Array]) -> Array:
-    """Zeros by Newton's method, kept apart from each other and from those known (Aberth)."""
-    s = starts.astype(complex)
+def _roots(layout: Layout, starts: Array) -> Array:
+    """Zeros (2, K) by Newton's method, kept apart from each other (Aberth).
+
+    Where it does not arrive, the start, which is an eigenvalue of the finite elements; NaN where
+    there is no start, or one that may stand for two that do not swing.
+    """
+    if not starts.size:
+        return starts
+    unused = np.isnan(starts)
+    s = np.where(unused, 1j, starts)
     with np.errstate(all="ignore"):  # on a zero the function has no logarithm
         for _ in range(ROOT_STEPS):
             _, slope = characteristic(layout, s)
-            push = np.array([_push(s[plane], known[plane]) for plane in range(2)])
+            push = np.array([_push(own, used) for own, used in zip(s, ~unused, strict=True)])
             step = np.nan_to_num(1 / (slope - push), nan=0.0, posinf=0.0, neginf=0.0)
             step *= np.minimum(1.0, 0.5 * np.abs(s) / np.maximum(np.abs(step), 1e-300))
-            s = s - step
+            s = np.where(unused, s, s - step)
             s = np.where(s.imag < 0, np.conj(s), s)
-            if np.all(np.abs(step) < CLOSE * np.abs(s)):
+            if np.all(unused | (np.abs(step) < CLOSE * np.abs(s))):
                 break
         _, slope = characteristic(layout, s)
         arrived = np.nan_to_num(np.abs(1 / slope), nan=0.0) < np.sqrt(CLOSE) * np.abs(s)
-    return np.where(arrived, s, np.nan)
+    return np.where(arrived, s, np.where(starts.imag > BARELY * np.abs(starts), starts, np.nan))
 
 
-def _push(s: Array, known: Array) -> Array:
+def _push(s: Array, used: Array) -> Array:
     """Logarithmic derivative of the product of the distances to all other zeros."""
-    others = np.concatenate([s, np.conj(s), known, np.conj(known)])
+    others = np.concatenate([s, np.conj(s)])
     apart = s[:, None] - others
     apart[np.arange(len(s)), np.arange(len(s))] = np.inf
+    apart[:, ~np.tile(used, 2)] = np.inf
     return np.asarray(np.sum(1 / apart, axis=1))
 
 
-def _merged(found: Array, roots: Array) -> Array:
-    """Those known and new ones, by size; zeros of one search lie together where one is manifold."""
-    known = np.any(np.abs(roots[:, None] - found) <= SAME * np.abs(roots[:, None]), axis=1)
-    new = roots[np.isfinite(roots) & ~known]
-    return np.array(sorted([*found, *new], key=abs), complex)
+def _distinct(roots: Array) -> Array:
+    """Each zero once, by size."""
+    found: list[complex] = []
+    for root in sorted(roots[np.isfinite(roots)], key=abs):
+        if all(abs(root - one) > SAME * abs(root) for one in found):
+            found.append(root)
+    return np.array(found, complex)
 
 
-def _number(layout: Layout, plane: int, low: float, high: float) -> int:
-    """Zeros with a size between two, rad/s, by the turns of the characteristic function.
-
-    Without hysteresis it has conjugate values below the real axis, so that half a turn over each
-    arc is a zero in its whole circle.  With it the contour goes around the sector that is looked
-    at.
-    """
-    if not layout.tool.shaft.loss_factor:
-        whole, inner = (_turned(layout, plane, _arc(size, np.pi)) for size in (high, low))
-        return round((whole - inner) / np.pi)
-    end = np.pi - _wedge(layout)
-    back = np.exp(1j * end)
-    outward, around = _ray(low, high), _arc(high, end)
-    inward, along = _ray(high * back, low * back), _arc(low, end)
-    turns = [_turned(layout, plane, curve) for curve in (outward, around, inward, along)]
-    return round((sum(turns[:3]) - turns[3]) / (2 * np.pi))
-
-
-def _arc(size: float, angle: float) -> Curve:
-    return lambda place: size * np.exp(1j * angle * place)
-
-
-def _ray(start: complex, stop: complex) -> Curve:
-    return lambda place: start * (stop / start) ** place
-
-
-def _turned(layout: Layout, plane: int, curve: Curve) -> float:
-    """Angle (rad) by which the characteristic function turns along a curve."""
-
-    def phase(place: Array) -> Array:
-        s = curve(place)
-        logarithm, _ = characteristic(layout, np.array([s, s]))
-        return np.asarray(np.broadcast_to(logarithm, (2, len(s)))[plane].imag)
-
-    place = np.linspace(0.0, 1.0, POINTS + 1)
-    found = phase(place)
-    for _ in range(REFINED):
-        wide = np.flatnonzero(np.abs(_principal(np.diff(found))) > TURN)
-        if not wide.size:
-            break
-        middle = (place[wide] + place[wide + 1]) / 2
-        found = np.insert(found, wide + 1, phase(middle))
-        place = np.insert(place, wide + 1, middle)
-    return float(np.sum(_principal(np.diff(found))))
-
-
-def _principal(angle: Array) -> Array:
-    return (angle + np.pi) % (2 * np.pi) - np.pi
-
-
-def overdamped(layout: Layout, plane: int, radii: tuple[float, float], finer: int = 1) -> Array:
+def _overdamped(layout: Layout, plane: int, rough: Array, radii: tuple[float, float]) -> Array:
     """Eigenvalues of a plane that do not swing, 1/s, of a size between two, rad/s.
 
     Without hysteresis the characteristic function is real there; they are where its sign changes.
-
-    finer : how many times as many places as usual are looked at, as two may lie close together.
+    It is looked at between those that finite elements have, and between pairs that just swing.
     """
     if layout.tool.shaft.loss_factor:
         return np.empty(0)
-    sizes = np.geomspace(*radii, 4 * POINTS * finer)
+    low, high = radii
+    size = np.abs(rough)
+    near = np.sort(-rough.real[(np.abs(rough.imag) <= BARELY * size) & (rough.real < 0)])
+    swings = np.abs(rough.imag) > REAL * size
+    just = -rough.real[swings & (np.abs(rough.imag) <= BARELY * size)]
+    sizes = np.unique(np.concatenate([np.sqrt(near[1:] * near[:-1]), just, near]))
+    sizes = np.concatenate([[low], sizes[(sizes > low) & (sizes < high)], [high]])
     up = _positive(layout, plane, sizes)
     where = np.flatnonzero(up[1:] != up[:-1])
-    low, high = sizes[where], sizes[where + 1]
+    left, right = sizes[where], sizes[where + 1]
     for _ in range(HALVINGS if where.size else 0):
-        middle = (low + high) / 2
+        middle = (left + right) / 2
         same = _positive(layout, plane, middle) == up[where]
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
-    return np.asarray(-(low + high) / 2)
+        left, right = np.where(same, middle, left), np.where(same, right, middle)
+    return np.asarray(-(left + right) / 2)
 
 
 def _positive(layout: Layout, plane: int, sizes: Array) -> Array:

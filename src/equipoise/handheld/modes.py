@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import pi
 from typing import ClassVar
@@ -29,10 +29,6 @@ from equipoise.signals import Array, highest_at
 
 POINTS = 401
 """Places at which a shape is told."""
-NUDGE = 1e-3
-"""Share of the radius at which the search for what moves without a spring begins."""
-SLOWEST = 1e-4
-"""Smallest eigenvalue looked for, over the lowest natural frequency and that of the bare shaft."""
 
 BESIDE, ASIDE, LOUDER = 1e-9, 1e-3, 100.0
 """Shares of an eigenvalue by which a load shakes beside it to bring out the shape, and further off;
@@ -177,7 +173,7 @@ def vibrate_tool(tool: Tool, number: int = 6) -> ToolModes:
     layout = Layout(tool, 2 * float(np.max(radius)))
     places = np.linspace(0.0, tool.shaft.length, POINTS)
     shapes = still_shapes(layout, frequency, places)
-    damped, lacking = _damped_modes(layout, frequency, radius, places)
+    damped = _damped_modes(layout, frequency, radius, places)
     rigid, loose = rigid_modes(tool), floating(tool)
     planes = [
         PlaneModes(
@@ -190,30 +186,23 @@ def vibrate_tool(tool: Tool, number: int = 6) -> ToolModes:
         )
         for plane in range(1 if tool.alike else 2)
     ]
-    return ToolModes(tool, places, (planes[0], planes[-1]), (*_notes(tool, lacking),))
+    return ToolModes(tool, places, (planes[0], planes[-1]), (*_notes(tool),))
 
 
 def _damped_modes(
     layout: Layout, frequency: Array, radius: Array, places: Array
-) -> tuple[list[tuple[DampedMode, ...]], list[int]]:
-    """Modes with damping of both planes, by size, and how many were not found."""
+) -> list[tuple[DampedMode, ...]]:
+    """Modes with damping of both planes, by size."""
     if layout.tool.damped:
-        values, lacking = _eigenvalues(layout, frequency, radius)
+        values = eigenvalues(layout, frequency, radius)
     else:
-        values, lacking = [1j * row[row > 0] for row in frequency], [0, 0]
+        values = [1j * row[row > 0] for row in frequency]
     found = []
     for plane in range(2):
         own = values[plane]
         shapes = scaled(np.moveaxis(shapes_beside(layout, own[None], places, "free")[0], 0, -1))
         found.append(tuple(map(DampedMode, own.tolist(), shapes[plane])))
-    return found, lacking
-
-
-def _eigenvalues(layout: Layout, frequency: Array, radius: Array) -> tuple[list[Array], list[int]]:
-    """As `eigenvalues`, from the natural frequencies (2, K); rigid motions begin beside 0."""
-    starts = np.maximum(frequency, NUDGE * radius[:, None])
-    least = SLOWEST * float(np.min(frequency[frequency > 0], initial=scale_of(layout.tool)))
-    return eigenvalues(layout, starts, (least, radius))
+    return found
 
 
 def swinging_below(tool: Tool, highest: float) -> Array:
@@ -222,8 +211,9 @@ def swinging_below(tool: Tool, highest: float) -> Array:
     most = max(map(len, natural)) + max(map(len, rigid_modes(tool)))
     if not tool.damped or most == 0:
         return np.asarray(1j * np.concatenate(natural))
-    frequency = natural_frequencies(tool, most)
-    values, _ = _eigenvalues(Layout(tool, 2 * highest), frequency, np.full(2, highest))
+    values = eigenvalues(
+        Layout(tool, 2 * highest), natural_frequencies(tool, most), np.full(2, highest)
+    )
     both = np.concatenate(values)
     return np.asarray(both[both.imag > 0])
 
@@ -239,7 +229,7 @@ def rigid_names(free: Array) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _notes(tool: Tool, lacking: Sequence[int]) -> Iterator[Note]:
+def _notes(tool: Tool) -> Iterator[Note]:
     template = to_say(
         "the hand at {name} is known by its impedance at real frequencies only; "
         "the modes are those of the tool without it"
@@ -247,12 +237,6 @@ def _notes(tool: Tool, lacking: Sequence[int]) -> Iterator[Note]:
     for station in tool.grips:
         if station.hand is not None and station.hand.impedance:
             yield Note(template, name=station.name)
-    one, many = to_say("1 eigenvalue"), to_say("{count} eigenvalues")
-    template = to_say("{many} with damping of the {name} plane could not be found")
-    for name, count in zip(PLANES, lacking, strict=True):
-        if count > 0:
-            told = Note(one) if count == 1 else Note(many, count=count)
-            yield Note(template, many=told, name=name)
 
 
 # -- shapes ----------------------------------------------------------------------------------------

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from equipoise.handheld import frequencies
 from equipoise.handheld.frequencies import scale_of
 from equipoise.handheld.model import Absorber, Hand, Impedance, Station, Tool
 from equipoise.handheld.modes import PlaneModes, vibrate_tool
@@ -223,17 +222,12 @@ def test_absorbers_that_swing_against_each_other_leave_the_shaft_at_rest() -> No
 # -- the whole -------------------------------------------------------------------------------------
 
 
-def test_notes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_notes() -> None:
     table = Impedance((1.0, 100.0), (10.0, 30.0), (-5.0, 5.0))
     measured = bare(Station("grip", 0.5, hand=Hand(impedance=(table,))))
     (note,) = vibrate_tool(measured, 3).notes
     assert "the hand at grip is known by its impedance at real frequencies only" in str(note)
-    tool = random_tool(1)
-    assert vibrate_tool(tool, 3).notes == ()
-    monkeypatch.setattr(frequencies, "TRIES", 1)
-    monkeypatch.setattr(frequencies, "ROOT_STEPS", 1)
-    notes = vibrate_tool(tool, 3).notes
-    assert any("could not be found" in str(note) for note in notes)
+    assert vibrate_tool(random_tool(1), 3).notes == ()
 
 
 def test_as_plain_values() -> None:
