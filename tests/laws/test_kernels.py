@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from equipoise.mechanism.formulas import joint_kernels, kernels
+from equipoise.mechanism.parts.couplings import tooth_line
 from laws.formulas import FORMULAS, Formula, constants, evaluate
 
 ANGLES = np.array([0.1, 0.9, 1.7, 2.6, 3.5, 4.4, 5.8])
@@ -394,7 +395,8 @@ def test_rpp_forces(trial: int) -> None:
 
 @repeated
 @pytest.mark.parametrize("radial", [-0.36, 0.0, 0.36])
-def test_gear_forces(trial: int, radial: float) -> None:
+def test_flank_forces(trial: int, radial: float) -> None:
+    """Of a gear, whose tooth force acts at the pitch point, and not at its pin."""
     force, lever = vectors(2)
     (u,) = units(1)
     moment = float(RNG.normal())
@@ -404,7 +406,9 @@ def test_gear_forces(trial: int, radial: float) -> None:
     line = 1j * outward + radial * sense * outward
     columns = [rows(1, 0.0), rows(1j, 0.0), rows(line, kernels.cross(u * lever, line))]
     x = np.linalg.solve(np.array(columns).T, rows(force, moment))
-    got = joint_kernels.gear_forces(force, moment, u, sense, lever, radial)
+    found = tooth_line(lever, radial)
+    numbers = found.radius, found.across, found.along
+    got = joint_kernels.flank_forces(force, moment, u, sense, *numbers)
     close(got, [complex(*x[0:2]), line * x[2], x[2]])
 
 
@@ -473,13 +477,14 @@ SIGNATURES = {
     "prp_forces": "uucrcruu",
     "rpp_forces": "ccucrcruu",
     "flank": "r",
-    "gear_forces": "crurcr",
-    "belt_forces": "crurrcc",
-    "rack_flank": "cuu",
-    "rack_forces": "crccurur",
+    "flank_forces": "crurrcc",
+    "strand_forces": "crurrcc",
+    "flank_ahead": "cuu",
+    "sliding_forces": "crccurucc",
     "pitch_slope": "rr",
     "pitch_place": "cuc",
     "slant": "rrr",
+    "rolling_push": "rcrr",
     "rolling_forces": "crurcrr",
 }
 """Arguments of the force kernels: c a vector, u a rotation, r a real number."""
@@ -501,7 +506,7 @@ TOOLS = {"cross", "dot", "positive", "length", "inverse", "inverse_or_zero", "tu
 
 def test_every_force_kernel_is_tried() -> None:
     motion = {formula.kernel for formula in FORMULAS.values()}
-    assert FUNCTIONS.keys() - motion - {*TOOLS, "tooth"} == SIGNATURES.keys()
+    assert FUNCTIONS.keys() - motion - {*TOOLS} == SIGNATURES.keys()
 
 
 @pytest.mark.parametrize("name", SIGNATURES)

@@ -24,7 +24,7 @@ from equipoise.codegen.terms import rotation
 from equipoise.codegen.trace import Array, Read, Trace, links_of, running_angle
 from equipoise.errors import MassError
 from equipoise.mechanism.assembly.cam_groups import Displacement
-from equipoise.mechanism.assembly.gear_contacts import rolled
+from equipoise.mechanism.assembly.flanks import rolled
 from equipoise.mechanism.assembly.newton import LoopGroup
 from equipoise.mechanism.assembly.steps import (
     Call,

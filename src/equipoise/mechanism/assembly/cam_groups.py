@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from equipoise.i18n import Note
 from equipoise.mechanism.assembly.builder import Builder, Group, guide_reaction
 from equipoise.mechanism.assembly.cam_demands import check_shape
 from equipoise.mechanism.assembly.cam_fits import Fit, fitted
@@ -28,7 +27,6 @@ from equipoise.mechanism.assembly.steps import (
 from equipoise.mechanism.formulas import cam_kernels as kernels
 from equipoise.mechanism.formulas.kernels import travelled
 from equipoise.mechanism.parts.cams import Cam
-from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.laws import Law
 
 
@@ -46,7 +44,7 @@ class Displacement:
         state.update(zip(self.outputs, self.law.value(angle), strict=True))
 
 
-def push_of(builder: Builder, joints: Structure, cam: Cam) -> Push:
+def contact(builder: Builder, joints: Structure, cam: Cam) -> Push:
     """How a cam and its follower go together.
 
     Raises
@@ -67,27 +65,18 @@ class Push:
 
     couples: ClassVar[bool] = False
 
-    def group(self, builder: Builder, joints: Structure, coupling: Coupling) -> Group:
+    def group(self, builder: Builder, joints: Structure) -> Group:
         return _follower(builder, joints, self.fit)
 
-    def loop(self, coupling: Coupling, end: Callable[[str, str], End]) -> CamLoop:
+    def loop(self, end: Callable[[str, str], End]) -> CamLoop:
         fit, cam = self.fit, self.fit.cam
         on, by = end(cam.driven, fit.joint), end(cam.driver, fit.cam_pin)
         base = end(cam.carrier, fit.pin if fit.guide is None else fit.guide.base)
         kernel, numbers = cam.relation
         return CamLoop(
-            cam.name, cam.table, on, by, cam.carrier, kernel, numbers, 0.0, self,
+            cam.name, cam.table, on, by, cam.carrier, kernel, numbers, 0.0, self, None,
             end(cam.driven, cam.point), end(cam.carrier, fit.cam_pin), base,
         )  # fmt: skip
-
-    def backwards(self, coupling: Coupling) -> Note:
-        return Note(
-            "{cam!r} and {carrier!r} have to be moved before {follower!r} is; other joints hold "
-            "that, or the cam itself moves by it",
-            cam=coupling.driver,
-            carrier=coupling.carrier,
-            follower=coupling.driven,
-        )
 
 
 @dataclass(frozen=True)

@@ -1,33 +1,25 @@
-"""The contact of each kind of coupling: how it is solved, and how one body pushes the other."""
+"""How the two bodies of a coupling go together: in one of two ways, which its kind names."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
 
-from equipoise.mechanism.assembly.belt_contacts import pull_of
+from equipoise.mechanism.assembly import cam_groups, flanks
 from equipoise.mechanism.assembly.builder import Builder
-from equipoise.mechanism.assembly.cam_groups import push_of
-from equipoise.mechanism.assembly.gear_contacts import mesh_of
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.loops import Contact
-from equipoise.mechanism.assembly.rack_groups import teeth_of
 from equipoise.mechanism.parts.couplings import Coupling
 
-CONTACTS: Mapping[str, Callable[[Builder, Structure, Any], Contact]] = {
-    "gears": mesh_of,
-    "cams": push_of,
-    "belts": pull_of,
-    "racks": teeth_of,
-}
-"""What makes the contact of a coupling, by its `table`."""
+WAYS: Mapping[str, Callable[..., Contact]] = {"line": flanks.contact, "surface": cam_groups.contact}
+"""Where the line of action is fixed on the carrier, or goes with a ratio; and where the shape of a
+surface tells it."""
 
 
 def contact_of(builder: Builder, joints: Structure, coupling: Coupling) -> Contact:
-    """How the two bodies of a coupling go together.
+    """How a coupling is solved, and how its driver pushes.
 
     Raises
     ------
-    ModelError : they are not joined as they would have to be.
+    ModelError : its bodies are not joined as they would have to be.
     """
-    return CONTACTS[coupling.table](builder, joints, coupling)
+    return WAYS[coupling.contact](builder, joints, coupling)

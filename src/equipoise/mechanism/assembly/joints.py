@@ -190,22 +190,11 @@ def coupling_pins(joints: Structure, coupling: Coupling) -> tuple[str, str]:
     ------
     ModelError : one of them turns about none, or several.
     """
-    pins = []
-    for body in (coupling.driver, coupling.driven):
-        shared = joints.pins_between(body, coupling.carrier)
-        if len(shared) != 1:
-            raise ModelError(
-                place_in_file(joints, coupling),
-                Note(
-                    "{body!r} shares {shared} points with the carrier {carrier!r}; driver and "
-                    "driven link turn about exactly one point of the carrier each",
-                    body=body,
-                    shared=len(shared),
-                    carrier=coupling.carrier,
-                ),
-            )
-        pins += shared
-    return pins[0], pins[1]
+    ends = (coupling.driver, coupling.driven)
+    pins = [joints.pins_between(body, coupling.carrier) for body in ends]
+    if any(len(shared) != 1 for shared in pins):
+        raise ModelError(place_in_file(joints, coupling), coupling.unheld(*map(len, pins)))
+    return pins[0][0], pins[1][0]
 
 
 def _alike(bodies: Bodies, pins: Iterable[str]) -> Note | str:

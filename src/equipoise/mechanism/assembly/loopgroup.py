@@ -181,8 +181,8 @@ class Maker:
     def coupling(self, coupling: Coupling) -> CouplingLoop:
         contact = contact_of(self.builder, self.joints, coupling)
         if coupling.driven not in self.links:
-            raise ModelError(place_in_file(self.joints, coupling), contact.backwards(coupling))
-        return contact.loop(coupling, self.end)
+            raise ModelError(place_in_file(self.joints, coupling), coupling.backwards())
+        return contact.loop(self.end)
 
     def reaction(self, loop: Loop) -> Reaction:
         on, by = loop.on.body, loop.by.body

@@ -13,7 +13,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, Protocol
 
-from equipoise.i18n import Note
 from equipoise.mechanism.assembly.steps import Step
 from equipoise.mechanism.formulas import kernels
 
@@ -58,34 +57,30 @@ class End:
 
 
 Poses = dict[str, Pose]
-Wrench = tuple[Any, float]
+Wrench = tuple[Any, Any]
 
 
 class Contact(Protocol):
-    """How the driver's push reaches the driven body, and how this is solved.
+    """How the driver's push reaches the driven body, and how this is solved."""
 
-    couples : whether it pushes with a couple, too.
-    """
+    @property
+    def couples(self) -> bool:
+        """Whether it pushes with a couple, too."""
 
-    couples: ClassVar[bool]
-
-    def group(self, builder: Any, joints: Any, coupling: Any) -> Any:
+    def group(self, builder: Any, joints: Any) -> Any:
         """The driven link, where driver and carrier are known."""
 
-    def loop(self, coupling: Any, end: Callable[[str, str], End]) -> CouplingLoop:
+    def loop(self, end: Callable[[str, str], End]) -> CouplingLoop:
         """The same as an equation; `end` finds points of bodies from their anchors."""
-
-    def backwards(self, coupling: Any) -> Note:
-        """What is said where the driven link is known and the driver is not."""
 
 
 class Pushing(Contact, Protocol):
     """A contact whose place and line of action its loop asks for."""
 
-    def place(self, poses: Poses, on: End, carrier: str) -> Any:
-        """Where the push acts, complex, m; `on` is the driven body's pin."""
+    def place(self, poses: Poses) -> Any:
+        """Where the push acts, complex, m."""
 
-    def wrenches(self, poses: Poses, on: End, carrier: str, sense: Any) -> list[tuple[Any, float]]:
+    def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
         """Force and couple on the driven body, at that place, for a push of 1.
 
         sense : sign of the push that is asked for without any slant of its line; see
@@ -156,10 +151,30 @@ class SlideLoop:
 
 
 @dataclass(frozen=True)
+class Rides:
+    """How far a body is along its guide, by which a relation knows it instead of by its angle.
+
+    own : its point.  base : that of the guide.  along : unit vector of this in its body's axes.
+    """
+
+    own: End
+    base: End
+    along: Any
+
+    def travel(self, poses: Poses) -> tuple[Any, Any, Any]:
+        """The way, m, with both derivatives."""
+        guide = poses[self.base.body]
+        ends = (*poses[self.own.body].point(self.own.arm), *guide.point(self.base.arm))
+        t, t1, t2 = kernels.travelled(*ends, *guide.turn, self.along)
+        return t, t1, t2
+
+
+@dataclass(frozen=True)
 class CouplingLoop:
     """Angles of driven link, driver and carrier in a fixed relation.
 
     kind : of its `Reaction`.  kernel, numbers : as of `couplings.Relation`.
+    rides : of the body that slides on the carrier, if one does.
     """
 
     name: str
@@ -171,6 +186,7 @@ class CouplingLoop:
     numbers: tuple[Any, ...]
     offset: Any
     contact: Pushing
+    rides: Rides | None
 
     unknowns: ClassVar[int] = 1
     starts: ClassVar[bool] = True
@@ -194,36 +210,24 @@ class CouplingLoop:
         return [driven[level] - wanted[level]]
 
     def coordinate(self, poses: Poses, body: str) -> tuple[Any, Any, Any]:
-        """By which the relation knows a body: its angle, with both derivatives."""
+        """By which the relation knows a body: its angle, or its way along its guide, with both
+        derivatives.
+        """
+        if self.rides is not None and body == self.rides.own.body:
+            return self.rides.travel(poses)
         pose = poses[body]
         return pose.angle, pose.turn[1], pose.turn[2]
 
     def place(self, poses: Poses) -> Any:
-        return self.contact.place(poses, self.on, self.carrier)
+        return self.contact.place(poses)
 
     def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
-        return self.contact.wrenches(poses, self.on, self.carrier, sense)
+        return self.contact.wrenches(poses, sense)
 
-
-@dataclass(frozen=True)
-class RackLoop(CouplingLoop):
-    """Angle of a pinion and travel of its rack in a fixed relation.
-
-    rack : its point.  base : that of its guide.  along : unit vector of this in its body's axes.
-    """
-
-    rack: End
-    base: End
-    along: Any
-
-    def coordinate(self, poses: Poses, body: str) -> tuple[Any, Any, Any]:
-        """Of the rack how far it is along its guide, with both derivatives."""
-        if body != self.rack.body:
-            return super().coordinate(poses, body)
-        guide = poses[self.base.body]
-        ends = (*poses[body].point(self.rack.arm), *guide.point(self.base.arm))
-        t, t1, t2 = kernels.travelled(*ends, *guide.turn, self.along)
-        return t, t1, t2
+    @property
+    def slides(self) -> bool:
+        """Whether what the relation tells is a length."""
+        return self.rides is not None and self.rides.own.body == self.on.body
 
 
 Loop = PinLoop | SlideLoop | CouplingLoop

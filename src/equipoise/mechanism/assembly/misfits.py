@@ -11,7 +11,7 @@ import numpy as np
 
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.builder import Group
-from equipoise.mechanism.assembly.loops import CouplingLoop, Loop, Poses, RackLoop, SlideLoop
+from equipoise.mechanism.assembly.loops import CouplingLoop, Loop, Poses, SlideLoop
 from equipoise.mechanism.assembly.steps import Array, State, running_angle
 
 AGREES = 1e-9
@@ -71,7 +71,7 @@ class Fit:
     def off_at_start(self, poses: Poses) -> Iterator[Note]:
         """Say of couplings that start a link at another angle than other joints have it."""
         for loop in self.loops:
-            if isinstance(loop, CouplingLoop) and not isinstance(loop, RackLoop):
+            if isinstance(loop, CouplingLoop) and not loop.slides:
                 given, found = self.starts[loop.name], float(np.ravel(poses[loop.on.body].angle)[0])
                 if given and abs(np.exp(1j * (given - found)) - 1) > AGREES:
                     yield Note(AT_START, name=loop.name, link=loop.on.body, given=degrees(given),
@@ -83,7 +83,7 @@ def gap(loop: Loop, poses: Poses, size: float) -> Any:
     if isinstance(loop, CouplingLoop):
         (value,) = loop.gaps(poses, 0)
         ahead = np.abs(value - np.ravel(value)[0])
-        return ahead if isinstance(loop, RackLoop) else ahead * size
+        return ahead if loop.slides else ahead * size
     first, second = loop.gaps(poses, 0)
     if isinstance(loop, SlideLoop):
         first = first * size
@@ -91,7 +91,7 @@ def gap(loop: Loop, poses: Poses, size: float) -> Any:
 
 
 def _beside(loop: Loop, misfit: Array, theta: Array, at: Any, size: float) -> Note:
-    turned = isinstance(loop, CouplingLoop) and not isinstance(loop, RackLoop)
+    turned = isinstance(loop, CouplingLoop) and not loop.slides
     apart = degrees(misfit[at] / size) if turned else misfit[at] * 1e3
     template = AHEAD if turned else BESIDE
     return Note(template, name=loop.name, link=loop.on.body, misfit=apart, angle=degrees(theta[at]))

@@ -135,7 +135,7 @@ def _coupled(builder: Builder, joints: Structure, unknown: list[str]) -> Group |
         ready = one.driven in unknown and {one.driver, one.carrier} <= known.keys()
         freedom = joints.freedom([one.driven], known) if ready else 1
         if freedom == 0 or (freedom < 0 and joints.surplus):
-            group: Group = contact_of(builder, joints, one).group(builder, joints, one)
+            group: Group = contact_of(builder, joints, one).group(builder, joints)
             return group
     return None
 

@@ -22,7 +22,6 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from equipoise.mechanism.formulas import joint_kernels
 from equipoise.mechanism.formulas.curves import direction
 from equipoise.mechanism.parts.machine import FRAME, Machine, Vector, size_of
 
@@ -178,27 +177,6 @@ def size_of_links(machine: Machine) -> float:
 def demand_names(link: str) -> tuple[str, str]:
     """Names of what a link's joints must supply: force, and moment about its anchor."""
     return f"F({link})", f"M({link})"
-
-
-def flanked(
-    push: Reaction,
-    ground: Reaction,
-    carrier: str,
-    kernel: Callable[..., tuple[Any, ...]],
-    numbers: tuple[Any, ...],
-    reads: tuple[str, ...] = (),
-) -> tuple[Step, Step]:
-    """What a flank, or a strand, does to the driven body: the moment that this needs tells which.
-
-    ground : reaction of its pin.  reads : names of what the kernel takes beside it.
-    """
-    sense = f"flank({push.name})"
-    inputs = (*demand_names(push.on), f"u({carrier})", sense, *reads)
-    outputs = (ground.force, *push.outputs, f"T({push.name})")
-    return (
-        Call(joint_kernels.flank, (f"M({push.on})",), (), (sense,)),
-        Call(kernel, inputs, numbers, outputs),
-    )
 
 
 def tells_flanks(step: Step) -> bool:

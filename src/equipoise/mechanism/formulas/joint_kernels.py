@@ -1,4 +1,4 @@
-"""Force in the joints of dyads and gears, from what their links need: kernels like those of motion.
+"""Force in joints of dyads and at flanks, from what their links need: kernels like those of motion.
 
 They keep the rules of `formulas.kernels`, and take no more from it than its plain vectors.
 """
@@ -72,59 +72,43 @@ def flank(moment):
     return (moment / (abs(moment) + 1e-300),)
 
 
-def tooth(u, sense, lever, radial):
-    """Tooth force on a driven gear, complex, for a unit of tangential force; see `gear_forces`."""
-    return (1j + radial * sense) * u * lever * (1 / length(lever))
+def flank_forces(force, moment, u, sense, radius, across, along):
+    """Demand of a body about its pin that a flank, or strands, turn.
 
-
-def gear_forces(force, moment, u, sense, lever, radial):
-    """Demand of a driven gear about its own pin.
-
-    u : rotation of the carrier.  sense : see `flank`.  lever : from the gear's pin to the pitch
-    point, in the carrier's axes.  radial : part of the tooth force along the lever, per unit of
-    tangential force: the tangent of the pressure angle, negative where the teeth push the gear
-    back towards its pin.
-    Returns force on the gear at its pin, tooth force on the gear at the pitch point, and the
-    tooth force's tangential part.
+    u : rotation of the carrier.  sense : see `flank`.  radius : by which the push turns the body.
+    across, along : force in the carrier's axes for a push of 1, and what comes to it on the side of
+    `sense`: through the slope of teeth, or as the tight strand alone pulls.
+    Returns force on the body at its pin, force of the flank or strands on it, and their push,
+    positive where it turns the body counterclockwise.
     """
-    tangential = moment / length(lever)
-    mesh = tooth(u, sense, lever, radial) * tangential
-    return force - mesh, mesh, tangential
+    push = moment / radius
+    exerted = u * ((across + sense * along) * push)
+    return force - exerted, exerted, push
 
 
-def belt_forces(force, moment, u, sense, radius, across, along):
-    """Demand of a driven pulley about its own pin.
-
-    u, sense : as of `gear_forces`.  radius : of the pulley.  across, along : force of both strands
-    in the carrier's axes, for a unit of effective pull; what comes to it, on the side of `sense`,
-    where the tight strand alone pulls.
-    Returns force on the pulley at its pin, force and couple of the strands on it about the pin,
-    and their effective pull, positive where it turns the pulley counterclockwise.
-    """
-    pull = moment / radius
-    both = u * ((across + sense * along) * pull)
-    return force - both, both, moment, pull
+def strand_forces(force, moment, u, sense, radius, across, along):
+    """As `flank_forces`, with the couple of the strands about the pin before their push."""
+    at_pin, exerted, push = flank_forces(force, moment, u, sense, radius, across, along)
+    return at_pin, exerted, moment, push
 
 
-def rack_flank(force, u, along):
-    """Sign of the force along the rack that it needs: it tells which flank of the teeth pushes."""
-    (sense,) = flank(dot(u * along, force))
+def flank_ahead(force, u, guide):
+    """Sign of the force along its guide that a body needs: it tells which flank pushes."""
+    (sense,) = flank(dot(u * guide, force))
     return (sense,)
 
 
-def rack_forces(force, moment, c, pitch, u, sense, along, slant):
-    """Demand of a rack about its point c on the guide.
+def sliding_forces(force, moment, c, pitch, u, sense, guide, across, along):
+    """Demand of a body about its point c on a guide, along which a flank pushes it.
 
-    pitch : the pitch point.  u : rotation of the carrier.  sense : see `rack_flank`.
-    along : unit vector of the guide in the carrier's axes.  slant : part of the tooth force to the
-    left of that, per unit of the part along it.
-    Returns the guide's force on the rack at c with its couple, the tooth force on the rack, and the
+    pitch : where that acts.  guide : unit vector of the guide in the carrier's axes.
+    u, sense, across, along : as of `flank_forces`.
+    Returns the guide's force on the body at c with its couple, the flank's force on it, and the
     part of this along the guide.
     """
-    n = u * along
-    push = dot(n, force)
-    tooth = n * ((1 + 1j * slant * sense) * push)
-    return force - tooth, moment - cross(pitch - c, tooth), tooth, push
+    push = dot(u * guide, force)
+    exerted = u * ((across + sense * along) * push)
+    return force - exerted, moment - cross(pitch - c, exerted), exerted, push
 
 
 def pitch_place(p, u, arm):
@@ -134,15 +118,21 @@ def pitch_place(p, u, arm):
 
 def slant(sense, radial, slope):
     """Radial part of a tooth force, per unit of tangential force, where the pitch curves are turned
-    from the line square to that of the centres; slope : tangent of that angle, others as of
-    `gear_forces`.  The tangent of a sum of angles.
+    from the line square to that of the centres; slope : tangent of that angle.  radial : that part
+    without a slope.  The tangent of a sum of angles.
     """
     return (radial * sense - slope) / (1 + radial * sense * slope)
 
 
+def rolling_push(sense, lever, slope, radial):
+    """Force in the carrier's axes for a push of 1, of gears whose ratio varies; lever : from the
+    pin to the pitch point, along the line of centres.
+    """
+    return lever * ((1j + slant(sense, radial, slope)) * (1 / length(lever)))
+
+
 def rolling_forces(force, moment, u, sense, lever, slope, radial):
-    """As `gear_forces`, of gears whose ratio varies; lever : along the line of centres."""
-    at_pin, mesh, tangential = gear_forces(
-        force, moment, u, 1.0, lever, slant(sense, radial, slope)
-    )
+    """As `flank_forces`, of gears whose ratio varies."""
+    across = rolling_push(sense, lever, slope, radial)
+    at_pin, mesh, tangential = flank_forces(force, moment, u, 0.0, length(lever), across, 0.0)
     return at_pin, mesh, tangential

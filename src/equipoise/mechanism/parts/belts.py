@@ -20,10 +20,20 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.parts.couplings import Pushed, Relation, Turning, as_fraction
+from equipoise.mechanism.parts.couplings import (
+    Line,
+    Pushed,
+    Relation,
+    Seat,
+    Turning,
+    as_fraction,
+)
 
 if TYPE_CHECKING:
     from equipoise.mechanism.formulas.strands import Strands
+
+TOUCHING = 1e-9
+"""Over the distance of the pins: a strand that comes so near to a pin runs through it."""
 
 
 @declared
@@ -116,6 +126,36 @@ class Belt(Turning):
 
         first, second = self.pitch_radii
         return Strands(apart, first, -second if self.crossed else second)
+
+    def line(self, seat: Seat) -> Line:
+        """Force and couple of both strands on the driven pulley about its pin."""
+        import numpy as np
+
+        from equipoise.mechanism.formulas.strands import LEFT, RIGHT
+
+        strands = self.strands(-seat.centres)
+        reach = self.pitch_radii[0] + self.pitch_radii[1]
+        if np.all(strands.distance <= reach):
+            apart = Note(
+                "its pulleys overlap: their pitch radii add up to {reach:.6g} mm, and their pins "
+                "are {distance:.6g} mm apart; give smaller ones, or set the pins farther apart",
+                reach=1e3 * float(np.max(reach)),
+                distance=1e3 * float(np.min(strands.distance)),
+            )
+            raise ModelError(seat.where, apart)
+        for pin, place, bodies in seat.others():
+            if strands.run_through(place, TOUCHING):
+                crossed = Note(
+                    "a strand crosses {link!r}, which turns about {pin} on {carrier!r}; move "
+                    "{pin}, or change the radii",
+                    link=bodies[0],
+                    pin=pin,
+                    carrier=self.carrier,
+                )
+                raise ModelError(seat.where, crossed)
+        across = 0.5 * (strands.way(RIGHT) - strands.way(LEFT)) * np.sign(strands.other)
+        along = -0.5 * strands.toward if self.tension is None else 0.0
+        return Line(0j, across, along, abs(strands.other), couples=True)
 
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         """What turns the driven link at its pitch radius, positive counterclockwise, and the

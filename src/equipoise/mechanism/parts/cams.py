@@ -34,6 +34,7 @@ class Cam(Coupling):
     noun = to_say("cam")
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"base_radius", "roller_radius", "normal"}}
     special = "cam"
+    contact = "surface"
     counted = to_say("{count} cam"), to_say("{count} cams")
     most = 100
     start: ClassVar[float] = 0.0
@@ -120,6 +121,16 @@ class Cam(Coupling):
     def radius(self) -> float:
         """Of the curve that roller or edge takes where the displacement is 0, m."""
         return self.base_radius + self.roller_radius
+
+    def backwards(self) -> Note:
+        """Say that cam or carrier are not moved before the follower is."""
+        return Note(
+            "{cam!r} and {carrier!r} have to be moved before {follower!r} is; other joints hold "
+            "that, or the cam itself moves by it",
+            cam=self.driver,
+            carrier=self.carrier,
+            follower=self.driven,
+        )
 
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         """Along the normal away from the cam; below 0 where the follower is held back."""

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Set
+from dataclasses import dataclass
 from fractions import Fraction
 from math import pi, radians
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, Self
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
@@ -53,6 +54,62 @@ class Pushed(Protocol):
         """What there is of `Coupling.preload`, N."""
 
 
+@dataclass(frozen=True)
+class Seat:
+    """How the carrier holds driver and driven body, m, in its axes.
+
+    where : place of the coupling in the file.  pins : points by which it holds the two.
+    centres : from the driven body's pin to the driver's; 0 where one slides.
+    way : unit vector along the guide of the one that slides; 0 where none does.
+    others : every other pin of the carrier, from the driver's, with the bodies that share it.
+    """
+
+    where: str
+    pins: tuple[str, str]
+    centres: Any
+    way: Any
+    others: Callable[[], Iterator[tuple[str, Any, list[str]]]]
+
+
+@dataclass(frozen=True)
+class Line:
+    """Along which line a coupling pushes its driven body, in the carrier's axes.
+
+    lever : from the pin (the driven body's; the driver's where that slides) to where it acts, m.
+    across, along : force for a push of 1, and what comes to it on the side on which it bears.
+    radius : by which the push turns the driven body, m; None of one that slides.
+    couples : whether it is a force at the pin with a couple, as of two strands.
+    """
+
+    lever: Any
+    across: Any
+    along: Any
+    radius: Any = None
+    couples: bool = False
+
+
+@dataclass(frozen=True)
+class RollingLine:
+    """The line between gears whose ratio varies with the driver's angle.
+
+    law : of that angle, seen from the carrier.  centres : from the driven gear's pin to the
+    driver's, m, complex.  radial : part of the force along that, per unit of tangential force,
+    where the pitch curves lie square to it.
+    """
+
+    law: Law
+    centres: Any
+    radial: Any
+
+    couples: ClassVar[bool] = False
+
+
+def tooth_line(lever: Any, radial: Any) -> Line:
+    """Of teeth at the end of a lever from the driven body's pin; radial : as of `RollingLine`."""
+    unit = lever / abs(lever)
+    return Line(lever, 1j * unit, radial * unit, abs(lever))
+
+
 class Coupling(Frozen):
     """Two bodies of which one drives the other, both on a carrier.
 
@@ -62,6 +119,7 @@ class Coupling(Frozen):
     preload : what its sides pull with where no torque is passed on, N.
     special : what it is called by formats of other programs, some of which lack it; empty of what
         turns both in a fixed ratio.
+    contact : how it pushes: along the line that `line` tells, or square to a surface.
     grows : whether its pitch circles are as large as the distance of its pins sets them.
     columns : numbers that columns of designs may have, and of what is inside of it by its key.
     driver, driven, carrier : names of bodies.
@@ -77,6 +135,7 @@ class Coupling(Frozen):
     pushes: ClassVar[bool] = True
     preload: ClassVar[Any] = 0.0
     special: ClassVar[Any] = ""
+    contact: ClassVar[Literal["line", "surface"]] = "line"
     grows: ClassVar[bool] = False
     columns: ClassVar[Mapping[str, Set[str]]] = {}
 
@@ -145,6 +204,41 @@ class Coupling(Frozen):
                 carrier=self.carrier,
             )
             yield ModelError(where, told)
+
+    @property
+    def slides(self) -> str:
+        """The body that slides on the carrier by a guide instead of being pinned to it; empty if
+        none does.
+        """
+        return ""
+
+    def line(self, seat: Seat) -> Line | RollingLine:
+        """Along which line it pushes; of those whose `contact` asks for it.
+
+        Raises
+        ------
+        ModelError : it cannot be where its bodies are held.
+        """
+        raise NotImplementedError
+
+    def unheld(self, driver: int, driven: int) -> Note:
+        """Say that the carrier holds its bodies by other numbers of joints than one each."""
+        body, shared = (self.driver, driver) if driver != 1 else (self.driven, driven)
+        return Note(
+            "{body!r} shares {shared} points with the carrier {carrier!r}; driver and "
+            "driven link turn about exactly one point of the carrier each",
+            body=body,
+            shared=shared,
+            carrier=self.carrier,
+        )
+
+    def backwards(self) -> Note:
+        """Say that the driven link is known and the driver is not."""
+        return Note(
+            "{driven!r} is moved already by other joints; name what is moved "
+            "already first in between",
+            driven=self.driven,
+        )
 
     @abstractmethod
     def parts(self, at: Pushed) -> Mapping[str, Any]:

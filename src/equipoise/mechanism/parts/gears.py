@@ -27,13 +27,17 @@ from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.couplings import (
     Law,
+    Line,
     Pushed,
     Relation,
+    RollingLine,
+    Seat,
     Turning,
     as_fraction,
     coupled,
     is_pressure_angle,
     pressure_angle,
+    tooth_line,
 )
 from equipoise.mechanism.parts.gear_shapes import GearShape, wrong_shape
 
@@ -148,6 +152,22 @@ class Gear(Turning):
             ratio = Fraction(*self.teeth)
             return ratio if self.mesh == "internal" else -ratio
         return as_fraction(self.speed_ratio)
+
+    def line(self, seat: Seat) -> Line | RollingLine:
+        """At the pitch point, which divides the line of centres so that both gears move alike
+        there.
+        """
+        import numpy as np
+
+        if np.all(seat.centres == 0):
+            pin = seat.pins[0]
+            raise ModelError(seat.where, f"both gears turn about {pin}; set their centres apart")
+        ratio = self.speed_ratio
+        ring_driven = 0 < ratio < 1
+        radial = np.tan(self.pressure_angle) * (1 if ring_driven else -1)
+        if self.law is not None:
+            return RollingLine(self.law, seat.centres, radial)
+        return tooth_line(seat.centres / (1 - ratio), radial)
 
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         """Along the pitch curves, positive where it turns the driven gear counterclockwise, and

@@ -14,10 +14,13 @@ from equipoise.mechanism.checks import FRAME, Bodies
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.couplings import (
     Coupling,
+    Line,
     Pushed,
     Relation,
+    Seat,
     is_pressure_angle,
     pressure_angle,
+    tooth_line,
 )
 from equipoise.quantities import told
 
@@ -91,6 +94,10 @@ class Rack(Coupling):
         return self.travel if self.drives == "pinion" else self.angle
 
     @property
+    def slides(self) -> str:
+        return self.rack
+
+    @property
     def left(self) -> int:
         """1 where the pinion is on the left, -1 on the right."""
         return 1 if self.side == "left" else -1
@@ -122,6 +129,30 @@ class Rack(Coupling):
                 pinion=self.pinion,
             )
         )
+
+    def unheld(self, driver: int, driven: int) -> Note:
+        """Say that the rack has no guide on the carrier, or the pinion no pin."""
+        pins, sliders = (driver, driven) if self.drives == "pinion" else (driven, driver)
+        return Note(
+            "{pinion!r} has {pins} pins and {rack!r} {sliders} guides on the carrier "
+            "{carrier!r}; a pinion turns about one point of the carrier, on which the rack "
+            "slides by one of [[sliders]]",
+            pinion=self.pinion,
+            pins=pins,
+            rack=self.rack,
+            sliders=sliders,
+            carrier=self.carrier,
+        )
+
+    def line(self, seat: Seat) -> Line:
+        """At the foot of the pinion's radius on the pitch line."""
+        import numpy as np
+
+        slope = np.tan(self.pressure_angle)
+        lever = -1j * self.left * self.radius * seat.way
+        if self.drives == "rack":
+            return tooth_line(lever, -slope)
+        return Line(lever, seat.way, -1j * self.left * slope * seat.way)
 
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         """Along the rack, positive where it moves the driven body ahead, and what pushes both

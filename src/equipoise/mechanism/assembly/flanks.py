@@ -1,0 +1,292 @@
+"""Couplings that push along a line which is fixed on their carrier: by a flank, or by strands.
+
+Driver and driven body turn about a pin of the carrier each, or one of them slides on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.mechanism.assembly.builder import Builder, Group, Guide, guide_reaction
+from equipoise.mechanism.assembly.joints import Structure, coupling_pins, place_in_file
+from equipoise.mechanism.assembly.loops import CouplingLoop, End, Poses, Rides, Wrench
+from equipoise.mechanism.assembly.steps import (
+    Call,
+    Reaction,
+    Rotation,
+    Step,
+    at_start,
+    demand_names,
+    p,
+    pin_reaction,
+    planar,
+    run,
+    u,
+)
+from equipoise.mechanism.formulas import joint_kernels, kernels
+from equipoise.mechanism.parts.couplings import Coupling, Law, Line, RollingLine, Seat
+
+
+@dataclass(frozen=True)
+class Held:
+    """How the carrier holds driver or driven body: by a pin, or by a guide through a point of it.
+
+    coordinate : names of its angle, or of its way along the guide, with both derivatives.
+    """
+
+    body: str
+    point: str
+    guide: Guide | None
+    coordinate: tuple[str, str, str]
+
+    @classmethod
+    def of(cls, joints: Structure, coupling: Coupling, body: str, pin: str) -> Held:
+        """pin : about which it turns; empty of what slides."""
+        if body == coupling.slides:
+            guide = Guide.seen_from(_guides(joints, coupling)[0], coupling.carrier)
+            name = coupling.name
+            return cls(body, guide.point, guide, (f"t({name})", f"t1({name})", f"t2({name})"))
+        return cls(body, pin, None, (f"phi({body})", *u(body)[1:]))
+
+    def known(self, builder: Builder, carrier: str) -> list[Step]:
+        """Steps that find the coordinate of a body that is moved already."""
+        if self.guide is None:
+            return builder.running_angle(self.body)
+        ends = (*p(self.point), *p(self.guide.base), *u(carrier))
+        return [
+            *builder.reach(self.body, self.point),
+            *builder.reach(carrier, self.guide.base),
+            Call(kernels.travelled, ends, (self.guide.along,), self.coordinate),
+        ]
+
+    def moved(self, carrier: str) -> Step:
+        """The step from the coordinate to the place of the body."""
+        if self.guide is None:
+            return Rotation(self.body)
+        inputs = (*self.coordinate, *p(self.guide.base), *u(carrier))
+        numbers = (self.guide.along, self.guide.turn)
+        return Call(kernels.railed, inputs, numbers, (*p(self.point), *u(self.body)))
+
+    def reaction(self, by: str) -> Reaction:
+        """What the carrier, or the body `by` that carries the pin, exerts on it."""
+        if self.guide is None:
+            return pin_reaction(self.point, self.body, by)
+        return guide_reaction(self.guide, self.body, by, self.point)
+
+
+@dataclass(frozen=True)
+class Flank:
+    """How a coupling pushes along a line that is fixed on the carrier, and how it is solved.
+
+    arm : from the carrier's anchor to the pin from which the line's lever is counted; for loops.
+    """
+
+    coupling: Coupling
+    driver: Held
+    driven: Held
+    line: Line
+    arm: Any = 0j
+
+    @property
+    def couples(self) -> bool:
+        """Whether the force goes with a couple about the driven body's pin."""
+        return self.line.couples
+
+    @property
+    def pin(self) -> str:
+        """From which the lever is counted."""
+        return (self.driven if self.driven.guide is None else self.driver).point
+
+    @property
+    def push(self) -> Reaction:
+        """The force of flank or strands on the driven body."""
+        name, link = self.coupling.name, self.driven.body
+        at, couple = (self.pin, f"C({name}/{link})") if self.couples else (f"pitch({name})", None)
+        force = f"R({name}/{link})"
+        return Reaction(name, self.coupling.table, link, self.driver.body, at, force, couple)
+
+    def steps(self, ground: Reaction) -> tuple[Step, ...]:
+        """Steps that find the push, and what holds the driven body on the carrier: `ground`."""
+        carrier, line = self.coupling.carrier, self.line
+        if self.couples:
+            return self.pushed(ground, joint_kernels.strand_forces)
+        at = Call(kernels.point, (*p(self.pin), *u(carrier)), (line.lever,), p(self.push.at))
+        if self.driven.guide is None:
+            return (at, *self.pushed(ground, joint_kernels.flank_forces))
+        along, sense = self.driven.guide.along, f"flank({self.coupling.name})"
+        force, moment = demand_names(self.driven.body)
+        places = (f"p({self.driven.point})", f"p({self.push.at})", f"u({carrier})")
+        return (
+            at,
+            Call(joint_kernels.flank_ahead, (force, f"u({carrier})"), (along,), (sense,)),
+            Call(
+                joint_kernels.sliding_forces,
+                (force, moment, *places, sense),
+                (along, line.across, line.along),
+                (*ground.outputs, self.push.force, f"T({self.coupling.name})"),
+            ),
+        )
+
+    def pushed(self, ground: Reaction, kernel: Callable[..., tuple[Any, ...]]) -> tuple[Step, ...]:
+        """What a flank, or a strand, does to what turns: the moment that this needs tells which."""
+        line = self.line
+        return self.turned(ground, kernel, (line.radius, line.across, line.along))
+
+    def turned(
+        self,
+        ground: Reaction,
+        kernel: Callable[..., tuple[Any, ...]],
+        numbers: tuple[Any, ...],
+        reads: tuple[str, ...] = (),
+    ) -> tuple[Step, ...]:
+        """The same with given numbers; reads : names of what the kernel takes before these."""
+        name, link = self.coupling.name, self.driven.body
+        sense = f"flank({name})"
+        inputs = (*demand_names(link), f"u({self.coupling.carrier})", sense, *reads)
+        outputs = (ground.force, *self.push.outputs, f"T({name})")
+        return (
+            Call(joint_kernels.flank, (f"M({link})",), (), (sense,)),
+            Call(kernel, inputs, numbers, outputs),
+        )
+
+    def group(self, builder: Builder, joints: Structure) -> Group:
+        """The driven link, where driver and carrier are known."""
+        coupling, driven, carrier = self.coupling, self.driven, self.coupling.carrier
+        guide = driven.guide
+        bearer = carrier if guide else builder.carrier_of(joints.pins[driven.point])
+        before = (*self.driver.known(builder, carrier), *builder.running_angle(carrier))
+        inputs = (*self.driver.coordinate, f"phi({carrier})", *u(carrier)[1:])
+        kernel, numbers = coupling.relation
+        state = run(before, dict(builder.now))
+        bare = Call(kernel, inputs, (*numbers, 0.0), driven.coordinate)
+        with np.errstate(all="ignore"):  # what cannot come to crank angle 0 is refused later
+            offset = coupling.start - at_start(run([bare], state)[driven.coordinate[0]])
+        reached = builder.reach(bearer, guide.base if guide else driven.point)
+        if guide:
+            reached += builder.reach(carrier, self.pin)
+        related = Call(kernel, inputs, (*numbers, offset), driven.coordinate)
+        motion = (*before, *reached, related, driven.moved(carrier))
+        builder.add({driven.body: driven.point}, [driven.point])
+        if not guide:
+            builder.running.add(driven.body)
+        ground = driven.reaction(bearer)
+        passed = builder.hand_over(ground), builder.hand_over(self.push)
+        forces = (*self.steps(ground), *passed)
+        return Group("coupled", (driven.body,), motion, forces, (ground, self.push))
+
+    def loop(self, end: Callable[[str, str], End]) -> CouplingLoop:
+        """The same as an equation; `end` finds points of bodies from their anchors."""
+        coupling = self.coupling
+        on, by = (end(one.body, one.point) for one in (self.driven, self.driver))
+        rides = None
+        for own, one in ((on, self.driven), (by, self.driver)):
+            if one.guide is not None:
+                rides = Rides(own, end(coupling.carrier, one.guide.base), one.guide.along)
+        placed = replace(self, arm=end(coupling.carrier, self.pin).arm)
+        kernel, numbers = coupling.relation
+        return CouplingLoop(coupling.name, coupling.table, on, by, coupling.carrier, kernel,
+                            numbers, 0.0, placed, rides)  # fmt: skip
+
+    def place(self, poses: Poses) -> Any:
+        """Where the push acts, complex, m."""
+        return poses[self.coupling.carrier].place_of(self.arm + self.line.lever)
+
+    def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
+        """Force and couple on the driven body for a push of 1; `sense` tells which flank bears."""
+        line, turn = self.line, poses[self.coupling.carrier].turn[0]
+        couple = line.radius if line.couples else 0.0
+        return [(turn * (line.across + sense * line.along), couple)]
+
+
+@dataclass(frozen=True)
+class RollingFlank(Flank):
+    """Flanks of gears whose ratio varies: the line between them moves on the carrier."""
+
+    line: RollingLine  # type: ignore[assignment]
+
+    def steps(self, ground: Reaction) -> tuple[Step, ...]:
+        name, carrier = self.coupling.name, self.coupling.carrier
+        place = lever, _ = f"lever({name})", f"slope({name})"
+        angles = (f"phi({self.driver.body})", f"phi({carrier})")
+        at = (f"p({self.pin})", f"u({carrier})", lever)
+        kernel, numbers = joint_kernels.rolling_forces, (self.line.radial,)
+        return (
+            Call(rolled, angles, (self.line.law, self.line.centres), place),
+            Call(joint_kernels.pitch_place, at, (), (f"p({self.push.at})",)),
+            *self.turned(ground, kernel, numbers, place),
+        )
+
+    def rolled(self, poses: Poses) -> tuple[Any, Any]:
+        """Lever of the pitch point, and slope of the pitch curves there."""
+        driver, carrier = (poses[one].angle for one in (self.driver.body, self.coupling.carrier))
+        return rolled(driver, carrier, self.line.law, self.line.centres)
+
+    def place(self, poses: Poses) -> Any:
+        lever, _ = self.rolled(poses)
+        return poses[self.coupling.carrier].place_of(self.arm + lever)
+
+    def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
+        lever, slope = self.rolled(poses)
+        push = joint_kernels.rolling_push(sense, lever, slope, self.line.radial)
+        return [(poses[self.coupling.carrier].turn[0] * push, 0.0)]
+
+
+def rolled(angle_r: Any, angle_c: Any, law: Law, centres: Any) -> tuple[Any, Any]:
+    """Lever of the pitch point and slope of the pitch curves there; see `kernels.pitch_slope`."""
+    _, ratio, bend = law(angle_r - angle_c)
+    return centres / (1 - ratio), kernels.pitch_slope(ratio, bend)
+
+
+def contact(builder: Builder, joints: Structure, coupling: Coupling) -> Flank:
+    """The flank, or the strands, of a coupling.
+
+    Raises
+    ------
+    ModelError : its bodies are not joined to the carrier, or cannot be where they are.
+    """
+    pins = _pins(joints, coupling)
+    ends = zip((coupling.driver, coupling.driven), pins, strict=True)
+    driver, driven = (Held.of(joints, coupling, *end) for end in ends)
+    carrier, way = coupling.carrier, 0j
+    centres = builder.arm(carrier, pins[1], pins[0]) if all(pins) else 0j
+    for one in (driver, driven):
+        way = way if one.guide is None else one.guide.along
+
+    def others() -> Iterator[tuple[str, Any, list[str]]]:
+        points = builder.machine.points_of(carrier)
+        for pin, bodies in joints.pins.items():
+            if carrier in bodies and pin not in pins:
+                place = planar(points[pin]) - planar(points[pins[0]])
+                yield pin, place, [body for body in bodies if body != carrier]
+
+    where = place_in_file(joints, coupling)
+    line = coupling.line(Seat(where, pins, centres, way, others))
+    kind = Flank if isinstance(line, Line) else RollingFlank
+    return kind(coupling, driver, driven, line)  # type: ignore[arg-type]
+
+
+def _pins(joints: Structure, coupling: Coupling) -> tuple[str, str]:
+    """About which driver and driven body turn on the carrier; empty of the one that slides."""
+    if not coupling.slides:
+        return coupling_pins(joints, coupling)
+    guides = len(_guides(joints, coupling))
+    pins, counts = [], []
+    for body in (coupling.driver, coupling.driven):
+        shared = joints.pins_between(body, coupling.carrier)
+        slides = body == coupling.slides
+        pins.append("" if slides else "".join(shared[:1]))
+        counts.append(guides if slides else len(shared))
+    if counts != [1, 1]:
+        raise ModelError(place_in_file(joints, coupling), coupling.unheld(*counts))
+    return pins[0], pins[1]
+
+
+def _guides(joints: Structure, coupling: Coupling) -> list[Any]:
+    """Guides of the body that slides on the carrier."""
+    ends = (coupling.slides, coupling.carrier)
+    return [one for one in joints.sliders if (one.link, one.on) == ends]
