@@ -52,6 +52,8 @@ MOST_BEST = 8
 class PhaseSearch:
     """Phases are relative to row 1 here, rad.
 
+    known_cost : what is to become small, where it does not follow from the machine as it is.
+
     Raises
     ------
     ModelError, UsageError : there is nothing to search.
@@ -62,6 +64,7 @@ class PhaseSearch:
     phases: Phases
     combine: Combine
     limits: tuple[Limit, ...] = ()
+    known_cost: Cost | None = None
 
     def __post_init__(self) -> None:
         count, step = len(self.machine.rows), self.phases.step
@@ -100,6 +103,8 @@ class PhaseSearch:
 
     @cached_property
     def cost(self) -> Cost:
+        if self.known_cost is not None:
+            return self.known_cost
         terms = tuple(self._term(k, wish) for k, wish in enumerate(self.objectives, 1))
         return Cost(terms, self.combine, tuple(map(self._limit, self.limits)))
 

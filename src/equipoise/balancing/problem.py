@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -42,6 +42,8 @@ class Problem:
     machine : as it is.  start : the machine from which the parts' numbers count: with its geared
         shafts, and moved centres of mass in the origin.
     parts : what is free.  close : a machine near the solution, whose mass gauges are read with.
+    counts : value of each objective and limit that counts as before; computed where None.
+    known : effects of the parts' numbers; computed where None.
     """
 
     machine: Machine
@@ -49,6 +51,8 @@ class Problem:
     start: Machine
     parts: tuple[DesignVariables, ...]
     close: Near
+    counts: Mapping[str, float] | None = None
+    known: Effects | None = None
 
     @classmethod
     def of(
@@ -75,12 +79,10 @@ class Problem:
 
     def near(self, numbers: list[Array]) -> Problem:
         """The same, with gauges read as they are near the machine of some numbers."""
-        there = replace(self, close=Near(self.machine_with(numbers), np.concatenate(numbers)))
-        effects = self.effects
+        close, effects = Near(self.machine_with(numbers), np.concatenate(numbers)), self.effects
         if self.flips:
-            effects = Effects(self.start, self.parts, effects.motion, there.close.machine)
-        there.__dict__.update(before=self.before, effects=effects)
-        return there
+            effects = Effects(self.start, self.parts, effects.motion, close.machine)
+        return replace(self, close=close, counts=self.before, known=effects)
 
     @property
     def flips(self) -> bool:
@@ -104,8 +106,10 @@ class Problem:
         return any(one.output.startswith("gauges.") for one in self.asked)
 
     @cached_property
-    def before(self) -> dict[str, float]:
+    def before(self) -> Mapping[str, float]:
         """Value of each objective and limit of the machine as it is."""
+        if self.counts is not None:
+            return self.counts
         values = self.values_of(self.machine, self.asked)
         return {one.name: value for one, value in zip(self.asked, values, strict=True)}
 
@@ -154,7 +158,7 @@ class Problem:
 
     @cached_property
     def effects(self) -> Effects:
-        return Effects(self.start, self.parts)
+        return self.known or Effects(self.start, self.parts)
 
     @cached_property
     def signals(self) -> dict[str, list[Signal]]:

@@ -144,8 +144,9 @@ class Together:
         assert self.best is not None
         solution = self.best.solution
         rows = self.problem.machine.rows
-        after = replace(self.search, machine=solution.machine.with_rows(rows))
-        after.__dict__.update(cost=self._cost(solution))  # which counts as before all changes
+        machine = solution.machine.with_rows(rows)
+        # what counts is as before all changes
+        after = replace(self.search, machine=machine, known_cost=self._cost(solution))
         found = after.best(np.vstack([after.present, self.best.phases]))
         phasing = phasing_of(after, found, proof)
         return replace(solution, machine=phasing.machine), phasing
@@ -192,9 +193,8 @@ class Together:
             with_phases(one, phases, self.period)
             for one in (self.problem.start, self.problem.machine)
         )
-        there = replace(self.problem, start=start, close=Near(like))
-        there.__dict__.update(before=self.problem.before)
-        return there
+        counts = self.problem.before
+        return replace(self.problem, start=start, close=Near(like), counts=counts, known=None)
 
     def _offer(self, phases: Array, solution: Solution) -> float:
         """Cost of masses with phases, infinite where a limit is passed; kept if it is the best."""
@@ -303,9 +303,7 @@ def _counting_alike(problem: Problem, search: PhaseSearch) -> Problem:
     """The problem, with every value before as it counts where phases are searched."""
     terms = {one.objective.name: one.scale for one in search.cost.terms}
     limits = {one.objective.name: one.value_at(search.present) for one in search.cost.limits}
-    found = replace(problem)
-    found.__dict__.update(before=problem.before | limits | terms)
-    return found
+    return replace(problem, counts={**problem.before, **limits, **terms})
 
 
 def of_each_row(effects: Effects, objective: Objective, near: Near) -> Array:

@@ -96,7 +96,8 @@ def _begun(problem: Problem) -> Problem:
         return problem
     others = tuple(one for one in problem.plan.limits if one not in gauged)
     objectives = tuple(one.objective for one in gauged)
-    first = replace(problem, plan=replace(problem.plan, objectives=objectives, limits=others))
+    plan = replace(problem.plan, objectives=objectives, limits=others)
+    first = replace(problem, plan=plan, counts=None, known=None)
     return problem.near(solve_problem(first).numbers)
 
 
