@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import tomllib
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
@@ -27,3 +30,14 @@ def test_each_requirement_has_two_bounds(name: str) -> None:
     }
     assert needs
     assert not without
+
+
+def test_no_plugin_of_pytest_loads_numpy(pytestconfig: pytest.Config) -> None:
+    """Else its threads, which conftest.py sets, would be more than one: four times as slow."""
+    blocked = pytestconfig.pluginmanager.is_blocked
+    plugins = [plugin for plugin in entry_points(group="pytest11") if not blocked(plugin.name)]
+    assert plugins
+    load = "import sys; [*map(__import__, sys.argv[1:])]; sys.exit('numpy' in sys.modules)"
+    words = [sys.executable, "-c", load, *(plugin.module for plugin in plugins)]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
