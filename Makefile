@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 # Tests start hundreds of processes, and two commands run the same tests: from bytecode that is kept.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo page pictures docs site test test-all browser documentation narrow coverage lint bench clean
+.PHONY: demo page bundle pictures docs site test test-all browser documentation narrow coverage lint release bench clean
 
 $(VENV)/.installed: pyproject.toml hatch_build.py
 	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Equipoise needs Python 3.11 or newer; say which with: make PYTHON=python3.12')"
@@ -23,6 +23,10 @@ $(VENV)/.installed-test: $(VENV)/.installed
 
 page: $(VENV)/.installed
 	$(BIN)/python page/bundle.py
+
+# The same, where tests go on without a page: those that need it are skipped, or fail.
+bundle: $(VENV)/.installed-test
+	-@$(BIN)/python page/bundle.py
 
 # The pictures of README, of the product as it is; screenshots need Chromium.
 pictures: $(VENV)/.installed-test page
@@ -60,12 +64,10 @@ WORKERS = --numprocesses auto --dist worksteal
 TEST = $(BIN)/python -m pytest $(WORKERS)
 
 # All but what is looked at in a browser, and the documentation.
-test: $(VENV)/.installed-test
-	-@$(BIN)/python page/bundle.py
+test: bundle
 	$(TEST) -m "not documentation" --ignore=tests/browser tests
 
-browser: $(VENV)/.installed-test
-	-@$(BIN)/python page/bundle.py
+browser: bundle
 	$(TEST) tests/browser
 
 # The snippets of the pages, the site that is made of them, and the gallery of all pictures.
@@ -74,8 +76,7 @@ documentation: $(VENV)/.installed-test
 		tests/unit/figures/test_pictures.py
 
 # What a release has to pass: every machine where a few show the same on every change, and more seeds.
-test-all: $(VENV)/.installed-test
-	-@$(BIN)/python page/bundle.py
+test-all: bundle
 	$(TEST) --exhaustive --seeds 5
 
 # Unit tests and laws as on a processor without wide instructions, where sums round otherwise.  Left
@@ -88,8 +89,7 @@ narrow: $(VENV)/.installed-test
 	NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(WIDE)')" $(TEST) \
 		$(addprefix --ignore=,$(NO_ROUNDING)) tests/unit tests/laws
 
-coverage: $(VENV)/.installed-test
-	-@$(BIN)/python page/bundle.py
+coverage: bundle
 	$(TEST) --cov --cov-report=term
 
 lint: $(VENV)/.installed-test
@@ -98,6 +98,10 @@ lint: $(VENV)/.installed-test
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/python page/bundle.py --types
+
+# What is handed on, in build/release, tried in empty environments.
+release: bundle
+	.ci/release
 
 bench: $(VENV)/.installed-test
 	$(BIN)/python -m pip install --quiet --editable ".[bench]"

@@ -10,6 +10,7 @@ import json
 import re
 import shutil
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from html import escape
 from pathlib import Path
@@ -50,7 +51,9 @@ def keep(source: str, pictures: Iterable[Kept]) -> None:
         (folder / f"{one.name}.svg").write_text(one.svg, encoding="utf-8")
         told.append({**asdict(one), "svg": f"{folder.name}/{one.name}.svg", "source": source})
         told[-1]["size"] = SIZE.search(one.svg).groups()  # type: ignore[union-attr]
-    (folder / LIST).write_text(json.dumps(told), encoding="utf-8")
+    whole = folder / f"{LIST}.tmp"  # another session may read it to make its page
+    whole.write_text(json.dumps(told), encoding="utf-8")
+    whole.replace(folder / LIST)
 
 
 def keep_files(source: str, folder: Path) -> None:
@@ -68,8 +71,9 @@ def write_page() -> None:
     """The page of all that is kept."""
     kinds: dict[str, list[str]] = {}
     for path in sorted(FOLDER.glob(f"*/{LIST}")):
-        for one in json.loads(path.read_text(encoding="utf-8")):
-            kinds.setdefault(one["kind"], []).append(_item(one))
+        with suppress(FileNotFoundError):  # another session draws them anew
+            for one in json.loads(path.read_text(encoding="utf-8")):
+                kinds.setdefault(one["kind"], []).append(_item(one))
     if not kinds:
         return
     count = sum(map(len, kinds.values()))
