@@ -83,7 +83,7 @@ def acting_on_links(subject: Subject) -> dict[str, Array]:
     machine, poses, forces = subject.machine, subject.poses, subject.forces
     total = {name: np.zeros((poses.crank_angle.size, 3)) for name in machine.links}
     sliders = {slider.name: (slider.link, slider.point) for slider in machine.sliders}
-    sliders |= {slot.name: (slot.link, slot.point) for slot in machine.circular_slots}
+    sliders |= {slot.name: (slot.link, slot.point) for slot in machine.pins_in_slots.values()}
     actions = []
     for name, joint in forces.joints.items():
         body, label = sliders.get(name, (joint.on, name.split("/")[0]))

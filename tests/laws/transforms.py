@@ -18,6 +18,7 @@ from equipoise.keys.declaring import declarations
 from equipoise.mechanism.parts.balance import Limit
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.circular_slots import CircularSlot
+from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.machine import FRAME, FurtherDrive, Vector
 from equipoise.mechanism.parts.objectives import quantity_of
@@ -99,6 +100,10 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
         circular_slots=tuple(
             turned_slot(slot, angle) if slot.on == FRAME else slot
             for slot in machine.circular_slots
+        ),
+        curved_slots=tuple(
+            replace(slot, direction=slot.direction + angle) if slot.on == FRAME else slot
+            for slot in machine.curved_slots
         ),
         torsion_springs=tuple(
             turned_torsion(spring, angle) if spring.on == FRAME else spring
@@ -244,6 +249,7 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
             replace(slot, arc=tuple(-end for end in slot.arc[::-1]))
             for slot in machine.circular_slots
         ),
+        curved_slots=tuple(mirrored_curve(slot) for slot in machine.curved_slots),
         torsion_springs=tuple(mirrored_torsion(spring) for spring in machine.torsion_springs),
         gravity=vector(np.conj, machine.gravity),
         position=position,
@@ -319,6 +325,12 @@ def mirrored_load(load: eq.Load) -> eq.Load:
 
 def turned_slot(slot: CircularSlot, angle: float) -> CircularSlot:
     return replace(slot, arc=tuple(end + angle for end in slot.arc))
+
+
+def mirrored_curve(slot: CurvedSlot) -> CurvedSlot:
+    points = tuple((x, -y) for x, y in slot.points_given)
+    table = slot.table and replace(slot.table, y=tuple(-y for y in slot.table.y))
+    return replace(slot, direction=-slot.direction, points_given=points, table=table)
 
 
 def turned_torsion(spring: TorsionSpring, angle: float) -> TorsionSpring:
@@ -492,6 +504,10 @@ def with_axes(machine: eq.Machine, link: str, angle: float, shift: complex) -> e
             turned_slot(slot, -angle) if slot.on == link else slot
             for slot in machine.circular_slots
         ),
+        curved_slots=tuple(
+            replace(slot, direction=slot.direction - angle) if slot.on == link else slot
+            for slot in machine.curved_slots
+        ),
         torsion_springs=tuple(
             turned_torsion(s, angle * (int(s.link == link) - (s.on == link)))
             for s in machine.torsion_springs
@@ -567,6 +583,11 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
             replace(slot, link=names(slot.link), point=names(slot.point), on=body(slot.on),
                     center=names(slot.center), own_name=names(slot.name))
             for slot in machine.circular_slots
+        ),
+        curved_slots=tuple(
+            replace(slot, link=names(slot.link), point=names(slot.point), on=body(slot.on),
+                    origin=names(slot.origin), own_name=names(slot.name))
+            for slot in machine.curved_slots
         ),
         joints=tuple(
             replace(one, joint=f"joints.{names(one.joint.removeprefix('joints.'))}")

@@ -18,6 +18,7 @@ DISTINCT = (
     "straw-walker",  # more links than hold it
     "cam-pusher",
     "flap-folder",  # a pin in a circular slot, and a torsion spring
+    "baler-pickup",  # a pin in a closed curved slot
     "knife-drive",  # a belt and a rack
     "hydraulic-loader",  # driven to and fro by a cylinder
     "geared-counterweight",  # over several turns

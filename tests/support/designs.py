@@ -67,6 +67,7 @@ def plain_of(machine: Machine) -> Plain:
             for c in machine.cams
         ],
         "circular_slots": [{"radius": slot.radius} for slot in machine.circular_slots],
+        "curved_slots": [{"direction": slot.direction} for slot in machine.curved_slots],
         "torsion_springs": [
             {key: getattr(s, key) for key in ("stiffness", "angle", "preload")}
             for s in machine.torsion_springs
@@ -106,6 +107,7 @@ def machine_of(base: Machine, plain: Plain) -> Machine:
             "springs",
             "torsion_springs",
             "circular_slots",
+            "curved_slots",
         )
     }
     listed["gears"] = tuple(

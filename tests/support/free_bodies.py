@@ -21,6 +21,7 @@ import numpy as np
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.circular_slots import CircularSlot
+from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Gear, Machine
 from equipoise.mechanism.parts.racks import Rack
 from support.cams import line_of_force
@@ -124,7 +125,8 @@ def solve(
         taken, and those that vanish are left out.  What is found has to push on the same flanks.
     """
     joints = [*pin_contacts(machine, poses, pairs or {}), *slider_contacts(machine, poses)]
-    joints += [slot_contact(slot, machine, poses) for slot in machine.circular_slots]
+    slots = (*machine.circular_slots, *machine.curved_slots)
+    joints += [slot_contact(slot, machine, poses) for slot in slots]
     joints += [cam_contact(cam, machine, poses) for cam in machine.cams]
     gears = [gear_contact(gear, machine, poses) for gear in machine.gears]
     racks = [rack_contact(rack, machine, poses) for rack in machine.racks]
@@ -310,7 +312,7 @@ def slider_contacts(machine: Machine, poses: Poses) -> list[Contact]:
     return found
 
 
-def slot_contact(slot: CircularSlot, machine: Machine, poses: Poses) -> Contact:
+def slot_contact(slot: CircularSlot | CurvedSlot, machine: Machine, poses: Poses) -> Contact:
     """Return the push of a slot on its pin."""
     at = poses.place(slot.link, machine.links[slot.link].points[slot.point])
     return Contact(slot.name, slot.link, slot.on, at, (normal_of(slot, machine, poses),))

@@ -15,6 +15,7 @@ import numpy as np
 
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.circular_slots import CircularSlot
+from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.machine import (
     FRAME,
     Drive,
@@ -29,7 +30,7 @@ from support.driving import driven
 from support.driving import followed as followed_law
 from support.poses import Array, Poses, cross, pins, quarter, turned
 from support.rolling_reference import Rolling
-from support.slots import on_circle
+from support.slots import on_circle, on_curve
 
 
 class NotAssembledError(RuntimeError):
@@ -75,6 +76,7 @@ class Constraints:
         ]
         rows += [row for slider in self.machine.sliders for row in self._slider(q, rate, slider)]
         rows += [self._circular(q, rate, slot) for slot in self.machine.circular_slots]
+        rows += [self._curved(q, rate, slot) for slot in self.machine.curved_slots]
         rows += [self._gear(q, rate, gear) for gear in self.machine.gears]
         rows += [self._belt(q, belt) for belt in self.machine.belts]
         rows += [self._rack(q, rate, rack) for rack in self.machine.racks]
@@ -153,6 +155,14 @@ class Constraints:
         ends = (self._place(q, rate, body, self.machine.points_of(body)[point])
                 for body, point in slot.points)  # fmt: skip
         residual, jacobian, bend = on_circle(slot, *ends, rate)
+        return Row(np.array([residual]), jacobian[None], np.array([bend]))
+
+    def _curved(self, q: Array, rate: Array, slot: CurvedSlot) -> Row:
+        ends = (self._place(q, rate, body, self.machine.points_of(body)[point])
+                for body, point in slot.points)  # fmt: skip
+        k = None if slot.on == FRAME else self.columns[slot.on] + 2
+        turning = (0.0, 0.0, None) if k is None else (q[k], rate[k], k)
+        residual, jacobian, bend = on_curve(slot, *ends, rate, turning)
         return Row(np.array([residual]), jacobian[None], np.array([bend]))
 
     def _gear(self, q: Array, rate: Array, gear: Gear) -> Row:

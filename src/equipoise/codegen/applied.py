@@ -11,12 +11,14 @@ import numpy as np
 
 from equipoise.codegen.terms import Pair, angle_of, rotation
 from equipoise.codegen.trace import FAR, Array, Trace
+from equipoise.codegen.tracks import TracedCurve
 from equipoise.keys import Frozen, with_fields
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.steps import planar, u
+from equipoise.mechanism.assembly.steps import along, planar, u
 from equipoise.mechanism.dynamics.loads import load_at
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.formulas.plane_curves import PlaneCurve
 from equipoise.mechanism.kinematics.motion import ROUNDING
 from equipoise.mechanism.parts.element_kinds import Element
 from equipoise.mechanism.parts.force_kinds import ForceElement
@@ -75,6 +77,23 @@ class TracedBodies:
         """Angular velocity of a body, rad/s."""
         return self.trace.state[u(body)[1]] * self.trace.rate("speed")
 
+    def along(self, joint: str) -> tuple[Any, Any]:
+        """How far along its track a rider is, m, and its speed along that, m/s."""
+        s, speed = (self.trace.state[name] for name in along(joint))
+        return TracedCurve(self.trace, self._curve(joint)).distance(s), speed * self.trace.rate(
+            "speed"
+        )
+
+    def on_track(self, joint: str, wrong: str) -> None:
+        """Watch how far a rider is from the ends of its track, as of `within`."""
+        if not (curve := self._curve(joint)).closed:
+            self.within(self.along(joint)[0], (0.0, curve.length), wrong)
+
+    def _curve(self, joint: str) -> PlaneCurve:
+        track = self.trace.linkage.joints.riders[joint].track
+        assert track is not None
+        return track.curve
+
     def bearing(self, vector: Any, middle: Any) -> Any:
         """Angle of a vector, within half a turn of `middle`."""
         return middle + angle_of(vector * rotation(middle).conjugate())
@@ -117,7 +136,9 @@ def traced_element(trace: Trace, table: str, number: int) -> tuple[Element, Trac
     def traced(value: Any, *steps: str | int) -> Any:
         """A value whose numbers are slots."""
         if isinstance(value, Frozen):
-            held = {key: traced(one, *steps, key) for key, one in vars(value).items()}
+            still = value.still if isinstance(value, Element) else ()
+            held = {key: traced(one, *steps, key) for key, one in vars(value).items()
+                    if key not in still}  # fmt: skip
             return with_fields(value, **held)
         if isinstance(value, tuple):
             return tuple(traced(one, *steps, k) for k, one in enumerate(value))

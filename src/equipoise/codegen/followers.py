@@ -37,7 +37,7 @@ NOWHERE = 1e300
 
 def can_trace_followers(linkage: Linkage) -> bool:
     """Whether the pieces of all laws can be looked up."""
-    return all(_bins(cam.law.curve) <= MOST_BINS for cam in linkage.machine.cams)
+    return all(bins(cam.law.curve.knots) <= MOST_BINS for cam in linkage.machine.cams)
 
 
 def trace_displacement(trace: Trace, step: Displacement) -> None:
@@ -68,7 +68,7 @@ def curve_value(trace: Trace, curve: Curve, angle: Any) -> tuple[Any, Any, Any]:
     near, length = ROUNDING * curve.length, curve.length
     rounds = floor((angle + near) * (1 / length))
     since = angle - rounds * length
-    pieces = _Pieces(trace, curve, since + near)
+    pieces = Pieces(trace, curve, since + near)
     way = since if counted else since - pieces.beginning()
     powers = [pieces.value(values) for values in curve.powers.T]
     amplitude, rate, phase = (pieces.value(values) for values in _waves(curve).T)
@@ -123,7 +123,7 @@ def _alike(values: list[float]) -> list[float]:
     return found
 
 
-class _Pieces:
+class Pieces:
     """Finds the piece of a curve, and its numbers: chosen by comparing where there are few, else
     picked from tables.
     """
@@ -139,7 +139,7 @@ class _Pieces:
             whole = floor(since * (len(curve.powers) / curve.length))
             self.piece = least(float(len(curve.powers) - 1), whole)
             return
-        count = _bins(curve)
+        count = bins(curve.knots)
         part = since * (count / curve.length)
         first, knot = (pick(self.graph.table(values), part) for values in _in_bins(curve, count))
         self.piece = first + select(since, knot, 1.0, 0.0)
@@ -165,9 +165,9 @@ class _Pieces:
         return chosen
 
 
-def _bins(curve: Curve) -> int:
+def bins(knots: Array) -> int:
     """Equal parts of a curve's length that are shorter than its pieces."""
-    return ceil(1.01 * curve.length / float(np.min(np.diff(curve.knots))))
+    return ceil(1.01 * float(knots[-1] / np.min(np.diff(knots))))
 
 
 def _in_bins(curve: Curve, count: int) -> tuple[Array, Array]:

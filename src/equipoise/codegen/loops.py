@@ -18,11 +18,13 @@ import numpy as np
 
 from equipoise.codegen.terms import ANGLE, Term, greatest, least
 from equipoise.codegen.trace import Read, Trace
+from equipoise.codegen.tracks import TracedCurve, can_look_up
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.loopgroup import FAR
-from equipoise.mechanism.assembly.loops import Free, Pose, Poses
+from equipoise.mechanism.assembly.loops import Free, Pose, Poses, Riding
 from equipoise.mechanism.assembly.newton import JUMP, LoopGroup, poses_in
-from equipoise.mechanism.assembly.steps import p, planar, size_of_bodies, u
+from equipoise.mechanism.assembly.steps import along, p, planar, size_of_bodies, u
+from equipoise.mechanism.formulas.plane_curves import PlaneCurve
 from equipoise.mechanism.parts.machine import FRAME
 
 Array = np.ndarray[Any, Any]
@@ -38,8 +40,10 @@ did not arrive from the base, or too far from where the file tells; came back el
 
 
 def can_trace(group: LoopGroup) -> bool:
-    """Whether a group can be traced: it is small, and each link hangs on a pin or a guide."""
+    """Whether a group can be traced: it is small, and each link hangs on a pin, guide or track."""
     hung = not any(isinstance(place, Free) for place in group.tree)
+    curves = [place.curve for place in group.tree if isinstance(place, Riding)]
+    hung = hung and all(map(can_look_up, curves))
     square = len(group.turning) == sum(one.unknowns for one in group.equations)
     return hung and square and len(group.turning) <= MOST_UNKNOWNS
 
@@ -78,6 +82,8 @@ class _Group:
 
         if isinstance(value, str) or callable(value):
             return value
+        if isinstance(value, PlaneCurve):
+            return TracedCurve(self.trace, value)
         if isinstance(value, tuple):
             return tuple(part(k, itemgetter(k)) for k in range(len(value)))
         if is_dataclass(value) and not isinstance(value, type):
@@ -137,6 +143,7 @@ class _Group:
         for link, anchor in zip(self.group.links, self.group.anchors, strict=True):
             self.trace.put(p(anchor), poses[link].place)
             self.trace.put(u(link), poses[link].turn)
+            self.trace.state.update(zip(along(link), poses[link].along, strict=False))
         self.carry_on(before, q)
         marked = [one + self.marked * (now - one) for one, now in zip(first, q, strict=True)]
         self.carry_on(first, marked)

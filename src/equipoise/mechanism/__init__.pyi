@@ -14,6 +14,7 @@ from .parts.belts import Belt as Belt
 from .parts.bodies import Body as Body
 from .parts.bodies import Hole as Hole
 from .parts.circular_slots import CircularSlot as CircularSlot
+from .parts.curved_slots import CurvedSlot as CurvedSlot
 from .parts.field import Planting as Planting
 from .parts.field import PlantingArm as PlantingArm
 from .parts.field import Soil as Soil

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.model import Impedance
+from equipoise.mechanism.parts.curved_slots import CurveTable
 from equipoise.mechanism.parts.field import SoilTable
 from equipoise.mechanism.parts.force_elements import MotorTable
 from equipoise.mechanism.parts.laws import AngleTable, LengthTable
@@ -74,8 +75,12 @@ COLUMNS: dict[str, tuple[Dimension, str]] = {
 }
 OTHERWISE: dict[tuple[str, str], tuple[Dimension, str]] = {
     ("frequency", "resistance"): ("damping", "N s/m"),
+    ("x", "x"): ("length", "mm"),
+    ("x", "y"): ("length", "mm"),
 }
 """Columns that are something else in a table with that first column."""
+IN_ORDER = ("x",)
+"""First columns of tables whose rows are in an order of their own."""
 
 
 def _column(name: str, forms: Forms) -> tuple[Dimension, str]:
@@ -126,7 +131,7 @@ def columns_of(text: str, forms: Forms, taken: Taken = None) -> Columns:
     by_name = dict(zip(names, map(tuple, columns), strict=True))
     first = forms[0][0]
     for line, before, after in zip(lines[1:], by_name[first], by_name[first][1:], strict=False):
-        if after <= before:
+        if after <= before and first not in IN_ORDER:
             plural = {"angle": "angles", "frequency": "frequencies"}
             what = plural.get(COLUMNS[first][0], f"{first}s")
             raise wrong(line, f"the {what} must rise from row to row", first)
@@ -166,7 +171,8 @@ def _whole(lines: Iterator[Row], forms: Forms) -> dict[str, Array] | None:
     if not np.all((sizes <= HUGE) & ((sizes >= TINY) | (sizes == 0))):
         return None
     found = dict(zip(names, values.T.copy(), strict=True))
-    return found if np.all(np.diff(found[forms[0][0]]) > 0) else None
+    first = forms[0][0]
+    return found if first in IN_ORDER or np.all(np.diff(found[first]) > 0) else None
 
 
 def header_of(line: int, cells: list[str], forms: Forms) -> tuple[list[str], list[str]]:
@@ -215,7 +221,10 @@ def _is_number(cell: str) -> bool:
 
 # -- tables beside a model -------------------------------------------------------------------------
 
-Table = LoadTable | AngleTable | LengthTable | SoilTable | MotorTable | TorsionTable | Impedance
+Table: TypeAlias = (
+    LoadTable | AngleTable | LengthTable | SoilTable | MotorTable | TorsionTable | CurveTable
+    | Impedance
+)  # fmt: skip
 TABLES: dict[str, Any] = {
     "load": LoadTable,
     "angles": AngleTable,
@@ -223,6 +232,7 @@ TABLES: dict[str, Any] = {
     "soil": SoilTable,
     "motor": MotorTable,
     "torsion": TorsionTable,
+    "curve": CurveTable,
     "impedance": Impedance,
 }
 """The class of each sort of table; but for a load's, its first fields are the columns."""
@@ -238,6 +248,7 @@ FORMS: dict[str, Forms] = {
     "soil": (("depth", "resistance"),),
     "motor": (("speed", "torque"),),
     "torsion": (("angle", "torque"),),
+    "curve": (("x", "y"),),
     "impedance": (("frequency", "resistance", "reactance"), ("frequency", "magnitude", "phase")),
 }
 """Columns of each sort of table."""
@@ -245,7 +256,7 @@ OF_TIME = (
     "a load goes with the crank, at whatever speed that turns; give crank_angle [deg] instead, "
     "of which 100 rpm make 600 in a second"
 )
-HANDY = {"crank_angle": "deg", "angle": "deg", "length": "mm", "speed": "rpm"}
+HANDY = {"crank_angle": "deg", "angle": "deg", "length": "mm", "speed": "rpm", "x": "mm", "y": "mm"}
 """Units of columns that are written in them where they are exact, else in SI units."""
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.circular_slots import CircularSlot
+from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.symbols.shapes import PIN, Array, Mark, Shape
 
 HALF = PIN + 1.4
@@ -28,6 +29,15 @@ def circular_sign(slot: CircularSlot, joints: Structure, bodies: Bodies) -> Iter
     way = np.exp(1j * angle)
     for shape in slot_shapes(slot.radius * way, 1j * way, closed=not slot.arc):
         yield Mark(slot.on, slot.center, shape)
+
+
+def curved_sign(slot: CurvedSlot, joints: Structure, bodies: Bodies) -> Iterator[Mark]:
+    """The slot in its body."""
+    curve, turn = slot.curve, np.exp(1j * slot.direction)
+    s = np.linspace(0.0, curve.knots[-1], CORNERS)
+    middle, first, *_ = curve.at(s)
+    for shape in slot_shapes(turn * middle, turn * first / abs(first), closed=slot.closed):
+        yield Mark(slot.on, slot.origin, shape)
 
 
 def slot_shapes(middle: Array, ahead: Array, closed: bool) -> Iterator[Shape]:

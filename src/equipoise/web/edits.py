@@ -222,7 +222,9 @@ def _position(machine: Machine, motion: Motion, change: Drag | None = None) -> P
     if change is not None and at == change.at:
         places[change.name] = change.to
     size = extent_of(motion.machine)
-    points = {name: clean_place(complex(place), size) for name, place in places.items()}
+    moving = {name for link in machine.links.values() for name in link.points}
+    points = {name: clean_place(complex(place), size) for name, place in places.items()
+              if name in moving}  # fmt: skip
     angles = {name: clean(float(link.angle[at]), "angle") for name, link in motion.links.items()}
     angle = motion.crank_angle[at]
     if machine.drive.motion is None and motion.machine.drive.motion is not None:  # it swings

@@ -145,6 +145,7 @@ SECTIONS = {
     "gears": to_say("gears"),
     "cams": to_say("cams"),
     "circular_slots": to_say("circular slots"),
+    "curved_slots": to_say("curved slots"),
     "springs": to_say("springs"),
     "torsion_springs": to_say("torsion springs"),
     "joints": to_say("joints"),

@@ -36,6 +36,7 @@ from equipoise.mechanism.parts import (
 )
 from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.circular_slots import CircularSlot
+from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.machine import Frame, Machine, Position
 from equipoise.mechanism.parts.racks import Rack
 from equipoise.mechanism.parts.springs import Spring
@@ -64,7 +65,8 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         bodies.Body, bodies.Hole, sliders.Bearing, sliders.Slider, gears.Gear,
         joint_properties.JointProperties,
         gear_shapes.GearShape, Belt, Rack, cams.Cam,
-        CircularSlot, force_elements.Load, Spring, TorsionSpring, Position, field.Planting,
+        CircularSlot, CurvedSlot,
+        force_elements.Load, Spring, TorsionSpring, Position, field.Planting,
         field.PlantingArm,
         field.Soil, support.Support,
         mounts.Mount, support.Row, balance.Balance, weights.CenterMove,

@@ -328,8 +328,9 @@ def linkage_of(machine: Machine, base: Linkage) -> Linkage:
 
 def joints_of(machine: Machine, base: Linkage) -> Structure:
     """The joints of a machine with columns, those of its base but for their numbers."""
-    sliders = all_sliders(machine.sliders, machine.riders)
-    return replace(base.joints, sliders=sliders, couplings=machine.couplings)
+    riders = machine.riders
+    sliders = all_sliders(machine.sliders, riders)
+    return replace(base.joints, sliders=sliders, couplings=machine.couplings, riders=riders)
 
 
 def massive_link(path: str) -> str | None:

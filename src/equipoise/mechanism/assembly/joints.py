@@ -47,6 +47,9 @@ class Structure:
         for slider in self.sliders:
             ends = {slider.link, slider.on}
             count -= 2 * (ends <= both and bool(ends & free))
+        for name, rider in self.tracked.items():
+            ends = {name, rider.on}
+            count -= 2 * (ends <= both and bool(ends & free))
         for one in self.couplings:
             ends = {one.driver, one.driven, one.carrier}
             count -= ends <= both and bool(ends & free)
@@ -67,6 +70,11 @@ class Structure:
         """The same without all but the first of the sliding joints between two bodies."""
         first = {frozenset((one.link, one.on)): one for one in reversed(self.sliders)}
         return replace(self, sliders=tuple(s for s in self.sliders if s in first.values()))
+
+    @property
+    def tracked(self) -> Mapping[str, Rider]:
+        """Riders that a track holds, by name."""
+        return {name: rider for name, rider in self.riders.items() if rider.track is not None}
 
     def hides(self, joint: str, *bodies: str) -> bool:
         """Whether a joint of these bodies is inside of another, and not what stands for that."""
@@ -290,6 +298,7 @@ def subsets(joints: Structure, links: list[str]) -> Iterator[tuple[str, ...]]:
     """
     touching: dict[str, set[str]] = {link: set() for link in links}
     groups = [*joints.pins.values(), *((s.link, s.on) for s in joints.sliders)]
+    groups += [(name, rider.on) for name, rider in joints.tracked.items()]
     groups += [(one.driver, one.driven, one.carrier) for one in joints.couplings]
     for bodies in groups:
         members = [body for body in bodies if body in touching]

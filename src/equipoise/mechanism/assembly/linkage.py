@@ -191,7 +191,11 @@ def assemble(machine: Machine, near: Cycle | None = None) -> Linkage:
                     "second guide a label",
                 )
         decided = not (kept.shared and kept.shared.count)
-        for where, _, one in given_properties(machine, kept.joints, kept.reactions):
+        slots = machine.pins_in_slots
+        for where, joint, one in given_properties(machine, kept.joints, kept.reactions):
+            slot = slots.get(joint.name)
+            if one.radius and slot and (wrong := slot.too_sharp(one.radius)):
+                raise ModelError(f"{where}.radius", wrong)
             if decided and one.stiffness is not None:
                 raise ModelError(f"{where}.stiffness", DECIDED)
         machine.__dict__["_linkage"] = kept

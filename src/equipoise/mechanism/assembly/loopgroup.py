@@ -24,12 +24,15 @@ from equipoise.mechanism.assembly.loops import (
     Place,
     Poses,
     Rail,
+    Riding,
     SlideLoop,
+    TrackLoop,
 )
 from equipoise.mechanism.assembly.newton import LoopGroup, poses_in
 from equipoise.mechanism.assembly.steps import Reaction, Step, initial_state, pin_reaction, run
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.couplings import Coupling
+from equipoise.mechanism.parts.joint_kinds import Rider
 from equipoise.mechanism.parts.machine import FRAME, Position, Slider
 
 STEPS_PER_TURN = 360
@@ -57,6 +60,7 @@ def loop_group(
         tuple(loop for k, loop in enumerate(loops) if k not in maker.holds.values()),
         (),
         builder.size(),
+        tuple(link for link in links if link not in joints.riders),
     )
     told = builder.told.get(f"reference({unsolved.reference})")
     if told is not None:
@@ -65,7 +69,7 @@ def loop_group(
         run(before, builder.now)
         solved, loops = _solve_start(builder, before, unsolved, loops, near)
     builder.add(maker.anchors, {maker.anchors[link] for link in links})
-    builder.running.update(place.link for place in solved.tree if any(place.turning))
+    builder.running.update(place.link for place in solved.tree if place.counted)
     reactions = tuple(maker.reaction(loop) for loop in loops)
     hand_over = tuple(builder.hand_over(one) for one in reactions if one.by not in links)
     reach = tuple(
@@ -85,6 +89,7 @@ class Maker:
     """Loop equations of some links, and what hangs on them.
 
     anchors : of each link.  holds : link -> number of the joint that tells where it is.
+    free : links of which no joint does.
     """
 
     builder: Builder
@@ -94,6 +99,7 @@ class Maker:
     def __post_init__(self) -> None:
         self.anchors = {}
         self.holds: dict[str, int] = {}
+        self.free: list[str] = []
         for link in self.links:
             points = [*self.builder.machine.assembled_points(link)]
             self.anchors[link] = next((pt for pt in points if pt in self.joints.pins), points[0])
@@ -128,33 +134,52 @@ class Maker:
             ends = {slider.link, slider.on}
             if ends <= {*self.builder.rank, *self.links} and ends & set(self.links):
                 loops.append(self.slide(slider))
+        for name, rider in self.joints.tracked.items():
+            if name in self.links and rider.on in (*self.builder.rank, *self.links):
+                loops.append(self.track(name, rider))
         return loops
 
     def hang(self, loops: list[Loop]) -> None:
         """Find for each link the joint that tells where it is, by the shortest way from a body
-        that is known, and take the point in that joint for the link's anchor.
+        that is known, and take the point in that joint for the link's anchor.  A rider is placed
+        by its track alone, and places nothing: its parameter is told by no other joint.
         """
         placed = set(self.builder.rank)
         while True:
             found: dict[str, int] = {}
             for k, loop in enumerate(loops):
                 for end, other in ((loop.on, loop.by), (loop.by, loop.on)):
-                    if end.body not in placed | found.keys() and other.body in placed:
+                    new = end.body not in placed | found.keys() and other.body in placed
+                    if new and self.places(loop, end):
                         found[end.body] = k
                         self.anchors[end.body] = end.point
-            if not found:
-                break
             self.holds |= found
             placed |= found.keys()
+            if not found:
+                loose = (
+                    link for link in self.links if link not in placed | self.joints.tracked.keys()
+                )
+                if (free := next(loose, None)) is None:
+                    break
+                self.free.append(free)
+                placed.add(free)
+
+    def places(self, loop: Loop, end: End) -> bool:
+        """Whether a joint may tell where the body at one of its ends is."""
+        if isinstance(loop, TrackLoop):
+            return end is loop.on
+        return self.joints.tracked.keys().isdisjoint((loop.on.body, loop.by.body))
 
     def tree(self, loops: Sequence[Loop]) -> tuple[Place, ...]:
-        """Where each link is; one that nothing but gears holds may be anywhere."""
+        """Where each link is; one that nothing but gears, or riders, holds may be anywhere."""
         held = [self.place(link, loops[k]) for link, k in self.holds.items()]
-        return (*held, *(Free(link) for link in self.links if link not in self.holds))
+        return (*map(Free, self.free), *held)
 
     def place(self, link: str, loop: Loop) -> Place:
         here = link == loop.on.body
         to = loop.by if here else loop.on
+        if isinstance(loop, TrackLoop):
+            return Riding(link, to, loop.curve, loop.turn)
         if not isinstance(loop, SlideLoop):
             return Hinge(link, to)
         along, turn = loop.along, loop.turn
@@ -167,7 +192,7 @@ class Maker:
         for body in bodies:
             if body in self.builder.rank:
                 yield body
-            elif isinstance(loop := loops[self.holds[body]], SlideLoop):
+            elif body in self.holds and isinstance(loop := loops[self.holds[body]], SlideLoop):
                 yield from self.roots({loop.on.body, loop.by.body} - {body}, loops)
 
     def slide(self, slider: Slider) -> SlideLoop:
@@ -177,6 +202,13 @@ class Maker:
         if slider.link in self.links:
             return SlideLoop(slider.name, link, guide, along, turn)
         return SlideLoop(slider.name, guide, link, turn.conjugate(), along.conjugate())
+
+    def track(self, name: str, rider: Rider) -> TrackLoop:
+        track = rider.track
+        assert track is not None
+        turn = np.exp(1j * track.direction)
+        ends = self.end(name, name), self.end(rider.on, track.base)
+        return TrackLoop(f"track of {name}", *ends, track.curve, turn)
 
     def coupling(self, coupling: Coupling) -> CouplingLoop:
         contact = contact_of(self.builder, self.joints, coupling)
@@ -189,7 +221,7 @@ class Maker:
         force = f"R({loop.name}/{on})"
         if isinstance(loop, PinLoop):
             return pin_reaction(loop.name, on, by)
-        if isinstance(loop, SlideLoop):
+        if isinstance(loop, SlideLoop | TrackLoop):
             couple = f"C({loop.name}/{on})"
             return Reaction(loop.name, "slider", on, by, loop.on.point, force, couple)
         push = f"C({loop.name}/{on})" if loop.contact.couples else None
@@ -211,7 +243,7 @@ def _solve_start(
             Note(
                 "missing; no dyad solves {names}, so the file must say roughly where they "
                 "are: crank_angle, and points or angles of these links",
-                names=", ".join(group.links),
+                names=", ".join(group.shown),
             ),
         )
     meshes = {loop.name: loop for loop in loops if isinstance(loop, CouplingLoop) and loop.starts}
@@ -225,7 +257,6 @@ def _solve_start(
             ),
         )
     standing = _standing(loops, {one.name: one.start for one in builder.machine.couplings})
-    rough = replace(group, tree=tuple(map(Free, group.links)), equations=standing)
     steps = max(2, ceil(abs(position.crank_angle) / (2 * pi) * STEPS_PER_TURN))
     path = np.linspace(0.0, position.crank_angle, steps)
     state = initial_state(builder.machine, path)
@@ -236,7 +267,8 @@ def _solve_start(
             body: pose.pick((..., backwards)) for body, pose in poses_in(state, group.known).items()
         }
         there = {body: pose.pick((..., 0)) for body, pose in known.items()}
-        guess = [x for link in group.links for x in _guess(builder, group, link, there, position)]
+        tree, guess = _rough(builder, group, loops, there, position)
+        rough = replace(group, tree=tree, equations=standing)
         q = rough.solve(np.array(guess), there, path[-1])
         poses = rough.poses(there, q)
         _check_near(builder, poses, position, group)
@@ -255,13 +287,47 @@ def _solve_start(
 
 
 def _standing(loops: Sequence[Loop], starts: Mapping[str, float]) -> tuple[Loop, ...]:
-    """The same with gears that stand still at the angles at which they start."""
+    """Joints for rough poses: gears stand still at the angles at which they start, and riders are
+    on their tracks already.
+    """
     return tuple(
         replace(loop, carrier=FRAME, kernel=kernels.gear, numbers=(0.0,), offset=starts[loop.name])
         if isinstance(loop, CouplingLoop) and loop.starts
         else loop
         for loop in loops
+        if not isinstance(loop, TrackLoop)
     )
+
+
+def _rough(
+    builder: Builder,
+    group: LoopGroup,
+    loops: Sequence[Loop],
+    known: Poses,
+    position: Position,
+) -> tuple[tuple[Place, ...], list[float]]:
+    """Every link where it pleases but for riders on their tracks, and about where all of them are.
+
+    What is inside of joints is where the links that the file places have it.
+    """
+    poses, anchors = dict(known), dict(zip(group.links, group.anchors, strict=True))
+    riding = [place for place in group.tree if isinstance(place, Riding)]
+    free = set(group.links).difference(place.link for place in riding)
+    values: list[float] = []
+    links = [*group.shown, *(link for link in group.links if link not in group.shown)]
+    links = [link for link in links if link in free]
+    for link in links:
+        seen = known if link in group.shown else poses
+        x, y, angle = _guess(builder, anchors, link, seen, position)
+        values += [x, y, angle]
+        here = (x, y, (np.exp(1j * angle), angle))
+        poses[link] = Free(link).pose(poses, here, [0.0] * 3, [0.0] * 3)
+    for place in riding:
+        ends = ((loop.on, loop.by) for loop in loops if isinstance(loop, PinLoop))
+        pin = next(b if a.body == place.link else a for a, b in ends
+                   if place.link in (a.body, b.body))  # fmt: skip
+        values.append(place.nearest(poses, poses[pin.body].place_of(pin.arm)))
+    return (*map(Free, links), *riding), values
 
 
 def _check_near(builder: Builder, poses: Poses, position: Position, group: LoopGroup) -> None:
@@ -283,9 +349,13 @@ def _check_near(builder: Builder, poses: Poses, position: Position, group: LoopG
 
 
 def _guess(
-    builder: Builder, group: LoopGroup, link: str, known: Poses, position: Position
+    builder: Builder, anchors: Mapping[str, str], link: str, known: Poses, position: Position
 ) -> tuple[float, float, float]:
-    """Rough position of a link's anchor and its angle, from the file and from known pins."""
+    """Rough position of a link's anchor and its angle, from the file and from known pins.
+
+    anchors : of the links of the group.
+    """
+    anchors = {**builder.anchors, **anchors}
     points = builder.machine.assembled_points(link)
     given = [
         (complex(*points[name]), complex(*position.points[name]))
@@ -295,9 +365,9 @@ def _guess(
     for body, pose in known.items():
         for name in builder.machine.assembled_points(body):
             if name in points and name not in position.points:
-                arm = builder.arm(body, builder.anchors[body], name)
+                arm = builder.arm(body, anchors[body], name)
                 given.append((complex(*points[name]), complex(pose.place_of(arm))))
-    anchor = complex(*points[group.anchors[group.links.index(link)]])
+    anchor = complex(*points[anchors[link]])
     angle = position.angles.get(link)
     if angle is None and len(given) >= 2:
         pairs = [(a - b, c - d) for a, c in given for b, d in given if a != b]
@@ -311,7 +381,7 @@ def _guess(
                 "its points ({names}), or one and its angle",
                 link=link,
                 crank_angle=degrees(position.crank_angle),
-                names=", ".join(points),
+                names=", ".join(builder.machine.bodies.get(link, points)),
             ),
         )
     turn = np.exp(1j * angle)

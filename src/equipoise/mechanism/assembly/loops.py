@@ -1,8 +1,9 @@
 """Loop equations: what vanishes where a joint holds two bodies together, and where it may be.
 
 Each joint says of two bodies that something vanishes: the gap of a pin (2 equations), turn and
-offset of a slider (2), the mismatch of a gear (1).  The same expressions in velocities and
-accelerations are linear in them, and the force in the joint acts where and as the gap is measured.
+offset of a slider (2), or of a rider on its track, the mismatch of a gear (1).  The same
+expressions in velocities and accelerations are linear in them, and the force in the joint acts
+where and as the gap is measured.
 
 All of it is arithmetic on poses, so that it runs on arrays, and can be written out for loops.
 """
@@ -15,6 +16,7 @@ from typing import Any, ClassVar, Protocol
 
 from equipoise.mechanism.assembly.steps import Step
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.formulas.curve_kernels import on_track
 
 
 @dataclass(frozen=True)
@@ -22,11 +24,13 @@ class Pose:
     """Place of a body's anchor, and its rotation, with two derivatives each, of shape (..., N).
 
     angle : running angle, which only gears ask for.
+    along : of a rider, the parameter of its track, and its speed along that by the crank angle.
     """
 
     place: tuple[Any, Any, Any]
     turn: tuple[Any, Any, Any]
     angle: Any = 0.0
+    along: tuple[Any, ...] = ()
 
     def point(self, arm: Any) -> tuple[Any, Any, Any]:
         p, p1, p2 = kernels.point(*self.place, *self.turn, arm)
@@ -97,6 +101,8 @@ class PinLoop:
     by: End
 
     unknowns: ClassVar[int] = 2
+    turns: ClassVar[bool] = False
+    """Whether its first gap is an angle, and its first unknown a couple."""
 
     def gaps(self, poses: Poses, level: int) -> list[Any]:
         """What vanishes (level 0), and its first and second derivative."""
@@ -131,6 +137,7 @@ class SlideLoop:
     turn: Any
 
     unknowns: ClassVar[int] = 2
+    turns: ClassVar[bool] = True
 
     def gaps(self, poses: Poses, level: int) -> list[Any]:
         link, guide = poses[self.on.body], poses[self.by.body]
@@ -170,6 +177,41 @@ class Rides:
 
 
 @dataclass(frozen=True)
+class TrackLoop:
+    """The rider `on` stays on a curve of the body `by`, its x axis along the curve.
+
+    curve : a `PlaneCurve`.  turn : of its axes in those of the body.
+    """
+
+    name: str
+    on: End
+    by: End
+    curve: Any
+    turn: Any
+
+    unknowns: ClassVar[int] = 2
+    turns: ClassVar[bool] = True
+
+    def gaps(self, poses: Poses, level: int) -> list[Any]:
+        """What vanishes; its rates always do, as a rider is placed by its track."""
+        if level:
+            return [0.0, 0.0]
+        rider, body = poses[self.on.body], poses[self.by.body]
+        back = (body.turn[0] * self.turn).conjugate()
+        place = back * (rider.place_of(self.on.arm) - body.place_of(self.by.arm))
+        c, c1, *_ = self.curve.at(self.curve.nearest(place))
+        tangent = c1 / abs(c1)
+        off = tangent.conjugate() * back * rider.turn[0]
+        return [2 * off.imag / (1 + off.real), kernels.cross(tangent, place - c)]
+
+    def place(self, poses: Poses) -> Any:
+        return poses[self.on.body].place_of(self.on.arm)
+
+    def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
+        return [(0j, 1.0), (1j * poses[self.on.body].turn[0], 0.0)]
+
+
+@dataclass(frozen=True)
 class CouplingLoop:
     """Angles of driven link, driver and carrier in a fixed relation.
 
@@ -189,6 +231,7 @@ class CouplingLoop:
     rides: Rides | None
 
     unknowns: ClassVar[int] = 1
+    turns: ClassVar[bool] = False
     starts: ClassVar[bool] = True
     """Whether the file says at which angle the driven link starts."""
     switches: ClassVar[bool] = True
@@ -230,7 +273,7 @@ class CouplingLoop:
         return self.rides is not None and self.rides.own.body == self.on.body
 
 
-Loop = PinLoop | SlideLoop | CouplingLoop
+Loop = PinLoop | SlideLoop | TrackLoop | CouplingLoop
 
 
 @dataclass(frozen=True)
@@ -241,6 +284,8 @@ class Hinge:
     to: End
 
     turning: ClassVar[tuple[bool, ...]] = (True,)
+    counted: ClassVar[bool] = True
+    """Whether its running angle is an unknown."""
 
     def pose(self, poses: Poses, value: Any, w: Any, a: Any) -> Pose:
         """value : rotation and angle, w, a : derivatives of the angle."""
@@ -266,6 +311,7 @@ class Rail:
     angle: Any
 
     turning: ClassVar[tuple[bool, ...]] = (False,)
+    counted: ClassVar[bool] = False
 
     def pose(self, poses: Poses, value: Any, s1: Any, s2: Any) -> Pose:
         """value : the way, s1, s2 : its derivatives."""
@@ -282,12 +328,50 @@ class Rail:
 
 
 @dataclass(frozen=True)
+class Riding:
+    """A rider on the track of another body, so that the parameter of the curve is unknown.
+
+    curve, turn : as in `TrackLoop`.
+    """
+
+    link: str
+    to: End
+    curve: Any
+    turn: Any
+
+    counted: ClassVar[bool] = False
+
+    @property
+    def turning(self) -> tuple[bool, ...]:
+        return (self.curve.closed,)
+
+    def pose(self, poses: Poses, value: Any, s1: Any, s2: Any) -> Pose:
+        """value : the parameter, of a closed curve as `Hinge` has an angle; s1, s2 : of that."""
+        s = self.curve.turned(value[0]) if self.curve.closed else value
+        body = poses[self.to.body]
+        turn, w, a = body.turn
+        levels = (*body.point(self.to.arm), turn * self.turn, w, a, *self.curve.at(s), s1, s2)
+        x, x1, x2, u, u1, u2, speed = on_track(*levels)  # type: ignore[call-arg,no-untyped-call]
+        return Pose((x, x1, x2), (u, u1, u2), along=(s, speed))
+
+    def values(self, poses: Poses) -> list[Any]:
+        return [poses[self.link].along[0]]
+
+    def nearest(self, poses: Poses, place: Any) -> float:
+        """Parameter of the curve nearest to a place."""
+        body = poses[self.to.body]
+        way = place - body.place_of(self.to.arm)
+        return float(self.curve.nearest((body.turn[0] * self.turn).conjugate() * way))
+
+
+@dataclass(frozen=True)
 class Free:
     """A link of which place and angle are unknown."""
 
     link: str
 
     turning: ClassVar[tuple[bool, ...]] = (False, False, True)
+    counted: ClassVar[bool] = True
 
     def pose(self, poses: Poses, value: Any, q1: Any, q2: Any) -> Pose:
         x, y, (turn, angle) = value
@@ -299,4 +383,4 @@ class Free:
         return [pose.place[0].real, pose.place[0].imag, pose.angle]
 
 
-Place = Hinge | Rail | Free
+Place = Hinge | Rail | Riding | Free

@@ -11,7 +11,7 @@ import numpy as np
 
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.builder import Group
-from equipoise.mechanism.assembly.loops import CouplingLoop, Loop, Poses, SlideLoop
+from equipoise.mechanism.assembly.loops import CouplingLoop, Loop, Poses
 from equipoise.mechanism.assembly.steps import Array, State, running_angle
 
 AGREES = 1e-9
@@ -85,7 +85,7 @@ def gap(loop: Loop, poses: Poses, size: float) -> Any:
         ahead = np.abs(value - np.ravel(value)[0])
         return ahead if loop.slides else ahead * size
     first, second = loop.gaps(poses, 0)
-    if isinstance(loop, SlideLoop):
+    if loop.turns:
         first = first * size
     return np.hypot(first, second)
 

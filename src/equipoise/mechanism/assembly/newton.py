@@ -25,7 +25,7 @@ from equipoise.decompositions import singular_values
 from equipoise.errors import MotionError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.loops import Loop, Place, Pose, Poses
-from equipoise.mechanism.assembly.steps import Array, State, p, u
+from equipoise.mechanism.assembly.steps import Array, State, along, p, u
 
 ITERATIONS = 25
 SETTLED = 1e-11
@@ -63,6 +63,7 @@ class LoopGroup:
     """A group of links with as many loop equations as unknowns, or more that go together.
 
     links, anchors : the unknown links and their anchor points.
+    shown : those of the links that are not inside of joints.
     known : other bodies that the loops touch -> their anchors.
     tree : where each link is, in an order in which the bodies that this asks for come first.
     equations : the joints that the tree leaves.
@@ -77,6 +78,7 @@ class LoopGroup:
     equations: tuple[Loop, ...]
     start: Any
     size: Any
+    shown: tuple[str, ...] = ()
 
     @property
     def reference(self) -> str:
@@ -260,7 +262,7 @@ class LoopGroup:
             "the links {links} cannot be moved past crank angle {angle:.4g} deg: the loop "
             "equations have no solution nearby; change the geometry, or start from another "
             "position in [position]",
-            links=", ".join(self.links),
+            links=", ".join(self.shown),
             angle=degrees(angle),
         )
 
@@ -270,8 +272,9 @@ class LoopGroup:
             pose = poses[link]
             state.update(zip(p(anchor), pose.place, strict=True))
             state.update(zip(u(link), pose.turn, strict=True))
+            state.update(zip(along(link), pose.along, strict=False))
         for place in self.tree:
-            if any(place.turning):
+            if place.counted:
                 state[f"phi({place.link})"] = poses[place.link].angle
         state[self.reference] = q
 

@@ -26,7 +26,7 @@ from equipoise.mechanism.assembly.joints import Structure, name_in_outputs, no_m
 from equipoise.mechanism.assembly.least import in_blocks, least, parts_of
 from equipoise.mechanism.assembly.loop_forces import LoopForces
 from equipoise.mechanism.assembly.loopgroup import Maker
-from equipoise.mechanism.assembly.loops import CouplingLoop, Poses, SlideLoop
+from equipoise.mechanism.assembly.loops import CouplingLoop, Poses
 from equipoise.mechanism.assembly.misfits import AGREES, Fit
 from equipoise.mechanism.assembly.named_joints import given_properties
 from equipoise.mechanism.assembly.newton import LoopGroup, poses_in
@@ -174,11 +174,7 @@ class Shared(LoopForces):
         The last unknowns are the torques of the drives.
         """
         size = self.group.size
-        couples = [
-            isinstance(loop, SlideLoop) and part == 0
-            for loop in self.loops
-            for part in range(loop.unknowns)
-        ]
+        couples = [loop.turns and part == 0 for loop in self.loops for part in range(loop.unknowns)]
         count = len(self.drives)
         units = np.where([*couples, *[True] * count], size, 1.0)
         rows = np.tile([1.0, 1.0, size], len(self.group.links))

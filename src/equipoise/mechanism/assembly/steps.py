@@ -8,6 +8,7 @@ Names of values in a state
 --------------------------
 ``p(B)``, ``p1(B)``, ``p2(B)``            point and its derivatives by crank angle
 ``u(rod)``, ``w(rod)``, ``a(rod)``        rotation of a link and its derivatives
+``s(pin)``, ``s1(pin)``                   parameter of the track of a rider, speed along it
 ``phi(gear)``                             running angle of a link, rad, counted through the turns
 ``F(rod)``, ``M(rod)``                    what the joints of a link must supply, about its anchor
 ``R(B/rod)``, ``C(B/rod)``                force and couple that a joint exerts on a link
@@ -124,6 +125,11 @@ def p(point: str) -> tuple[str, str, str]:
 def u(link: str) -> tuple[str, str, str]:
     """Names of a link's rotation and its two derivatives."""
     return f"u({link})", f"w({link})", f"a({link})"
+
+
+def along(rider: str) -> tuple[str, str]:
+    """Names of the parameter of a rider's track, and of the speed along it by the crank angle."""
+    return f"s({rider})", f"s1({rider})"
 
 
 @dataclass(frozen=True)

@@ -20,9 +20,10 @@ from equipoise.i18n import Note
 from equipoise.mechanism.assembly.builder import Group
 from equipoise.mechanism.assembly.cam_fits import Fit, fits_of, pressure_angle
 from equipoise.mechanism.assembly.linkage import Linkage, assemble
-from equipoise.mechanism.assembly.steps import Array, State, p, plain_angle, running_angle, u
+from equipoise.mechanism.assembly.steps import Array, State, along, p, plain_angle, running_angle, u
 from equipoise.mechanism.checks import Named, Vector, bodies_at
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.formulas.plane_curves import PlaneCurve
 from equipoise.mechanism.kinematics.rates import LinkMotion, PointMotion, SliderMotion
 from equipoise.mechanism.kinematics.swinging import middle_angle, solve_swinging
 from equipoise.mechanism.parts.element_kinds import Element
@@ -350,6 +351,21 @@ class PlacedBodies:
     def rate(self, body: str) -> Array:
         """Angular velocity of a body, rad/s."""
         return np.asarray(self.motion.state[u(body)[1]] * self.motion.speed)
+
+    def along(self, joint: str) -> tuple[Array, Array]:
+        """How far along its track a rider is, m, and its speed along that, m/s."""
+        s, speed = (self.motion.state[name] for name in along(joint))
+        return self._curve(joint).distance(s), np.asarray(speed * self.motion.speed)
+
+    def on_track(self, joint: str, wrong: str) -> None:
+        """Raise a `ModelError` where a rider leaves its track by more than rounding."""
+        if not (curve := self._curve(joint)).closed:
+            self.within(self.along(joint)[0], (0.0, curve.length), wrong)
+
+    def _curve(self, joint: str) -> PlaneCurve:
+        track = self.motion.linkage.joints.riders[joint].track
+        assert track is not None
+        return track.curve
 
     def bearing(self, vector: Array, middle: float) -> Array:
         """Angle of a vector, rad, within half a turn of `middle`."""

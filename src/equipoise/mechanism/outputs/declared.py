@@ -369,6 +369,8 @@ def of_element(table: str, name: str, dimension: Dimension, label: str) -> None:
 
 of_element("circular_slots", "angle", "angle", to_say("angle in circular slot {name}"))
 of_element("circular_slots", "speed", "speed", to_say("sliding speed in circular slot {name}"))
+of_element("curved_slots", "distance", "length", to_say("distance along curved slot {name}"))
+of_element("curved_slots", "speed", "speed", to_say("sliding speed in curved slot {name}"))
 of_element("springs", "pull", "force", to_say("pull of spring {name}"))
 of_element("springs", "length", "length", to_say("length of spring {name}"))
 of_element("torsion_springs", "torque", "torque", to_say("torque of torsion spring {name}"))

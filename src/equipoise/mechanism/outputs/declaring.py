@@ -51,6 +51,7 @@ GROUPS = {
     "belts": to_say("belts"),
     "cams": to_say("cams"),
     "circular_slots": to_say("circular slots"),
+    "curved_slots": to_say("curved slots"),
     "springs": to_say("springs"),
     "torsion_springs": to_say("torsion springs"),
     "rows": to_say("all rows together"),

@@ -35,6 +35,12 @@ class Placed(Protocol):
     def rate(self, body: str) -> Any:
         """Angular velocity of a body, rad/s."""
 
+    def along(self, joint: str) -> tuple[Any, Any]:
+        """How far along its track the rider of a joint is, m, and its speed along that, m/s."""
+
+    def on_track(self, joint: str, wrong: str) -> None:
+        """Refuse a motion in which a rider leaves its track; wrong : as of `within`."""
+
     def bearing(self, vector: Any, middle: Any) -> Any:
         """Angle of a vector, rad, within half a turn of `middle`."""
 
@@ -51,9 +57,11 @@ class Element(Frozen):
     most : that a machine may have.
     title : of the table of their outputs.  headings : of those outputs that it shows, of the
         smallest and of the largest value.
+    still : fields whose numbers no design changes, so that compiled loops have them as they are.
     """
 
     most: ClassVar[int] = 200
+    still: ClassVar[tuple[str, ...]] = ()
     title: ClassVar[str]
     headings: ClassVar[Mapping[str, tuple[str, str]]]
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
@@ -18,6 +19,22 @@ from equipoise.keys.declaring import once
 from equipoise.mechanism.checks import Bodies, Vector, unknown_body, unknown_link
 from equipoise.mechanism.parts.element_kinds import Element, element_kinds
 from equipoise.mechanism.parts.sliders import Slider
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.formulas.plane_curves import PlaneCurve
+
+
+@dataclass(frozen=True)
+class Track:
+    """A curve of a body on which a rider slides, its x axis along the curve.
+
+    base : point of the body that is the curve's origin.
+    direction : of the curve's x axis, rad, in the body's axes.
+    """
+
+    curve: PlaneCurve
+    base: str
+    direction: Any
 
 
 @dataclass(frozen=True)
@@ -29,6 +46,7 @@ class Rider:
     held : body -> points of its own at which it holds the rider, by what the rider calls them.
     slides : guides of the rider; those whose numbers may be columns are made by `with_fields`.
     normal : across the path, complex of size 1, in the rider's axes.
+    track : of the rider's pin, on the body `on`; it holds the rider as a guide would.
     """
 
     link: str
@@ -37,6 +55,7 @@ class Rider:
     held: Mapping[str, Mapping[str, str]]
     slides: tuple[Slider, ...] = ()
     normal: complex = 1j
+    track: Track | None = None
 
 
 class JointKind(Element):
@@ -50,6 +69,12 @@ class JointKind(Element):
     @abstractmethod
     def rider(self) -> Rider:
         """What stands for it where a machine is put together."""
+
+    def too_sharp(self, radius: float) -> Note | None:
+        """Say where the path bends too sharply for a pin of this radius, m; None where it does
+        not.
+        """
+        return None
 
     @property
     def label(self) -> Note:

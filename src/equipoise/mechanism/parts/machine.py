@@ -41,6 +41,7 @@ from equipoise.mechanism.parts.belts import Belt
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.couplings import Coupling, coupling_kinds
+from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.drives import (
     Drive,
     Driven,
@@ -108,9 +109,9 @@ class Machine(Driven, Displayed, Frozen):
 
     beside: ClassVar[Keys] = {"schema": VERSION}
     file_order = ("schema", "title", "description", "units", "gravity", "drive", "drives", "frame",
-                  "links", "bearings", "assembly", "sliders", "circular_slots", "gears", "belts",
-                  "racks", "cams", "loads", "springs", "torsion_springs", "joints", "position",
-                  "planting", "support", "rows", "balance")  # fmt: skip
+                  "links", "bearings", "assembly", "sliders", "circular_slots", "curved_slots",
+                  "gears", "belts", "racks", "cams", "loads", "springs", "torsion_springs",
+                  "joints", "position", "planting", "support", "rows", "balance")  # fmt: skip
 
     title: str = key(Wording(), "shown in reports", example="Slider-crank")
     drive: Drive = key(Table(Drive), "the link that is driven")
@@ -179,6 +180,9 @@ class Machine(Driven, Displayed, Frozen):
     circular_slots: tuple[CircularSlot, ...] = key(
         Tables(Table(CircularSlot)), "pins in circular slots", default=()
     )
+    curved_slots: tuple[CurvedSlot, ...] = key(
+        Tables(Table(CurvedSlot)), "pins in slots along smooth curves", default=()
+    )
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Machine:
@@ -231,10 +235,15 @@ class Machine(Driven, Displayed, Frozen):
                 yield table, number, one
 
     @property
+    def pins_in_slots(self) -> Mapping[str, JointKind]:
+        """Joints that declare themselves, by their names."""
+        listed: Iterator[tuple[str, int, JointKind]] = self._listed(joint_kinds(type(self)))
+        return {one.name: one for *_, one in listed}
+
+    @property
     def riders(self) -> Mapping[str, Rider]:
         """Bodies without mass inside of joints, by the names of these."""
-        listed: Iterator[tuple[str, int, JointKind]] = self._listed(joint_kinds(type(self)))
-        return {one.name: one.rider() for *_, one in listed}
+        return {name: one.rider() for name, one in self.pins_in_slots.items()}
 
     @property
     def assembled_bodies(self) -> Bodies:

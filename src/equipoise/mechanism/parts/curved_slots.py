@@ -1,0 +1,224 @@
+"""Pins in curved slots (point-on-curve joints), as frozen values with their checks.
+
+The rider of such a joint is a body without mass at the pin whose x axis goes along the curve; where
+it is on the curve is found by Newton's method with the links that hang on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from equipoise.errors import ModelError
+from equipoise.i18n import Note, to_say
+from equipoise.keys import (
+    ROW,
+    Conditions,
+    File,
+    Flag,
+    Frozen,
+    Listing,
+    Point,
+    Text,
+    declared,
+    inside,
+    key,
+)
+from equipoise.mechanism.checks import Bodies, unknown_point
+from equipoise.mechanism.parts.element_kinds import Placed
+from equipoise.mechanism.parts.joint_kinds import JointKind, Rider, Track
+from equipoise.quantities import told
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.formulas.plane_curves import PlaneCurve
+
+MOST_POINTS = 400
+FEWEST, FEWEST_CLOSED = 2, 4
+"""Points of an open curve, and of one that is closed."""
+NEAR = 1e-6
+"""Of the curve's length: points nearer to each other coincide."""
+BEYOND = to_say(
+    "the pin would leave its slot at crank angle {crank_angle:.4g} deg; make the curve longer, or "
+    "change lengths"
+)
+
+
+@declared
+class CurveTable(Frozen):
+    """Points of a curve, in its axes, m.
+
+    x, y : of the points, in their order.  file : name of the CSV file that they came from.
+    """
+
+    x: tuple[float, ...] = inside(ROW)
+    y: tuple[float, ...] = inside(ROW)
+    file: str = inside(Text(), default="", compare=False)
+
+
+@declared
+class CurvedSlot(JointKind):
+    """A pin at `point` of `link` in a slot of the body `on`, along a curve through points."""
+
+    called = to_say("{what} of curved slot {number}")
+    file_order = (
+        "link",
+        "point",
+        "on",
+        "origin",
+        "points",
+        "table",
+        "closed",
+        "direction",
+        "label",
+    )
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [{"required": [one]} for one in ("points", "table")]
+    }
+    still: ClassVar[tuple[str, ...]] = ("points", "table")
+
+    title = to_say("Curved slots, each with its crank angle; distances along the curve")
+    headings: ClassVar[Mapping[str, tuple[str, str]]] = {
+        "distance": (to_say("smallest distance"), to_say("largest")),
+        "speed": (to_say("smallest sliding speed"), to_say("largest")),
+    }
+
+    link: str = key(Text(of="link"), "the link that has the pin", example="arm")
+    point: str = key(Text(of="point", on="link"), "its pin", example="P")
+    on: str = key(
+        Text(of="body"), 'the link that has the slot, or `"frame"`', example="frame",
+        word=to_say("other body"),
+    )  # fmt: skip
+    origin: str = key(
+        Text(of="point", on="on"), "a point of that, from which the points of the curve are given",
+        example="S", word=to_say("origin of the curve"),
+    )  # fmt: skip
+    points_given: tuple[tuple[float, float], ...] = key(
+        Listing(Point(), (), 'a list of points such as [["0 mm", "0 mm"], ["40 mm", "25 mm"]]'),
+        "through which the middle line of the slot goes, in this order, from `origin` in axes "
+        "turned by `direction`; a quintic spline",
+        name="points",
+        word=to_say("points"),
+        default=(),
+        example=[["0 mm", "0 mm"], ["40 mm", "25 mm"], ["90 mm", "20 mm"]],
+    )
+    table: CurveTable | None = key(
+        File("curve"), "CSV file beside this one, instead of `points`: `x [mm],y [mm]`",
+        default=None, example="curve.csv",
+    )  # fmt: skip
+    closed: bool = key(
+        Flag(), "the curve goes on smoothly from its last point to its first", default=False
+    )
+    direction: float = key("angle", "of the curve's x axis, in the axes of `on`", default=0.0)
+    own_name: str = key(
+        Text(), "its name in outputs, `POINT in BODY` if left out",
+        name="label",
+        word=to_say("name"),
+        default="",
+    )  # fmt: skip
+
+    @property
+    def name(self) -> str:
+        """Its label, or its pin and what has the slot."""
+        return self.own_name or f"{self.point} in {self.on}"
+
+    @property
+    def bodies(self) -> tuple[str, str]:
+        """The link that has the pin, and the body that has the slot."""
+        return self.link, self.on
+
+    @property
+    def points(self) -> tuple[tuple[str, str], ...]:
+        """The pin and the origin, each with its body."""
+        return (self.link, self.point), (self.on, self.origin)
+
+    @property
+    def route(self) -> tuple[str, str]:
+        """From the body that has the slot to the link."""
+        return self.on, self.link
+
+    @property
+    def places(self) -> tuple[tuple[float, float], ...]:
+        """Points of the curve in its axes, m."""
+        table = self.table
+        return self.points_given if table is None else (*zip(table.x, table.y, strict=True),)
+
+    @property
+    def curve(self) -> PlaneCurve:
+        """The slot's middle line, in its axes."""
+        from equipoise.mechanism.formulas.plane_curves import curve_through
+
+        return curve_through(self.places, self.closed)
+
+    def rider(self) -> Rider:
+        """A body at the pin, whose x axis goes along the curve."""
+        held = {self.link: {self.name: self.point}}
+        track = Track(self.curve, self.origin, self.direction)
+        return Rider(self.link, self.on, {self.name: (0.0, 0.0)}, held, track=track)
+
+    def values(self, at: Placed) -> Mapping[str, Any]:
+        """Arc length from the first point to the pin, m, and the pin's speed along that, m/s."""
+        at.on_track(self.name, BEYOND)
+        distance, speed = at.along(self.name)
+        return {"distance": distance, "speed": speed}
+
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with it in a machine of these bodies."""
+        yield from self.wrong_bodies(where, bodies)
+        for key_name, (body, point) in zip(("point", "origin"), self.points, strict=True):
+            if body in bodies:
+                yield from unknown_point(f"{where}.{key_name}", point, body, bodies)
+        if bool(self.points_given) == (self.table is not None):
+            yield ModelError(where, Note("give exactly one of points and table"))
+            return
+        at = f"{where}.points" if self.table is None else f"{where}.table"
+        yield from (ModelError(at, wrong) for wrong in self._wrong_places())
+
+    def _wrong_places(self) -> Iterator[Note]:
+        places = [complex(*place) for place in self.places]
+        fewest = FEWEST_CLOSED if self.closed else FEWEST
+        if not fewest <= len(places) <= MOST_POINTS:
+            yield Note("got {count} points; give {fewest} to {most}",
+                       count=len(places), fewest=fewest, most=MOST_POINTS)  # fmt: skip
+            return
+        steps = [abs(b - a) for a, b in pairwise(places)]
+        size = sum(steps)
+        for number, step in enumerate(steps, 1):
+            if not step > NEAR * size:
+                yield Note("points {number} and {after} coincide; leave one of them out",
+                           number=number, after=number + 1)  # fmt: skip
+                return
+        if self.closed and not abs(places[-1] - places[0]) > NEAR * size:
+            yield Note("the last point is the first again, to which a closed curve goes on by "
+                       "itself; leave it out")  # fmt: skip
+
+    def too_sharp(self, radius: float) -> Note | None:
+        """Say where the curve bends too sharply for a pin of this radius, m; None where it does
+        not.
+        """
+        least, at = self.curve.sharpest
+        if least > radius:
+            return None
+        return Note(
+            "its radius of curvature is {least} at {at} from the first point, and the pin has a "
+            "radius of {radius}; give points of a curve that bends less sharply, or a thinner pin",
+            least=told(least, "length"), at=told(at, "length"), radius=told(radius, "length"),
+        )  # fmt: skip
+
+    def sentence(self) -> Note:
+        """Its length, its pin and its bodies, for a report."""
+        return Note("Curved slot: {point} of {link} on a curve of {length} in {on}",
+                    point=self.point, link=self.link, on=self.on,
+                    length=told(self.curve.length, "length"))  # fmt: skip
+
+    def summary(self) -> str:
+        """All its numbers, in a line of `check`."""
+        kind = "closed curve" if self.closed else "curve"
+        line = f"{kind} through {len(self.places)} points, {told(self.curve.length, 'length')} long"
+        radius, at = self.curve.sharpest
+        bend = (
+            f", smallest radius of curvature {told(radius, 'length')} at {told(at, 'length')}"
+            if radius < float("inf")
+            else ""
+        )
+        return f"curved slot: {self.point} of {self.link} in {self.on}, {line}{bend}"
