@@ -27,13 +27,13 @@ class TracedCurve:
         powers = [
             Pair(pieces.value(one.real), pieces.value(one.imag)) for one in self.curve.powers.T
         ]
-        return tuple(plane_piece(way, *powers))  # type: ignore[call-arg,no-untyped-call]
+        return tuple(plane_piece(way, *powers))  # type: ignore[no-untyped-call]
 
     def distance(self, s: Any) -> Any:
         """Arc length from the beginning, m."""
         knots, powers = self.curve.arcs
         way, pieces = self._place(s, knots)
-        return plane_piece(way, *map(pieces.value, powers.T))[0]  # type: ignore[call-arg,no-untyped-call]
+        return plane_piece(way, *map(pieces.value, powers.T))[0]  # type: ignore[no-untyped-call]
 
     def turned(self, rotation: Any) -> Any:
         """The parameter of a closed curve, of which exp(i s) is known: by halves of a turn, as the

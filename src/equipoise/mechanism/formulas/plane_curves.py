@@ -88,7 +88,7 @@ class PlaneCurve:
         s, _ = self.place(s)
         knots, powers = self.arcs
         piece = np.searchsorted(knots[1:-1], s, side="right")
-        value: Array = plane_piece(s - knots[piece], *np.moveaxis(powers[piece], -1, 0))[0]  # type: ignore[call-arg,no-untyped-call]
+        value: Array = plane_piece(s - knots[piece], *np.moveaxis(powers[piece], -1, 0))[0]  # type: ignore[no-untyped-call]
         return value
 
     def place(self, s: Any) -> tuple[Array, Array]:
@@ -105,7 +105,7 @@ class PlaneCurve:
         """Place and its first three derivatives by the parameter, complex, each as `s` (...)."""
         s, piece = self.place(s)
         powers = np.moveaxis(self.powers[piece], -1, 0)
-        levels: tuple[Array, Array, Array, Array] = plane_piece(s - self.knots[piece], *powers)  # type: ignore[call-arg,no-untyped-call]
+        levels: tuple[Array, Array, Array, Array] = plane_piece(s - self.knots[piece], *powers)  # type: ignore[no-untyped-call]
         return levels
 
     @cached_property
@@ -119,7 +119,7 @@ class PlaneCurve:
         """Parameter of the nearest place of the curve, of places (...), complex."""
         place = np.asarray(place, dtype=complex)
         there = self.at(self.samples)[0]
-        s = self.samples[np.argmin(np.abs(there - place[..., None]), axis=-1)]
+        s: Array = self.samples[np.argmin(np.abs(there - place[..., None]), axis=-1)]
         most = float(np.max(np.diff(self.samples)))
         for _ in range(REFINED):
             c, c1, c2, _ = self.at(s)
