@@ -137,44 +137,64 @@ def conditions(
     for output in wanted:
         if output not in OUTPUTS:
             raise UsageError(unknown(output, OUTPUTS, "output of this kind"))
-    scale = parameter_scales(machine)
-    effects, turns = _effects(machine, wanted)
-    matrix = _must_vanish(effects * scale[:, None, None], turns, kind)
-    leading, rows = _grouped(matrix, scale)
-    names, values = parameter_names(machine), parameter_values(machine)
-    return Conditions(
-        kind,
-        wanted,
-        names,
-        rows,
-        rows @ values,
-        tuple(UNITS[names[k][1]] for k in leading),
-        tuple(reading(machine, row) for row in rows),
-        bool(machine.drive.crank),
-    )
+    return ParameterEffects.of(machine).conditions(kind, wanted)
+
+
+@dataclass(frozen=True, eq=False)
+class ParameterEffects:
+    """What one unit of each inertial parameter does at 1 rad/s, over one cycle.
+
+    regressor : shaking force (P, N) and moment (P, N) at N crank angles.  turns : of a cycle.
+    """
+
+    machine: Machine
+    regressor: Found
+    turns: int
+
+    @classmethod
+    def of(cls, machine: Machine) -> ParameterEffects:
+        """Compute the effects of a machine; raises what `conditions` does."""
+        turns = assemble(machine).cycle.turns
+        motion = move(machine, max(LEAST_ANGLES, min(ANGLES, MOST_ANGLES // turns)), 1.0, 0.0)
+        return cls(machine, Found(motion, regressor(motion)), turns)
+
+    def conditions(self, kind: Kind, outputs: Sequence[str]) -> Conditions:
+        """Conditions under which outputs vanish or are pure sines, as `conditions` returns them."""
+        machine = self.machine
+        scale = parameter_scales(machine)
+        effects = self._on(outputs)
+        matrix = _must_vanish(effects * scale[:, None, None], self.turns, kind)
+        leading, rows = _grouped(matrix, scale)
+        names, values = parameter_names(machine), parameter_values(machine)
+        return Conditions(
+            kind,
+            tuple(outputs),
+            names,
+            rows,
+            rows @ values,
+            tuple(UNITS[names[k][1]] for k in leading),
+            tuple(reading(machine, row) for row in rows),
+            bool(machine.drive.crank),
+        )
+
+    def _on(self, outputs: Sequence[str]) -> Array:
+        """Effect of each parameter on each component (P, C, N).
+
+        Moments are divided by the size of the machine, to stand beside forces.
+        """
+        parts: list[Array] = []
+        for output in map(DECLARED.__getitem__, outputs):
+            whole = output.component(output.vector(self.regressor))
+            if output.dimension == "torque":
+                whole = whole / machine_size(self.machine)
+            parts += [whole.real, whole.imag] if output.is_vector else [whole]
+        return np.stack(parts, axis=1)
 
 
 def parameter_scales(machine: Machine) -> Array:
     """What one unit of mass at the size of the machine makes of each parameter (P,)."""
     size = machine_size(machine)
     return np.tile([1.0, size, size, size**2], len(machine.links))
-
-
-def _effects(machine: Machine, outputs: tuple[str, ...]) -> tuple[Array, int]:
-    """Effect of each parameter on each component over a cycle (P, C, N), and the cycle's turns.
-
-    At 1 rad/s; moments are divided by the size of the machine, to stand beside forces.
-    """
-    turns = assemble(machine).cycle.turns
-    motion = move(machine, max(LEAST_ANGLES, min(ANGLES, MOST_ANGLES // turns)), 1.0, 0.0)
-    found = Found(motion, regressor(motion))
-    parts: list[Array] = []
-    for one in map(DECLARED.__getitem__, outputs):
-        whole = one.component(one.vector(found))
-        if one.dimension == "torque":
-            whole = whole / machine_size(machine)
-        parts += [whole.real, whole.imag] if one.is_vector else [whole]
-    return np.stack(parts, axis=1), turns
 
 
 def _must_vanish(effects: Array, turns: int, kind: Kind) -> Array:

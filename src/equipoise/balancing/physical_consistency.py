@@ -18,7 +18,7 @@ import numpy as np
 from equipoise.balancing.linear_conditions import (
     SHOWN,
     Conditions,
-    conditions,
+    ParameterEffects,
     parameter_scales,
 )
 from equipoise.balancing.program import Affine, NoSolutionError, Program
@@ -307,11 +307,12 @@ def feasibility(machine: Machine) -> Feasibility:
     MassError : a link has no mass given.
     MotionError : the linkage cannot turn fully.
     """
-    return Feasibility(*(_answer(machine, what) for what in ASKED))
+    effects = ParameterEffects.of(machine)
+    return Feasibility(*(_answer(machine, effects, what) for what in ASKED))
 
 
-def _answer(machine: Machine, what: str) -> Answer:
-    masses = ConsistentMasses.of(machine, conditions(machine, "zero", ASKED[what]))
+def _answer(machine: Machine, effects: ParameterEffects, what: str) -> Answer:
+    masses = ConsistentMasses.of(machine, effects.conditions("zero", ASKED[what]))
     added = masses.least_added()
     if added is not None:
         return Answer(what, True, added, True, _possible(what, added), None)
