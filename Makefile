@@ -67,8 +67,9 @@ TEST = $(BIN)/python -m pytest $(WORKERS)
 test: bundle
 	$(TEST) -m "not documentation" --ignore=tests/browser tests
 
+# A browser waits for frames and for answers: three workers keep two processors busy.
 browser: bundle
-	$(TEST) tests/browser
+	PYTEST_XDIST_AUTO_NUM_WORKERS=$$(( ($$(getconf _NPROCESSORS_ONLN) * 3 + 1) / 2 )) $(TEST) tests/browser
 
 # The snippets of the pages, the site that is made of them, and the gallery of all pictures.
 documentation: $(VENV)/.installed-test

@@ -61,7 +61,7 @@ def host(hosted: Site) -> Iterator[str]:
         yield address
 
 
-@pytest.fixture(scope="module")  # longer, and Playwright's event loop would disturb other tests
+@pytest.fixture(scope="package")  # longer, and Playwright's event loop would disturb other tests
 def browser() -> Iterator[Browser]:
     """A Chromium."""
     if path_of_chromium() is None:
