@@ -18,8 +18,6 @@ from equipoise.balancing.balanced import Balanced, Price
 from equipoise.balancing.beyond_masses import Beyond, beyond_masses
 from equipoise.balancing.headlines import (
     Advice,
-    AssessedMachine,
-    Pairs,
     assessed,
     headline_objectives,
     watched_of,
@@ -41,6 +39,11 @@ from equipoise.balancing.remedies import (
     with_cut,
     with_hole,
     with_sectors,
+)
+from equipoise.balancing.resonant_mounts import (
+    ResonantMounts,
+    outweighs,
+    resonant_mounts_for,
 )
 from equipoise.balancing.room import Room, pivots_of, room_about, rooms_of_planes
 from equipoise.balancing.workshop import Change
@@ -281,17 +284,35 @@ class _Adviser:
         worse = self.before.worse_in(after)
         share = max(found.added_mass, 0.0) / (self.machine.mass or 1.0)
         enough = bool(is_worth(found.gain, share)) and self.keeps_limits(found)
-        return replace(found, advice=self.advice(after, worse, enough and not worse))
-
-    def advice(self, after: AssessedMachine, worse: Pairs = (), offered: bool = False) -> Advice:
-        """What a machine with a remedy is judged by."""
-        before = self.before.headline
-        return Advice(before, after.headline, worse, offered, self.beyond)
+        if self.mounts is not None:
+            enough = enough and outweighs(found.gain, self.mounts)
+        offered, before = enough and not worse, self.before.headline
+        beyond = self.beyond
+        if offered:  # what else helps is for the machine with the remedy
+            more = self.mounts is not None and self.mounts.gain > found.gain
+            mounts = self.mounts if more else None
+            beyond = beyond_masses(after.analysis, after.headline, mounts)
+        return replace(found, advice=Advice(before, after.headline, worse, offered, beyond))
 
     @cached_property
     def beyond(self) -> Beyond:
-        """What helps beyond masses."""
-        return beyond_masses(self.before.analysis, self.before.headline)
+        """What helps the machine as it is beyond masses."""
+        return beyond_masses(self.before.analysis, self.before.headline, self.mounts)
+
+    @cached_property
+    def mounts(self) -> ResonantMounts | None:
+        """The resonance beside a speed at which the machine runs, and other mounts."""
+        aims = gauge_aims(self.machine)
+        if not aims:
+            return None
+        speeds = {speed for one in aims for speed in one.speeds} or {self.machine.drive.speed}
+        before, plan = self.values(aims), Balance(objectives=aims)
+
+        def gain(machine: Machine) -> float:
+            pairs = zip(before, Problem.values_of(machine, aims), strict=True)
+            return 1 - plan.combined([new / old for old, new in pairs if old]) / len(aims)
+
+        return resonant_mounts_for(self.machine, sorted(speeds, key=abs), gain)
 
     def keeps_limits(self, found: Balanced) -> bool:
         """Whether the limits that the file gives are kept."""
@@ -302,7 +323,8 @@ class _Adviser:
         objectives = next(self.aims(), headline_objectives(self.before.headline))
         plan = replace(self.own, objectives=objectives)
         found = self.result(self.machine, (), plan)
-        return replace(found, advice=self.advice(self.before))
+        headline = self.before.headline
+        return replace(found, advice=Advice(headline, headline, (), False, self.beyond))
 
 
 def _is_aim(one: FigureAssessment) -> bool:

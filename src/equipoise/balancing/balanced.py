@@ -376,10 +376,12 @@ class Balanced(Result):
             ],
             present="advice",
         ),
-        "flywheel": ResultOutput(
-            "there: a flywheel that would keep the speed steady: `inertia`, kg m^2, on a shaft "
-            "that turns `ratio` times as fast as the crank; or null",
-            read=lambda found: _plain(found.advice.beyond.flywheel),
+        "flywheels": ResultOutput(
+            "there: flywheels that would keep the speed steady: list `choices` of `fluctuation`, "
+            "`inertia`, kg m^2, on a shaft that turns `ratio` times as fast as the crank, "
+            "`diameter` and `thickness`, m, and `mass`, kg, of a steel disc; `mean_torque` and "
+            "`largest_torque`, N m, with and without, and `power`, W; or null",
+            read=lambda found: _plain(found.advice.beyond.flywheels),
             present="advice",
         ),
         "counterbalance": ResultOutput(
@@ -389,15 +391,37 @@ class Balanced(Result):
             present="advice",
         ),
         "shafts": ResultOutput(
-            "there: two balance shafts as fast as the crank: unbalances `forward` and `backward`, "
-            "kg m, and `gain`; or null",
+            "there: two balance shafts as fast as the crank, beside the change that is offered: "
+            "unbalances `forward` and `backward`, kg m, and `gain`; or null",
             read=lambda found: _plain(found.advice.beyond.shafts),
             present="advice",
         ),
-        "lever": ResultOutput(
-            "there: of the cylinder whose force is largest: `arm`, m, beside the pin `pivot`, at "
-            "`crank_angle`, rad; or null",
-            read=lambda found: _plain(found.advice.beyond.lever),
+        "piston": ResultOutput(
+            "there: the `share` of what reciprocates that is balanced, shaking force `along` and "
+            "`across` the stroke, N, and `half_along` and `half_across` with half of it balanced "
+            "by `moment`, kg m, at `direction`, rad, in the axes of the crank; or null",
+            read=lambda found: _plain(found.advice.beyond.piston),
+            present="advice",
+        ),
+        "cylinder": ResultOutput(
+            "there: the cylinder whose force is largest: `push` and `pull`, N, `closed` and "
+            "`open`, m, `bore` and `rod`, m, at `pressure`, Pa, `dead`, m, of its closed length, "
+            "`is_buildable`, `is_slender`, `pivot`, and `lever`, a longer one; or null",
+            read=lambda found: _plain(found.advice.beyond.cylinder),
+            present="advice",
+        ),
+        "transmission": ResultOutput(
+            "there: the `joint` whose transmission angle is poor: `transmission`, `crank_angle` "
+            "and `limit`, rad, `force`, N, and the `link` of which the length `between` two "
+            "points is to grow by `share` to `length`, m, for an angle of `mended`, rad; or null",
+            read=lambda found: _plain(found.advice.beyond.transmission),
+            present="advice",
+        ),
+        "mounts": ResultOutput(
+            "there: the resonance beside a speed at which the machine runs: `speed`, `near`, "
+            "`avoid` and `away`, rad/s, the `mounts` of it, and the `factor` of their stiffness "
+            "that takes the share `gain` off what the gauges read; or null",
+            read=lambda found: _plain(found.advice.beyond.mounts),
             present="advice",
         ),
         "notes": NOTES,

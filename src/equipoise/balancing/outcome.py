@@ -8,10 +8,11 @@ from collections.abc import Iterator
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from equipoise.balancing.beyond_masses import STEADY, Beyond
+from equipoise.balancing.beyond_masses import sentences_beyond
 from equipoise.balancing.headlines import Advice
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.remedies import LEAST_GAIN
+from equipoise.balancing.resonant_mounts import mount_sentences, outweighs
 from equipoise.balancing.told import (
     aims_told,
     capital,
@@ -22,7 +23,7 @@ from equipoise.balancing.told import (
 )
 from equipoise.balancing.workshop import sentences
 from equipoise.i18n import say, to_say
-from equipoise.quantities import angle, change, display, percent, told
+from equipoise.quantities import change, display, percent, told
 from equipoise.results.blocks import Block, Cell, Change, Column, Table, Text
 from equipoise.results.outputs import objective_named, shown_in
 from equipoise.results.yardsticks import FigureAssessment, sentence
@@ -82,6 +83,7 @@ def _heavy(balanced: Balanced) -> Iterator[str]:
 def nothing_told(found: Balanced) -> Iterator[str]:
     """That balancing brings nothing; how small the aims are, and what is proved."""
     if found.advice is not None:
+        yield from _mounts_first(found.advice)
         yield from reasons_to_leave(found)
         yield from sentences_beyond_masses(found)
         return
@@ -106,8 +108,6 @@ def good_already(found: Balanced) -> str:
 
 # -- where nobody said what may be changed ---------------------------------------------------------
 
-POOR = 1.1
-"""Times the usual limit, 35 degrees, from which a transmission angle is mentioned here."""
 MOST_LARGE, MOST_WORSE = 3, 2
 """Large figures, and those that a remedy would make worse, that are named."""
 
@@ -156,66 +156,19 @@ def reasons_to_leave(found: Balanced) -> Iterator[str]:
 
 
 def sentences_beyond_masses(found: Balanced) -> Iterator[str]:
-    """What helps beyond masses: a flywheel and balance shafts; where masses do not help, a weight
-    on a slow crank, a longer lever, other lengths.
+    """What helps beyond masses, with the change that is offered, if one is; without one, other
+    mounts stand before that masses are best left.
     """
-    if found.advice is None:
-        return
-    beyond, crank = found.advice.beyond, found.original.drive.link
-    if (flywheel := beyond.flywheel) is not None:
-        inertia = told(flywheel.inertia, "inertia", digits=2)
-        share = percent(STEADY, 0)
-        on_crank = to_say(
-            "A flywheel of {inertia} more on {crank} would keep its speed within {share} %, from "
-            "slowest to fastest."
-        )
-        geared = to_say(
-            "A flywheel of {inertia} on a shaft that turns {ratio} times as fast as {crank} would "
-            "keep the speed within {share} %, from slowest to fastest."
-        )
-        template = on_crank if flywheel.ratio == 1 else geared
-        yield say(template, inertia=inertia, crank=crank, share=share, ratio=flywheel.ratio)
-    if (shafts := beyond.shafts) is not None:
-        yield say(
-            "{forward} on {crank}, or on a shaft that turns with it, and a shaft of {backward} "
-            "against it would take {gain} % off the shaking force of the machine as it is.",
-            crank=crank,
-            forward=told(shafts.forward, "unbalance", "kg mm", digits=2),
-            backward=told(shafts.backward, "unbalance", "kg mm", digits=2),
-            gain=percent(shafts.gain, 0),
-        )
-    if not found.helps:
-        yield from _instead_of_masses(found, beyond)
+    if found.advice is not None:
+        if found.helps:
+            yield from _mounts_first(found.advice)
+        machine = found.machine if found.helps else found.original
+        yield from sentences_beyond(found.advice.beyond, machine, found.helps)
 
 
-def _instead_of_masses(found: Balanced, beyond: Beyond) -> Iterator[str]:
-    assert found.advice is not None
-    if (weight := beyond.counterbalance) is not None:
-        yield say(
-            "A weight of {moment} on {crank}, at {direction} in its axes, would take {gain} % off "
-            "the swing of the drive torque.",
-            moment=told(weight.moment, "unbalance", "kg m", digits=2),
-            crank=found.original.drive.link,
-            direction=angle(weight.direction, 0),
-            gain=percent(weight.gain, 0),
-        )
-    if (lever := beyond.lever) is not None:
-        yield say(
-            "It pushes {arm} beside {pivot} where its force is largest, at {angle} of the cycle: a "
-            "lever twice as long there halves the force and doubles the stroke.",
-            arm=told(lever.arm, "length", digits=3),
-            pivot=lever.pivot,
-            angle=angle(lever.crank_angle),
-        )
-    poor = (one for one in found.advice.before if one.yardstick_kind == "transmission")
-    if (worst := next(poor, None)) is not None and worst.ratio >= POOR:
-        yield say(
-            "The transmission angle at {joint} comes to {value}, beyond the usual limit of "
-            "{limit}; other lengths or places of pivots mend that, masses do not.",
-            joint=worst.item,
-            value=angle(worst.value),
-            limit=angle(worst.yardstick),
-        )
+def _mounts_first(advice: Advice) -> Iterator[str]:
+    if advice.beyond.mounts is not None:
+        yield from mount_sentences(advice.beyond.mounts)
 
 
 def remedy_named(found: Balanced) -> str:
@@ -234,6 +187,9 @@ def why_not(found: Balanced) -> str:
         return ""
     if found.gain < LEAST_GAIN:
         return say("that is too little")
+    mounts = advice.beyond.mounts
+    if mounts is not None and not outweighs(found.gain, mounts):
+        return say("other mounts bring more")
     if advice.worse:
         figures = [_grown(pair) for pair in advice.worse[:MOST_WORSE]]
         if more := len(advice.worse) - len(figures):

@@ -149,7 +149,8 @@ def sentences(change: Change) -> Iterator[str]:
         yield "; ".join(_gears(link, values))
     else:
         *others, last = values["phases"]
-        phases = ", ".join([*(_direction(one, named=False) for one in others), _direction(last)])
+        plain = (direction_named(one, named=False) for one in others)
+        phases = ", ".join([*plain, direction_named(last)])
         yield say("Rows: set the phases to {phases}", phases=phases)
 
 
@@ -181,7 +182,7 @@ def _added(link: str, values: dict[str, Any]) -> str:
         "{link}: add a counterweight of {mass}, its centre of mass {radius} from {point} "
         "at {direction} in the axes of the link ({moment})",
         radius=told(values["radius"], "length"),
-        direction=_direction(values["direction"]),
+        direction=direction_named(values["direction"]),
         moment=told(values["moment"], "unbalance", "g mm"),
         **words,
     )
@@ -193,7 +194,7 @@ def _taken_off(link: str, values: dict[str, Any]) -> str:
         "mass": told(values["mass"], "mass"),
         "radius": told(values["radius"], "length"),
         "point": values["at"],
-        "direction": _direction(values["direction"]),
+        "direction": direction_named(values["direction"]),
     }
     if "hole_radius" in values:
         return say(
@@ -235,8 +236,8 @@ def _made(piece: Piece, center: str) -> str:
     return say(
         "sector of {mass} about {at}, radius {inner} to {outer}, {thickness} thick, {wide} wide, "
         "its middle at {direction}",
-        wide=_direction(piece["angle"]),
-        direction=_direction(piece["direction"]),
+        wide=direction_named(piece["angle"]),
+        direction=direction_named(piece["direction"]),
         **words,
     )
 
@@ -283,7 +284,7 @@ def _gears(link: str, values: dict[str, Any]) -> Iterator[str]:
         )
 
 
-def _direction(radians: float, named: bool = True) -> str:
+def direction_named(radians: float, named: bool = True) -> str:
     """An angle above minus half a turn, with its unit where that is to be named."""
     unit = display("angle")
     radians += 2 * pi * (round(degrees(radians), 2) <= -180)

@@ -14,7 +14,6 @@ import equipoise as eq
 import support.found
 from equipoise.balancing.advice import advise, running_speeds
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.beyond_masses import STEADY, Beyond, flywheel_for
 from equipoise.balancing.blocks import outcome_blocks
 from equipoise.balancing.headlines import worse_headlines
 from equipoise.balancing.outcome import helps_told
@@ -76,7 +75,7 @@ def test_the_file_s_own_plan_is_carried_out() -> None:
     found, asked = advise(machine), eq.balance(machine)
     assert found.plan is machine.balance and found.advice is None
     assert found.objectives == asked.objectives
-    assert not {"large", "offered", "flywheel"} & found.to_dict().keys()
+    assert not {"large", "offered", "flywheels"} & found.to_dict().keys()
 
 
 def test_a_couple_is_aimed_at_where_that_is_what_is_large() -> None:
@@ -351,32 +350,11 @@ def test_holes_take_off_what_is_too_heavy() -> None:
     assert "drill a hole of" in " ".join(helps_told(found))
 
 
-# -- flywheels -------------------------------------------------------------------------------------
-
-
-def test_a_flywheel_stores_the_work_that_the_torque_swings_by() -> None:
-    """By the angular momentum that a crank would gain: the speed swings within the share told."""
-    machine = bare("brush-cutter-engine")
-    found = advise(machine)
-    assert found.advice is not None
-    flywheel = found.advice.beyond.flywheel
-    assert flywheel is not None and flywheel.ratio == 1
-    analysis = eq.analyze(machine, 7200)
-    torque, speed = analysis.forces.drive_torque, machine.drive.speed
-    whole = machine.drive.flywheel + flywheel.inertia
-    gained = np.cumsum(np.mean(torque) - torque) * (2 * pi * analysis.motion.turns / len(torque))
-    speeds = np.sqrt(speed**2 + 2 * gained / whole)
-    assert np.ptp(speeds) / np.mean(speeds) == pytest.approx(STEADY, rel=0.05)
-    heavy = machine.with_drive(flywheel=1.1 * whole)
-    assert flywheel_for(eq.analyze(heavy), found.advice.before) is None
-    assert "A flywheel of" in " ".join(helps_told(found))
-
-
 # -- the rest --------------------------------------------------------------------------------------
 
 
 def figures_of_advice(found: Balanced) -> dict[str, object]:
-    return {key: found.to_dict()[key] for key in ("offered", "large", "tried", "flywheel")}
+    return {key: found.to_dict()[key] for key in ("offered", "large", "tried", "flywheels")}
 
 
 def test_advice_is_machine_readable() -> None:
@@ -405,82 +383,13 @@ def test_mounts_without_a_steady_state_leave_what_shakes() -> None:
     assert not any(one.output.startswith("gauges") for one in advise(loose).plan.objectives)
 
 
-# -- beyond masses ---------------------------------------------------------------------------------
+# -- machines of other trades ----------------------------------------------------------------------
 
 ADVISED = Path(support.found.__file__).parent / "advised"
 
 
 def advised(name: str) -> eq.Machine:
     return eq.load(ADVISED / f"{name}.toml")
-
-
-def beyond(machine: eq.Machine) -> Beyond:
-    found = advise(machine)
-    assert found.advice is not None
-    return found.advice.beyond
-
-
-def test_a_flywheel_of_a_slow_crank_sits_on_a_faster_shaft() -> None:
-    """As of a press: on its crank it would weigh more than the press."""
-    machine = advised("press")
-    flywheel = beyond(machine).flywheel
-    assert flywheel is not None and flywheel.ratio > 1
-    analysis = eq.analyze(machine, acceleration=0.0)
-    torque, sampling = analysis.forces.drive_torque, analysis.motion
-    work = np.cumsum(torque - sampling.mean(torque)) * 2 * pi / len(torque)
-    on_crank = np.ptp(work) / (STEADY * machine.drive.speed**2)
-    assert flywheel.inertia * flywheel.ratio**2 == pytest.approx(on_crank, rel=0.1)
-    heavy = machine.mass * 0.42**2 / 2
-    assert flywheel.inertia <= heavy < on_crank / (flywheel.ratio - 1) ** 2
-
-
-def test_a_weight_on_a_slow_crank_takes_the_torque_of_order_1() -> None:
-    """With it on the crank the swing is what is told, by a whole analysis."""
-    machine = advised("pump-jack")
-    weight = beyond(machine).counterbalance
-    assert weight is not None
-    place = weight.moment / 1500 * np.exp(1j * weight.direction)
-    link = machine.links["crank"].with_added(1500.0, (place.real, place.imag), 0.0)
-    changed = machine.with_link("crank", mass=link.mass, center_of_mass=link.center_of_mass,
-                                inertia=link.inertia)  # fmt: skip
-    swings = [float(np.std(eq.analyze(one).forces.drive_torque)) for one in (machine, changed)]
-    assert 1 - swings[1] / swings[0] == pytest.approx(weight.gain, abs=1e-6)
-    fast = machine.with_drive(speed=60 * RPM)
-    assert beyond(fast).counterbalance is None
-
-
-def test_balance_shafts_take_the_force_of_order_1() -> None:
-    """Two unbalances that turn with and against the crank, put beside the machine's own force."""
-    machine = bare("four-stroke-engine")
-    shafts = beyond(machine).shafts
-    assert shafts is not None
-    analysis = eq.analyze(machine, acceleration=0.0)
-    force, angle = analysis.forces.shaking_force.value, analysis.motion.crank_angle
-    mean = analysis.motion.mean
-    square = machine.drive.speed**2
-    ahead, against = square * shafts.forward, square * shafts.backward
-    left = min(
-        float(np.sqrt(mean(np.abs(force + s * ahead * np.exp(1j * angle)
-                                  + t * against * np.exp(-1j * angle)) ** 2)))
-        for s in np.exp(1j * np.radians(np.arange(0, 360, 5)))
-        for t in np.exp(1j * np.radians(np.arange(0, 360, 5)))
-    )  # fmt: skip
-    whole = float(np.sqrt(mean(np.abs(force) ** 2)))
-    assert 1 - left / whole == pytest.approx(shafts.gain, abs=2e-3)
-    assert beyond(bare("yamashita-1")).shafts is None
-
-
-def test_the_lever_of_a_cylinder_is_that_of_virtual_work() -> None:
-    """dL = r dtheta, by differences of its length over the angle of the boom."""
-    machine = bare("hydraulic-loader")
-    lever = beyond(machine).lever
-    assert lever is not None and lever.pivot == "P"
-    motion = eq.move(machine, [lever.crank_angle - 1e-3, lever.crank_angle + 1e-3])
-    length = np.abs(motion.points["B"].place - motion.points["A"].place)
-    turned = np.diff(motion.links["boom"].angle)
-    assert lever.arm == pytest.approx(abs(float((np.diff(length) / turned)[0])), rel=1e-4)
-    of_stick = beyond(advised("excavator")).lever
-    assert of_stick is not None and of_stick.pivot == "Q"
 
 
 def test_a_torque_that_weights_can_steady_is_an_aim() -> None:

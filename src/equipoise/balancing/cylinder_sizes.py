@@ -1,0 +1,216 @@
+"""What a cylinder whose force is large has to be: its bore, its rod, and whether it can be built.
+
+Closed, a cylinder is as long as its stroke and what piston, gland and eyes need; a longer lever
+takes less force over more stroke, and is named only where the cylinder of it can be built.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import product
+from math import pi
+
+import numpy as np
+
+from equipoise.i18n import say, to_say
+from equipoise.quantities import display, number, percent, told
+from equipoise.results.analysis import Analysis
+from equipoise.results.yardsticks import FigureAssessment, pusher_of
+from equipoise.signals import Array
+
+BAR = 1e5
+"""Pa."""
+PRESSURE = 200 * BAR
+"""Pa, at which a bore is sized: 200 bar, as of tractors and small hydraulic units."""
+STOCK = (8, 10, 12, 16, 20, 25, 32, 40, 50, 63, 80, 100, 125, 140, 160, 180, 200, 220, 250, 280,
+         320, 360, 400, 450, 500)  # fmt: skip
+"""Bores, mm, of ISO 3320; above 125 of its second choice, too."""
+RODS = (4, 5, 6, 8, 10, 12, 14, 16, 18, 20, 22, 25, 28, 32, 36, 40, 45, 50, 56, 63, 70, 80, 90,
+        100, 110, 125, 140, 160, 180, 200, 220, 250, 280, 320, 360)  # fmt: skip
+"""Diameters of rods, mm, of ISO 3320."""
+THIN_ROD, THICK_ROD = 0.45, 0.75
+"""Rod over bore: of the usual thin one, and the most that leaves an area to pull with."""
+MODULUS, SAFETY = 210e9, 3.5
+"""Pa, of steel; over the load at which a rod with pins at both ends buckles."""
+DEAD = 3.0
+"""Bores that piston, gland and both eyes take of the closed length."""
+LEVERS, LESS = (1.1, 1.2, 1.3), 0.15
+"""Times the distance of a pin from the pivot that are tried; share of the force that has to go."""
+
+
+@dataclass(frozen=True)
+class LongerLever:
+    """A pin of a cylinder farther from the pivot.
+
+    point : the pin.  distance : m, from the pivot.  force : N, largest then.
+    closed, open : m, lengths of the cylinder then.
+    """
+
+    point: str
+    distance: float
+    force: float
+    closed: float
+    open: float
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """The cylinder whose force is the largest figure.
+
+    push, pull : N, largest each way.  closed, open : m, its shortest and longest length.
+    pressure : Pa, at which `bore` (m) holds the force.  rod : m, that does not buckle.
+    dead : m, of its closed length, for piston, gland and eyes.
+    is_buildable : whether its stroke fits beside that.
+    is_slender : whether the rod has to be thicker than usual, so as not to buckle.
+    pivot : the pin about which it turns its link; empty where there is no single one.
+    lever : a longer one whose cylinder can be built, and that takes enough of the force.
+    is_lever_stopped : whether there is none because no cylinder of one can be built.
+    """
+
+    push: float
+    pull: float
+    closed: float
+    open: float
+    pressure: float
+    bore: float
+    rod: float
+    dead: float
+    is_buildable: bool
+    is_slender: bool
+    pivot: str
+    lever: LongerLever | None
+    is_lever_stopped: bool
+
+
+def cylinder_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> Cylinder | None:
+    """The cylinder whose force is the largest figure; None where it is no cylinder's, or small, or
+    where no bore in stock holds it.
+    """
+    machine, motion = analysis.machine, analysis.resolved.motion
+    largest = next(iter(entries), None)
+    drive = None if largest is None else pusher_of(machine, largest.output)
+    if largest is None or drive is None or drive.between is None or not largest.is_large:
+        return None
+    force = analysis.outputs[largest.output].resolved
+    first, second = (motion.points[at].place for at in drive.between)
+    length = np.abs(second - first)
+    if (sizes := _sized(force, length)) is None:
+        return None
+    bore, rod = sizes
+    closed, most = float(np.min(length)), float(np.max(length))
+    bodies = machine.bodies
+    near, far = (set(bodies[body]) for body in drive.ends(bodies))
+    shared = near & far
+    pivot = next(iter(shared)) if len(shared) == 1 else ""
+    levers = [*_longer(analysis, force, drive.between, pivot)] if pivot else []
+    built = [one for one, fits in levers if fits]
+    return Cylinder(
+        push=float(max(np.max(force), 0.0)), pull=float(max(-np.min(force), 0.0)),
+        closed=closed, open=most, pressure=PRESSURE, bore=bore, rod=rod, dead=DEAD * bore,
+        is_buildable=_fits(closed, most, bore), is_slender=rod > _usual_rod(bore),
+        pivot=pivot, lever=min(built, key=lambda one: one.force, default=None),
+        is_lever_stopped=bool(levers) and not built,
+    )  # fmt: skip
+
+
+def _fits(closed: float, most: float, bore: float) -> bool:
+    """Whether a cylinder has room for its stroke while it is closed."""
+    return most - closed + DEAD * bore <= closed * (1 + 1e-9)
+
+
+def _usual_rod(bore: float) -> float:
+    return next(rod / 1e3 for rod in RODS if rod / 1e3 >= THIN_ROD * bore)
+
+
+def _sized(force: Array, length: Array) -> tuple[float, float] | None:
+    """The smallest bore in stock that holds forces (N,) both ways, and its rod, m.
+
+    A rod of diameter d with pins at both ends of the length L buckles from pi^3 E d^4 / (64 L^2)
+    on; that the tube is stiffer is left to the safety.
+    """
+    pushed = float(np.max(np.maximum(force, 0.0) * length**2))
+    stiff = (64 * SAFETY * pushed / (pi**3 * MODULUS)) ** 0.25
+    for bore in (size / 1e3 for size in STOCK):
+        rod = next((d / 1e3 for d in RODS if d / 1e3 >= max(stiff, THIN_ROD * bore)), None)
+        if rod is None or rod > THICK_ROD * bore:
+            continue
+        push, pull = (PRESSURE * pi / 4 * area for area in (bore**2, bore**2 - rod**2))
+        if np.max(force) <= push and -np.min(force) <= pull:
+            return bore, rod
+    return None
+
+
+def _longer(
+    analysis: Analysis, force: Array, ends: tuple[str, str], pivot: str
+) -> Iterator[tuple[LongerLever, bool]]:
+    """Longer levers of either pin that take enough of the force, and whether the cylinder of each
+    can be built.
+
+    The cylinder, which has no mass, gives the same moment about the pivot as before: with the pins
+    at a and b, seen from the pivot, its lever is |Im(conj(a) b)| / |b - a|.
+    """
+    points = analysis.resolved.motion.points
+    pins = [points[at].place - points[pivot].place for at in ends]
+    before = float(np.max(np.abs(force)))
+    moment = force * _arm(*pins)
+    for k, more in product(range(2), LEVERS):
+        moved = [pin * (more if j == k else 1.0) for j, pin in enumerate(pins)]
+        length = np.abs(moved[1] - moved[0])
+        needed = moment / _arm(*moved)
+        most, sizes = float(np.max(np.abs(needed))), _sized(needed, length)
+        if sizes is not None and most <= (1 - LESS) * before:
+            low, high = float(np.min(length)), float(np.max(length))
+            distance = float(np.max(np.abs(moved[k])))
+            yield LongerLever(ends[k], distance, most, low, high), _fits(low, high, sizes[0])
+
+
+def _arm(a: Array, b: Array) -> Array:
+    """Lever (N,) of a cylinder between two pins, seen from the pivot, m; its sign is its sense."""
+    return np.asarray(np.imag(np.conj(a) * b) / np.abs(b - a))
+
+
+# -- sentences -------------------------------------------------------------------------------------
+
+
+def cylinder_sentences(found: Cylinder) -> Iterator[str]:
+    """The bore at a pressure, the rod where it is slender, and a lever that can be built."""
+    words = {
+        "pressure": number(found.pressure / BAR, digits=3),
+        "bore": told(found.bore, "length", "mm", digits=3),
+        "rod": told(found.rod, "length", "mm", digits=3),
+        "open": told(found.open, "length", digits=3),
+    }
+    usual = to_say("At {pressure} bar a cylinder of {bore} bore with a rod of {rod} holds that.")
+    slender = to_say(
+        "At {pressure} bar a cylinder of {bore} bore holds that; {open} long, it takes a rod of "
+        "{rod} not to buckle."
+    )
+    yield say(slender if found.is_slender else usual, **words)
+    shown = display("length", [found.closed, found.open])
+    if not found.is_buildable:
+        yield say(
+            "Closed it is {closed}, which leaves no room for its stroke of {stroke} and {dead} of "
+            "piston and ends: it cannot be built so.",
+            closed=shown.with_unit(shown.text(found.closed, digits=3)),
+            stroke=shown.with_unit(shown.text(found.open - found.closed, digits=3)),
+            dead=shown.with_unit(shown.text(found.dead, digits=3)),
+        )
+    if (lever := found.lever) is not None:
+        yield say(
+            "With {point} {distance} from {pivot} it needs {share} % less force, and is from "
+            "{closed} to {open} long, which can be built.",
+            point=lever.point,
+            distance=told(lever.distance, "length", digits=3),
+            pivot=found.pivot,
+            share=percent(1 - lever.force / max(found.push, found.pull)),
+            closed=told(lever.closed, "length", digits=3),
+            open=told(lever.open, "length", digits=3),
+        )
+    elif found.is_lever_stopped and found.is_buildable:
+        yield say(
+            "A longer lever about {pivot} would need a stroke for which its closed length, "
+            "{closed}, has no room.",
+            pivot=found.pivot,
+            closed=told(found.closed, "length", digits=3),
+        )

@@ -1,0 +1,241 @@
+"""The shaking force of order 1 of a crank: balance shafts, and how much of a piston is balanced.
+
+F = A e^(ia) + B e^(-ia) + the rest, with the crank angle a: A turns with the crank, where a
+counterweight on it adds to it, B against it, where only a shaft that turns so does.  Of a piston
+alone A and B are equal, half of what reciprocates each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from math import degrees, radians
+
+import numpy as np
+
+from equipoise.balancing.workshop import direction_named
+from equipoise.i18n import say, to_say
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.quantities import display, percent, told
+from equipoise.results.analysis import Analysis
+from equipoise.results.yardsticks import FigureAssessment
+from equipoise.signals import Array
+
+SHAKES_SELF = 8.0
+"""Times its yardstick from which a force is worth two more shafts."""
+WORTHWHILE = 0.3
+"""Share of its aim from which what is not drawn here is named."""
+PISTON = 0.5
+"""Share of the shaking force (RMS) from which what turns against the crank is that of a piston."""
+CRANK_ROD_PISTON = 3
+"""Links of a machine of which a counterweight on the crank balances the piston."""
+SAME = 0.1
+"""Of what reciprocates, by which a share of it is taken for half."""
+
+
+@dataclass(frozen=True)
+class BalanceShafts:
+    """Two shafts as fast as the crank, one each way, against the force of order 1.
+
+    forward, backward : kg m, of what turns with the crank and against it.  gain : share of the RMS
+    of the shaking force that is gone.
+    """
+
+    forward: float
+    backward: float
+    gain: float
+
+
+@dataclass(frozen=True)
+class PistonBalance:
+    """How much of what reciprocates is balanced on the crank, and what half of it would bring.
+
+    share : that is balanced now; below 0 where what turns with the crank is not balanced either.
+    along, across : N, peaks of the shaking force along the stroke and across it, now.
+    half_along, half_across : N, with half of what reciprocates balanced.
+    moment : kg m, of the counterweight that this takes; direction : rad, in the axes of the crank.
+    """
+
+    share: float
+    along: float
+    across: float
+    half_along: float
+    half_across: float
+    moment: float
+    direction: float
+
+    @property
+    def is_half(self) -> bool:
+        """Whether half of what reciprocates is balanced already."""
+        return abs(self.share - 0.5) < SAME
+
+
+@dataclass(frozen=True, eq=False)
+class _FirstOrder:
+    """The shaking force (N,) of a machine with a crank, and its parts of order 1."""
+
+    analysis: Analysis
+
+    @cached_property
+    def whole(self) -> Array:
+        x, y = (self.analysis.outputs[f"shaking_force.{axis}"].resolved for axis in "xy")
+        return np.asarray(x + 1j * y)
+
+    @cached_property
+    def turned(self) -> Array:
+        return np.asarray(np.exp(1j * self.analysis.resolved.motion.crank_angle))
+
+    @cached_property
+    def ahead(self) -> complex:
+        return complex(self.analysis.resolved.motion.mean(self.whole / self.turned))
+
+    @cached_property
+    def against(self) -> complex:
+        return complex(self.analysis.resolved.motion.mean(self.whole * self.turned))
+
+    def rms(self, force: Array) -> float:
+        return float(np.sqrt(self.analysis.resolved.motion.mean(np.abs(force) ** 2)))
+
+
+def balance_shafts_for(
+    analysis: Analysis, entries: tuple[FigureAssessment, ...]
+) -> BalanceShafts | None:
+    """Balance shafts against the shaking force; None where it is not large enough for them, or
+    little of it is of order 1.
+
+    The unbalances are |A| / w^2 and |B| / w^2.
+    """
+    force = next((one for one in entries if one.output == "shaking_force"), None)
+    if force is None or not analysis.machine.has_crank or force.ratio < SHAKES_SELF:
+        return None
+    first = _FirstOrder(analysis)
+    rest = first.whole - first.ahead * first.turned - first.against / first.turned
+    gain = 1 - first.rms(rest) / first.rms(first.whole)
+    if gain < WORTHWHILE:
+        return None
+    square = analysis.resolved.motion.speed**2
+    return BalanceShafts(abs(first.ahead) / square, abs(first.against) / square, gain)
+
+
+def piston_balance_for(
+    analysis: Analysis, entries: tuple[FigureAssessment, ...]
+) -> PistonBalance | None:
+    """How much of a piston's mass is balanced; None where the shaking force is not large, or is
+    not that of one piston that a crank drives.
+
+    With the stroke in the direction s, what reciprocates has A = B' where B' = e^(2is) conj(B), of
+    which a counterweight for the share b leaves 1 - 2 b.
+    """
+    machine = analysis.machine
+    force = next((one for one in entries if one.output == "shaking_force"), None)
+    direction = _stroke_of(machine)
+    large = force is not None and force.is_large
+    if not large or direction is None or not machine.has_crank or len(machine.rows) > 1:
+        return None
+    first = _FirstOrder(analysis)
+    if np.sqrt(2) * abs(first.against) < PISTON * first.rms(first.whole):
+        return None
+    way = np.exp(1j * direction)
+    mirrored = way**2 * np.conj(first.against)
+    share = (1 - (first.ahead / mirrored).real) / 2
+    half = first.whole - first.ahead * first.turned
+    along, across = _peaks(first.whole / way)
+    half_along, half_across = _peaks(half / way)
+    crank = analysis.resolved.motion.links[machine.drive.link].angle[0]
+    start = np.exp(1j * analysis.resolved.motion.crank_angle[0])
+    # A counterweight u (complex, in the axes of the crank) shakes the frame with u w^2 e^(ia).
+    weight = -first.ahead * start / np.exp(1j * crank) / analysis.resolved.motion.speed**2
+    moment, turned = float(abs(weight)), float(np.angle(weight))
+    return PistonBalance(float(share), along, across, half_along, half_across, moment, turned)
+
+
+def _peaks(force: Array) -> tuple[float, float]:
+    """Largest of both components of a force (N,)."""
+    return float(np.max(np.abs(force.real))), float(np.max(np.abs(force.imag)))
+
+
+def _stroke_of(machine: Machine) -> float | None:
+    """Direction (rad) of the one link that slides on the frame, driven by a crank with a rod or a
+    slot between them; None of other machines.
+    """
+    guided = {one.link: one.direction for one in machine.sliders if one.on == "frame"}
+    is_plain = len(guided) == 1 and len(machine.links) <= CRANK_ROD_PISTON
+    return next(iter(guided.values())) if is_plain else None
+
+
+# -- sentences -------------------------------------------------------------------------------------
+
+
+def shafts_sentence(
+    shafts: BalanceShafts, crank: str, changed: bool, piston: PistonBalance | None = None
+) -> str:
+    """What balance shafts bring.
+
+    changed : whether the machine is that with a remedy that is offered, beside which they are.
+    piston : the choice of half of what reciprocates, where that has been said: it is what the
+        first of the shafts would be for.
+    """
+    if piston is not None:
+        return say(
+            "With a shaft of {backward} as fast as {crank} against it besides, {gain} % of the "
+            "shaking force would go.",
+            crank=crank,
+            backward=told(shafts.backward, "unbalance", "kg mm", digits=2),
+            gain=percent(shafts.gain, 0),
+        )
+    as_it_is = to_say(
+        "{forward} on {crank}, or on a shaft that turns with it, and a shaft of {backward} against "
+        "it would take {gain} % off the shaking force of the machine as it is."
+    )
+    as_changed = to_say(
+        "With that change {forward} more on {crank}, or on a shaft that turns with it, and a shaft "
+        "of {backward} against it would take {gain} % off the shaking force that is left."
+    )
+    return say(
+        as_changed if changed else as_it_is,
+        crank=crank,
+        forward=told(shafts.forward, "unbalance", "kg mm", digits=2),
+        backward=told(shafts.backward, "unbalance", "kg mm", digits=2),
+        gain=percent(shafts.gain, 0),
+    )
+
+
+def piston_sentences(found: PistonBalance, crank: str) -> Iterator[str]:
+    """How much of a piston is balanced, and the choice of half of it, with both forces."""
+    forces = (found.along, found.across, found.half_along, found.half_across)
+    shown = display("force", forces)
+    names = ("along", "across", "half_along", "half_across")
+    values = {
+        name: shown.with_unit(shown.text(force, max(forces), 3))
+        for name, force in zip(names, forces, strict=True)
+    }
+    if found.is_half:
+        yield say(
+            "Half of what reciprocates is balanced on {crank} already: the shaking force is "
+            "{along} along the stroke and {across} across it, and more on {crank} only trades one "
+            "for the other.",
+            crank=crank,
+            **values,
+        )
+        return
+    now = to_say(
+        "{share} % of what reciprocates is balanced on {crank}: the shaking force is {along} along "
+        "the stroke and {across} across it."
+    )
+    turning = to_say(
+        "Nothing of what reciprocates is balanced on {crank}: the shaking force is {along} along "
+        "the stroke and {across} across it."
+    )
+    template = turning if found.share < 0 else now
+    present = say(template, share=percent(found.share), crank=crank, **values)
+    choice = say(
+        "With half of it balanced, by {moment} added on {crank} at {direction} in its axes, or "
+        "taken off opposite, it is {half_along} along and {half_across} across: choose by what the "
+        "mounts bear.",
+        moment=told(found.moment, "unbalance", "kg mm", digits=2),
+        crank=crank,
+        direction=direction_named(radians(round(degrees(found.direction)))),
+        **values,
+    )
+    yield f"{present} {choice}"

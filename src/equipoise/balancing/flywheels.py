@@ -1,0 +1,165 @@
+"""Flywheels against a drive torque that swings: how large, on which shaft, how heavy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import groupby
+from math import ceil, floor, log10, pi
+
+import numpy as np
+
+from equipoise.i18n import say, to_say
+from equipoise.mechanism.assembly.steps import size_of_links
+from equipoise.mechanism.parts.balance import MATERIALS
+from equipoise.quantities import number, percent, told
+from equipoise.results.analysis import Analysis
+from equipoise.results.yardsticks import FigureAssessment
+from equipoise.signals import Array
+
+STEADY, COARSE = 0.05, 0.2
+"""Share of its mean by which a crank's speed may swing: of engines and pumps, and at most, as of
+presses and crushers (Norton, Design of Machinery, table 11-4)."""
+DIGITS, LITTLE = 2, 0.1
+"""Of a flywheel's inertia; share of it that nobody misses."""
+RATIOS = (1, 2, 3, 4, 5, 6, 8, 10)
+"""Turns of a flywheel's shaft in one of the crank: of a crank that turns slowly, as of a press, it
+sits on the shaft of the motor or of a belt, where the square of the ratio less will do."""
+RIM_SPEED = 40.0
+"""m/s, that a disc's edge may have: usual for cast iron, safe for steel."""
+GRID, THICKEST = 10e-3, 1 / 3
+"""m, to which a diameter is rounded down; most thickness over it."""
+HEAVIEST, HEAVIEST_ASIDE = 2.0, 1.0
+"""Mass of a flywheel over that of the moving links beyond which a faster shaft is looked at: on the
+crank, and on a shaft that the machine may have for it."""
+STEEL = MATERIALS["steel"]
+
+
+@dataclass(frozen=True)
+class Flywheel:
+    """A steel disc that is missing on a shaft.
+
+    fluctuation : share of the mean speed, from slowest to fastest, that it allows.
+    inertia : kg m2, on a shaft that turns `ratio` times as fast as the crank.
+    diameter, thickness : m.  mass : kg.
+    """
+
+    fluctuation: float
+    inertia: float
+    ratio: int
+    diameter: float
+    thickness: float
+    mass: float
+
+
+@dataclass(frozen=True)
+class Flywheels:
+    """Flywheels to choose from, and what the drive gives with any of them.
+
+    choices : by fluctuation.
+    mean_torque, largest_torque : N m, of the drive on the crank: with a flywheel, and without.
+    power : W, of the mean.
+    """
+
+    choices: tuple[Flywheel, ...]
+    mean_torque: float
+    largest_torque: float
+    power: float
+
+
+def flywheels_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> Flywheels | None:
+    """Flywheels that keep the crank's speed near the mean, beside what turns with it already; None
+    where the torque of the drive does not swing much about its mean, or nothing is missing.
+
+    The torque of the drive at constant speed, less its mean, does the work that speeds the crank
+    up: I = (largest less smallest work) / (fluctuation w^2).  Engines, which drive, get one that
+    keeps them steady; what a motor drives another that lets the speed swing as much as presses do.
+    """
+    machine, motion = analysis.machine, analysis.resolved.motion
+    large = (one for one in entries if one.is_swing_about_mean and one.is_large)
+    if (entry := next(large, None)) is None or not machine.has_crank:
+        return None
+    output = analysis.outputs[entry.output]
+    torque, mean = output.resolved, output.figures.mean
+    power = mean * motion.speed
+    choices: list[Flywheel] = []
+    for share in (STEADY,) if power < 0 else (STEADY, COARSE):
+        missing = _missing(analysis, torque - mean, share)
+        ratios = [one.ratio for one in choices] or RATIOS  # all on one shaft, to be compared
+        each = (_disc_of(analysis, missing, share, ratio) for ratio in ratios)
+        choices += [*filter(None, each)][:1] if missing else []
+    if not choices:
+        return None
+    return Flywheels(tuple(choices), abs(mean), output.figures.peak, abs(power))
+
+
+def _missing(analysis: Analysis, swing: Array, share: float) -> float:
+    """Inertia on the crank beside what is there, kg m2; 0 where little is missing."""
+    machine, motion = analysis.machine, analysis.resolved.motion
+    shares = 1 / len(swing) if motion.shares is None else motion.shares
+    work = np.cumsum(swing * shares) * abs(2 * np.pi * motion.turns)
+    needed = float(np.ptp(work)) / (share * motion.speed**2)
+    motor = machine.drive.motor
+    there = machine.drive.flywheel + (motor.inertia * motor.ratio**2 if motor else 0.0)
+    return needed - there if needed - there >= LITTLE * needed else 0.0
+
+
+def _disc_of(analysis: Analysis, missing: float, share: float, ratio: int) -> Flywheel | None:
+    """The disc on a shaft; None where it is too heavy there, or too thick for its diameter."""
+    machine = analysis.machine
+    fastest = abs(ratio * analysis.motion.speed)
+    widest = min(2 * size_of_links(machine), 2 * RIM_SPEED / fastest)
+    diameter = floor(widest / GRID) * GRID or widest
+    inertia = _rounded_up(missing / ratio**2)
+    mass = 8 * inertia / diameter**2
+    thickness = ceil(1e3 * mass / (STEEL * pi / 4 * diameter**2)) / 1e3
+    most = (HEAVIEST if ratio == 1 else HEAVIEST_ASIDE) * machine.mass
+    if mass > most or thickness > THICKEST * diameter:
+        return None
+    return Flywheel(share, inertia, ratio, diameter, thickness, mass)
+
+
+def _rounded_up(value: float) -> float:
+    unit = 10.0 ** (floor(log10(value)) - DIGITS + 1)
+    return float(np.ceil(value / unit * (1 - 1e-9)) * unit)
+
+
+# -- sentences -------------------------------------------------------------------------------------
+
+
+def flywheel_sentences(found: Flywheels, crank: str, links: float) -> Iterator[str]:
+    """What flywheels weigh, what they bring, and what the motor gives then.
+
+    links : mass of the moving links, kg.
+    """
+    for ratio, same in groupby(found.choices, key=lambda one: one.ratio):
+        on_crank = to_say("Flywheel on {crank}: {discs}.")
+        geared = to_say("Flywheel on a shaft {ratio} times as fast as {crank}: {discs}.")
+        discs = say("; ").join(_disc(one, links) for one in same)
+        template = on_crank if ratio == 1 else geared
+        yield say(template, crank=crank, ratio=ratio, discs=discs)
+    if _lets_swing(found.choices):
+        yield say(
+            "A motor that lets the speed swing so far then gives {mean} ({power}) instead of up to "
+            "{most}.",
+            mean=told(found.mean_torque, "torque", digits=3),
+            power=told(found.power, "power", digits=3),
+            most=told(found.largest_torque, "torque", digits=3),
+        )
+
+
+def _lets_swing(choices: Iterable[Flywheel]) -> bool:
+    return any(one.fluctuation > STEADY for one in choices)
+
+
+def _disc(one: Flywheel, links: float) -> str:
+    return say(
+        "{inertia}, a steel disc of {diameter} by {thickness} and {mass} ({ratio} times the moving "
+        "links), keeps its speed within {share} %",
+        inertia=told(one.inertia, "inertia", digits=2),
+        diameter=told(one.diameter, "length", "mm", digits=3),
+        thickness=told(one.thickness, "length", "mm", digits=2),
+        mass=told(one.mass, "mass", "kg", digits=2),
+        ratio=number(one.mass / links, digits=2),
+        share=percent(one.fluctuation),
+    )

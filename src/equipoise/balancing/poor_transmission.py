@@ -1,0 +1,172 @@
+"""A dyad that comes near its dead position: where, what its joint bears, what mends it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+from math import pi
+
+from equipoise.errors import EquipoiseError
+from equipoise.i18n import say, to_say
+from equipoise.mechanism.checks import bodies_at
+from equipoise.mechanism.outputs.spoken import joint_named
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.quantities import angle, percent, told
+from equipoise.results.analysis import Analysis, analyze
+from equipoise.results.yardsticks import TRANSMISSION, FigureAssessment
+
+POOR = 1.1
+"""Times the usual limit, 35 degrees, from which a transmission angle is mentioned."""
+CHANGES = (-0.05, 0.05, -0.1, 0.1, -0.2, 0.2)
+"""Shares of a length that are tried, the smallest first."""
+LEAST = pi / 60
+"""Rad, by which a length has to mend the angle to be named."""
+ROUNDING = 1e-6
+"""Rad, by which another transmission angle may be smaller after a change."""
+ANGLES = 120
+"""Crank angles in a turn at which another length is looked at."""
+
+
+@dataclass(frozen=True)
+class PoorTransmission:
+    """The joint whose transmission angle is the worst, and a length that mends it.
+
+    joint : of the dyad.  transmission, crank_angle : rad.  limit : rad, the usual one.
+    force : N, largest in that joint; None where its forces are not known.
+    link, between : of which the length between two points is to change; empty where no single
+        length helps.
+    share : by which it grows.  length : m, that it has then.  mended : rad, the worst angle then.
+    """
+
+    joint: str
+    transmission: float
+    crank_angle: float
+    limit: float
+    force: float | None
+    link: str
+    between: tuple[str, str] | None
+    share: float
+    length: float
+    mended: float
+
+
+def poor_transmission_for(
+    analysis: Analysis, entries: tuple[FigureAssessment, ...]
+) -> PoorTransmission | None:
+    """The worst transmission angle, where it is poor; None where none is."""
+    poor = (one for one in entries if one.yardstick_kind == "transmission" and one.ratio >= POOR)
+    worst = next(poor, None)
+    if worst is None or worst.crank_angle is None:
+        return None
+    force = analysis.outputs[f"joints.{worst.item}"] if _has_force(analysis, worst.item) else None
+    peak = None if force is None else float(force.figures.peak)
+    best = _mended(analysis, worst.item)
+    link, between, share, length, mended = best or ("", None, 0.0, 0.0, worst.value)
+    return PoorTransmission(
+        worst.item, worst.value, worst.crank_angle, worst.yardstick, peak,
+        link, between, share, length, mended,
+    )  # fmt: skip
+
+
+def _has_force(analysis: Analysis, joint: str) -> bool:
+    return f"joints.{joint}" in analysis.outputs
+
+
+Mending = tuple[str, tuple[str, str], float, float, float]
+"""Link, its points, share, length (m), and the worst angle then (rad)."""
+
+
+def _mended(analysis: Analysis, joint: str) -> Mending | None:
+    """The smallest change of a length that brings all transmission angles within the usual limit;
+    else that which helps most.  None where none helps, or the machine no longer goes round.
+    """
+    machine = analysis.machine
+    before = _worst_angles(analysis)
+    found: list[tuple[float, Mending]] = []
+    for link, between in _lengths(machine, joint):
+        for share in CHANGES:
+            changed, length = _with_length(machine, link, between, share)
+            try:
+                after = _worst_angles(analyze(changed, ANGLES, acceleration=0.0))
+            except EquipoiseError:  # it no longer goes round
+                continue
+            others = all(after[name] >= min(before[name], TRANSMISSION) - ROUNDING
+                         for name in before if name != joint)  # fmt: skip
+            gain = after[joint] - before[joint]
+            if others and gain >= LEAST:
+                enough = after[joint] >= TRANSMISSION
+                score = 1 - abs(share) if enough else after[joint] - TRANSMISSION
+                found.append((score, (link, between, share, length, after[joint])))
+    return max(found, key=lambda one: one[0], default=(0.0, None))[1]
+
+
+def _worst_angles(analysis: Analysis) -> dict[str, float]:
+    """Smallest transmission angle of each joint, from stretched or folded, rad."""
+    each = (one for one in analysis.outputs if one.group == "transmission")
+    return {one.item: min(one.figures.min, pi - one.figures.max) for one in each}
+
+
+def _lengths(machine: Machine, joint: str) -> Iterator[tuple[str, tuple[str, str]]]:
+    """Links of the dyad, its input and its output, and pairs of their pins."""
+    joined = {name for name, bodies in bodies_at(machine.bodies).items() if len(bodies) > 1}
+    for name, link in machine.links.items():
+        pins = [point for point in link.points if point in joined]
+        pairs = combinations(pins, 2)
+        yield from ((name, pair) for pair in pairs if joint in pair or len(pins) == 2)
+
+
+def _with_length(
+    machine: Machine, link: str, between: tuple[str, str], share: float
+) -> tuple[Machine, float]:
+    """The machine with the second pin of a link farther from the first, and that distance, m."""
+    points = machine.links[link].points
+    first, second = (complex(*points[point]) for point in between)
+    place = first + (1 + share) * (second - first)
+    return machine.with_point(link, between[1], (place.real, place.imag)), abs(place - first)
+
+
+# -- sentences -------------------------------------------------------------------------------------
+
+
+def transmission_sentences(found: PoorTransmission, crank_turns: bool) -> Iterator[str]:
+    """Where the angle is poor, what the joint bears, and which length mends it."""
+    of_crank = to_say("at crank angle {angle}")
+    of_cycle = to_say("at {angle} of the cycle")
+    words = {
+        "joint": joint_named(found.joint),
+        "value": angle(found.transmission),
+        "at": say(of_crank if crank_turns else of_cycle, angle=angle(found.crank_angle)),
+        "limit": angle(found.limit, 0),
+    }
+    if found.force is None:
+        plain = to_say("The transmission angle at {joint} comes to {value} {at} (usual: {limit}).")
+        yield say(plain, **words)
+    else:
+        yield say(
+            "The transmission angle at {joint} comes to {value} {at} (usual: {limit}), and the "
+            "joint bears up to {force}.",
+            force=told(found.force, "force", digits=3),
+            **words,
+        )
+    if found.between is None:
+        yield say("Masses do not mend that, nor any single length by a fifth: change several.")
+        return
+    first, second = found.between
+    longer = to_say(
+        "Masses do not mend that: {link} {share} % longer from {first} to {second} ({length}) "
+        "brings it to {mended}, with other strokes."
+    )
+    shorter = to_say(
+        "Masses do not mend that: {link} {share} % shorter from {first} to {second} ({length}) "
+        "brings it to {mended}, with other strokes."
+    )
+    yield say(
+        longer if found.share > 0 else shorter,
+        link=found.link,
+        share=percent(abs(found.share)),
+        first=first,
+        second=second,
+        length=told(found.length, "length", digits=3),
+        mended=angle(found.mended),
+    )

@@ -1,0 +1,369 @@
+"""What helps where plates do not: flywheels, cylinders, mounts, lengths, shafts, half a piston."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from math import pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+import support.found
+from equipoise.balancing.advice import advise, gauge_aims
+from equipoise.balancing.balanced import Balanced
+from equipoise.balancing.beyond_masses import Beyond
+from equipoise.balancing.cylinder_sizes import MODULUS, PRESSURE, SAFETY
+from equipoise.balancing.flywheels import COARSE, STEADY, Flywheel, flywheels_for
+from equipoise.balancing.outcome import helps_told
+from equipoise.balancing.poor_transmission import poor_transmission_for
+from equipoise.balancing.problem import Problem
+from equipoise.balancing.resonant_mounts import BESIDE
+from equipoise.results.yardsticks import assess
+from equipoise.vibration.linear import Linear
+from equipoise.vibration.resonance import around, resonances
+
+RPM = pi / 30
+ADVISED = Path(support.found.__file__).parent / "advised"
+
+
+@cache
+def found_for(name: str) -> Balanced:
+    """Advice on a machine of other trades, or on a bundled one as if it had no plan."""
+    file = ADVISED / f"{name}.toml"
+    return advise(eq.load(file if file.exists() else name).with_balance(None))
+
+
+def beyond(name: str) -> Beyond:
+    found = found_for(name)
+    assert found.advice is not None
+    return found.advice.beyond
+
+
+def said(name: str) -> str:
+    return " ".join(helps_told(found_for(name)))
+
+
+# -- flywheels -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "shares", "ratio"),
+    [
+        ("brush-cutter-engine", (STEADY,), 1),
+        ("slider-crank-engine", (STEADY,), 1),
+        ("four-stroke-engine", (STEADY,), 1),
+        ("press", (STEADY, COARSE), 3),
+    ],
+)
+def test_a_flywheel_stores_the_work_that_the_torque_swings_by(
+    name: str, shares: tuple[float, ...], ratio: int
+) -> None:
+    """By the speed of a crank that a steady torque drives: it swings within the share told."""
+    machine = found_for(name).original
+    flywheels = beyond(name).flywheels
+    assert flywheels is not None
+    assert tuple(one.fluctuation for one in flywheels.choices) == shares
+    analysis = eq.analyze(machine, 7200, acceleration=0.0)
+    torque, speed = analysis.forces.drive_torque, machine.drive.speed
+    for one in flywheels.choices:
+        assert one.ratio == ratio
+        inertia = machine.drive.flywheel + one.inertia * one.ratio**2
+        gained = np.cumsum(np.mean(torque) - torque) * 2 * pi * analysis.motion.turns / len(torque)
+        speeds = np.sqrt(speed**2 + 2 * (gained - np.mean(gained)) / inertia)
+        swing = float(np.ptp(speeds) / np.mean(speeds))
+        assert 0.93 * one.fluctuation < swing < 1.01 * one.fluctuation  # rounded up to two digits
+
+
+def test_a_flywheel_is_a_disc_that_can_be_turned_and_run() -> None:
+    """Its mass and inertia by rings; its edge no faster than cast iron may be."""
+    for name in ("four-stroke-engine", "press", "quick-return", "brush-cutter-engine"):
+        flywheels = beyond(name).flywheels
+        assert flywheels is not None
+        for one in flywheels.choices:
+            rings = np.linspace(0, one.diameter / 2, 20001)
+            middle = (rings[1:] + rings[:-1]) / 2
+            mass = one.mass / (pi * one.diameter**2 / 4) * 2 * pi * middle * np.diff(rings)
+            assert np.sum(mass * middle**2) == pytest.approx(one.inertia, rel=1e-6)
+            speed = abs(found_for(name).original.drive.speed) * one.ratio
+            assert speed * one.diameter / 2 <= 40 * (1 + 1e-9)
+            plate = 7850 * one.thickness * pi * one.diameter**2 / 4
+            assert one.mass <= plate <= one.mass + 7850 * 1e-3 * pi * one.diameter**2 / 4
+
+
+def test_engines_are_told_their_flywheel_though_the_force_is_larger() -> None:
+    """The torque of the four-stroke engine swings by 16 times its mean; its force is first."""
+    flywheels = beyond("four-stroke-engine").flywheels
+    assert flywheels is not None
+    assert flywheels.choices[0].inertia == pytest.approx(0.03, rel=0.1)
+    assert "Flywheel on crank: 0.032 kg m²" in said("four-stroke-engine")
+
+
+def test_a_press_is_told_what_its_motor_gives() -> None:
+    """The work of its load in a turn, by the force and the way of the ram."""
+    found, machine = beyond("press").flywheels, found_for("press").original
+    assert found is not None
+    turned = np.radians(np.linspace(248, 268, 20001))
+    motion = eq.move(machine, turned)
+    work = -200e3 * np.ptp(motion.points["C"].place.imag)
+    assert found.mean_torque == pytest.approx(abs(work) / (2 * pi), rel=1e-3)
+    assert found.power == pytest.approx(found.mean_torque * machine.drive.speed)
+    assert "within 5 %" in said("press") and "within 20 %" in said("press")
+    assert "A motor that lets the speed swing so far then gives 100 N m" in said("press")
+
+
+def test_a_flywheel_that_is_there_is_enough() -> None:
+    machine = found_for("brush-cutter-engine").original
+    flywheels = beyond("brush-cutter-engine").flywheels
+    assert flywheels is not None
+    (one,) = flywheels.choices
+    assert isinstance(one, Flywheel)
+    heavy = eq.analyze(machine.with_drive(flywheel=1.1 * one.inertia))
+    assert flywheels_for(heavy, assess(heavy)) is None
+
+
+# -- cylinders -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("name", "bore"), [("hydraulic-loader", 0.05), ("excavator", 0.14)])
+def test_a_bore_holds_the_force_at_a_pressure(name: str, bore: float) -> None:
+    """By the forces of a whole analysis; the next smaller in stock does not."""
+    one = beyond(name).cylinder
+    assert one is not None and one.bore == bore
+    push, pull = (area * PRESSURE * pi / 4 for area in (bore**2, bore**2 - one.rod**2))
+    assert one.push <= push and one.pull <= pull
+    smaller = {0.05: 0.04, 0.14: 0.125}[bore]
+    assert one.push > smaller**2 * PRESSURE * pi / 4 or one.pull > 0.6 * push
+    assert f"At 200 bar a cylinder of {1e3 * bore:.3g}" in said(name).replace("50.0", "50")
+
+
+def test_a_rod_does_not_buckle() -> None:
+    """By the lowest eigenvalue of a strut with pins at both ends, in finite differences."""
+    one = beyond("hydraulic-loader").cylinder
+    assert one is not None and one.is_slender
+    machine = found_for("hydraulic-loader").original
+    analysis = eq.analyze(machine)
+    force = analysis.outputs["drive_force"].values
+    motion = analysis.motion
+    length = np.abs(motion.points["B"].place - motion.points["A"].place)
+    k = int(np.argmax(np.maximum(force, 0) * length**2))
+    nodes = 400
+    step = length[k] / nodes
+    bending = np.diag([2.0] * (nodes - 1)) - np.eye(nodes - 1, k=1) - np.eye(nodes - 1, k=-1)
+    lowest = float(np.linalg.eigvalsh(bending)[0]) / step**2
+    load = {rod: MODULUS * pi * rod**4 / 64 * lowest for rod in (one.rod, 0.028)}
+    assert load[one.rod] >= SAFETY * force[k] * (1 - 1e-4) > load[0.028]
+
+
+def test_a_lever_is_longer_only_where_its_cylinder_can_be_built() -> None:
+    """The loader's, closed 600 mm for a stroke of 450, has no room for more stroke."""
+    one = beyond("hydraulic-loader").cylinder
+    assert one is not None and one.lever is None and one.is_lever_stopped
+    assert "has no room" in said("hydraulic-loader")
+    assert "twice as long" not in said("hydraulic-loader")
+    of_stick = beyond("excavator").cylinder
+    assert of_stick is not None and of_stick.lever is not None
+    lever = of_stick.lever
+    assert lever.open - lever.closed + of_stick.dead <= lever.closed
+
+
+def test_a_longer_lever_takes_the_force_of_virtual_work() -> None:
+    """F dL = F' dL', with both lengths by the places of the pins, and differences for dL."""
+    one, machine = beyond("excavator").cylinder, found_for("excavator").original
+    assert one is not None and one.lever is not None and one.pivot == "Q"
+    analysis = eq.analyze(machine, 7200)
+    places = {name: analysis.motion.points[name].place for name in "EFQ"}
+    force = analysis.outputs["drives.stick.force"].values
+    more = one.lever.distance / float(np.abs(places["F"] - places["Q"])[0])
+    moved = dict(places)
+    moved[one.lever.point] = places["Q"] + more * (places[one.lever.point] - places["Q"])
+    old, new = (np.abs(at["F"] - at["E"]) for at in (places, moved))
+    assert (float(np.min(new)), float(np.max(new))) == pytest.approx(
+        (one.lever.closed, one.lever.open), rel=1e-4
+    )
+    moving = np.abs(np.gradient(old)) > 1e-3 * np.max(np.abs(np.gradient(old)))
+    needed = force[moving] * np.gradient(old)[moving] / np.gradient(new)[moving]
+    assert np.max(np.abs(needed)) == pytest.approx(one.lever.force, rel=2e-3)
+
+
+# -- mounts ----------------------------------------------------------------------------------------
+
+
+def test_a_resonance_beside_the_speed_is_moved_first() -> None:
+    """The sieve at 280 to 360 rpm beside 255 rpm: not a sector of plate."""
+    found, mounts = found_for("sieve"), beyond("sieve").mounts
+    assert not found.helps and mounts is not None
+    assert mounts.speed / RPM == pytest.approx(255, abs=1)
+    assert mounts.avoid is not None
+    assert np.array(mounts.avoid) / RPM == pytest.approx([221, 277.5], abs=0.5)
+    assert mounts.mounts == ("front_along", "back_along")
+    assert said("sieve").index("First move") < said("sieve").index("Leave the masses")
+    first = said("sieve").index("First move the resonance at 255 rpm (keep away from 221.1 to")
+    assert first < said("sieve").index("2 times softer would take 45 % off")
+
+
+def test_other_mounts_bring_what_is_told() -> None:
+    """By whole responses of the machine that stands on them; and no resonance is beside it."""
+    machine, mounts = found_for("sieve").original, beyond("sieve").mounts
+    assert mounts is not None and mounts.factor == 0.5 and machine.support is not None
+    soft = dict(machine.support.mounts)
+    for name in mounts.mounts:
+        one = soft[name]
+        soft[name] = replace(one, stiffness=one.stiffness / 2, damping=one.damping / 2)
+    changed = machine.with_support(mounts=soft)
+    aims = gauge_aims(machine)
+    left = []
+    for one in aims:
+        (speed,) = one.speeds
+        name = one.output.removeprefix("gauges.")
+        both = [eq.respond(each, speed).gauges[name].displacement.vibration_rms
+                for each in (machine, changed)]  # fmt: skip
+        left.append(float(both[1] / both[0]))
+    assert 1 - np.mean(left) == pytest.approx(mounts.gain, rel=1e-3)
+    for one in resonances(Linear.of(changed), *around(machine.drive, machine.drive.speed)):
+        if one.is_loud and one.avoid is not None:
+            assert not 280 * RPM / BESIDE < abs(one.speed) < 360 * RPM * BESIDE
+
+
+def test_a_machine_far_from_its_resonances_keeps_its_mounts() -> None:
+    fast = eq.load("sieve").with_balance(None).with_drive(speed=600 * RPM, speeds=())
+    advice = advise(fast).advice
+    assert advice is not None and advice.beyond.mounts is None
+
+
+def test_where_phases_of_rows_bring_more_no_mounts_are_named() -> None:
+    """A walking transplanter beside its resonance: two rows in turn leave 2 % of what it reads."""
+    found = found_for("walking-transplanter")
+    assert found.helps and found.gain > 0.95
+    assert beyond("walking-transplanter").mounts is None
+
+
+# -- what is unbalanced ----------------------------------------------------------------------------
+
+
+def force_of(machine: eq.Machine) -> np.ndarray:
+    analysis = eq.analyze(machine, 720, acceleration=0.0)
+    return np.asarray(analysis.forces.shaking_force.value)
+
+
+def test_half_of_what_reciprocates_is_a_choice_with_both_forces() -> None:
+    """With the counterweight on the crank, by whole analyses."""
+    machine, piston = found_for("four-stroke-engine").original, beyond("four-stroke-engine").piston
+    assert piston is not None and not piston.is_half
+    reciprocates, turns = 260 + 230 * 28 / 95, 230 * 67 / 95
+    balanced = (3200 * 4 - turns * 27) / (reciprocates * 27)
+    assert piston.share == pytest.approx(balanced, abs=0.02)
+    place = piston.moment / 10.0 * np.exp(1j * piston.direction)
+    link = machine.links["crank"].with_added(10.0, (place.real, place.imag), 0.0)
+    half = machine.with_link("crank", mass=link.mass, center_of_mass=link.center_of_mass,
+                             inertia=link.inertia)  # fmt: skip
+    for changed, along, across in (
+        (machine, piston.along, piston.across),
+        (half, piston.half_along, piston.half_across),
+    ):
+        force = force_of(changed)
+        assert np.max(np.abs(force.imag)) == pytest.approx(along, rel=1e-3)
+        assert np.max(np.abs(force.real)) == pytest.approx(across, rel=1e-3)
+    assert "choose by what the mounts bear" in said("four-stroke-engine")
+
+
+def test_a_piston_is_that_of_a_crank() -> None:
+    """Not a knife that a crank drives by levers, and a belt the crank."""
+    assert beyond("knife-drive").piston is None
+
+
+@pytest.mark.parametrize("name", ["slider-crank-engine", "brush-cutter-engine"])
+def test_engines_are_told_their_shaking_force_beside_the_torque(name: str) -> None:
+    piston = beyond(name).piston
+    assert piston is not None and piston.is_half
+    force = force_of(found_for(name).original)
+    assert np.max(np.abs(force.imag)) == pytest.approx(piston.along, rel=1e-3)
+    assert "Half of what reciprocates is balanced on crank already" in said(name)
+    assert "Flywheel on crank" in said(name)
+
+
+def left_with(force: np.ndarray, square: float, forward: float, backward: float) -> float:
+    """RMS over that before of what two shafts leave, with the best phases in steps of 5 deg."""
+    angle = 2 * pi * np.arange(len(force)) / len(force) * (len(force) // 720)
+    ways = np.exp(1j * np.radians(np.arange(0, 360, 5)))
+    ahead, against = (square * size for size in (forward, backward))
+    left = min(
+        float(np.mean(np.abs(force + s * ahead * np.exp(1j * angle)
+                             + t * against * np.exp(-1j * angle)) ** 2))
+        for s in ways for t in ways
+    )  # fmt: skip
+    return float(np.sqrt(left / np.mean(np.abs(force) ** 2)))
+
+
+@pytest.mark.parametrize("name", ["balance-shafts", "four-stroke-engine", "scotch-yoke"])
+def test_balance_shafts_are_for_the_machine_that_is_advised(name: str) -> None:
+    """With the counterweight where one is offered: for the machine as it is they over-balance."""
+    found, shafts = found_for(name), beyond(name).shafts
+    assert shafts is not None
+    machine = found.machine if found.helps else found.original
+    square = machine.drive.speed**2
+    left = left_with(force_of(machine), square, shafts.forward, shafts.backward)
+    assert 1 - left == pytest.approx(shafts.gain, abs=2e-3)
+    assert ("With that change" in said(name)) == found.helps
+    if found.helps:
+        (change,) = found.changes
+        turned = np.exp(-1j * np.radians(np.arange(0, 360, 0.5)))
+        without = np.mean(force_of(found.original) * turned)
+        moment = change.values["moment"] / (np.abs(without) / square)
+        assert shafts.forward == pytest.approx(abs(without) / square * (1 - moment), rel=0.02)
+
+
+# -- a weight on a slow crank ----------------------------------------------------------------------
+
+
+def test_a_weight_on_a_slow_crank_takes_the_torque_of_order_1() -> None:
+    """With it on the crank the swing is what is told, by a whole analysis."""
+    machine, weight = found_for("pump-jack").original, beyond("pump-jack").counterbalance
+    assert weight is not None
+    place = weight.moment / 1500 * np.exp(1j * weight.direction)
+    link = machine.links["crank"].with_added(1500.0, (place.real, place.imag), 0.0)
+    changed = machine.with_link("crank", mass=link.mass, center_of_mass=link.center_of_mass,
+                                inertia=link.inertia)  # fmt: skip
+    swings = [np.sqrt(one.summary["drive_torque"].rms ** 2 - one.summary["drive_torque"].mean ** 2)
+              for one in map(eq.analyze, (machine, changed))]  # fmt: skip
+    assert 1 - swings[1] / swings[0] == pytest.approx(weight.gain, abs=1e-6)
+    advice = advise(machine.with_drive(speed=60 * RPM)).advice
+    assert advice is not None and advice.beyond.counterbalance is None
+
+
+# -- transmission angles ---------------------------------------------------------------------------
+
+
+def test_a_poor_transmission_angle_names_joint_force_and_length() -> None:
+    """Of the walking beam, though a counterweight helps it otherwise."""
+    found, poor = found_for("walking-beam"), beyond("walking-beam").transmission
+    assert found.helps and poor is not None and poor.between is not None
+    analysis = eq.analyze(found.machine)
+    assert poor.joint == "F"
+    assert poor.transmission == analysis.outputs["transmission.F"].figures.min
+    assert poor.force == analysis.summary["joints.F"].peak
+    assert "transmission angle at F comes to 28.7° at crank angle 213.0°" in said("walking-beam")
+    first, second = (complex(*found.machine.links[poor.link].points[at]) for at in poor.between)
+    place = first + (1 + poor.share) * (second - first)
+    changed = found.machine.with_point(poor.link, poor.between[1], (place.real, place.imag))
+    angles = eq.analyze(changed, 720).outputs["transmission.F"].values
+    worst = float(np.min(np.minimum(angles, pi - angles)))
+    assert worst == pytest.approx(poor.mended, abs=2e-3) and worst > poor.transmission
+    assert abs(place - first) == pytest.approx(poor.length)
+
+
+def test_a_good_transmission_angle_is_not_mentioned() -> None:
+    analysis = eq.analyze(eq.load("yamashita-1"))
+    assert poor_transmission_for(analysis, assess(analysis)) is None
+    assert "transmission angle" not in said("yamashita-1")
+
+
+def test_values_of_aims_are_those_of_a_response() -> None:
+    """What gauges read at the speeds of the sieve, in the gain of other mounts."""
+    machine = found_for("sieve").original
+    (first, *_) = gauge_aims(machine)
+    read = eq.respond(machine, first.speeds[0]).gauges[first.output.removeprefix("gauges.")]
+    value = float(read.displacement.vibration_rms)
+    assert Problem.value_of(machine, first) == pytest.approx(value, rel=1e-6)
