@@ -179,7 +179,17 @@ OPTIONS = {
     "respond": ["FILE", "--model", "--speed", "--speeds", "--drive", "--full", *OUTPUTS],
     "resume": ["STORE", "--workers", "--cluster", *DRAWN],
     "run": [
-        *["FILE", "DURATION", "--turns", "--speed", "--angle", "--off", "--off-turns", "--full"],
+        *[
+            "FILE",
+            "DURATION",
+            "--turns",
+            "--speed",
+            "--angle",
+            "--off",
+            "--off-turns",
+            "--fluctuation",
+            "--full",
+        ],
         *OUTPUTS,
     ],
     "schema": ["--tool", "--study"],

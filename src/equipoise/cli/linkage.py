@@ -269,6 +269,12 @@ def simulate(
     outputs.give(found)
 
 
+def _share(_: str, text: str) -> float:
+    from equipoise.running.flywheel import share_of_mean
+
+    return share_of_mean(text)
+
+
 def run(
     file: File,
     duration: Annotated[
@@ -281,6 +287,7 @@ def run(
     angle: Angle = None,
     off: Annotated[float | None, size("time", "give a time of more than 0")] = None,
     off_turns: Annotated[int | None, count(1, 10_000)] = None,
+    fluctuation: Annotated[float | None, read_by(_share, '"2 %"')] = None,
     length: Length = Length(),
     outputs: Outputs = Outputs(),
 ) -> None:
@@ -301,6 +308,8 @@ def run(
         Time at which the motor is switched off.
     off_turns
         Turns of the crank after which the motor is switched off.
+    fluctuation
+        Also size a flywheel for this share of the mean speed from lowest to highest, such as "2 %".
     """
     from equipoise.running.run import run as follow
 
@@ -315,6 +324,7 @@ def run(
             angle=angle or 0.0,
             off=off,
             off_turns=off_turns,
+            fluctuation=fluctuation,
         )
     outputs.give(found, length)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import degrees, pi
+from math import degrees, inf, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +15,7 @@ from equipoise.running.run import DRIVE
 from equipoise.vibration.coupled import STALLS
 
 if TYPE_CHECKING:
+    from equipoise.running.flywheel import Flywheel
     from equipoise.running.run import Run
 
 EVENTS = {
@@ -44,6 +45,8 @@ def run_headline(run: Run, alone: bool = False) -> Iterator[Block]:
                 "and loads let it; a table [drive.motor] drives it."
             )
         )
+    if run.flywheel is not None:
+        yield Text(_flywheel(run.flywheel))
     if alone and (lines := tuple(_figures(run))):
         yield Facts(say("Last cycle"), lines)
 
@@ -83,6 +86,36 @@ def verdict(run: Run) -> str:
     speed = number(end.speed / PER_RPM)
     template = to_say("After {time} s and {turns} turns the crank turns at {speed} rpm.")
     return say(template, **values, speed=speed)
+
+
+def _flywheel(flywheel: Flywheel) -> str:
+    """What flywheel the wanted fluctuation needs."""
+    wanted = f"{100 * flywheel.wanted:.3g}"
+    if not flywheel.inertia:
+        template = to_say(
+            "A fluctuation of {wanted} % needs no flywheel: it is {present} % at {speed} rpm."
+        )
+        present = f"{100 * flywheel.present:.3g}"
+    else:
+        template = to_say(
+            "A flywheel of {inertia} on the crank brings the fluctuation at {speed} rpm from "
+            "{present} % to {wanted} %; the textbook's estimate is {estimate}."
+        )
+        if flywheel.present == inf:
+            template = to_say(
+                "With a flywheel of {inertia} on the crank the fluctuation at {speed} rpm is "
+                "{wanted} %; without it the crank nearly stands still at its heaviest place. The "
+                "textbook's estimate is {estimate}."
+            )
+        present = f"{100 * flywheel.present:.3g}"
+    return say(
+        template,
+        wanted=wanted,
+        present=present,
+        speed=number(abs(flywheel.speed) / PER_RPM),
+        inertia=told(flywheel.inertia, "inertia", "kg m^2"),
+        estimate=told(flywheel.estimate, "inertia", "kg m^2"),
+    )
 
 
 def _figures(run: Run) -> Iterator[str]:

@@ -16,6 +16,7 @@ from equipoise.quantities import Dimension, in_si
 from equipoise.results.result import Result
 from equipoise.running.drivers import Driver
 from equipoise.running.equation import CrankEquation
+from equipoise.running.flywheel import Flywheel, share_of_mean, size_flywheel
 from equipoise.running.integration import Event, Instant, Integration, Limits
 from equipoise.signals import Array
 
@@ -67,6 +68,7 @@ class Run(Result):
     work : what has acted -> work on the machine since the start (M,), J; the drive last.
     events : what happened; the last one ended the run.
     begins : instants at which a cycle began.
+    flywheel : the one that a wanted fluctuation needs, where it is asked for.
     """
 
     machine: Machine
@@ -78,6 +80,7 @@ class Run(Result):
     work: Mapping[str, Array]
     events: tuple[Event, ...]
     begins: tuple[Instant, ...]
+    flywheel: Flywheel | None = None
     headline_in: ClassVar[str] = "running.blocks.run_headline"
 
     @property
@@ -179,6 +182,7 @@ class Run(Result):
             "stall": None
             if lacking is None
             else {"torque_needed": lacking[0], "torque_given": lacking[1]},
+            "flywheel": None if self.flywheel is None else self.flywheel.to_dict(),
             "energy_error": self.energy_error,
             "events": [vars(event) for event in self.events],
             "time": self.time,
@@ -199,6 +203,7 @@ def run(
     angle: float | str = 0.0,
     off: float | str | None = None,
     off_turns: float | None = None,
+    fluctuation: float | str | None = None,
 ) -> Run:
     """Let a machine run on a fixed frame: its crank follows from motor, weight, springs and loads.
 
@@ -214,6 +219,8 @@ def run(
     angle : crank angle at the start, rad, or a text.
     off : time at which the motor is switched off, s, or a text.
     off_turns : turns of the crank from the start after which it is.
+    fluctuation : highest less lowest speed over the mean for which a flywheel is sized; a share of
+        1, or a text such as ``"2 %"``.
 
     Raises
     ------
@@ -250,6 +257,7 @@ def run(
         sizes["off_turns"],
         steady=free,
     )
+    wanted = None if fluctuation is None else share_of_mean(fluctuation)
     equation, driver = CrankEquation(machine), Driver(machine)
     found = Integration(equation, driver, limits)
     found.follow(float(start[1]), float(start[0]))
@@ -267,4 +275,5 @@ def run(
         dict(zip(names, work, strict=True)),
         tuple(found.events),
         tuple(found.begins),
+        None if wanted is None else size_flywheel(machine, wanted),
     )

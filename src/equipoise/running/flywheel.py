@@ -1,0 +1,252 @@
+"""How large a flywheel keeps the speed of a crank within a wanted fluctuation.
+
+Where the drive gives one torque T at every angle, T is the mean of what resists it, and the energy
+
+    E(q) = E_0 + int (T + Q(q, q.)) dq = J(q) q.^2 / 2
+
+gives the speed at every crank angle q exactly; E_0 follows from the mean speed.  A motor gives less
+torque the faster it turns: then the run itself is followed into its steady state.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import inf, nan
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ResponseError, UsageError
+from equipoise.i18n import Note
+from equipoise.mechanism.parts.machine import Machine
+from equipoise.running.drivers import Driver
+from equipoise.running.equation import CrankEquation
+from equipoise.running.integration import Integration, Limits
+from equipoise.running.tabulated import NODES, POINTS, TO_CHEBYSHEV, integral_to, polynomials
+from equipoise.signals import Array
+
+DENSE = 24
+"""Places in a piece at which extremes are read, beside the nodes: a few hundredths of a degree."""
+ROUNDS, SAME = 60, 1e-13
+"""Of the iteration where what resists depends on the speed; share of the speed that is rounding."""
+CLOSE = 1e-9
+"""Share of an inertia that is good enough."""
+LARGEST, MANY_TIMES = 1e6, 4.0
+"""Inertia looked for at most, over the estimate or the machine's own, and the factor from one try
+to the next."""
+MOST_TURNS = 400
+"""Of a motor's crank until it is steady, once it begins at the speed that a constant torque has."""
+WHOLE, TO_NODES = integral_to(1.0, -1.0), integral_to(POINTS, -1.0)
+"""Integral over a piece, and up to each of its nodes, by values at the nodes."""
+DENSELY = polynomials(np.linspace(-1.0, 1.0, DENSE + 1))[:, :NODES] @ TO_CHEBYSHEV
+"""Values at many places of a piece by those at its nodes."""
+
+
+@dataclass(frozen=True)
+class Flywheel:
+    """A flywheel on the crank, beside what turns with it already.
+
+    wanted : coefficient of fluctuation, highest less lowest speed over the mean.
+    present : the same of the machine as it is; infinite where it nearly stands still on the way.
+    inertia : of the flywheel, kg m2; 0 where none is needed.
+    estimate : as textbooks have it, largest less smallest work of the drive's torque about its
+        mean at constant speed, over wanted times speed squared, less what turns already, kg m2.
+    work : that largest less smallest work, J.
+    speed : mean speed of the crank, rad/s.
+    """
+
+    wanted: float
+    present: float
+    inertia: float
+    estimate: float
+    work: float
+    speed: float
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain values in SI units."""
+        return vars(self) | {"present": self.present if self.present < inf else None}
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyCycle:
+    """The steady state of a machine under a constant torque of its drive, at its mean speed.
+
+    added : moment of inertia on the crank beside its own, kg m2.
+    """
+
+    equation: CrankEquation
+    added: float = 0.0
+
+    @property
+    def mean_speed(self) -> float:
+        """Of the crank, rad/s, without its sense."""
+        return abs(self.equation.machine.drive.speed)
+
+    @cached_property
+    def _halves(self) -> Array:
+        """Half the width (P, 1) of the pieces, rad."""
+        table = self.equation.table
+        return np.asarray((table.highs - table.lows)[:, None] / 2)
+
+    @property
+    def _inertia(self) -> Array:
+        return np.asarray(self.equation.table.values[0] + self.added)
+
+    def _integral(self, values: Array) -> float:
+        return float(np.sum(self._halves * values * WHOLE))
+
+    def _torque(self, speed: Array) -> Array:
+        """Of all but the drive at the nodes (P, NODES), about its mean, N m."""
+        each = self.equation.torques(self.equation.table.values, speed)
+        torque = np.sum(each, axis=0) + np.zeros_like(speed)
+        return np.asarray(torque - self._integral(torque) / self.equation.period)
+
+    def _work(self, torque: Array) -> Array:
+        """Done since the crank angle 0 at the nodes (P, NODES), J."""
+        inside = self._halves * (torque @ TO_NODES.T)
+        ends = self._halves[:, 0] * (torque @ WHOLE)
+        return np.asarray(inside + np.concatenate([[0.0], np.cumsum(ends)[:-1]])[:, None])
+
+    @cached_property
+    def speed(self) -> Array | None:
+        """At the nodes (P, NODES), rad/s, without its sense; None where it would nearly stand still
+        at a place, and still be faster than that in the mean.
+
+        Raises
+        ------
+        ResponseError : what resists depends on the speed so much that no steady state is met.
+        """
+        sense = float(np.sign(self.equation.machine.drive.speed))
+        speed = np.full_like(self._inertia, self.mean_speed)
+        for _ in range(ROUNDS):
+            before = speed
+            found = self._of_energy(self._work(self._torque(sense * speed)))
+            if found is None:
+                return None
+            speed = found
+            if np.max(np.abs(speed - before)) <= SAME * self.mean_speed:
+                return speed
+        raise ResponseError(
+            Note("no steady state is met, as what resists changes too much with speed")
+        )
+
+    def _of_energy(self, work: Array) -> Array | None:
+        """Speed at the nodes for the work done there, such that its mean is right."""
+        from scipy.optimize import brentq
+
+        inertia, period = self._inertia, self.equation.period
+
+        def at(least: float) -> Array:
+            energy = work - np.min(work) + least
+            return np.sqrt(np.maximum(energy, 1e-300) * 2 / inertia)
+
+        def missed(least: float) -> float:
+            return period / self._integral(1 / at(least)) - self.mean_speed
+
+        high = float(np.max(inertia)) * self.mean_speed**2 / 2
+        low = 1e-9 * (high + float(np.ptp(work)))
+        if missed(low) > 0:
+            return None
+        return at(brentq(missed, low, 2 * high + low, xtol=1e-16 * high, rtol=1e-14))
+
+    @cached_property
+    def fluctuation(self) -> float:
+        """Highest less lowest speed, over the mean; infinite where there is no `speed`."""
+        if self.speed is None:
+            return inf
+        return float(np.ptp(self.speed @ DENSELY.T)) / self.mean_speed
+
+
+def share_of_mean(given: float | str) -> float:
+    """A coefficient of fluctuation: a number, or a text such as ``"2 %"``.
+
+    Raises
+    ------
+    UsageError : it is not between 0 and 1.
+    """
+    try:
+        text = str(given).strip()
+        share = float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
+    except ValueError:
+        share = nan
+    if not 0 < share < 1:
+        raise UsageError(
+            Note(
+                "got {given!r} for fluctuation; give more than 0 and less than 1, such as 0.02 or "
+                '"2 %"',
+                given=given,
+            )
+        )
+    return share
+
+
+def size_flywheel(machine: Machine, wanted: float) -> Flywheel:
+    """A flywheel on the crank for a wanted fluctuation, by the steady state itself.
+
+    wanted : coefficient of fluctuation, highest less lowest speed over the mean; 0.02 is 2 %.
+
+    Raises
+    ------
+    MassError, MotionError, UsageError, ResponseError : as `run.run`; or the wanted fluctuation is
+        not between 0 and 1.
+    """
+    wanted = share_of_mean(wanted)
+    equation = CrankEquation(machine)
+    work, own = work_at_constant_speed(equation), equation.shaft_inertia
+    needed = work / (wanted * machine.drive.speed**2)
+
+    def fluctuation(added: float) -> float:
+        steady = SteadyCycle(equation, added)
+        if machine.drive.motor is None or steady.fluctuation == inf:
+            return steady.fluctuation
+        return _with_motor(machine, steady)
+
+    present = fluctuation(0.0)
+    speed = machine.drive.speed
+    found = 0.0 if present <= wanted else _least(fluctuation, wanted, max(needed, own))
+    return Flywheel(wanted, present, found, max(needed - own, 0.0), work, speed)
+
+
+def _least(fluctuation: Callable[[float], float], wanted: float, about: float) -> float:
+    """The inertia, kg m2, with which the fluctuation is the wanted one."""
+    from scipy.optimize import brentq
+
+    def missed(added: float) -> float:
+        return min(fluctuation(added), 10.0) - wanted
+
+    high = about
+    while missed(high) > 0:
+        high *= MANY_TIMES
+        if high > LARGEST * about:
+            raise ResponseError(Note("no flywheel, however large, brings about so even a speed"))
+    return float(brentq(missed, 0.0, high, rtol=CLOSE))
+
+
+def _with_motor(machine: Machine, steady: SteadyCycle) -> float:
+    """Fluctuation in the steady state with the motor's own curve, followed into it."""
+    drive = replace(machine.drive, flywheel=machine.drive.flywheel + steady.added)
+    equation = CrankEquation(replace(machine, drive=drive))
+    limits = Limits(inf, MOST_TURNS, inf, inf, steady=True)
+    found = Integration(equation, Driver(equation.machine), limits)
+    assert steady.speed is not None
+    found.follow(0.0, float(np.sign(drive.speed) * steady.speed[0, 0]))
+    if found.events[-1].kind not in ("steady", "turns") or len(found.begins) < 2:
+        return inf
+    time, _, speed, *_ = np.vstack(found.track).T
+    first, last = found.begins[-2:]
+    inside = np.abs(speed[(time >= first.time) & (time <= last.time)])
+    return float(np.ptp(inside)) * (last.time - first.time) / abs(last.angle - first.angle)
+
+
+def work_at_constant_speed(equation: CrankEquation) -> float:
+    """Largest less smallest work of the drive's torque about its mean at constant speed, J.
+
+    Within a cycle, with what accelerates the linkage: at constant speed the energy that the rest
+    gives is W, the linkage takes J q.^2 / 2, and the drive the difference.
+    """
+    steady, speed = SteadyCycle(equation), equation.machine.drive.speed
+    nodes = np.full_like(equation.table.values[0], speed)
+    work = steady._work(steady._torque(nodes)) - equation.table.values[0] * speed**2 / 2
+    return float(np.ptp(work @ DENSELY.T))

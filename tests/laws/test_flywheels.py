@@ -1,0 +1,126 @@
+"""A flywheel that is sized keeps the speed as it was to: the machine itself is let run with it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import equipoise as eq
+from equipoise.errors import UsageError
+from equipoise.running.blocks import run_headline
+from equipoise.running.equation import CrankEquation
+from equipoise.running.flywheel import Flywheel, SteadyCycle, share_of_mean, size_flywheel
+from support.analyses import subject_of
+
+WITHOUT_A_MOTOR = ("transplanter", "four-stroke-engine", "rotary-transplanter", "watt:1")
+
+
+def with_flywheel(machine: eq.Machine, added: float) -> eq.Machine:
+    drive = replace(machine.drive, flywheel=machine.drive.flywheel + added)
+    return replace(machine, drive=drive)
+
+
+@pytest.mark.parametrize("name", WITHOUT_A_MOTOR)
+def test_scipy_goes_through_a_cycle_alike(name: str) -> None:
+    """The equation of motion in time, under the constant torque of the drive."""
+    machine = subject_of(name).machine
+    found = size_flywheel(machine, 0.05)
+    equation = CrankEquation(with_flywheel(machine, found.inertia))
+    steady = SteadyCycle(equation)
+    assert steady.speed is not None
+    turns, sense = np.linspace(0.0, equation.period, 4001), np.sign(machine.drive.speed)
+    grid = np.array([equation.at(q, machine.drive.speed)[2].sum() for q in turns[:-1]])
+    torque = -float(np.mean(grid))
+
+    def rates(_: float, state: list[float]) -> list[float]:
+        inertia, slope, sources = equation.at(state[0], state[1])
+        driven = float(np.sum(sources)) + torque - slope * state[1] ** 2 / 2
+        return [state[1], driven / inertia]
+
+    # begin at a node, and go through one cycle
+    start = float(equation.table.lows[0] + equation.table.highs[0]) / 2
+    table = equation.table
+    first = steady.speed[0] @ np.linalg.inv(np.polynomial.chebyshev.chebvander(NODES, 11)).T
+    speed = sense * float(np.polynomial.chebyshev.chebval(0.0, first))
+    period = equation.period / abs(machine.drive.speed)
+    done = solve_ivp(rates, (0.0, period), [start, speed], "DOP853", rtol=1e-9, dense_output=True)
+    angle, end = done.y[:, -1]
+    assert abs(angle - start) == pytest.approx(table.period, rel=2e-4)  # as its loads may jump
+    assert end == pytest.approx(speed, rel=2e-4)
+    rate = done.sol(np.linspace(0.0, period, 20001))[1]
+    assert np.ptp(rate) / abs(machine.drive.speed) == pytest.approx(0.05, rel=1e-3)
+
+
+NODES = np.polynomial.chebyshev.chebpts1(12)
+
+
+@pytest.mark.parametrize("name", ["walking-transplanter", "yamashita-rig", "balance-rig"])
+def test_with_a_motor_the_run_itself_is_as_even(name: str) -> None:
+    machine = subject_of(name).machine
+    wanted = 0.4 * size_flywheel(machine, 0.9).present
+    found = size_flywheel(machine, wanted)
+    cycle = eq.run(with_flywheel(machine, found.inertia), fluctuation=wanted).last_cycle
+    assert found.inertia > 0
+    assert cycle is not None
+    assert cycle.fluctuation == pytest.approx(wanted, rel=2e-3)  # at the nodes of a run
+
+
+def test_the_mean_speed_is_that_of_the_drive() -> None:
+    """Over time: the crank needs for a cycle what it needs at constant speed."""
+    equation = CrankEquation(subject_of("transplanter").machine)
+    steady = SteadyCycle(equation, 0.05)
+    assert steady.speed is not None
+    table = equation.table
+    halves = (table.highs - table.lows) / 2
+    inverse = np.linalg.inv(np.polynomial.chebyshev.chebvander(NODES, 11))
+    whole = np.array([0 if k % 2 else 2 / (1 - k * k) for k in range(12)]) @ inverse
+    time = float(np.sum(halves * ((1 / steady.speed) @ whole)))
+    assert time == pytest.approx(equation.period / abs(equation.machine.drive.speed), rel=1e-12)
+
+
+def test_none_is_needed_where_there_is_enough() -> None:
+    machine = with_flywheel(subject_of("transplanter").machine, 10.0)
+    found = size_flywheel(machine, 0.05)
+    assert found.inertia == 0.0
+    assert found.estimate == 0.0
+    assert 0 < found.present < 0.05
+
+
+def test_a_crank_that_nearly_stands_still_at_its_heaviest_place() -> None:
+    """So slow that whatever lifts the weight over the top is faster in the mean."""
+    mean = 0.05
+    link = eq.Link({"A": (0.0, 0.0), "B": (1.0, 0.0)}, 10.0, (0.8, 0.0), 0.1)
+    drive = eq.Drive("crank", mean)
+    machine = eq.Machine("crank", drive, {"A": (0.0, 0.0)}, {"crank": link}, gravity=(0.0, -9.81))
+    found = size_flywheel(machine, 0.1)
+    assert found.present == inf
+    assert found.to_dict()["present"] is None
+    inertia, weight = 0.1 + 10 * 0.64 + found.inertia, 10 * 9.81 * 0.8
+    # by hand: highest less lowest speed of an energy that is E + weight * cos, to its third order
+    assert 2 * weight / (inertia * mean**2) == pytest.approx(0.1, rel=2e-3)
+    run = eq.run(machine, "1 s", speed=mean, fluctuation="10 %")
+    assert "nearly stands still at its heaviest place" in str([*run_headline(run)])
+
+
+@pytest.mark.parametrize(
+    ("given", "share"), [("2 %", 0.02), ("2%", 0.02), (0.3, 0.3), ("0.3", 0.3)]
+)
+def test_shares(given: float | str, share: float) -> None:
+    assert share_of_mean(given) == pytest.approx(share)
+
+
+@pytest.mark.parametrize("given", ["two", "0 %", "100 %", -0.1, "nan", "2 rpm", ""])
+def test_what_is_no_share_is_refused(given: float | str) -> None:
+    with pytest.raises(UsageError, match="for fluctuation; give more than 0 and less than 1"):
+        eq.run(subject_of("transplanter").machine, fluctuation=given)
+
+
+def test_in_the_output() -> None:
+    found = eq.run(subject_of("yamashita-rig").machine, fluctuation=0.02)
+    assert isinstance(found.flywheel, Flywheel)
+    assert found.to_dict()["flywheel"] == found.flywheel.to_dict()
+    assert "textbook" in str([*run_headline(found)])
