@@ -17,7 +17,6 @@ from equipoise.codegen import backends
 from equipoise.codegen.emit import can_emit
 from equipoise.codegen.figures import Figure
 from equipoise.mechanism.assembly.linkage import assemble
-from equipoise.mechanism.assembly.newton import LoopGroup
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.machine import Gear, Machine, Slider
 from equipoise.signals import Figures
@@ -72,7 +71,7 @@ class Known:
 
 
 def signals_of(design: Machine) -> list[str]:
-    """Names of all signals that a batch knows of a machine; of groups of loops no joint forces."""
+    """Names of all signals that a batch knows of a machine."""
     analysis = eq.analyze(design, 8)
     names = {name: None for name in analysis.summary if declared(name)[0].loop}
     for name in (one.name for one in analysis.outputs.arrays):
@@ -80,10 +79,7 @@ def signals_of(design: Machine) -> list[str]:
         moving = kind in ("points", "links") and part in MOTIONS
         if moving or (kind in ("joints", "gears", "bearings") and part in ("force_x", "force_y")):
             names[name] = None
-    found = [*names, "frame_force.x", "frame_force.y"]
-    if any(isinstance(step, LoopGroup) for step in assemble(design).motion):
-        found = [name for name in found if declared(name)[0].group != "joints"]
-    return found
+    return [*names, "frame_force.x", "frame_force.y"]
 
 
 def known_of(design: Machine, angles: int, signals: Sequence[str]) -> Mapping[str, Known]:

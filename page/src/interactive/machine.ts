@@ -166,8 +166,8 @@ export class Solution {
       if (why) return why;
     }
     for (const name of this.machine.data.names) {
-      if (name.startsWith("cosine ") && (this.row(name) ?? []).some((value) => value < FAR))
-        return say("turns of the gears cannot be counted this far from the original; open the model in Equipoise");
+      if (name.startsWith("cosine ") && !(this.row(name) ?? []).every((value) => value >= FAR))
+        return say("this far from the original the machine cannot be followed here; open the model in Equipoise");
     }
     const at = this.endless();
     if (at === null) return null;

@@ -127,8 +127,6 @@ class Signals:
         self.demands  # noqa: B018  they are what joints supply
         if self.linkage.shared is not None:
             raise UsageError("forces that joints share cannot be computed in a loop")
-        if any(isinstance(step, LoopGroup) for step in self.linkage.motion):
-            raise UsageError("joint forces of groups of loops cannot be computed in a loop")
         trace_joints(self.trace)
         return self.trace.state
 
@@ -283,11 +281,13 @@ def signals_in_loops(linkage: Linkage, names: Iterable[str]) -> list[str]:
 
 
 def pose_signals(linkage: Linkage) -> list[str]:
-    """Names of the signals in `Signals.poses` of a linkage; errors as `signals_in_loops`."""
-    return [*_traced(linkage).poses]
+    """Names of the signals in `Signals.poses` of a linkage at crank angles that stand alone; errors
+    as `signals_in_loops`.
+    """
+    return [*_traced(linkage, alone=True).poses]
 
 
-def _traced(linkage: Linkage, paths: Collection[str] | None = None) -> Signals:
+def _traced(linkage: Linkage, paths: Collection[str] | None = None, alone: bool = False) -> Signals:
     """Signals of a linkage whose steps can be traced."""
     if not can_emit(linkage):
         raise UsageError(
@@ -296,7 +296,7 @@ def _traced(linkage: Linkage, paths: Collection[str] | None = None) -> Signals:
                 "loops cannot be computed in a loop"
             )
         )
-    return Signals(Trace(linkage, paths))
+    return Signals(Trace(linkage, paths, alone))
 
 
 def emit(
@@ -304,18 +304,21 @@ def emit(
     gathered: Gathered,
     paths: Collection[str] | None = None,
     has_shares: bool = False,
+    alone: bool = False,
 ) -> Source:
     """Trace the steps of a linkage, with the signals that are gathered.
 
     paths : of the numbers in which designs differ; None of one design.
     has_shares : whether crank angles have shares of their own in means.
+    alone : whether each crank angle stands alone, also in groups of loops: these start from the
+        base there, and cosines tell whether they arrive.
 
     Raises
     ------
     UsageError : there is no such signal, or a loop cannot have it or this linkage.
     MassError : it needs masses, and the machine lacks some.
     """
-    signals = _traced(linkage, paths)
+    signals = _traced(linkage, paths, alone)
     values = {name: signals(name) for name in gathered.signals}
     return source_of(signals.trace, gathered, values, has_shares)
 

@@ -33,11 +33,8 @@ def in_c(source: Source, linkage: Linkage, names: Sequence[str]) -> str:
 
     Raises
     ------
-    UsageError : a group of loops goes from one crank angle to the next, or a load changes over the
-        crank angle.
+    UsageError : a load changes over the crank angle.
     """
-    if source.carried:
-        raise UsageError("loops that no dyads solve cannot be written in C; give another format")
     values = [source.values[name] for name in names]
     outputs = substituted(values, dict(_known(source, linkage, values)))
     lines = Lines(outputs, C)

@@ -28,7 +28,6 @@ from equipoise.codegen.terms import (
 )
 from equipoise.codegen.trace import Array
 from equipoise.errors import UsageError
-from equipoise.i18n import Note
 from equipoise.mechanism.assembly.family import linkage_of, with_columns
 from equipoise.mechanism.assembly.linkage import Linkage
 
@@ -84,13 +83,12 @@ def javascript(
 
     Raises
     ------
-    UsageError : there is no such signal, or the linkage has a group of loops, or cannot be had in
-        compiled loops; there is no such number, or what follows from it cannot be written.
+    UsageError : there is no such signal, or the linkage cannot be had in compiled loops; there is
+        no such number, or what follows from it cannot be written.
     MassError : a signal needs masses, and the machine lacks some.
     """
-    source = emit(linkage, Gathered(tuple((name, "squares") for name in names)), numbers or None)
-    if source.carried:
-        raise UsageError(Note("loops that no dyads solve cannot be written in JavaScript"))
+    wanted = Gathered(tuple((name, "squares") for name in names))
+    source = emit(linkage, wanted, numbers or None, alone=True)
     outputs = [source.values[name] for name in names]
     if numbers:
         outputs = _of_numbers(source, linkage, outputs, numbers)

@@ -11,12 +11,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields, is_dataclass, replace
 from functools import reduce
+from math import pi
 from operator import attrgetter, itemgetter
 from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.terms import ANGLE, Term, greatest, least
+from equipoise.codegen.terms import ANGLE, Term, floor, greatest, least, pick, rotation
+from equipoise.codegen.trace import FAR as LOWEST
 from equipoise.codegen.trace import Read, Trace
 from equipoise.codegen.tracks import TracedCurve, can_look_up
 from equipoise.mechanism.assembly.linkage import Linkage
@@ -31,12 +33,30 @@ Array = np.ndarray[Any, Any]
 
 MOST_UNKNOWNS = 7
 """Beyond which minors are too many."""
+FROM_BASE = 5
+"""Rounds of Newton's method where each crank angle stands alone."""
+THINNED = 4
+"""Of the rows that the base has over its cycle, those that a formula takes: one in so many."""
+ARRIVED = 1e-8
+"""Last of them, in sizes of the machine and radians, up to which 3/2 count as arrived."""
 MARCH = ("step", "marked", "steady")
 """What is given of a crank angle in a march: how far it is from the one before; 1 where the file
 tells the pose, else 0; 1 from there on, 0 before."""
 WATCHED = ("loose", "astray", "open")
 """Values that are carried on, whose last tells of a design whether Newton's method left its branch;
 did not arrive from the base, or too far from where the file tells; came back elsewhere."""
+
+
+def between_rows(trace: Trace, table: Array, period: float) -> Any:
+    """Rows (n + 1,) over the crank angle, evenly spaced from 0 to a period, as a term: linear
+    between them.  What it gains in a period is left out.
+    """
+    count = float(len(table) - 1)
+    place = trace.theta * (count / period)
+    place = place - count * floor(place * (1 / count))
+    row = least(count - 1, floor(place))
+    steps = pick(trace.graph.table(np.diff(table)), row)
+    return pick(trace.graph.table(table[:-1]), row) + (place - row) * steps
 
 
 def can_trace(group: LoopGroup) -> bool:
@@ -52,11 +72,25 @@ def trace_loops(trace: Trace, number: int) -> None:
     """A group, the step of this number of the linkage's ``motion``."""
     group = trace.linkage.motion[number]
     assert isinstance(group, LoopGroup)
-    _Group(trace, group, number).go_on()
+    traced = trace.groups[group.reference] = TracedGroup(trace, group, number)
+    if trace.alone:
+        traced.start_at_base()
+    else:
+        traced.go_on()
 
 
-class _Group:
-    """A group whose numbers are terms."""
+def group_of(trace: Trace, group: LoopGroup) -> TracedGroup:
+    """A group that was traced, with its poses."""
+    found: TracedGroup = trace.groups[group.reference]
+    return found
+
+
+class TracedGroup:
+    """A group whose numbers are terms.
+
+    reached : its unknowns once they are solved.  final : poses with their rates.
+    still : known bodies without their rates.
+    """
 
     def __init__(self, trace: Trace, group: LoopGroup, number: int) -> None:
         self.trace, self.linkage, self.base, self.number = trace, trace.linkage, group, number
@@ -131,19 +165,14 @@ class _Group:
         h = self.step
         ahead = [h * one + h * h * 0.5 * two for one, two in zip(rates, bends, strict=True)]
         q = self.moved(before, ahead)
-        minors = _Minors(self.slopes(q))
+        minors = Minors(self.slopes(q))
         jump = minors.solve(self.gaps(q))
         q = self.moved(q, [-one for one in jump])
         q = self.moved(q, [-one for one in minors.solve(self.gaps(q))])
-        minors = _Minors(self.slopes(q))
+        minors = Minors(self.slopes(q))
         left = minors.solve(self.gaps(q))
-        w = [-one for one in minors.solve(self.group.gaps(self.poses(self.known, q), 1))]
-        a = [-one for one in minors.solve(self.group.gaps(self.poses(self.known, q, w), 2))]
-        poses = self.poses(self.known, q, w, a)
-        for link, anchor in zip(self.group.links, self.group.anchors, strict=True):
-            self.trace.put(p(anchor), poses[link].place)
-            self.trace.put(u(link), poses[link].turn)
-            self.trace.state.update(zip(along(link), poses[link].along, strict=False))
+        w, a = self.put(q, minors)
+        poses = self.final
         self.carry_on(before, q)
         marked = [one + self.marked * (now - one) for one, now in zip(first, q, strict=True)]
         self.carry_on(first, marked)
@@ -157,6 +186,48 @@ class _Group:
         off = reduce(greatest, self.misplaced(poses), farthest)
         self.carry_on([astray], [greatest(astray, self.marked * off)])
         self.settle(determinant, farthest, longest, minors.whole)
+
+    def start_at_base(self) -> None:
+        """Add poses to the state that Newton's method finds from those of the base at the same
+        crank angle, so that each crank angle stands alone.
+        """
+        q = [self.of_base(k, turns) for k, turns in enumerate(self.group.turning.tolist())]
+        for _ in range(FROM_BASE):
+            q = self.moved(q, [-one for one in Minors(self.slopes(q)).solve(self.gaps(q))])
+        minors = Minors(self.slopes(q))
+        left = reduce(greatest, map(abs, self.scaled(minors.solve(self.gaps(q)))))
+        self.put(q, minors)
+        _, start = self.told()
+        whole = minors.whole
+        same = 2 * start * whole / (whole * whole + start * start)
+        names = " and ".join(self.group.shown)
+        self.trace.running[f"{names} arrive"] = 1.0 - left * (1 / ARRIVED)
+        self.trace.running[f"{names} stay"] = (
+            same + LOWEST
+        )  # which is too low where the determinant has the other sign
+
+    def of_base(self, number: int, turns: bool) -> Any:
+        """What the base has for an unknown, of an angle the rotation."""
+        name, cycle = self.base.reference, self.linkage.cycle
+        table = cycle.tables[name][number]
+        value = self.trace.row(
+            f"{name}, {number + 1}",
+            lambda theta: np.asarray(cycle.reference(name, theta)[number]),
+            between_rows(self.trace, table[::THINNED], 2 * pi * cycle.turns),
+        )
+        return rotation(value) if turns else value
+
+    def put(self, q: list[Any], minors: Minors) -> tuple[list[Any], list[Any]]:
+        """Add poses to the state, with their rates; those of the unknowns."""
+        w = [-one for one in minors.solve(self.group.gaps(self.poses(self.known, q), 1))]
+        a = [-one for one in minors.solve(self.group.gaps(self.poses(self.known, q, w), 2))]
+        poses = self.final = self.poses(self.known, q, w, a)
+        self.reached, self.still = q, {body: pose.still for body, pose in self.known.items()}
+        for link, anchor in zip(self.group.links, self.group.anchors, strict=True):
+            self.trace.put(p(anchor), poses[link].place)
+            self.trace.put(u(link), poses[link].turn)
+            self.trace.state.update(zip(along(link), poses[link].along, strict=False))
+        return w, a
 
     def settle(self, start: float, last: Any, jump: Any, whole: Any) -> None:
         """Whether Newton's method arrives, without a jump, where the determinant has its sign."""
@@ -220,7 +291,7 @@ class _Group:
         return [list(row) for row in zip(*columns, strict=True)]
 
 
-class _Minors:
+class Minors:
     """Linear equations, solved by minors of their rows.
 
     whole : the determinant.

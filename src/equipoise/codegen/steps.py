@@ -18,6 +18,7 @@ from equipoise.codegen.applied import Held, trace_element, trace_limits, trace_l
 from equipoise.codegen.coupled import trace_coupling, trace_rolled
 from equipoise.codegen.followers import trace_displacement, trace_swung
 from equipoise.codegen.laws import trace_law
+from equipoise.codegen.loop_forces import trace_loop_forces
 from equipoise.codegen.loops import trace_loops
 from equipoise.codegen.prescribed import trace_prescribed
 from equipoise.codegen.terms import rotation
@@ -25,6 +26,7 @@ from equipoise.codegen.trace import Array, Read, Trace, links_of, running_angle
 from equipoise.errors import MassError
 from equipoise.mechanism.assembly.cam_groups import Displacement
 from equipoise.mechanism.assembly.flanks import rolled
+from equipoise.mechanism.assembly.loop_forces import LoopForces
 from equipoise.mechanism.assembly.newton import LoopGroup
 from equipoise.mechanism.assembly.steps import (
     Call,
@@ -108,6 +110,8 @@ def trace_step(trace: Trace, step: Step, steps: str, number: int) -> None:
         trace_displacement(trace, step)
     elif isinstance(step, LoopGroup):
         trace_loops(trace, number)
+    elif isinstance(step, LoopForces):
+        trace_loop_forces(trace, number)
 
 
 def _trace_call(trace: Trace, step: Call, steps: str, number: int) -> None:

@@ -84,10 +84,15 @@ class Trace:
         block is from its guide's pivot.  Near there the number drops too fast to tell between the
         crank angles.
     running : link whose angle is taken from that of the base -> cosine of the angle between.
+    alone : whether groups of loops start from the base at each crank angle, and nothing is carried.
+    groups : of loops that were traced, by their references.
     carried, following : values of the crank angle before, and what they are after this one.
     """
 
-    def __init__(self, linkage: Linkage, paths: Collection[str] | None = None) -> None:
+    def __init__(
+        self, linkage: Linkage, paths: Collection[str] | None = None, alone: bool = False
+    ) -> None:
+        self.alone, self.groups = alone, dict[str, Any]()
         self.linkage, self.machine, self.graph = linkage, linkage.machine, Graph()
         self.state: dict[str, Any] = {}
         self.slots: dict[str, Slot] = {}

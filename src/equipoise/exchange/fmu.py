@@ -81,7 +81,7 @@ def _outputs(analysis: Analysis) -> list[Output]:
 def _code(machine: Machine, names: Sequence[str], crank_angle: float) -> str:
     """The linkage, and what FMI calls."""
     linkage = assemble(machine)
-    source = emit(linkage, Gathered(tuple((name, "squares") for name in names)))
+    source = emit(linkage, Gathered(tuple((name, "squares") for name in names)), alone=True)
     numbers = {"COUNT": len(names), "SPEED": machine.drive.speed}
     numbers["START"] = crank_angle
     defined = "".join(f"#define {name} {value!r}\n" for name, value in numbers.items())

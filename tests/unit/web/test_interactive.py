@@ -211,12 +211,8 @@ def test_lengths_between_points(tmp_path: Path) -> None:
 
 
 def test_what_cannot_be_computed_is_one_sentence(tmp_path: Path) -> None:
-    for name, why in (
-        ("class-three", "loops that no dyads solve cannot be written in JavaScript"),
-        ("hydraulic-loader", "drives that push"),
-    ):
-        with pytest.raises(UsageError, match=why):
-            eq.export(eq.load(name), tmp_path / "machine.html")
+    with pytest.raises(UsageError, match="drives that push"):
+        eq.export(eq.load("hydraulic-loader"), tmp_path / "machine.html")
     assert [*tmp_path.iterdir()] == []
 
 
