@@ -62,14 +62,14 @@ def test_no_module_imports_itself_by_way_of_others() -> None:
 
 
 def test_modules_are_imported_by_statements() -> None:
-    """An import by a text is seen by no contract: results draw and print themselves by it, keys
-    and formats are declared as texts, and nothing else may.
+    """An import by a text is seen by no contract: results draw and print themselves by it, keys,
+    formats and signs of elements are declared as texts, and nothing else may.
     """
     names = {
         file.relative_to(ROOT).as_posix() for file in FILES if "import_module" in text_of(file)
     }
     assert names == {"errors.py", "guarding.py", "displays.py", "figures/pictures.py",
-                     "exchange/export.py", "keys/kinds.py"}  # fmt: skip
+                     "exchange/export.py", "keys/kinds.py", "symbols/element_signs.py"}  # fmt: skip
 
 
 def test_a_file_is_one_concept() -> None:

@@ -11,6 +11,7 @@ from typing import Any
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import listed, say, to_say
 from equipoise.keys import Frozen, Quantity, quantities_of
+from equipoise.mechanism.outputs.declared import GROUPS
 from equipoise.mechanism.parts.links import MASS_FIELDS
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector, size_of
 from equipoise.mechanism.parts.mounts import OF_AXIS, OF_POINT
@@ -140,15 +141,9 @@ class Scale:
 
 
 SECTIONS = {
+    **GROUPS,
     "drive": to_say("drive"),
     "frame": to_say("frame"),
-    "gears": to_say("gears"),
-    "cams": to_say("cams"),
-    "circular_slots": to_say("circular slots"),
-    "curved_slots": to_say("curved slots"),
-    "springs": to_say("springs"),
-    "torsion_springs": to_say("torsion springs"),
-    "joints": to_say("joints"),
     "rows": to_say("rows"),
     "planting": to_say("planting"),
     "support": to_say("support"),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -13,9 +12,6 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.codegen.batch import Batch
-from equipoise.codegen.figures import Figure
-from equipoise.codegen.javascript import javascript
 from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.keys import Table, Tables, Text, declared, key
@@ -25,17 +21,8 @@ from equipoise.mechanism.outputs.declared import declaring, of_element
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement
 from equipoise.present.checks import machine_blocks
-from equipoise.schema.places import Context
-from equipoise.schema.reading import read_table
-from equipoise.schema.writing import Writer, toml_text
-from equipoise.symbols import element_signs
-from equipoise.symbols.pieces import pieces
-from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Mark, circle
-from equipoise.web.design import Design
-from equipoise.web.fields import fields_of
-from equipoise.web.tables import tables_of
-from secondroute.test_javascript import run
+from support.own_kinds import designs_by_numbers, drawn, on_the_page, read_back, scripted
 
 
 @declared
@@ -43,6 +30,7 @@ class Magnet(ForceElement):
     """It draws a point of a link towards a point of the frame, by a force that falls with way."""
 
     called = "{what} of magnet {number}"
+    sign = f"{__name__}:magnet_sign"
     title = "Magnets"
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {"attraction": ("least", "most")}
 
@@ -96,6 +84,11 @@ class Magnet(ForceElement):
         return f"magnet: {self.point} of {self.link} to {self.to}"
 
 
+def magnet_sign(one: Magnet, *_: Any) -> Iterator[Mark]:
+    """What its drawing consists of."""
+    yield Mark(one.link, one.point, circle("spiral", 0j, 0.01))
+
+
 @declared
 class Magnetic(Machine):
     """A machine that may have magnets."""
@@ -121,12 +114,8 @@ def outputs() -> Iterator[None]:
 
 
 def test_it_is_read_written_and_refused() -> None:
-    text = toml_text(Magnetic, Writer({}).content(Magnetic, MACHINE))
-    assert '[[magnets]]\nlink = "rocker"\npoint = "C"\nto = "S"\nattraction = "30 N"\n' in text
-    assert read_table(Magnetic, tomllib.loads(text), Context()) == MACHINE
-    wrong = text.replace('link = "rocker"\npoint = "C"\nto', 'link = "rockr"\npoint = "C"\nto')
-    with pytest.raises(ModelError, match=r"^magnets\[1\]\.link: .* did you mean 'rocker'"):
-        read_table(Magnetic, tomllib.loads(wrong), Context())
+    rows = '[[magnets]]\nlink = "rocker"\npoint = "C"\nto = "S"\nattraction = "30 N"\n'
+    read_back(MACHINE, rows, ("rocker", "rockr"), r"^magnets\[1\]\.link: .* did you mean 'rocker'")
     with pytest.raises(ModelError, match="give more than 0"):
         magnetic(Magnet("rocker", "C", "S", -1.0))
     with pytest.raises(ModelError, match=r"^magnets: got 201"):
@@ -150,44 +139,26 @@ def test_analysis_has_its_force_and_its_outputs() -> None:
 
 
 def test_compiled_loops_have_designs_by_its_numbers() -> None:
+    def alone(attraction: float, reach: float) -> Machine | None:
+        good = attraction > 0
+        return magnetic(Magnet("rocker", "C", "S", attraction, reach)) if good else None
+
     names = ("drive_torque", "joints.C", "magnets.1.attraction")
-    wanted = [Figure(name, "peak") for name in names]
-    batch = Batch(MACHINE, ["magnets[1].attraction", "magnets[1].reach"], wanted, angles=90)
-    figures, reason = batch(np.array([[30.0, 0.1], [50.0, 0.08], [-1.0, 0.1]]))
-    assert reason.astype(bool).tolist() == [False, False, True]
-    for row, sizes in zip(figures, ((30.0, 0.1), (50.0, 0.08)), strict=False):
-        summary = eq.analyze(magnetic(Magnet("rocker", "C", "S", *sizes)), 90).summary
-        np.testing.assert_allclose(row, [summary[name].peak for name in names], rtol=1e-9)
+    paths = ["magnets[1].attraction", "magnets[1].reach"]
+    sizes = [(30.0, 0.1), (50.0, 0.08), (-1.0, 0.1)]
+    designs_by_numbers(MACHINE, paths, names, sizes, alone)
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="needs Node to run JavaScript")
 def test_scripts_have_it(tmp_path: Path) -> None:
-    linkage, names = eq.mechanism.assemble(MACHINE), ["drive_torque", "magnets.1.attraction"]
-    script, found = javascript(linkage, names), eq.analyze(MACHINE, 24)
-    got = run(script, script.numbers(linkage), found.motion.crank_angle, tmp_path)
-    for name, values in zip(names, got, strict=True):
-        wanted = found.outputs[name].values
-        np.testing.assert_allclose(values, wanted, atol=1e-12 * np.max(np.abs(wanted)))
+    scripted(MACHINE, ["drive_torque", "magnets.1.attraction"], tmp_path)
 
 
-def test_drawings_have_its_sign(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where it is given one."""
-
-    def sign(one: Magnet, *_: Any) -> Iterator[Mark]:
-        yield Mark(one.link, one.point, circle("spiral", 0j, 0.01))
-
-    monkeypatch.setitem(element_signs.SIGNS, Magnet, sign)  # type: ignore[call-overload]
-    scene = Scene.of(eq.analyze(MACHINE, 12).motion)
-    drawn = [shape for one in pieces(scene) for shape in one.shapes if shape.role == "spiral"]
-    assert [shape.radius for shape in drawn] == [0.01]
+def test_drawings_have_the_sign_that_it_names() -> None:
+    _, shapes = drawn(MACHINE, "spiral")
+    assert [shape.radius for shape in shapes] == [0.01]
 
 
 def test_the_page_has_its_form_and_its_numbers() -> None:
-    tables = tables_of(MACHINE)
-    keys = [one["key"] for one in tables["forms"]["Magnet"]["controls"]]
-    assert keys == ["link", "point", "to", "attraction", "reach"]
-    (group,) = (one for one in tables["groups"] if one["place"] == ["magnets"])
-    assert len(group["entries"]) == 1
-    numbers = fields_of(Design("mine", MACHINE))
-    assert {"magnets.1.attraction", "magnets.1.reach"} <= numbers.keys()
-    assert numbers["magnets.1.attraction"].value == 30.0
+    keys = ["link", "point", "to", "attraction", "reach"]
+    on_the_page(MACHINE, "magnets", keys, ["attraction", "reach"])

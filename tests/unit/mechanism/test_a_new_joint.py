@@ -6,7 +6,6 @@ It is a pin in a straight slot, which a machine may also have as a block without
 from __future__ import annotations
 
 import shutil
-import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
@@ -16,14 +15,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.codegen.batch import Batch
-from equipoise.codegen.figures import Figure
-from equipoise.codegen.javascript import javascript
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.keys import Table, Tables, Text, declared, key, with_fields
 from equipoise.mechanism import Machine
-from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import Bodies, unknown_point
 from equipoise.mechanism.outputs.declared import declaring, of_element
 from equipoise.mechanism.parts.element_kinds import Placed
@@ -31,17 +26,8 @@ from equipoise.mechanism.parts.joint_kinds import JointKind, Rider
 from equipoise.mechanism.parts.machine import Link
 from equipoise.mechanism.parts.sliders import Slider
 from equipoise.present.checks import machine_blocks
-from equipoise.schema.places import Context
-from equipoise.schema.reading import read_table
-from equipoise.schema.writing import Writer, toml_text
-from equipoise.symbols import element_signs
-from equipoise.symbols.pieces import pieces
-from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Mark, circle
-from equipoise.web.design import Design
-from equipoise.web.fields import fields_of
-from equipoise.web.tables import tables_of
-from secondroute.test_javascript import run
+from support.own_kinds import designs_by_numbers, drawn, on_the_page, read_back, scripted
 
 
 @declared
@@ -49,6 +35,7 @@ class StraightSlot(JointKind):
     """A pin of a link in a straight slot of a body."""
 
     called = "{what} of straight slot {number}"
+    sign = f"{__name__}:slot_sign"
     title = "Straight slots"
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {"travel": ("least", "most")}
 
@@ -102,6 +89,11 @@ class StraightSlot(JointKind):
         return f"straight slot: {self.point} of {self.link} in {self.on}"
 
 
+def slot_sign(one: StraightSlot, *_: Any) -> Iterator[Mark]:
+    """What its drawing consists of."""
+    yield Mark(one.on, one.through, circle("path-edge", 0j, 0.01))
+
+
 @declared
 class Slotted(Machine):
     """A machine that may have straight slots."""
@@ -149,12 +141,8 @@ def outputs() -> Iterator[None]:
 
 
 def test_it_is_read_written_and_refused() -> None:
-    text = toml_text(Slotted, Writer({}).content(Slotted, MACHINE))
-    assert '[[straight_slots]]\nlink = "rod"\npoint = "C"\non = "frame"\n' in text
-    assert read_table(Slotted, tomllib.loads(text), Context()) == MACHINE
-    wrong = text.replace('link = "rod"\npoint', 'link = "rodd"\npoint')
-    with pytest.raises(ModelError, match=r"^straight_slots\[1\]\.link: .* did you mean 'rod'"):
-        read_table(Slotted, tomllib.loads(wrong), Context())
+    rows = '[[straight_slots]]\nlink = "rod"\npoint = "C"\non = "frame"\n'
+    read_back(MACHINE, rows, ("rod", "rodd"), r"^straight_slots\[1\]\.link: .* did you mean 'rod'")
     with pytest.raises(ModelError, match=r"^straight_slots\[2\]\.label: 'C in frame' is the name"):
         slotted(SLOT, SLOT)
     with pytest.raises(ModelError, match=r"^straight_slots: got 201"):
@@ -183,51 +171,30 @@ def test_analysis_has_its_force_and_its_outputs() -> None:
 
 
 def test_compiled_loops_have_designs_by_its_numbers() -> None:
+    def alone(direction: float, shift: float) -> Machine:
+        return slotted(replace(SLOT, direction=direction, shift=shift))
+
     names = ("drive_torque", "joints.C in frame", "straight_slots.1.travel")
-    wanted = [Figure(name, "peak") for name in names]
-    batch = Batch(MACHINE, ["straight_slots[1].direction", "straight_slots[1].shift"], wanted,
-                  angles=90)  # fmt: skip
-    sizes = [(0.1, 0.01), (0.2, -0.005)]
-    figures, reason = batch(np.array(sizes))
-    assert not np.any(reason)
-    for row, (direction, shift) in zip(figures, sizes, strict=True):
-        one = replace(SLOT, direction=direction, shift=shift)
-        summary = eq.analyze(slotted(one), 90).summary
-        np.testing.assert_allclose(row, [summary[name].peak for name in names], rtol=1e-9)
+    paths = ["straight_slots[1].direction", "straight_slots[1].shift"]
+    designs_by_numbers(MACHINE, paths, names, [(0.1, 0.01), (0.2, -0.005)], alone)
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="needs Node to run JavaScript")
 def test_scripts_have_it(tmp_path: Path) -> None:
-    linkage, names = assemble(MACHINE), ["drive_torque", "straight_slots.1.travel"]
-    script, found = javascript(linkage, names), eq.analyze(MACHINE, 24)
-    got = run(script, script.numbers(linkage), found.motion.crank_angle, tmp_path)
-    for name, values in zip(names, got, strict=True):
-        wanted = found.outputs[name].values
-        np.testing.assert_allclose(values, wanted, atol=1e-12 * np.max(np.abs(wanted)))
+    scripted(MACHINE, ["drive_torque", "straight_slots.1.travel"], tmp_path)
 
 
-def test_drawings_have_its_sign(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where it is given one; its pin has a sign in any case, its block none."""
-
-    def sign(one: StraightSlot, *_: Any) -> Iterator[Mark]:
-        yield Mark(one.on, one.through, circle("path-edge", 0j, 0.01))
-
-    monkeypatch.setitem(element_signs.SIGNS, StraightSlot, sign)  # type: ignore[call-overload]
-    scene = Scene.of(eq.analyze(MACHINE, 12).motion)
-    shapes = [shape for one in pieces(scene) for shape in one.shapes]
-    assert [shape.radius for shape in shapes if shape.role == "path-edge"] == [0.01]
+def test_drawings_have_the_sign_that_it_names() -> None:
+    """Its pin has a sign in any case, its block none."""
+    scene, shapes = drawn(MACHINE, "path-edge")
+    assert [shape.radius for shape in shapes] == [0.01]
     assert "C" in scene.pins
     assert not scene.guides
 
 
 def test_the_page_has_its_form_and_its_numbers() -> None:
-    tables = tables_of(MACHINE)
-    keys = [one["key"] for one in tables["forms"]["StraightSlot"]["controls"]]
-    assert keys == ["link", "point", "on", "through", "direction", "shift"]
-    (group,) = (one for one in tables["groups"] if one["place"] == ["straight_slots"])
-    assert len(group["entries"]) == 1
-    numbers = fields_of(Design("mine", MACHINE))
-    assert {"straight_slots.1.direction", "straight_slots.1.shift"} <= numbers.keys()
+    keys = ["link", "point", "on", "through", "direction", "shift"]
+    on_the_page(MACHINE, "straight_slots", keys, ["direction", "shift"])
 
 
 def test_formats_without_it_say_so(tmp_path: Path) -> None:

@@ -31,6 +31,7 @@ class CircularSlot(JointKind):
     called = to_say("{what} of circular slot {number}")
     file_order = ("link", "point", "on", "center", "radius", "arc", "label")
 
+    sign = "equipoise.symbols.slots:circular_sign"
     title = to_say("Circular slots, each with its crank angle; angles in the axes of their bodies")
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "angle": (to_say("smallest angle"), to_say("largest")),

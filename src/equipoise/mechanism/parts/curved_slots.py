@@ -77,6 +77,7 @@ class CurvedSlot(JointKind):
     }
     still: ClassVar[tuple[str, ...]] = ("points", "table")
 
+    sign = "equipoise.symbols.slots:curved_sign"
     title = to_say("Curved slots, each with its crank angle; distances along the curve")
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "distance": (to_say("smallest distance"), to_say("largest")),

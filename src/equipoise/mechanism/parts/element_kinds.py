@@ -57,10 +57,13 @@ class Element(Frozen):
     most : that a machine may have.
     title : of the table of their outputs.  headings : of those outputs that it shows, of the
         smallest and of the largest value.
+    sign : ``module:function`` of the room of symbols that draws it, from the element, the joints
+        and the bodies to marks; empty where it has no sign of its own.
     still : fields whose numbers no design changes, so that compiled loops have them as they are.
     """
 
     most: ClassVar[int] = 200
+    sign: ClassVar[str] = ""
     still: ClassVar[tuple[str, ...]] = ()
     title: ClassVar[str]
     headings: ClassVar[Mapping[str, tuple[str, str]]]

@@ -59,6 +59,7 @@ class TorsionSpring(ForceElement):
         ]
     }
 
+    sign = "equipoise.symbols.torsion_springs:torsion_sign"
     title = to_say("Torsion springs, each with its crank angle; torques on the link")
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "angle": (to_say("smallest angle"), to_say("largest")),

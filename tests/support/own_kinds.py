@@ -1,0 +1,89 @@
+"""Where a kind of element that a test declares has to be found, whatever kind it is."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.figures import Figure
+from equipoise.codegen.javascript import javascript
+from equipoise.errors import ModelError
+from equipoise.mechanism import Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.schema.places import Context
+from equipoise.schema.reading import read_table
+from equipoise.schema.writing import Writer, toml_text
+from equipoise.symbols.pieces import pieces
+from equipoise.symbols.scene import Scene
+from equipoise.web.design import Design
+from equipoise.web.fields import fields_of
+from equipoise.web.tables import tables_of
+from secondroute.test_javascript import run
+
+
+def read_back(machine: Machine, rows: str, slip: tuple[str, str], refusal: str) -> None:
+    """It is written with these rows, read again, and refused with a slip in them."""
+    kind = type(machine)
+    text = toml_text(kind, Writer({}).content(kind, machine))
+    assert rows in text
+    assert read_table(kind, tomllib.loads(text), Context()) == machine
+    wrong = text.replace(rows, rows.replace(*slip))
+    assert wrong != text
+    with pytest.raises(ModelError, match=refusal):
+        read_table(kind, tomllib.loads(wrong), Context())
+
+
+def designs_by_numbers(
+    machine: Machine,
+    paths: Sequence[str],
+    names: Sequence[str],
+    sizes: Sequence[Sequence[float]],
+    alone: Callable[..., Machine | None],
+) -> None:
+    """Compiled loops have designs by its numbers; alone : makes one of them, None where it cannot
+    be.
+    """
+    batch = Batch(machine, paths, [Figure(name, "peak") for name in names], angles=90)
+    figures, reason = batch(np.array(sizes))
+    for row, refused, numbers in zip(figures, reason, sizes, strict=True):
+        made = alone(*numbers)
+        assert (made is None) == bool(refused)
+        if made is not None:
+            summary = eq.analyze(made, 90).summary
+            np.testing.assert_allclose(row, [summary[name].peak for name in names], rtol=1e-9)
+
+
+def scripted(machine: Machine, names: Sequence[str], folder: Path) -> None:
+    """Scripts have these outputs."""
+    linkage = assemble(machine)
+    script, found = javascript(linkage, names), eq.analyze(machine, 24)
+    got = run(script, script.numbers(linkage), found.motion.crank_angle, folder)
+    for name, values in zip(names, got, strict=True):
+        wanted = found.outputs[name].values
+        np.testing.assert_allclose(values, wanted, atol=1e-12 * np.max(np.abs(wanted)))
+
+
+def drawn(machine: Machine, role: str) -> tuple[Scene, list[Any]]:
+    """The machine's signs, and the shapes of a role among them."""
+    scene = Scene.of(eq.analyze(machine, 12).motion)
+    return scene, [one for piece in pieces(scene) for one in piece.shapes if one.role == role]
+
+
+def on_the_page(machine: Machine, table: str, keys: Sequence[str], numbers: Sequence[str]) -> None:
+    """The page has a form of its keys, an entry, and these of its numbers."""
+    tables = tables_of(machine)
+    (kind,) = {type(one).__name__ for one in getattr(machine, table)}
+    assert [one["key"] for one in tables["forms"][kind]["controls"]] == [*keys]
+    (group,) = (one for one in tables["groups"] if one["place"] == [table])
+    assert len(group["entries"]) == 1
+    found = fields_of(Design("mine", machine))
+    for number in numbers:
+        value = getattr(getattr(machine, table)[0], number)
+        assert found[f"{table}.1.{number}"].value == value
