@@ -140,7 +140,7 @@ class SteadyCycle:
 
         def at(least: float) -> Array:
             energy = work - np.min(work) + least
-            return np.sqrt(np.maximum(energy, 1e-300) * 2 / inertia)
+            return np.asarray(np.sqrt(np.maximum(energy, 1e-300) * 2 / inertia))
 
         def missed(least: float) -> float:
             return period / self._integral(1 / at(least)) - self.mean_speed
