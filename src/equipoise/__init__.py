@@ -9,7 +9,12 @@ What is public is in the stub beside this file, and so it is of each room; a nam
 it is first used.
 """
 
-from __future__ import annotations
+import sys
+
+if sys.argv[:1] == ["-m"] and "equipoise" in sys.orig_argv:  # python -m equipoise, not yet begun
+    from equipoise_command import end_when_interrupted
+
+    end_when_interrupted()
 
 from equipoise.guarding import attach
 

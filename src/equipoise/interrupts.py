@@ -2,13 +2,16 @@
 
 Compiled functions that cannot raise drop a `KeyboardInterrupt` (SciPy's, while it loads the
 direction numbers of Sobol's sequence, and then goes on with zeros), and so does a bare ``except``
-around an import.  Hence the command line records each interrupt that it raises, and asks by `check`
-before results are printed or files take their places.  `held_back` delays an interrupt to the end
-of what must not stop in the middle.
+around an import; compiled modules that are interrupted while they import others say that these are
+missing, or print what no reader has asked for.  Hence the command line raises no interrupt before
+an import has ended, records each that it raises, and asks by `check` before results are printed,
+errors are told or files take their places.  `held_back` delays an interrupt to the end of what must
+not stop in the middle.
 """
 
 from __future__ import annotations
 
+import _thread
 import signal
 import sys
 import threading
@@ -20,15 +23,41 @@ _received = False
 """Whether an interrupt was raised that nobody has answered yet."""
 
 
+_came = False
+"""Whether an interrupt has come since recording began."""
+_begun: FrameType | None = None
+"""The frame in which recording begins; imports further out are of other programs."""
+_again: threading.Timer | None = None
+"""What interrupts again when an import may have ended."""
+SOON = 0.02
+"""s until then."""
+
+
 def _raise(number: int, frame: FrameType | None) -> None:
-    global _received  # noqa: PLW0603 - there is one process, and it gets the signal
-    _received = True
-    raise KeyboardInterrupt
+    global _received, _came, _again  # noqa: PLW0603 - there is one process, and it gets the signal
+    _received = _came = True
+    if _imports(frame):
+        _again = threading.Timer(SOON, _thread.interrupt_main)
+        _again.daemon = True
+        _again.start()
+    else:
+        raise KeyboardInterrupt
+
+
+def _imports(frame: FrameType | None) -> bool:
+    """Whether a module is imported at this moment."""
+    while frame is not None and frame is not _begun:
+        if frame.f_code.co_filename == "<frozen importlib._bootstrap>":
+            return True
+        frame = frame.f_back
+    return False
 
 
 def _report_others(dropped: sys.UnraisableHookArgs) -> None:
-    """Say nothing of an interrupt that was dropped, which is recorded."""
-    if not issubclass(dropped.exc_type, KeyboardInterrupt):
+    """Say nothing of an interrupt that was dropped, which is recorded, nor of what follows from it
+    where objects are given up that were half made.
+    """
+    if not _came and not issubclass(dropped.exc_type, KeyboardInterrupt):
         sys.__unraisablehook__(dropped)
 
 
@@ -39,21 +68,38 @@ def recorded() -> Iterator[None]:
     Python raises interrupts in the main thread only; in others, and where a program has a handler
     of its own, nothing changes.
     """
-    global _received  # noqa: PLW0603
+    global _received, _came, _begun  # noqa: PLW0603
     here = threading.current_thread() is threading.main_thread()
     if not here or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
-        yield
+        with _taken_back():
+            yield
         return
-    _received, report = False, sys.unraisablehook
+    _received, _came, report = False, False, sys.unraisablehook
+    _begun = sys._getframe(2)  # of whoever says `with`
     signal.signal(signal.SIGINT, _raise)
     sys.unraisablehook = _report_others
     try:
-        yield
+        with _taken_back():
+            yield
     finally:
+        if _again is not None:
+            _again.cancel()
         sys.unraisablehook = report
         if signal.getsignal(signal.SIGINT) is _raise:
             signal.signal(signal.SIGINT, signal.default_int_handler)
-        _received = False
+        _received, _begun = False, None
+
+
+@contextmanager
+def _taken_back() -> Iterator[None]:
+    """Raise the interrupt again where a library has made another error of it."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise
+    except BaseException:
+        check()
+        raise
 
 
 def check() -> None:

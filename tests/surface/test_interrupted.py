@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import random
 import signal
@@ -12,6 +13,7 @@ from types import FrameType
 
 import pytest
 
+from support.chosen import few
 from surface.running import SERVER, heed_interrupts, replaced
 from surface.studies import LENGTHS, TOLERANCES
 
@@ -145,6 +147,79 @@ def test_an_interrupt_while_modules_are_imported(module: str, folder: Path) -> N
     assert (done.returncode, done.stdout) == (130, "")
     assert done.stderr == "equipoise: interrupted\n"
     assert list(folder.iterdir()) == []
+
+
+STARTING = """
+import json, os, signal, sys
+
+MOMENT, LIST = int(os.environ["MOMENT"]), os.environ["LIST"]
+names = []
+
+class Interrupts:
+    def find_spec(self, name, *_):
+        if names or name == "equipoise_command":
+            names.append(name)
+            if len(names) == MOMENT:
+                signal.raise_signal(signal.SIGINT)
+
+sys.meta_path.insert(0, Interrupts())
+if not MOMENT:
+    import atexit
+    atexit.register(lambda: open(LIST, "w").write(json.dumps(names)))
+"""
+"""A `sitecustomize` that interrupts a process with its import of a number, counted from the first
+of the command's own imports on; or lists them."""
+SCRIPT = "import sys; from equipoise_command import main; sys.exit(main())"
+WAYS = {"command": ["-c", SCRIPT], "module": ["-m", "equipoise"]}
+SHORT = {
+    "analyze": "analyze yamashita-1 --csv out.csv",
+    "plot": "plot yamashita-1 --only linkage -o out",
+    "tolerance": f"tolerance {STUDY} --designs 352 --plot out",
+}
+
+
+def started(way: str, line: str, moment: int, hooks: Path) -> subprocess.CompletedProcess[str]:
+    """Run a command that gets SIGINT with its import of this number; 0 for never."""
+    environment = os.environ | {
+        "PYTHONPATH": str(hooks),
+        "MOMENT": str(moment),
+        "LIST": str(hooks / "names"),
+    }
+    return subprocess.run(
+        [sys.executable, *WAYS[way], *line.split()],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=environment,
+        preexec_fn=heed_interrupts,
+    )
+
+
+@pytest.mark.parametrize("name", few(SHORT, ["analyze"]))
+@pytest.mark.parametrize("way", WAYS)
+def test_an_interrupt_at_any_import(way: str, name: str, folder: Path) -> None:
+    """Of the first import of the command's own, no traceback and no other error is made."""
+    (hooks := folder / "hooks").mkdir()
+    (hooks / "sitecustomize.py").write_text(STARTING)
+    (work := folder / "work").mkdir()
+    os.chdir(work)
+    STUDY.write_text(TOLERANCES)
+    whole = started(way, SHORT[name], 0, hooks)
+    assert whole.returncode == 0, whole.stderr
+    names = json.loads((hooks / "names").read_text())
+    written = {path for path in work.rglob("*") if path != work / STUDY}
+    assert len(names) > 100 and written
+    for path in sorted(written, reverse=True):
+        path.rmdir() if path.is_dir() else path.unlink()
+    early = range(2, 5)  # the first is of the module that hears the interrupt
+    chosen = random.Random(MOMENTS).sample(range(6, len(names)), MOMENTS)
+    for moment in (*early, *chosen):
+        done = started(way, SHORT[name], moment, hooks)
+        at = f"import {moment} of {len(names)}, of {names[moment - 1]}"
+        assert done.returncode == 130, (at, done)
+        assert (done.stdout, done.stderr.splitlines()[-1:]) == ("", ["equipoise: interrupted"]), at
+        assert done.stderr.count("\n") == 1, (at, done.stderr)
+        assert {*work.iterdir()} == {work / STUDY}, at
 
 
 SWALLOWING = """

@@ -23,8 +23,9 @@ from cyclopts import App, CycloptsError, Parameter
 from equipoise import __version__
 from equipoise.cli.help import Laid
 from equipoise.errors import EquipoiseError, UsageError, to_paste
-from equipoise.interrupts import check, recorded
+from equipoise.interrupts import answered, check, recorded
 from equipoise.partial import together
+from equipoise_command import INTERRUPTED
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -71,6 +72,11 @@ beyond which nobody has a terminal, while each line may be filled up.
 
 def run(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns the exit status."""
+    with recorded():
+        return _run(arguments)
+
+
+def _run(arguments: Sequence[str] | None) -> int:
     given = sys.argv[1:] if arguments is None else arguments
     columns = shutil.get_terminal_size().columns
     if columns > MOST or "COLUMNS" in os.environ:  # for every library that asks, and may take a 0
@@ -98,9 +104,10 @@ def run(arguments: Sequence[str] | None = None) -> int:
 
         return _refuse(out_of_memory(error))
     except KeyboardInterrupt as interrupt:  # whoever has more to say raises it again with words
+        answered()
         words = _one_line("; ".join(["interrupted", *map(str, interrupt.args)]))
         print(f"equipoise: {words}", file=sys.stderr)
-        return 130
+        return INTERRUPTED
     except BrokenPipeError:  # the reader, such as `head`, has seen enough
         _drop_output()
     except OSError as error:  # everything else that can fail says so itself
@@ -221,6 +228,8 @@ def main() -> None:
         _limit_memory()
     status = run()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # everything is done, and only Python has to end
+    if status == INTERRUPTED:  # objects that were half made cannot be given up in silence
+        sys.unraisablehook = lambda _: None
     sys.exit(status)
 
 
