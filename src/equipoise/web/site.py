@@ -13,6 +13,7 @@ import hashlib
 import json
 import os
 import shutil
+import stat
 import tempfile
 import zipfile
 from collections.abc import Iterable, Mapping
@@ -24,6 +25,7 @@ from typing import Any
 
 from equipoise import __version__
 from equipoise.errors import UsageError
+from equipoise.folders import Folder, LinkError
 from equipoise.i18n import Note
 from equipoise.web.assets import MAKE
 from equipoise.web.documents import document
@@ -36,6 +38,8 @@ FIRST = ("numpy",)
 """Packages of the runtime without which no machine can be opened."""
 LATER = ("scipy", "clarabel", "matplotlib", "jinja2")
 """Those that are loaded when something needs them: balances and modes, pictures, reports."""
+COMMAND = "equipoise_command.py"
+"""The module of the package that stands beside it."""
 PURE = ("lazy-loader", "tomli-w")
 """Packages of pure Python that are imported from the beginning, besides this one."""
 PAGE = ("equipoise.js", "equipoise.css", "worker.js", "service.js", "THIRD-PARTY.txt")
@@ -88,10 +92,10 @@ def write_site(
     Raises
     ------
     UsageError : the runtime is of another version, a wheel is damaged, the folder holds something
-        else, or the page has not been built.
+        else, a link stands where a file is to be copied, or the page has not been built.
     """
     target, source = Path(os.path.abspath(folder)), Path(runtime)
-    lock = _lock_of(source)
+    lock, about_runtime = _lock_of(source)
     packages, local = _packages(lock, None if wheels is None else Path(wheels))
     own = {name: _wheel(distribution(name)) for name in ("equipoise", *PURE)}
     static = Path(__file__).parent / "static"
@@ -109,12 +113,12 @@ def write_site(
         (fresh / "wheels").mkdir()
         for name in PAGE:
             shutil.copyfile(static / name, fresh / name)
-        for name in RUNTIME_FILES:
-            shutil.copyfile(source / name, fresh / "runtime" / name)
+        for name, data in about_runtime.items():
+            (fresh / "runtime" / name).write_bytes(data)
         for name, data in (*own.values(), *local.items()):
             (fresh / "wheels" / name).write_bytes(data)
         if docs is not None:
-            shutil.copytree(docs, fresh / "docs")
+            _copy(Folder.at(docs), fresh / "docs")
             _link_page(fresh / "docs")
         about = {
             "runtime": "runtime/",
@@ -143,18 +147,60 @@ def _link_page(docs: Path) -> None:
         gallery.write_text(shown, encoding="utf-8")
 
 
+OWN = {*PAGE, "index.html", "site.json", "runtime", "wheels", "docs"}
+"""What lies in a site."""
+
+
 def _check_free(target: Path, folder: object) -> None:
     """Refuse to write over anything but an earlier site."""
     if target.is_symlink() or (target.exists() and not target.is_dir()):
         raise UsageError(Note("{folder} is no folder; give another by -o", folder=folder))
-    if target.is_dir() and any(target.iterdir()) and not (target / "site.json").is_file():
+    there = {path.name for path in target.iterdir()} if target.is_dir() else set[str]()
+    if there and not ("site.json" in there and there <= OWN):
         raise UsageError(
             Note("{folder} holds something else than a site; give another by -o", folder=folder)
         )
 
 
-def _lock_of(runtime: Path) -> dict[str, Any]:
-    """The runtime's lock file: names, files and hashes of its packages."""
+# -- what is given ---------------------------------------------------------------------------------
+
+
+def _read(folder: Path, name: str) -> bytes:
+    """A file of a folder that is given, which is published: no link shows others what it leads to.
+
+    Raises
+    ------
+    UsageError : it is a link.
+    """
+    try:
+        return Folder.at(folder).read(name)
+    except LinkError as error:
+        raise _is_link(folder / name) from error
+
+
+def _copy(docs: Folder, to: Path) -> None:
+    """Copy a folder with all that is in it; errors as of `_read`."""
+    to.mkdir()
+    for name, status in docs.entries():
+        if stat.S_ISLNK(status.st_mode):
+            raise _is_link(docs.path / name)
+        if stat.S_ISDIR(status.st_mode):
+            _copy(docs.folder(name), to / name)
+        elif stat.S_ISREG(status.st_mode):
+            (to / name).write_bytes(docs.read(name))
+
+
+def _is_link(path: Path) -> UsageError:
+    return UsageError(
+        Note(
+            "{path} is a link, and nothing is published through links; put the file itself there",
+            path=path,
+        )
+    )
+
+
+def _lock_of(runtime: Path) -> tuple[dict[str, Any], dict[str, bytes]]:
+    """The runtime's lock file: names, files and hashes of its packages; and the runtime's files."""
     how = Note(
         "{runtime} is not the npm package pyodide {version}; get it by `npm install "
         "pyodide@{version}`, and give --runtime node_modules/pyodide",
@@ -162,14 +208,23 @@ def _lock_of(runtime: Path) -> dict[str, Any]:
         version=RUNTIME,
     )
     try:
-        about = json.loads((runtime / "package.json").read_text(encoding="utf-8"))
-        lock: dict[str, Any] = json.loads((runtime / LOCK).read_text(encoding="utf-8"))
-        known = about["version"] == RUNTIME and "packages" in lock
-    except (OSError, ValueError, KeyError, TypeError):
+        about = json.loads(_read(runtime, "package.json"))
+        lock: dict[str, Any] = json.loads(_read(runtime, LOCK))
+        known = about["version"] == RUNTIME and all(map(_is_entry, lock["packages"].values()))
+        files = {name: _read(runtime, name) for name in RUNTIME_FILES}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         known = False
-    if not known or not all((runtime / name).is_file() for name in RUNTIME_FILES):
+    if not known:
         raise UsageError(how)
-    return lock
+    return lock, files
+
+
+def _is_entry(entry: dict[str, Any]) -> bool:
+    """Whether a package of the lock file has what is read of it, and a file of a plain name."""
+    file, packages = entry["file_name"], entry["depends"]
+    plain = isinstance(file, str) and Path(file).name == file and "\\" not in file
+    listed = isinstance(packages, list) and all(isinstance(name, str) for name in packages)
+    return plain and listed and isinstance(entry["sha256"], str)
 
 
 def _packages(
@@ -181,6 +236,8 @@ def _packages(
     while wanted:
         name = wanted.pop()
         if name not in entries:
+            if name not in lock["packages"]:
+                raise UsageError(Note("{file} has no package {name!r}", file=LOCK, name=name))
             entries[name] = dict(lock["packages"][name])
             wanted += entries[name]["depends"]
     local = {}
@@ -188,7 +245,7 @@ def _packages(
         file = one["file_name"]
         if wheels is None or not (wheels / file).is_file():
             continue
-        data = (wheels / file).read_bytes()
+        data = _read(wheels, file)
         if hashlib.sha256(data).hexdigest() != one["sha256"]:
             raise UsageError(
                 Note("{file} is damaged: its hash is not that of the lock file", file=wheels / file)
@@ -218,7 +275,8 @@ def _files_of(name: str, dist: Distribution) -> Iterable[tuple[str, bytes]]:
     """Files of an installed package, without bytecode and without the page's own script."""
     if name == "equipoise":  # which may be installed in place
         root = Path(__file__).parents[1]
-        files = {f"equipoise/{p.relative_to(root).as_posix()}": p for p in root.rglob("*")}
+        files = {p.relative_to(root.parent).as_posix(): p for p in root.rglob("*")}
+        files[COMMAND] = root.parent / COMMAND
     else:
         files = {f.as_posix(): Path(str(dist.locate_file(f))) for f in dist.files or ()}
     for place, path in sorted(files.items()):

@@ -1,0 +1,118 @@
+"""`equipoise site` with folders that a stranger has prepared: nothing of others is published."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from equipoise.web import site as site_module
+from equipoise.web.site import FIRST, LATER, LOCK, RUNTIME, RUNTIME_FILES
+from surface.running import Result, equipoise, refused, succeeded
+
+SECRET = b"what nobody else may see"
+WORDS = ("site", "-o", "out", "--runtime", "runtime", "--wheels", "wheels", "--docs", "docs")
+PACKAGES = (*FIRST, *LATER)
+
+
+def entry(name: str, data: bytes) -> dict[str, Any]:
+    return {"file_name": name, "sha256": hashlib.sha256(data).hexdigest(), "depends": []}
+
+
+@pytest.fixture(autouse=True)
+def given(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A runtime, wheels and documentation of the right names, and a secret beside them."""
+    static = folder / "package" / "static"
+    for path in (folder / "runtime", folder / "wheels", folder / "docs" / "part", static):
+        path.mkdir(parents=True)
+    for name in site_module.PAGE:
+        (static / name).write_bytes(b"")
+    for name in RUNTIME_FILES:
+        (folder / "runtime" / name).write_bytes(name.encode())
+    (folder / "runtime" / "package.json").write_text(json.dumps({"version": RUNTIME}))
+    (folder / "wheels" / "numpy.whl").write_bytes(b"wheel")
+    lock({name: entry(f"{name}.whl", b"wheel") for name in PACKAGES})
+    (folder / "docs" / "index.html").write_text("<p>docs")
+    (folder / "docs" / "part" / "page.html").write_text("<p>page")
+    (folder / "secret").write_bytes(SECRET)
+    (folder / "elsewhere").mkdir()
+    (folder / "elsewhere" / "secret").write_bytes(SECRET)
+    monkeypatch.setattr(site_module, "__file__", str(folder / "package" / "site.py"))
+    monkeypatch.setattr(site_module, "_wheel", lambda dist: (f"{dist.name}.whl", b"own"))
+
+
+def lock(packages: object) -> None:
+    Path("runtime", LOCK).write_text(json.dumps({"packages": packages}))
+
+
+def wrote_nothing(result: Result) -> str:
+    sentence = refused(result)
+    assert not Path("out").exists()
+    assert not list(Path().glob(".out*"))
+    return sentence
+
+
+def test_a_site_is_written_from_them() -> None:
+    succeeded(equipoise(*WORDS))
+    assert Path("out/docs/part/page.html").read_text() == "<p>page"
+    assert Path("out/wheels/numpy.whl").read_bytes() == b"wheel"
+    assert Path("out/runtime", RUNTIME_FILES[0]).read_bytes() == RUNTIME_FILES[0].encode()
+    succeeded(equipoise(*WORDS))  # in the place of the first
+
+
+@pytest.mark.parametrize(
+    ("place", "target"),
+    [
+        ("docs/leak.html", "secret"),
+        ("docs/part/leak.html", "secret"),
+        ("docs/more", "elsewhere"),
+        ("wheels/numpy.whl", "secret"),
+        (f"runtime/{RUNTIME_FILES[1]}", "secret"),
+        (f"runtime/{LOCK}", "secret"),
+        ("runtime/package.json", "secret"),
+    ],
+)
+def test_no_link_is_published(folder: Path, place: str, target: str) -> None:
+    path = folder / place
+    path.unlink(missing_ok=True)
+    path.symlink_to(folder / target)
+    sentence = wrote_nothing(equipoise(*WORDS))
+    assert "is a link" in sentence
+    assert Path(place).name in sentence
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda packages: packages["numpy"].update(file_name="../secret"),
+        lambda packages: packages["numpy"].update(file_name="/etc/passwd"),
+        lambda packages: packages["numpy"].update(file_name=["numpy.whl"]),
+        lambda packages: packages["numpy"].update(depends=7),
+        lambda packages: packages["numpy"].pop("sha256"),
+        lambda packages: packages.update(numpy=3),
+        lambda packages: packages.pop("numpy"),
+        lambda packages: packages["numpy"].update(depends=["another"]),
+        lambda packages: packages["numpy"].update(depends=[["another"]]),
+    ],
+)
+def test_a_lock_file_that_names_something_else_is_refused(
+    change: Callable[[dict[str, Any]], object],
+) -> None:
+    packages: dict[str, Any] = {name: entry(f"{name}.whl", b"wheel") for name in PACKAGES}
+    packages["numpy"]["sha256"] = hashlib.sha256(SECRET).hexdigest()
+    change(packages)
+    lock(packages)
+    assert "pyodide" in wrote_nothing(equipoise(*WORDS))
+
+
+def test_a_folder_with_something_else_stays_as_it_is(folder: Path) -> None:
+    """A file that is called like one of a site does not make a site of a folder."""
+    (folder / "out").mkdir()
+    (folder / "out" / "site.json").write_text("{}")
+    (folder / "out" / "thesis.tex").write_text("years")
+    assert "holds something else" in refused(equipoise(*WORDS))
+    assert (folder / "out" / "thesis.tex").read_text() == "years"
