@@ -19,8 +19,8 @@ from typing import Any
 
 import numpy as np
 
-import equipoise as eq
 from equipoise.mechanism.parts.machine import Machine
+from equipoise.schema.models import taken_along
 from support import machines, machines_cams, machines_planes, machines_redundant
 
 Document = dict[str, Any]
@@ -482,8 +482,8 @@ STROKED = 40
 """One in so many is pushed by a cylinder, which takes longest to be drawn."""
 
 
-def of_kind(chance: random.Random) -> Document:
-    """A machine of a kind, as its file."""
+def of_kind(chance: random.Random) -> tuple[Document, Files]:
+    """A machine of a kind, as its file, and the tables that it names."""
     seed = chance.randrange(2**31)
     if chance.randrange(STROKED) == 0:
         from support import machines_strokes as strokes
@@ -503,7 +503,8 @@ def of_kind(chance: random.Random) -> Document:
     machine = replace(machine, loads=tuple(x for x in machine.loads if x not in plain))
     if chance.random() < 0.2:
         machine = machines_planes.set_apart(machine, np.random.default_rng(seed))
-    return tomllib.loads(eq.dumps(machine))
+    text, tables = taken_along(machine, "model.toml")
+    return tomllib.loads(text), tables
 
 
 def files(seed: int, wanted: str = "") -> tuple[Document, Files]:
@@ -513,6 +514,7 @@ def files(seed: int, wanted: str = "") -> tuple[Document, Files]:
         a crank that turns ``even``ly.
     """
     chance = random.Random(seed)
-    document = Growing(chance).grown() if chance.random() < 0.6 else of_kind(chance)
-    tables = dress(chance, document, wanted)
+    grown = chance.random() < 0.6
+    document, tables = (Growing(chance).grown(), Files()) if grown else of_kind(chance)
+    tables |= dress(chance, document, wanted)
     return {"schema": 1, "title": f"Machine {seed}"} | document, tables
