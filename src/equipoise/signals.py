@@ -215,6 +215,11 @@ class JumpSampling:
         found[..., 1:] *= 2
         return Periodic(found, self.turns)
 
+    def amplitude(self, samples: Array, place: int) -> Array:
+        """The amplitude (...) of one order of `periodic`, by its place."""
+        wave = np.exp(-1j * place / self.turns * self.crank_angle)
+        return np.asarray((samples * self.shares) @ wave * (2 if place else 1))
+
 
 def _ends_of_pieces(angles: Array, period: float, least: float) -> Array:
     """0, angles and the period, rising, without those that come closer behind another than the

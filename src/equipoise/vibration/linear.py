@@ -11,7 +11,7 @@ the linkage's mass rides at the drive's pivot, in the first it is spread as in t
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, reduce
 from operator import add
 from typing import Literal
@@ -21,7 +21,9 @@ import numpy as np
 from equipoise.decompositions import cond, lstsq
 from equipoise.errors import ModelError, ResponseError
 from equipoise.i18n import Note, all_of, to_say
+from equipoise.mechanism.dynamics.acting import outer_loads, soil_loads
 from equipoise.mechanism.dynamics.forces import Forces, forces
+from equipoise.mechanism.dynamics.reactions import demands_of
 from equipoise.mechanism.formulas.kernels import cross
 from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import Motion, move
@@ -164,11 +166,67 @@ class Excitation:
     def at_orders(self, speeds: Array, places: Array) -> Array:
         """The same (6, S) at speeds (S,), rad/s, of one order each, by its place (S,) in `at`."""
         if self._in_soil:
-            pairs = zip(speeds.tolist(), places.tolist(), strict=True)
-            columns = [self.at(speed).amplitudes[:, place] for speed, place in pairs]
-            return np.array(columns).reshape(-1, 6).T
+            return self._of_orders_in_soil(speeds, places)
         still, moving = self._by_square
         return np.asarray(still[:, places] + speeds**2 * moving[:, places])
+
+    def _of_orders_in_soil(self, speeds: Array, places: Array) -> Array:
+        """`at_orders` where the soil's force follows the speed in its own way, all else its square.
+
+        The wrench is linear in the force at each angle, so that no joint force is solved again.
+        """
+        still, first = (self._without_soil(speed) for speed in (0.0, 1.0))
+        parts = np.stack([still, first - still])
+        columns = np.empty((6, len(speeds)), complex)
+        for k, (speed, place) in enumerate(zip(speeds.tolist(), places.tolist(), strict=True)):
+            motion = self.motion.at(speed)
+            wrench = parts[0] + speed**2 * parts[1] + self._of_soil(motion)
+            column = self.motion.amplitude(wrench, place)[:, None]
+            turned = np.exp(1j * place / self.motion.turns * self._phases)
+            rows = zip(turned, rows_of(self.machine), strict=True)
+            columns[:, k] = sum(
+                turn * self.about_reference(column, row)[:, 0] for turn, row in rows
+            )
+        return columns
+
+    @cached_property
+    def _phases(self) -> Array:
+        return np.array([row.phase for row in rows_of(self.machine)])
+
+    def _without_soil(self, speed: float) -> Array:
+        """What `_signals` would be at a speed without the force of the soil, (5, N)."""
+        motion = self.motion.at(speed)
+        return self._signals(motion) - self._of_soil(motion)
+
+    def _of_soil(self, motion: Motion) -> Array:
+        """What the force of the soil adds to `_signals`, (5, N)."""
+        added = np.zeros((5, len(motion.crank_angle)))
+        for (_, _, force, _), (along_x, along_y) in zip(
+            soil_loads(motion), self._of_unit_forces, strict=True
+        ):
+            added += along_x * force.real + along_y * force.imag
+        return added
+
+    @cached_property
+    def _of_unit_forces(self) -> list[tuple[Array, Array]]:
+        """What 1 N on each tip along x, and along y, adds to `_signals`, (5, N) each."""
+        motion, machine = self.motion.at(0.0), self.machine
+        present = forces(motion, self.pivot).outer
+        loads, before = [*outer_loads(motion)], self._signals_of(present)
+        rocks = self.model == "moment" and machine.has_planes
+        found = []
+        for link, tip, _, _ in soil_loads(motion):
+            added = []
+            for unit in (1.0, 1j):
+                force = np.full(len(motion.crank_angle), unit, complex)
+                demands = demands_of(motion, [*loads, (link, tip, force, 0.0)])
+                one = self._signals_of(replace(present, loads=demands)) - before
+                if rocks:  # `across` asks the machine for its loads
+                    couple = 1j * machine.links[link].plane_of(tip) * unit
+                    one[3:] = [[couple.real], [couple.imag]]
+                added.append(one)
+            found.append((added[0], added[1]))
+        return found
 
     @cached_property
     def _by_square(self) -> tuple[Array, Array]:
@@ -226,7 +284,9 @@ class Excitation:
     def _signals(self, motion: Motion) -> Array:
         """The same at the crank angles of a motion, (5, N)."""
         # Springs pull frame and links alike; left in, (57) would count their torque on the drive.
-        found = forces(motion, self.pivot).outer
+        return self._signals_of(forces(motion, self.pivot).outer)
+
+    def _signals_of(self, found: Forces) -> Array:
         force = found.frame_force.value - found.weight.value
         rocking = np.zeros(len(force), complex)
         if self.model == "moment" and self.machine.has_planes:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import pi, sqrt
+from unittest import mock
 
 import numpy as np
 import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, UsageError
+from equipoise.mechanism.dynamics import forces as forces_module
+from equipoise.mechanism.parts.field import Planting, Soil
 from equipoise.mechanism.parts.force_elements import Motor
 from equipoise.mechanism.parts.support import Row
 from equipoise.signals import Periodic
@@ -19,6 +22,7 @@ from equipoise.vibration.linear import Excitation, Linear
 from equipoise.vibration.resonance import AMPLIFIED, Resonance, resonances
 from equipoise.vibration.response import Mode, Model
 from equipoise.vibration.sweep import sweep_speed
+from support.machines_planes import set_apart
 from support.printing import printed
 from unit.vibration.build import (
     SPEED,
@@ -468,6 +472,34 @@ def test_a_sweep_needs_a_support() -> None:
     for drive in (False, True):
         with pytest.raises(ModelError, match="the machine stands on solid ground"):
             sweep_speed(machine, 3.0, 9.0, drive=drive)
+
+
+def planted_rig() -> eq.Machine:
+    """The rig with its tip in soil at a forward speed of its own, links apart, and two rows."""
+    soil = Soil(resistance=5.0, per_depth=300.0, per_speed=2.0, per_depth_and_speed=40.0)
+    planting = Planting(tip="P", depth=0.05, forward_speed=0.4, soil=soil)
+    rows = (Row(0.0, -0.2), Row(1.3, 0.3, (0.1, 0.0)))
+    return set_apart(replace(rig(), planting=planting, rows=rows), np.random.default_rng(1))
+
+
+@pytest.mark.parametrize("model", ["moment", "torque", "linear"])
+def test_orders_of_a_machine_in_soil_solve_joint_forces_a_few_times(
+    model: Model, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At each of some hundred resonances they took a page a minute: a machine of many turns."""
+    excitation = Linear.of(planted_rig(), model).excitation
+    speeds = np.array([3.0, -7.0, 40.0, 0.4, 11.0])
+    places = np.array([1, 4, 2, 30, 0])
+    wholes = [excitation.at(speed).amplitudes for speed in speeds.tolist()]
+    solved = mock.Mock(wraps=forces_module.reactions)
+    monkeypatch.setattr(forces_module, "reactions", solved)
+    many = 50
+    wrenches = excitation.at_orders(np.tile(speeds, many), np.tile(places, many))
+    assert solved.call_count < 10
+    for k, whole in enumerate(wholes):
+        size = np.max(np.abs(whole))
+        np.testing.assert_allclose(wrenches[:, k], whole[:, places[k]], atol=1e-12 * size)
+        assert np.any(wrenches[:, k] != 0)
 
 
 def test_resonances_take_one_order_each(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -108,6 +108,12 @@ class Motion(Displayed):
             return Periodic.of(values, self.turns)
         return self.sampling.periodic(values)
 
+    def amplitude(self, values: Array, place: int) -> Array:
+        """Complex amplitude (...) of values (..., N) at one place of the orders of `periodic`."""
+        if self.sampling is None:
+            return np.asarray(Periodic.of(values, self.turns).amplitudes[..., place])
+        return self.sampling.amplitude(values, place)
+
     def at(
         self, speed: float | str | None = None, acceleration: float | str | None = None
     ) -> Motion:
