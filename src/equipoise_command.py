@@ -5,7 +5,7 @@ an interrupt that falls into imports is dropped by some libraries, made another 
 and printed as a traceback otherwise.  Nothing is written yet, so the process just ends.
 """
 
-import _signal  # what `signal` is made of, which would import enumerations first
+import _signal  # type: ignore[import-not-found]  # of `signal`, without enumerations
 import os
 
 INTERRUPTED = 130

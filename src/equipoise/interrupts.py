@@ -28,29 +28,41 @@ _came = False
 _begun: FrameType | None = None
 """The frame in which recording begins; imports further out are of other programs."""
 _again: threading.Timer | None = None
-"""What interrupts again when an import may have ended."""
-SOON = 0.02
+"""What interrupts again, should nothing have been raised when an import had ended."""
+SOON = 0.1
 """s until then."""
 
 
 def _raise(number: int, frame: FrameType | None) -> None:
     global _received, _came, _again  # noqa: PLW0603 - there is one process, and it gets the signal
     _received = _came = True
-    if _imports(frame):
-        _again = threading.Timer(SOON, _thread.interrupt_main)
-        _again.daemon = True
-        _again.start()
-    else:
+    importing = _importing(frame)
+    if importing is None:
         raise KeyboardInterrupt
+    importing.f_trace, importing.f_trace_opcodes = _raise_there, True
+    sys.settrace(lambda *_: None)  # else no frame is traced
+    _again = threading.Timer(SOON, _thread.interrupt_main)
+    _again.daemon = True
+    _again.start()
 
 
-def _imports(frame: FrameType | None) -> bool:
-    """Whether a module is imported at this moment."""
+def _importing(frame: FrameType | None) -> FrameType | None:
+    """The code that imports something at this moment, if any does: the outermost of it."""
+    importing = None
     while frame is not None and frame is not _begun:
         if frame.f_code.co_filename == "<frozen importlib._bootstrap>":
-            return True
+            importing = frame.f_back
         frame = frame.f_back
-    return False
+    return importing
+
+
+def _raise_there(frame: FrameType, event: str, value: object) -> None:
+    """Raise the interrupt as soon as the code that imported something goes on."""
+    frame.f_trace = None
+    sys.settrace(None)
+    if _again is not None:
+        _again.cancel()
+    raise KeyboardInterrupt
 
 
 def _report_others(dropped: sys.UnraisableHookArgs) -> None:
@@ -84,6 +96,8 @@ def recorded() -> Iterator[None]:
     finally:
         if _again is not None:
             _again.cancel()
+        if _came:
+            sys.settrace(None)
         sys.unraisablehook = report
         if signal.getsignal(signal.SIGINT) is _raise:
             signal.signal(signal.SIGINT, signal.default_int_handler)

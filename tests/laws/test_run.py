@@ -62,6 +62,8 @@ def test_a_pendulum_swings_as_it_has_to(amplitude: float) -> None:
     assert len(times) >= 5
     assert times == pytest.approx(half * np.arange(1, len(times) + 1), rel=1e-8)
     assert found.energy_error < 1e-9
+    assert found.last_cycle is None  # it comes by the angle where cycles begin, to and fro
+    assert found.to_dict()["last_cycle"] is None
 
 
 def test_a_weak_motor_stalls_where_its_work_is_used_up() -> None:

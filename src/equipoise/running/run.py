@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from math import inf, pi
 from typing import Any, ClassVar
 
@@ -109,17 +110,23 @@ class Run(Result):
     @cached_property
     def last_cycle(self) -> LastCycle | None:
         """The last whole cycle; None where there was none."""
-        if len(self.begins) < 2:
+        whole = [
+            (first, last, turns)
+            for first, last in pairwise(self.begins)
+            if (
+                turns := round(abs(last.angle - first.angle) / (2 * pi))
+            )  # 0 of a crank that swings
+        ]
+        if not whole:
             return None
-        first, last = self.begins[-2:]
+        first, last, turns = whole[-1]
         inside = (self.time >= first.time) & (self.time <= last.time)
         speed, time = self.crank_speed[inside], last.time - first.time
-        turned = last.angle - first.angle
         return LastCycle(
-            turned / time,
+            (last.angle - first.angle) / time,
             float(np.max(np.abs(speed))),
             float(np.min(np.abs(speed))),
-            round(abs(turned) / (2 * pi)),
+            turns,
             float(last.work[-1] - first.work[-1]),
             time,
         )
