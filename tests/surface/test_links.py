@@ -192,6 +192,26 @@ def test_a_model_reads_no_table_through_a_link_that_leads_out(name: str, outside
         assert "leads out of its folder" in refused(equipoise(word, "model.toml", *more))
 
 
+@pytest.mark.parametrize(
+    "text", [SECRET, f"{SECRET},another", f"crank_angle [deg],torque [N m]\n0,{SECRET}"]
+)
+@pytest.mark.parametrize("named", ["absolute", "above"])
+def test_of_a_file_elsewhere_that_a_model_names_nothing_is_quoted(
+    folder: Path, named: str, text: str
+) -> None:
+    """It need not be a table; whoever sent the model may be sent what was printed of it."""
+    (folder / "secret").write_text(text)
+    (folder / "here").mkdir()
+    name = str(folder / "secret") if named == "absolute" else "../secret"
+    Path("here/model.toml").write_text(MODEL + LOADS.format(name))
+    sentence = refused(equipoise("analyze", "here/model.toml"))
+    assert name in sentence and "line " in sentence
+    assert SECRET not in sentence
+    Path("here/table.csv").write_text(text)
+    Path("here/model.toml").write_text(MODEL + LOADS.format("table.csv"))
+    assert SECRET[:20] in refused(equipoise("analyze", "here/model.toml"))
+
+
 def test_a_link_within_the_folder_of_a_model_is_followed(outside: Outside) -> None:
     Path("real.csv").write_text((outside.folder / "load.csv").read_text())
     Path("load.csv").symlink_to("real.csv")

@@ -10,6 +10,8 @@ import csv
 import io
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 
 from equipoise.errors import ModelError
 from equipoise.quantities.reading import DECIMAL_COMMA, readings
@@ -128,6 +130,21 @@ def check_width(line: int, row: list[str], columns: int) -> None:
         )
 
 
+_quotes = ContextVar("_quotes", default=True)
+
+
+@contextmanager
+def unquoted() -> Iterator[None]:
+    """Inside, errors say nothing of what stands in cells, which may be none of a table."""
+    token = _quotes.set(False)
+    try:
+        yield
+    finally:
+        _quotes.reset(token)
+
+
 def shortened(cell: str) -> str:
     """A cell for an error, cut where it is endless."""
+    if not _quotes.get():
+        return "'...'"
     return repr(cell if len(cell) <= 60 else f"{cell[:57]}...")

@@ -12,7 +12,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import fields
 from math import isfinite
 from pathlib import Path
@@ -37,7 +37,7 @@ from equipoise.quantities import (
     plain_unit,
 )
 from equipoise.quantities.reading import separators_told, usual_unit
-from equipoise.schema.csv_rows import Row, check_width, rows_of, shortened, wrong
+from equipoise.schema.csv_rows import Row, check_width, rows_of, shortened, unquoted, wrong
 from equipoise.schema.files import FileError, printable, read_text
 from equipoise.schema.numbers import from_polar
 
@@ -263,14 +263,16 @@ HANDY = {"crank_angle": "deg", "angle": "deg", "length": "mm", "speed": "rpm", "
 def read_beside(sort: str, file: str, folder: Path) -> Table:
     """Read a table of a sort such as ``load``.
 
-    file : its name, relative to `folder`, which is that of the model file.
+    file : its name, relative to `folder`, which is that of the model file.  Of a file elsewhere,
+        which a stranger's model may have named, no error quotes anything.
 
     Raises
     ------
     ModelError
         Names the table's file, line and column; `where` is empty.
     """
-    with in_table(file):
+    beyond = Path(file).is_absolute() or ".." in Path(file).parts
+    with in_table(file), unquoted() if beyond else nullcontext():
         return parse_table(sort, read_text(folder / file, within=folder), file)
 
 
