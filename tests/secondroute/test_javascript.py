@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.codegen.emit import can_emit
+from equipoise.codegen.emit import can_emit, pose_signals
 from equipoise.codegen.javascript import MOST_LINES, Script, javascript
-from equipoise.errors import UsageError
+from equipoise.codegen.trace import FAR
 from equipoise.mechanism.assembly.linkage import assemble
 from support.batches import signals_of
 from support.chosen import DISTINCT, few
@@ -121,6 +121,31 @@ def test_one_number_of_many(path: str, tmp_path: Path) -> None:
     assert np.all(np.abs(got - same) <= 1e-12 * size(same))
 
 
+@node
+@pytest.mark.parametrize(("name", "path"), [
+    ("class-three", "links.rod.points.C.x"), ("baler-pickup", "links.tine.points.R.y"),
+])  # fmt: skip
+def test_loops_start_from_the_base_and_tell_where_they_do_not_arrive(
+    name: str, path: str, tmp_path: Path
+) -> None:
+    base = eq.load(name)
+    (one,) = (one for one in numbers_of(base, 1e-3) if one.path == path)
+    linkage = assemble(base)
+    signals = ["drive_torque", "joints.B.force_x", "joints.B.force_y"]
+    watched = [one for one in pose_signals(linkage) if one.startswith("cosine")]
+    assert len(watched) == 2
+    script = javascript(linkage, [*signals, *watched], {path: one.value})
+    for factor, arrives in ((1.0, True), (1.02, True), (3.0, False)):
+        changed = design(base, [one], np.array([factor * one.value]))
+        theta = np.arange(ANGLES) * (2 * np.pi / ANGLES)
+        got = run(script, np.array([factor * one.value]), theta, tmp_path)
+        assert bool(np.all(got[len(signals) :] >= FAR)) == arrives
+        if arrives:
+            arrays = {one.name: one.values for one in eq.analyze(changed, ANGLES).outputs}
+            known = np.array([arrays[one] for one in signals])
+            assert np.all(np.abs(got[: len(signals)] - known) <= 1e-9 * size(known))
+
+
 def test_long_functions_are_split() -> None:
     """Engines do not optimise long ones; what runs is compared in `test_example`."""
     machine = eq.load("knife-drive")
@@ -131,8 +156,3 @@ def test_long_functions_are_split() -> None:
         given = sum(" = own[" in line or " = grid[" in line or "work[" in line
                     for line in part.splitlines())  # fmt: skip
         assert len(part.splitlines()) - given <= MOST_LINES + 6
-
-
-def test_loops_that_no_dyads_solve_are_refused() -> None:
-    with pytest.raises(UsageError, match="cannot be written in JavaScript"):
-        javascript(assemble(eq.load("class-three")), ["shaking_force.x"])

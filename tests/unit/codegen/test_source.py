@@ -185,9 +185,9 @@ def test_forces_need_masses() -> None:
 
 
 @pytest.mark.parametrize(("name", "signal"), [
-    ("transplanter", "drive_torque"), ("class-three", "joints.C"),
+    ("transplanter", "drive_torque"), ("straw-walker", "joints.B"),
 ])  # fmt: skip
-def test_soil_and_joints_of_loops_are_refused(name: str, signal: str) -> None:
+def test_soil_and_joints_that_share_are_refused(name: str, signal: str) -> None:
     """What cannot be written out must not be left out in silence."""
     with pytest.raises(UsageError):
         source_of(eq.load(name), signal)

@@ -380,7 +380,7 @@ def test_designs_vary_its_place_and_what_it_holds() -> None:
     for name, paths in vary.items():
         machine = machine_named(name)
         slot = machine.curved_slots[0]
-        names = ("drive_torque", "curved_slots.1.speed")
+        names = ("drive_torque", f"joints.{slot.name}", "joints.B", "curved_slots.1.speed")
         batch = Batch(machine, paths, [Figure(one, "rms") for one in names], angles=60)
         if name == "open":
             sizes = [(0.0, machine.frame["D"][0]), (0.01, machine.frame["D"][0] + 1e-3), (1.5, 0.0)]
