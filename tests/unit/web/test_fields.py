@@ -25,8 +25,8 @@ def is_measure(path: str) -> bool:
                                   "geared-counterweight", "riding-transplanter"])  # fmt: skip
 def test_every_number_can_be_set_and_lies_on_its_slider(name: str) -> None:
     design = opened_example(name)
-    scale = Scale.of(design)
-    for path, field in fields_of(design).items():
+    scale, fields = Scale.of(design), fields_of(design)
+    for path, field in fields.items():
         low, high = scale.ends(field)
         assert low <= field.value <= high
         assert low < high
@@ -41,7 +41,7 @@ def test_every_number_can_be_set_and_lies_on_its_slider(name: str) -> None:
             for p, one in changed.items()
             if p != path and not (tells_places and (is_measure(p) or ".points." in p))
         }
-        before = {p: fields_of(design)[p].value for p in others if p in fields_of(design)}
+        before = {p: fields[p].value for p in others if p in fields}
         others = {p: others[p] for p in before}
         free = {f"counterweights.{field.group}.{key}" for key in ("radius", "direction")}
         assert {p for p in others if others[p] != before[p]} <= free, path
