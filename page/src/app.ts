@@ -28,7 +28,7 @@ import { Tools } from "./tools";
 import { Tour } from "./tour";
 import { TransportBar } from "./transport";
 import { Views } from "./views";
-import { language, say } from "./words";
+import { language, say, word } from "./words";
 
 /** What is shown where nothing was asked for. */
 const FIRST = "yamashita-1";
@@ -333,6 +333,7 @@ export class App {
     const begins = this.state?.status.finished === false && state.status.finished;
     const angle = this.state ? this.player.angle : 0;
     this.state = state;
+    word(state.wording);
     this.views.machine();
     measure(state.length);
     this.player.take(state);

@@ -1,6 +1,6 @@
 /** What a chart shows, said on demand, and the chart as a picture to keep. */
 
-import { fresh, h, set } from "./dom";
+import { fresh, h, set, write } from "./dom";
 import type { Asked } from "./protocol";
 import { explained, say } from "./words";
 
@@ -21,10 +21,11 @@ export function explain(figure: HTMLElement, title: string, name: string, ask: A
       },
       format.toUpperCase(),
     );
+  const shows = h("p", {});
   const told = h(
     "div",
     { class: "explained", id, hidden: true },
-    h("p", {}, explained(name)),
+    shows,
     h("p", { class: "keeping" }, say("Keep this chart as"), " ", keep("svg"), keep("png")),
   );
   const button = h(
@@ -38,6 +39,7 @@ export function explain(figure: HTMLElement, title: string, name: string, ask: A
       "aria-controls": id,
       onclick: () => {
         told.hidden = !told.hidden;
+        write(shows, explained(name)); // which goes by the machine that is open
         set(button, { "aria-expanded": String(!told.hidden) });
       },
     },

@@ -57,6 +57,12 @@ export class Finder {
     this.root = h("div", { class: "finder" }, this.input, this.list);
   }
 
+  /** Say what is looked for. */
+  call(name: string): void {
+    set(this.input, { "aria-label": name, placeholder: `${name} …` });
+    set(this.list, { "aria-label": name });
+  }
+
   offer(entries: Entry[]): void {
     const shape = entries.map(({ name, label }) => `${name} ${label}`).join();
     if (shape === this.offered) return;

@@ -56,6 +56,7 @@ export class Outputs {
 
   /** Draw the outputs whose numbers came with a state. */
   show(state: State): void {
+    this.finder.call(say("Any output over crank angle")); // which goes by the machine that is open
     this.finder.offer(state.outputs);
     const there = state.numbers.names(PREFIX).map((name) => name.slice(PREFIX.length));
     const told = there.flatMap((name) => state.outputs.find((one) => one.name === name) ?? []);

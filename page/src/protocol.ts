@@ -108,6 +108,12 @@ export interface Spoken {
   particles?: Particles | null;
 }
 
+/** What is said of a machine instead of what is said of others: by English text, and by chart. */
+export interface Wording {
+  words: Record<string, string>;
+  explained: Record<string, string>;
+}
+
 /** In which something is read, and how many of it one SI unit is. */
 export interface Unit {
   unit: string;
@@ -263,6 +269,7 @@ export interface StateMessage {
   /** Whether gauges of a support read something. */
   shaken?: boolean;
   fields: Field[];
+  wording: Wording;
   scene: Scene;
   arrays: Arrays;
   figures: Figure[];

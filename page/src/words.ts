@@ -1,7 +1,7 @@
 /** The page's texts in the reader's language: English in the code, the rest told by the server. */
 
 import { particles } from "./particles";
-import type { Spoken, Told, Wire } from "./protocol";
+import type { Spoken, Told, Wire, Wording } from "./protocol";
 
 /** Where a reader's choice of a language is kept. */
 const KEPT = "equipoise language";
@@ -12,11 +12,13 @@ let told: Omit<Spoken, "type"> = {
   words: {},
   explained: {},
 };
+/** What is said of the machine that is open instead, by the text for which it is said. */
+let own: Wording = { words: {}, explained: {} };
 let joined = (text: string): string => text;
 
 /** A text in the language that is spoken, its `{placeholders}` filled in. */
 export function say(text: string, values: Record<string, string | number> = {}): string {
-  const said = told.words[text] ?? text;
+  const said = own.words[text] ?? told.words[text] ?? text;
   return joined(said.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole)));
 }
 
@@ -37,7 +39,12 @@ export function languages(): Record<string, string> {
 
 /** What a chart shows, and what to look for in it. */
 export function explained(chart: string): string {
-  return told.explained[chart] ?? "";
+  return own.explained[chart] ?? told.explained[chart] ?? "";
+}
+
+/** Speak of a machine in words that fit it from now on. */
+export function word(wording: Wording): void {
+  own = wording;
 }
 
 /** Speak a language from now on, also when the page is loaded again. */

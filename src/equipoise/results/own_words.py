@@ -58,6 +58,55 @@ OF_CYCLES: Mapping[str, str] = {
         "Springs, each with where in the cycle; below 0 they push their ends apart"
     ),
     "at every crank angle": to_say("all over the cycle"),
+    "Zero at every crank angle: {names}": to_say("Zero all over the cycle: {names}"),
+    "lowest at crank angle": to_say("lowest at angle of the cycle"),
+    "highest at crank angle": to_say("highest at angle of the cycle"),
+    "crank turns while it rises": to_say("part of the cycle while it rises"),
+    "crank turns while it falls": to_say("part of the cycle while it falls"),
+    "crank turns while it rests at the lowest place": to_say(
+        "part of the cycle while it rests at the lowest place"
+    ),
+    "crank turns while it rests at the highest place": to_say(
+        "part of the cycle while it rests at the highest place"
+    ),
+    "dwell begins at crank angle": to_say("dwell begins at angle of the cycle"),
+    "lifts off at crank angle": to_say("lifts off at angle of the cycle"),
+    "Any output over crank angle": to_say("Any output over the cycle"),
+    "the crank stands still; playing swings the support": to_say(
+        "the machine stands still; playing swings the support"
+    ),
+    "The shaking force on the frame as an arrow that goes around with the crank; numbers are crank "
+    "angles. A long, narrow curve shakes in one direction, which a counterweight on the crank "
+    "hardly helps; a round one is what such a counterweight takes away.": to_say(
+        "The shaking force on the frame as an arrow over the cycle; numbers are angles of the "
+        "cycle. A long, narrow curve shakes in one direction."
+    ),
+    "The path of a point, with marks at equal steps of the crank. Where marks are close the point "
+    "is slow; a corner is a stop, and a straight stretch is guided motion.": to_say(
+        "The path of a point, with marks at equal steps of the cycle. Where marks are close the "
+        "point is slow; a corner is a stop, and a straight stretch is guided motion."
+    ),
+    "The torque that keeps the crank at its speed. Below zero the linkage drives the motor; the "
+    "larger the swing, the more a flywheel or a larger motor is needed.": to_say(
+        "The torque with which the drive keeps to its motion. Below zero the linkage drives the "
+        "motor; the larger the peaks, the larger the motor."
+    ),
+    "How much of the signal comes once, twice and more often in 360° of crank angle. A "
+    "counterweight on the crank acts on order 1 alone; an order that meets a natural frequency of "
+    "the support shakes it most.": to_say(
+        "How much of the signal comes once, twice and more often in a cycle. An order that meets a "
+        "natural frequency of the support shakes it most."
+    ),
+    "The force in a joint over the crank angle. Its peak sizes the bearing; where it comes near "
+    "zero and turns round, a joint with play knocks.": to_say(
+        "The force in a joint over the cycle. Its peak sizes the bearing; where it comes near zero "
+        "and turns round, a joint with play knocks."
+    ),
+    "Any figure that the machine has over the crank angle, such as velocities, transmission angles "
+    "and forces: type some of its name.": to_say(
+        "Any figure that the machine has over the cycle, such as velocities, transmission angles "
+        "and forces: type some of its name."
+    ),
     "at crank angles from {low} to {high}": to_say("from {low} to {high} of the cycle"),
 }
 """What is said of a machine whose drive does not turn, for what is said of a crank."""
@@ -89,11 +138,12 @@ def in_own_words(model: Any) -> Iterator[None]:
     """Inside, values are shown in the units of a model, where no others are chosen, and sentences
     speak of what it has.
     """
-    with showing_by_default(units_of(model)), wording(_words_of(model)):
+    with showing_by_default(units_of(model)), wording(words_of(model)):
         yield
 
 
-def _words_of(model: Any) -> Mapping[str, str]:
+def words_of(model: Any) -> Mapping[str, str]:
+    """What is said of a model by what is said of a machine with a crank; empty of one with it."""
     if not isinstance(model, Machine) or model.crank_turns:
         return {}
     is_pushed = all(one.pushes for one in model.driven) and turns_given(model) == 1

@@ -42,7 +42,7 @@ from equipoise.mechanism.outputs.declared import DECLARED, declared
 from equipoise.mechanism.parts.drives import Drive, FurtherDrive
 from equipoise.mechanism.parts.machine import STANDARD_GRAVITY, Machine
 from equipoise.mechanism.parts.objectives import GAUGES
-from equipoise.quantities import SI, Dimension, angle, number, percent, told
+from equipoise.quantities import SI, Dimension, angle, display, number, percent
 from equipoise.results.analysis import Analysis
 from equipoise.results.drive_blocks import pushing
 from equipoise.results.outputs import FIGURES, Output
@@ -236,9 +236,12 @@ def sentence(entry: FigureAssessment, crank_turns: bool = True) -> str:
 
     crank_turns : of the machine; without, where it is so large is told as an angle of the cycle.
     """
+    is_beside = entry.dimension in ANGLES_AND_SPEEDS or entry.is_limit
+    both = [entry.value, entry.yardstick] if is_beside else [entry.value]
+    shown = display(entry.dimension, both, entry.shown_unit)
     values = {
         "what": entry.label.said(),
-        "value": told(entry.value, entry.dimension, entry.shown_unit, digits=3),
+        "value": shown.with_unit(shown.text(entry.value, digits=3)),
         "against": entry.against.said(),
     }
     values["what"] = values["what"][:1].upper() + values["what"][1:]
@@ -248,8 +251,8 @@ def sentence(entry: FigureAssessment, crank_turns: bool = True) -> str:
         at = angle(entry.crank_angle)
         template = of_crank if crank_turns else of_cycle
         values["value"] = say(template, value=values["value"], angle=at)
-    if entry.dimension in ANGLES_AND_SPEEDS or entry.is_limit:
-        limit = told(entry.yardstick, entry.dimension, entry.shown_unit, digits=3)
+    if is_beside:
+        limit = shown.with_unit(shown.text(entry.yardstick, digits=3))
         return say("{what}: {value}; {against}: {limit}", limit=limit, **values)
     if entry.ratio >= 1:
         ratio = number(entry.ratio, digits=2)

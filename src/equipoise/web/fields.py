@@ -227,7 +227,8 @@ def _numbers(
 
 
 def _drive(machine: Machine) -> Iterator[Field]:
-    yield _field(("drive", "speed"), "drive", say("speed"), "angular speed", machine.drive.speed)
+    label = say("speed") if machine.crank_turns else say("speed of the cycle")
+    yield _field(("drive", "speed"), "drive", label, "angular speed", machine.drive.speed)
 
 
 def _links(machine: Machine) -> Iterator[Field]:

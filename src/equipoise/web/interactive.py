@@ -31,6 +31,7 @@ from equipoise.quantities import FACTORS, KINDS, display, display_rules
 from equipoise.quantities.numbers import Display, in_unit
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.outputs import Output
+from equipoise.results.own_words import words_of
 from equipoise.schema.finding import steps_of
 from equipoise.schema.numbers import POLAR, Number
 from equipoise.schema.template import Template
@@ -45,6 +46,7 @@ from equipoise.web.figures import told_signals
 from equipoise.web.following import extent_of
 from equipoise.web.following_signs import ties_of
 from equipoise.web.measures import measures_of
+from equipoise.web.words import wording_of
 
 
 def made(job: Job) -> str:
@@ -65,7 +67,9 @@ def made(job: Job) -> str:
     machine = replace(job.machine, support=None, balance=None)
     page = Interactive(machine, job.crank_angle)
     program = asset("interactive.js")
-    words = {text: word for text, word in catalogue(spoken()).items() if _says(program, text)}
+    own = wording_of(words_of(machine))["words"]
+    known = {**catalogue(spoken()), **own}
+    words = {text: word for text, word in known.items() if _says(program, text)}
     body = (
         '<main id="equipoise-interactive"></main>',
         f"<noscript>{escape(say('This page needs JavaScript.'))}</noscript>",

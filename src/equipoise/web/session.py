@@ -12,10 +12,12 @@ from threading import Lock
 
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError, at_place
-from equipoise.i18n import Note, said, speaking
+from equipoise.i18n import Note, said, speaking, wording
 from equipoise.mechanism.kinematics.outline import USUAL_SIZE
+from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.shown_units import units_of
 from equipoise.quantities import display_rules, showing_by_default
+from equipoise.results.own_words import words_of
 from equipoise.schema.files import LARGEST
 from equipoise.schema.template import named_parts
 from equipoise.web import balanced, entering, kept
@@ -43,7 +45,7 @@ from equipoise.web.seen import ASKED, Seen
 from equipoise.web.shaken import more, response_of
 from equipoise.web.sketch import Sketch
 from equipoise.web.state import first_of, state_of
-from equipoise.web.words import language_of, spoken_in
+from equipoise.web.words import language_of, spoken_in, wording_of
 
 
 @dataclass
@@ -267,7 +269,13 @@ class Session:
         with speaking(self.language), ExitStack() as units:
             if self.found is not None:
                 units.enter_context(showing_by_default(units_of(self.view.design)))
+                units.enter_context(wording(words_of(self._machine)))
             yield
+
+    @property
+    def _machine(self) -> Machine | None:
+        """The machine that is seen, where it is finished."""
+        return self.view.design.machine if isinstance(self.view, Solved) else None
 
     @property
     def view(self) -> Solved | Drawn:
@@ -347,6 +355,7 @@ class Session:
         now = self.found if self.preview is None else None
         file = self.disk and self.disk.kept(now.design.machine if isinstance(now, Solved) else None)
         steps = [len(history.past), len(history.future)]
+        content["wording"] = wording_of(words_of(self._machine))
         told = {"undo": history.undo, "redo": history.redo, "steps": steps, "file": file}
         return Reply({"type": "state", "seq": seq, **told, **content}, data)
 

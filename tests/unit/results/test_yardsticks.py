@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from math import hypot, radians
 
@@ -210,3 +211,14 @@ def test_figures_beside_their_yardsticks_in_words() -> None:
     )
     lift_off = sentence(angles["cams.crank to pusher.lift_off_speed"])
     assert lift_off.endswith("; the speed of the crank: 240 rpm")
+
+
+def test_a_figure_and_its_limit_stand_in_one_unit() -> None:
+    """A gauge that moves 4.7 mm, with limits of 80 nm, 80 micrometres and 12 m."""
+    machine = eq.load("sieve")
+    for most in (80e-9, 80e-6, 12.0):
+        aim = Objective("gauges.stand", "peak_to_peak")
+        limited = machine.with_balance(Balance(limits=(Limit(aim, at_most=most),)))
+        words = sentence(assessed(limited)["gauges.stand.peak_to_peak"])
+        units = re.findall(r"[\d.]+(?:e[+-]\d+)? (\S?m)\b", words)
+        assert len(units) == 2 and len({*units}) == 1, words

@@ -8,6 +8,9 @@ from collections.abc import Iterator
 import pytest
 
 from equipoise.i18n import LANGUAGES, catalogue
+from equipoise.results.own_words import OF_CYCLES
+from equipoise.web.openings import opened_example
+from equipoise.web.words import said_by_page
 from unit.web.pages import ask, opened, refusal, state
 
 
@@ -86,3 +89,31 @@ def test_what_a_page_is_told_is_in_its_language(name: str) -> None:
     fields = next(one["fields"] for one in contents if "fields" in one)
     found += [text for one in fields for text in english([one["heading"], one["label"]], names)]
     assert found == []
+
+
+@pytest.mark.parametrize("language", ["en", "ja", "ko"])
+def test_a_page_speaks_of_cycles_where_no_crank_turns(language: str) -> None:
+    """As terminal, notebook and report do: a loader has no crank, whatever the page shows of it."""
+    session, _ = opened("hydraulic-loader")
+    ask(session, "speak", languages=[language])
+    contents = [reply.content for reply in (*session.told(None), *session.tell_more())]
+    (wording,) = (one["wording"] for one in contents if "wording" in one)
+    cycle = {"en": "Any output over the cycle", "ja": "1周期の任意の出力"}
+    if language in cycle:
+        assert wording["words"]["Any output over crank angle"] == cycle[language]
+    labels = [one["label"] for content in contents for one in content.get("fields", ())]
+    told = [*labels, *wording["words"].values(), *wording["explained"].values()]
+    told += [text for content in contents for text in english(content, set())]
+    cranks = ("crank", "クランク", "크랭크")
+    assert told and not [text for text in told if any(one in text for one in cranks)]
+    turned = {text for text in said_by_page() if "crank angle" in text and text in OF_CYCLES}
+    assert turned and turned <= wording["words"].keys()
+
+
+def test_a_page_speaks_of_cranks_again_with_the_next_machine() -> None:
+    session, _ = opened("hydraulic-loader")
+    session.open(opened_example("yamashita-1"))
+    (first, *_) = session.told(None)
+    assert first.content["wording"] == {"words": {}, "explained": {}}
+    labels = {one["label"] for one in first.content["fields"]}
+    assert "speed" in labels and "speed of the cycle" not in labels
