@@ -12,6 +12,7 @@ import pytest
 import equipoise as eq
 from equipoise.exposure.spectra import weigh_orders
 from equipoise.exposure.weighting import NOMINAL, factor
+from equipoise.mechanism.parts.support import TIME_IN_PERIOD
 from surface.running import command_lines, equipoise, read, refused, refuses, succeeded
 
 RATE = 4000.0
@@ -161,7 +162,7 @@ def test_a_response_is_weighed() -> None:
     period, so that both have the same lines.
     """
     succeeded(equipoise("respond", "yamashita-rig", "--csv", "r.csv"))
-    by_file = found("r.csv", "--periodic")["measured"][0]
+    by_file = found("r.csv")["measured"][0]  # the file itself says that it is whole periods
     response = eq.respond(eq.load("yamashita-rig"))
     orders = response.gauges["gauge"].acceleration.amplitudes[1:]
     speed = eq.load("yamashita-rig").drive.speed
@@ -170,8 +171,12 @@ def test_a_response_is_weighed() -> None:
     assert by_file["a_hv"] == pytest.approx(by_orders.a_hv, rel=1e-6)
     assert found("r.csv", "--periodic", "--gauge", "gauge")["measured"][0] == by_file
     assert "no gauge is called 'guage'; did you mean 'gauge'?" in refused(
-        equipoise("exposure", "r.csv", "--periodic", "--gauge", "guage")
+        equipoise("exposure", "r.csv", "--gauge", "guage")
     )
+    text = Path("r.csv").read_text(encoding="utf-8")
+    assert text.startswith(f"{TIME_IN_PERIOD} [s],")
+    Path("old.csv").write_text(text.replace(TIME_IN_PERIOD, "time", 1), encoding="utf-8")
+    assert found("old.csv", "--periodic")["measured"][0] == by_file | {"name": "old.csv"}
 
 
 def test_gauges_of_a_response_are_axes_where_they_are_named() -> None:

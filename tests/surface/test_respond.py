@@ -267,8 +267,9 @@ def test_from_rest(extra: tuple[str, ...]) -> None:
 # -- CSV and units ---------------------------------------------------------------------------------
 
 CSV = {
-    "one speed": (("respond", RIG), 360, ["time [s]", "crank_angle [rad]"]),
-    "motor": (("respond", RIG, "--drive"), 360, ["time [s]", "gauges.gauge.displacement [m]"]),
+    "one speed": (("respond", RIG), 360, ["time_in_period [s]", "crank_angle [rad]"]),
+    "motor": (("respond", RIG, "--drive"), 360,
+              ["time_in_period [s]", "gauges.gauge.displacement [m]"]),
     "range": (("respond", RIG, "--speed", "150:200 rpm", "--speeds", "7"), 8, ["speed [rad/s]"]),
     "from rest": (("simulate", RIG, "0.2 s"), 2001,
                   ["time [s]", "crank_angle [rad]", "crank_speed [rad/s]"]),
@@ -297,7 +298,7 @@ def test_columns_are_derivatives_of_each_other_by_time(words: tuple[str, ...]) -
     succeeded(equipoise("respond", "--full", RIG, *words, "--csv", "out.csv"))
     header, values = table("out.csv")
     columns = dict(zip(header, values.T, strict=True))
-    time = columns["time [s]"]
+    time = columns["time_in_period [s]"]
     order = 1j * np.fft.rfftfreq(len(time), time[1]) * math.tau
     signals = [columns[f"gauges.gauge.{name}"] for name in
                ("displacement [m]", "velocity [m/s]", "acceleration [m/s^2]")]  # fmt: skip

@@ -281,7 +281,8 @@ def _weighted(path: str, found: Accelerations, options: Mapping[str, bool]) -> W
     shared: Any = {"axes": found.axes, "single_axis": single, "weighted": options["weighted"]}
     with blaming(printable(path)):
         if found.kind == "time":
-            return weigh_signal(found.at, found.values, periodic=options["periodic"], **shared)
+            periodic = found.periodic or options["periodic"]
+            return weigh_signal(found.at, found.values, periodic=periodic, **shared)
         return weigh_spectrum(found.at, found.values, bands=options["bands"], **shared)
 
 

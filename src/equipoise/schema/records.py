@@ -23,9 +23,11 @@ from equipoise.exposure.daily import Task
 from equipoise.exposure.spectra import UNEVEN_STEPS, uneven
 from equipoise.exposure.weighting import AXES
 from equipoise.measured.record import Record
+from equipoise.mechanism.parts.support import TIME_IN_PERIOD
 from equipoise.schema.csv_rows import check_width, rows_of, shortened, wrong
 from equipoise.schema.files import read_text
 from equipoise.schema.tables import (
+    TIMES,
     Forms,
     Taken,
     arrays_of,
@@ -80,12 +82,14 @@ class Accelerations:
     at : (N,), time in s, or frequency in Hz.
     axes : names of the axes.
     values : (axes, N), m/s2; of a spectrum, RMS.
+    periodic : whether the file says that it is whole periods of a steady vibration.
     """
 
     kind: Literal["time", "frequency"]
     at: Array
     axes: tuple[str, ...]
     values: Array
+    periodic: bool = False
 
 
 def read_accelerations(
@@ -111,7 +115,7 @@ def parse_accelerations(text: str, gauges: Sequence[str] = ()) -> Accelerations 
     if any(cell.startswith("gauges.") for cell in header):
         raise wrong(number, SWEPT)
     names = [cell.split("[")[0].strip() for cell in header]
-    if "time" in names:
+    if set(TIMES) & set(names):
         return _signal(text, names)
     if "frequency" in names:
         return _spectrum(text, names)
@@ -133,22 +137,25 @@ def _of_gauges(text: str, line: int, header: list[str], gauges: Sequence[str]) -
         names = ", ".join(map(repr, known))
         raise wrong(line, f"there are the gauges {names}; name that of the hand, or up to three of "
                           "one place, along x, y and z (gauge)")  # fmt: skip
-    times = [cell for cell in header if cell.startswith("time ")]
+    times = [cell for cell in header if cell.split("[")[0].strip() in TIMES]
     if not times:
         raise wrong(line, "a column such as time [s] is missing")
     heads = {
         known[name]: f"{axis} [{ACCELERATION}]" for name, axis in zip(chosen, AXES, strict=False)
     }
-    return _signal(text, [*AXES[: len(chosen)]], {times[0]: times[0], **heads})
+    columns = [times[0].split("[")[0].strip(), *AXES[: len(chosen)]]
+    return _signal(text, columns, {times[0]: times[0], **heads})
 
 
 def _signal(text: str, names: list[str], taken: Taken = None) -> Accelerations:
-    axes, columns = _axes(text, "time", names, taken)
-    time = columns["time"]
+    first = TIME_IN_PERIOD if TIME_IN_PERIOD in names else "time"
+    axes, columns = _axes(text, first, names, taken)
+    time = columns[first]
     worst = uneven(time) if len(time) > 1 else None
     if worst is not None:
-        raise wrong(_line(text, worst), f"{time[worst]:.6g} s {UNEVEN_STEPS}", "time")
-    return Accelerations("time", time, axes, np.array([columns[axis] for axis in axes]))
+        raise wrong(_line(text, worst), f"{time[worst]:.6g} s {UNEVEN_STEPS}", first)
+    values = np.array([columns[axis] for axis in axes])
+    return Accelerations("time", time, axes, values, first == TIME_IN_PERIOD)
 
 
 def _spectrum(text: str, names: list[str]) -> Accelerations:

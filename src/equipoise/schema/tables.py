@@ -25,6 +25,7 @@ from equipoise.mechanism.parts.field import SoilTable
 from equipoise.mechanism.parts.force_elements import MotorTable
 from equipoise.mechanism.parts.laws import AngleTable, LengthTable
 from equipoise.mechanism.parts.machine import LoadTable
+from equipoise.mechanism.parts.support import TIME_IN_PERIOD
 from equipoise.mechanism.parts.torsion_springs import TorsionTable
 from equipoise.quantities import (
     FACTORS,
@@ -60,6 +61,7 @@ COLUMNS: dict[str, tuple[Dimension, str]] = {
     "resistance": ("force", "N"),
     "speed": ("angular speed", "rpm"),
     "time": ("time", "s"),
+    TIME_IN_PERIOD: ("time", "s"),
     "displacement": ("length", "mm"),
     "angle": ("angle", "deg"),
     "length": ("length", "mm"),
@@ -73,6 +75,8 @@ COLUMNS: dict[str, tuple[Dimension, str]] = {
     "magnitude": ("damping", "N s/m"),
     "phase": ("angle", "deg"),
 }
+TIMES = ("time", TIME_IN_PERIOD)
+"""Columns of time: of any record, and of one that is whole periods of a steady vibration."""
 OTHERWISE: dict[tuple[str, str], tuple[Dimension, str]] = {
     ("frequency", "resistance"): ("damping", "N s/m"),
     ("x", "x"): ("length", "mm"),
@@ -182,8 +186,8 @@ def header_of(line: int, cells: list[str], forms: Forms) -> tuple[list[str], lis
     for cell in cells:
         match = re.fullmatch(r"(\w+)\s*\[([^\]]*)\]", cell)
         name = match[1] if match else cell
-        if name == "time" and forms == FORMS["load"]:
-            raise wrong(line, f"got the column time; {OF_TIME}", name)
+        if name in TIMES and forms == FORMS["load"]:
+            raise wrong(line, f"got the column {name}; {OF_TIME}", name)
         if not any(name in form for form in forms):
             raise wrong(line, f"got the column {shortened(cell)}; {told_forms(forms)}")
         if match is None:

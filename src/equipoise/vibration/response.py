@@ -13,7 +13,7 @@ import numpy as np
 from equipoise.displays import Brief
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.support import AXES, Support
+from equipoise.mechanism.parts.support import AXES, TIME_IN_PERIOD, Support
 from equipoise.quantities import Dimension
 from equipoise.results.analysis import analyze
 from equipoise.results.declaring import NOTES, OWN, TITLE, Declarations, ResultOutput, columns_of
@@ -462,7 +462,7 @@ class Response(Result):
         """
         count = samples * self.turns
         phase = np.arange(count) * (2 * np.pi / samples)
-        found: list[tuple[str, str, Array]] = [("time", "s", phase / abs(self.speed))]
+        found: list[tuple[str, str, Array]] = [(TIME_IN_PERIOD, "s", phase / abs(self.speed))]
         if self.drive.speed is None:
             found.append(("crank_angle", "rad", np.sign(self.speed) * phase))
         backwards = self.speed < 0

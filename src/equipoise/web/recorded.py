@@ -26,10 +26,11 @@ from equipoise.results.analysis import Analysis
 from equipoise.schema.csv_rows import check_width, rows_of, shortened, wrong
 from equipoise.schema.files import printable
 from equipoise.schema.numbers import OF_UNIT
+from equipoise.schema.tables import TIMES
 from equipoise.web.block import Array
 
 HEAD = re.compile(r"(?P<name>[^\[\]]+?)\s*\[(?P<unit>[^\[\]]*)\]")
-FIRST: dict[str, Dimension] = {"crank_angle": "angle", "time": "time"}
+FIRST: dict[str, Dimension] = {"crank_angle": "angle", **dict.fromkeys(TIMES, "time")}
 RIGHT = "the header is crank_angle [deg] or time [s], then outputs, such as shaking_force.x [N]"
 LEAST, MOST_ROWS, FAR = 8, 500_000, 36
 """Rows; a gap over so many parts of a cycle is drawn as one."""
@@ -90,7 +91,7 @@ def _record(name: str, text: str) -> Record:
     columns = tuple(
         Column(head[0], head[1], row) for head, row in zip(heads[1:], values[1:], strict=True)
     )
-    over: Literal["crank_angle", "time"] = "time" if heads[0][0] == "time" else "crank_angle"
+    over: Literal["crank_angle", "time"] = "time" if heads[0][0] in TIMES else "crank_angle"
     return Record(name, over, values[0], columns)
 
 

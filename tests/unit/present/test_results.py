@@ -180,7 +180,12 @@ def leaves(values: Any, path: str = "") -> Any:
             ["gauges.gauge.rms [m]", "mounts.spring.transmissibility [1]"],
         ),
         ("transient", "time [s]", 2001, ["crank_angle [rad]", "gauges.gauge.displacement [m]"]),
-        ("response", "time [s]", 360, ["crank_angle [rad]", "gauges.roll.displacement [rad]"]),
+        (
+            "response",
+            "time_in_period [s]",
+            360,
+            ["crank_angle [rad]", "gauges.roll.displacement [rad]"],
+        ),
         ("free vibration", None, 6, ["natural_frequency"]),
         ("front", None, 4, ["first", "second", "added_mass"]),
         ("conditions", None, 4, ["condition", "residual"]),

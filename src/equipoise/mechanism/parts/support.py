@@ -41,6 +41,7 @@ __all__ = [
     "AXES",
     "FREEDOMS",
     "PLANAR",
+    "TIME_IN_PERIOD",
     "UP",
     "Direction",
     "Gauge",
@@ -64,6 +65,9 @@ FREEDOMS = (
     to_say("pitch"),
 )
 """Along x, y, z and about x, y, z: the order of coordinates in `equipoise.vibration`."""
+TIME_IN_PERIOD = "time_in_period"
+"""Column of time in files of signals that are whole periods of a steady state: what reads such a
+file need not be told so."""
 HELD = ("surge", "heave", "sway")
 """What a pivot takes away."""
 MOST = {"mounts": 200, "gauges": 200, "rows": 200}
