@@ -128,12 +128,21 @@ def figures_of_each(
     """
     average, rms = mean(samples, shares), np.sqrt(mean(np.square(samples), shares))
     samples = samples[:, shown]
-    sizes = np.abs(samples)
-    whole = np.stack([sizes, samples, -samples])
-    peak, high, low = np.max(whole, axis=2)
-    peak_at, high_at, low_at = crank_angle[shown][highest_at(whole)]
-    rows = (average, rms, peak, peak_at, high, high_at, -low, low_at)
+    whole = np.stack([samples, -samples])
+    high, low = np.max(whole, axis=2)
+    high_at, low_at = crank_angle[shown][highest_at(whole)]
+    peak_at = place_of_peak(high, -low, high_at, low_at)
+    rows = (average, rms, np.maximum(high, low), peak_at, high, high_at, -low, low_at)
     return [Figures(*one) for one in np.array(rows).T.tolist()]
+
+
+def place_of_peak(high: Array, low: Array, high_at: Array, low_at: Array) -> Array:
+    """Crank angles (M,) of the largest absolute value, of equal ones the first, from the largest
+    and smallest values (M,) and their crank angles (M,).
+    """
+    equal = np.abs(high + low) <= EQUAL * (high - low)
+    one = np.where(high >= -low, high_at, low_at)
+    return np.asarray(np.where(equal, np.minimum(high_at, low_at), one))
 
 
 @dataclass(frozen=True, eq=False)

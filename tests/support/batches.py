@@ -19,7 +19,7 @@ from equipoise.codegen.figures import Figure
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.machine import Gear, Machine, Slider
-from equipoise.signals import Figures
+from equipoise.signals import EQUAL, Figures
 from support.designs import Array, size_of
 from support.machines import KINDS, make
 from unit.mechanism.build import heavy, machine
@@ -123,8 +123,10 @@ def same_figures(
             here = signal.samples[np.abs(signal.at - value) < 1e-9]
             sizes = np.abs(here) if name == "peak" else here
             found = np.min(sizes) if name == "min" else np.max(sizes)
-        apart = abs(found - told) / signal.scale
-        assert apart <= tolerance, f"{figure} is {found:.9g}, {apart:.2g} off {told:.9g}"
+        apart, room = abs(found - told) / signal.scale, tolerance
+        if figure.name in PLACES:  # of tops that are so near to each other the first is told
+            room += EQUAL * signal.figures.peak_to_peak / signal.scale
+        assert apart <= room, f"{figure} is {found:.9g}, {apart:.2g} off {told:.9g}"
 
 
 # -- machines --------------------------------------------------------------------------------------

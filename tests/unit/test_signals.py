@@ -358,6 +358,17 @@ def test_near_a_flat_top_its_own_angle_is_told() -> None:
     assert figures(fine, np.cos(fine - 2.0)).max_at == pytest.approx(2.0, abs=2e-5)
 
 
+def test_of_a_top_and_a_bottom_that_are_equal_the_first_is_the_peak() -> None:
+    """Equal is what differs by less than a share of the range between them, as in loops."""
+    samples = np.array([0.0, -1.0, 0.0, 1.0 + 1.5e-9, 0.0])
+    theta = np.arange(5.0)
+    assert figures(theta, samples).peak_at == 1.0
+    assert figures(theta, -samples).peak_at == 1.0
+    samples[3] = 1.0 + 3e-9
+    assert figures(theta, samples).peak_at == 3.0
+    assert figures(theta, samples).peak == samples[3]
+
+
 def test_an_extreme_between_samples_is_that_of_the_first_top() -> None:
     signal = Periodic(np.array([0.0, 0.0, 0.0, np.exp(-0.3j)]))
     assert signal.extreme(1)[1] == pytest.approx(0.1)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.signals import EQUAL, ROUNDING
+from equipoise.signals import ROUNDING, place_of_peak
 
 COMPUTED = 0
 NO_ASSEMBLY = 1
@@ -175,8 +175,7 @@ class Gathered:
         if figure.name == "peak":
             return np.maximum(high, -low)
         places = column("highest_at"), column("lowest_at")
-        equal = np.abs(high + low) <= EQUAL * (high - low)
-        return np.where(equal, np.minimum(*places), np.where(high >= -low, *places))
+        return place_of_peak(high, low, *places)
 
     def rms(self, found: Array, signal: str, count: int) -> Array:
         """Root of the mean square (P,) of a signal."""
