@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.balancing.sensitivity import sensitivities
 from equipoise.codegen.batch import Batch
 from equipoise.codegen.figures import Figure
 from equipoise.codegen.gram import MassBatch
@@ -29,6 +30,8 @@ from equipoise.mechanism.parts.laws import LengthLaw, LengthSegment
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
 from equipoise.signals import JumpSampling
+from equipoise.vibration import exact
+from equipoise.vibration.exact import ExactSolution, solve_exact
 from equipoise.vibration.linear import ExcitationModel, Linear
 from support.batches import by_numpy
 
@@ -304,3 +307,51 @@ def test_masses_alone_answer_as_analyses_do(angles: int | None) -> None:
         links = {**base.links, "rod": replace(base.links["rod"], mass=mass)}
         torque = eq.analyze(replace(base, links=links), angles or 360).summary["drive_torque"]
         assert row == pytest.approx([torque.mean, torque.rms], rel=1e-9)
+
+
+# -- the exact model, and effects of masses --------------------------------------------------------
+
+
+@pytest.mark.parametrize("drive", [False, True])
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_exact_orders_are_those_of_a_fine_grid(sense: float, drive: bool) -> None:
+    """Samples at equal steps fold the orders of a jump back, the finer the less."""
+    load = Load("crank", torque=2.0, start=BEGIN, stop=END)
+    machine = replace(eq.load("yamashita-rig"), loads=(load,))
+    solution = solve_exact(machine, sense * machine.drive.speed, drive)
+    dense = ExactSolution(solution.system, solution.linear, solution.found)
+    dense.__dict__["sampling"] = None
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(exact, "SAMPLES", 720 * 32)
+        fine = dense.response(brief=True)
+    found = solution.response(brief=True)
+    for one, other in (
+        (found.drive.torque, fine.drive.torque),
+        (found.gauges["gauge"].acceleration, fine.gauges["gauge"].acceleration),
+    ):
+        size = np.max(np.abs(other.amplitudes))
+        apart = np.abs(one.amplitudes[:60] - other.amplitudes[:60]) / size
+        assert np.max(apart) < 1.5e-4  # 7e-4 from 720 samples; the fine grid itself misses a 32nd
+    # no piece of the mesh has a jump in it, so that none has to be cut again and again
+    assert np.all(
+        np.min(
+            np.abs(np.subtract.outer(solution.system.jumps, solution.found.orbit.points)), axis=1
+        )
+        == 0
+    )
+
+
+def test_effects_of_masses_are_integrated_between_jumps() -> None:
+    """Where accelerations jump so do they; against a fine grid."""
+    machine = eq.load("cam-pusher")
+    (cam,) = machine.cams
+    jumping = replace(machine, cams=(replace(cam, lift=replace(trapezoid(), phase=0.3)),), loads=())
+    found, fine = (sensitivities(jumping, "drive_torque", count) for count in (24, 40_000))
+    largest = max(one.rms for one in fine.by_name.values())
+    for name, one in found.by_name.items():
+        assert one.rms == pytest.approx(fine[name].rms, rel=1e-5, abs=1e-8 * largest), name
+        assert one.values.shape == (24 * found.turns,)
+    fine_by_samples = {name: np.sqrt(np.mean(one.values**2)) for name, one in fine.by_name.items()}
+    for name, one in found.by_name.items():
+        # a sample beside a jump stands for half a step too much
+        assert one.rms == pytest.approx(fine_by_samples[name], rel=1e-3, abs=1e-8 * largest), name

@@ -18,6 +18,7 @@ from equipoise.balancing.readings import machine_size
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.dynamics.parameters import ACROSS, QUANTITIES, regressor
+from equipoise.mechanism.kinematics.jumps import resolved
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.kinematics.tip import roots
 from equipoise.mechanism.outputs.declared import DECLARED, Found
@@ -50,7 +51,7 @@ class Sensitivity:
     """Derivative of an output by one parameter of a link.
 
     values : (N,) at each crank angle, unit of the output over unit of the parameter.
-    rms : of it.
+    rms : of it, integrated between the crank angles at which it jumps.
     no_effect_at : crank angles (rad) within the cycle at which it passes zero; empty where there is
         no effect at all.
     percent : RMS of what a small change does: 1 % of the link's mass, 1 % of its moment of
@@ -152,18 +153,21 @@ def sensitivities(
     if not isinstance(given, int | np.integer) or given < LEAST_ANGLES:
         raise UsageError(f"got {given!r} crank angles; give a number of at least {LEAST_ANGLES}")
     motion = move(machine, int(angles), acceleration=0.0)
-    values, changes = _derivatives(motion, output), _changes(output)
+    pieces, changes = resolved(motion), _changes(output)
+    whole = _derivatives(pieces, output)
+    values = whole if pieces.sampling is None else whole[:, pieces.sampling.grid]
     size, mass = machine_size(machine), machine.mass or 1.0
     effects = np.max(np.abs(values), axis=1)
     scales = {"mass": mass, "inertia": mass * size**2}
     effects = effects * np.tile([scales.get(one, size) for one in changes], len(machine.links))
-    values[effects <= NOTHING * np.max(effects)] = 0.0  # which is only rounding
+    nothing = effects <= NOTHING * np.max(effects)  # which is only rounding
+    values[nothing] = 0.0
+    rms_of_each = np.where(nothing, 0.0, np.sqrt(pieces.mean(np.square(whole)))).tolist()
     by_name = {}
-    each = zip(values, _sign_changes(motion, output, values), strict=True)
-    for (link, change), (own, at) in zip(product(machine.links, changes), each, strict=True):
+    each = zip(values, rms_of_each, _sign_changes(motion, output, values), strict=True)
+    for (link, change), (own, rms, at) in zip(product(machine.links, changes), each, strict=True):
         body = machine.links[link]
         step = {"mass": body.mass or 0.0, "inertia": body.inertia or 0.0}.get(change, size)
-        rms = float(np.sqrt(np.mean(own**2)))
         by_name[f"{link}.{change}"] = Sensitivity(link, change, own, rms, at, 0.01 * step * rms)
     return Sensitivities(machine, output, motion.crank_angle, motion.turns, by_name)
 

@@ -26,8 +26,9 @@ from equipoise.errors import ResponseError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.assembly.steps import size_of_bodies
+from equipoise.mechanism.kinematics.jumps import jumps_of_rows
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.signals import Array
+from equipoise.signals import Array, within_period
 from equipoise.vibration.body import IN_PLANE, PITCH, Body, Contact, Rest, contacts_of
 from equipoise.vibration.collocation import Rates
 from equipoise.vibration.linkages import Sums, sums
@@ -83,6 +84,13 @@ class Coupled:
     def count(self) -> int:
         """Number of states."""
         return 2 * len(self.free) + (0 if self.torque is None else 3)
+
+    @cached_property
+    def jumps(self) -> Array:
+        """Turnings (J,) of the crank in a cycle, rising, rad, at which forces in any row jump."""
+        linkage = assemble(self.machine)
+        period = 2 * pi * linkage.cycle.turns
+        return np.sort(within_period(self.sense * jumps_of_rows(linkage), period))
 
     @cached_property
     def gravity(self) -> Array:

@@ -19,7 +19,7 @@ from equipoise.mechanism.dynamics.reactions import Pass
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import FREEDOMS
 from equipoise.results.analysis import analyze
-from equipoise.signals import Array, Periodic
+from equipoise.signals import Array, JumpSampling, Periodic, mean
 from equipoise.vibration.body import IN_PLANE, PITCH, Body, Reading
 from equipoise.vibration.coupled import TO_SETTLE, Coupled, StallError, follow, settled
 from equipoise.vibration.linear import Linear, gauges_of
@@ -84,7 +84,8 @@ def solve_exact(
         guesses.append(partial(_at_constant_speed, machine, setting))
     swings = 0.0 if linear is None else swings_in_a_turn(linear.modes, speed)
     try:
-        found = steady(system, guesses, turns_of(machine), conditions_of(system), swings)
+        jumps = system.jumps
+        found = steady(system, guesses, turns_of(machine), conditions_of(system), swings, jumps)
     except ResponseError as error:
         if setting is not None and patient:
             check_stall(system, setting, error)
@@ -146,7 +147,7 @@ class ExactSolution:
     @property
     def lean(self) -> float:
         """Mean rotation of the support from the drawn position, deg."""
-        return float(np.degrees(np.mean(self.ride.place[PITCH])))
+        return float(np.degrees(self.mean(self.ride.place[PITCH])))
 
     @property
     def toppled(self) -> bool:
@@ -155,15 +156,39 @@ class ExactSolution:
         return bool(unstable) and abs(self.lean) > LEANING
 
     @cached_property
+    def sampling(self) -> JumpSampling | None:
+        """Instants that resolve what jumps, as angles of the mean speed; None where nothing does.
+
+        Bends of load tables are left to the equal steps: the solution is smooth enough there.
+        """
+        jumps = self.system.jumps
+        if not len(jumps):
+            return None
+        if self.system.torque is not None:
+            orbit, time = self.found.orbit, self.system.count - 2
+            jumps = orbit.at(jumps)[time] * (2 * pi * self.turns / orbit.starts[time, -1])
+        return JumpSampling.of(self._steps, self.turns, jumps)
+
+    @property
+    def _steps(self) -> Array:
+        """Equal steps of time, as angles (M,) of the mean speed, rad."""
+        return np.arange(SAMPLES * self.turns) * (2 * pi / SAMPLES)
+
+    def mean(self, values: Array) -> Array:
+        """Mean (...) over time of values (..., N) at the instants."""
+        return mean(values, None if self.sampling is None else self.sampling.shares)
+
+    @cached_property
     def turned(self) -> Array:
-        """Angle (N,) by which the crank has turned at equal steps of time, rad."""
-        count = SAMPLES * self.turns
-        s = np.arange(count) * (2 * pi / SAMPLES)
+        """Angle (N,) by which the crank has turned at equal steps of time, and at those instants
+        that resolve jumps, rad.
+        """
+        s = self._steps if self.sampling is None else self.sampling.crank_angle
         if self.system.torque is None:
             return s
         time = self.system.count - 2
         orbit = self.found.orbit
-        wanted = np.arange(count) * (orbit.starts[time, -1] / count)
+        wanted = s * (orbit.starts[time, -1] / (2 * pi * self.turns))
         s = np.interp(wanted, orbit.starts[time], orbit.points)
         for _ in range(8):
             states = orbit.at(s)
@@ -215,6 +240,9 @@ class ExactSolution:
     def signal(self, samples: Array) -> Periodic:
         """Of samples (..., N) at those instants: by the crank angle of a constant mean speed."""
         backwards = self.system.sense < 0
+        if self.sampling is not None:
+            found = self.sampling.periodic(samples)
+            return Periodic(found.amplitudes.conj(), self.turns) if backwards else found
         samples = np.roll(samples[..., ::-1], 1, axis=-1) if backwards else samples
         return Periodic.of(samples, self.turns)
 
@@ -282,7 +310,7 @@ class ExactSolution:
             hands_on = exciting if contact.at.along is not None else exciting[:0]
             mount = mount_force(self.signal(force), 0.0, hands_on)
             if contact.one_sided:
-                mount = replace(mount, lifts_off=float(np.mean(force <= 0)), least=0.0)
+                mount = replace(mount, lifts_off=float(self.mean(force <= 0)), least=0.0)
             found[contact.name] = mount
         return found
 

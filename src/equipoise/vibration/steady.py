@@ -35,6 +35,8 @@ INTERVALS = 36
 MOST_INTERVALS, MOST_SWINGS = 4000, 400
 FINE = 1e-11
 """Residual of an interval at which it is left as it is."""
+SHORTEST = 1e-3
+"""Share of an interval, beside a jump, within which none ends; rad, from the ends of a period."""
 ROUNDS = 14
 """Of refinement: where a contact opens or a load sets in, intervals are cut in four."""
 NEUTRAL = 1 + 1e-6
@@ -74,6 +76,7 @@ def steady(
     turns: int,
     conditions: Conditions,
     swings: float = 0.0,
+    jumps: Array | tuple[()] = (),
 ) -> Steady:
     """Find the periodic solution on a mesh that is refined where the equations are not met.
 
@@ -82,6 +85,7 @@ def steady(
     guesses : states (n, M) against the crank's turning (M,), rad; the next is tried where one leads
         nowhere, or to a solution that is not stable, such as a support balanced on its head.
     swings : how often the support swings freely in a turn; the mesh has to follow that.
+    jumps : (J,) turnings at which the equations jump, rad, where intervals begin and end.
 
     Raises
     ------
@@ -98,9 +102,19 @@ def steady(
             )
         )
     intervals = (INTERVALS + ceil(swings)) * turns
-    points = np.linspace(0.0, 2 * pi * turns, intervals + 1)
+    points = _mesh(intervals, 2 * pi * turns, np.asarray(jumps, dtype=float))
     orbit = _first(_tried(system, points, guess, conditions) for guess in guesses)
     return _refined(system, orbit, conditions, 2 * intervals + MOST_INTERVALS * turns)
+
+
+def _mesh(intervals: int, period: float, jumps: Array) -> Array:
+    """Ends of intervals, equally spaced but for jumps, to which the nearest ends move."""
+    points = np.linspace(0.0, period, intervals + 1)
+    inside = jumps[(jumps > SHORTEST) & (jumps < period - SHORTEST)]
+    apart = np.min(np.abs(np.subtract.outer(points, inside)), axis=1, initial=np.inf)
+    kept = apart > SHORTEST * period / intervals
+    kept[[0, -1]] = True
+    return np.unique(np.concatenate([points[kept], inside]))
 
 
 def _first(tried: Iterable[Orbit | None]) -> Orbit:
