@@ -13,12 +13,13 @@ that of the middle, which what is allowed bounds, and a rest that is the less th
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
+from equipoise.balancing.jump_bounds import JumpBounds
 from equipoise.balancing.multi_row import AREA_SAMPLES, Cost, Term, by_orders
 from equipoise.signals import AT_ONCE, Array, Periodic
 
@@ -106,11 +107,24 @@ class Bounder:
     cost : where all numbers are 0.
     prices : what the cost falls by for as much more of each limit as it is; any bound what is
         allowed, as long as none is negative, and the right ones do it best.
+    jumps : of each term and limit whose extremes jump, what bounds it where phases alone are free.
     """
 
     cost: Cost
     numbers: Numbers
     prices: tuple[float, ...]
+    jumps: Mapping[int, JumpBounds] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, cost: Cost, numbers: Numbers | None, prices: tuple[float, ...]) -> Bounder:
+        """For a cost whose terms may jump: read smoothed, and by the pieces between jumps."""
+        if numbers is not None:
+            return cls(cost, numbers, prices)
+        jumps, smoothed = {}, cost.smoothed
+        for place, term in enumerate(cost.measured):
+            if (rows := term.jumping) is not None and not rows.is_vector:
+                jumps[place] = JumpBounds(rows, term.measure)
+        return cls(smoothed, Numbers.none(smoothed), prices, jumps)
 
     @property
     def most_at_once(self) -> int:
@@ -153,7 +167,35 @@ class Bounder:
             bounds = np.maximum(values - lost, bounds)
         bounds = np.where(impossible, np.inf, bounds)
         widest = np.where(np.max(bends, axis=1) > 0, np.argmax(bends, axis=1), 1)
-        return replace(boxes, bounds=bounds, widest=widest), values, slopes
+        boxes = replace(boxes, bounds=bounds, widest=widest)
+        if self.jumps:
+            boxes, values = self._by_pieces(boxes, readings, turning)
+        return boxes, values, slopes
+
+    def _by_pieces(
+        self, boxes: Boxes, readings: list[tuple[Array, Array]], turning: Array
+    ) -> tuple[Boxes, Array]:
+        """Boxes with the bounds that terms have each by itself, those that jump by their pieces,
+        where these are better; and the cost in their middles.
+        """
+        lows, middles = [], []
+        halves, drops = self.half / 2.0**boxes.halvings, np.zeros(boxes.middles.shape)
+        none = np.zeros((len(boxes.bounds), 0))
+        for place, (value, reading) in enumerate(readings):
+            lost, bends, _ = self._over(boxes, reading * turning[:, None], none)
+            low = np.maximum(value - lost, 0.0)
+            middles.append(value)
+            if (jump := self.jumps.get(place)) is not None:
+                found = jump.over(boxes.middles, halves)
+                low, bends = np.maximum(low, found.bounds), found.losses
+                middles[-1] = np.maximum(value, found.values)
+            lows.append(low)
+            drops += bends / self.cost.measured[place].scale
+        apart = self.cost.of(lows)
+        by_pieces = apart > boxes.bounds
+        widest = np.where(by_pieces, np.maximum(np.argmax(drops, axis=1), 1), boxes.widest)
+        bounds = np.maximum(apart, boxes.bounds)
+        return replace(boxes, bounds=bounds, widest=widest), self.cost.of(middles)
 
     def _each(self, totals: list[Array]) -> list[tuple[Term, Array, Array]]:
         return list(zip(self.cost.measured, totals, self._amplitudes, strict=True))

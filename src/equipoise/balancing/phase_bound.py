@@ -66,7 +66,7 @@ def prove(
     prices : of each limit, where they are known; see `Bounder`.
     """
     prices = prices or (0.0,) * len(cost.limits)
-    bounder = Bounder(cost, numbers or Numbers.none(cost), prices)
+    bounder = Bounder.of(cost, numbers, prices)
     known = float(cost.values(phases)) if least is None else least
     return _Search(cost, bounder, improve, close).run(phases, known)
 

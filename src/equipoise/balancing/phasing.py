@@ -105,7 +105,7 @@ def choose_phases(
     pool = search.pool(progress or (lambda done, total: None))
     found = search.best(pool)
     known = float(search.cost.values(found))
-    proof = prove(search.cost.smoothed, found, search.improved, least=known)
+    proof = prove(search.cost, found, search.improved, least=known)
     if proof.phases is not found:
         found = search.best(np.vstack([pool, proof.phases]))
     for term in search.cost.limits:
