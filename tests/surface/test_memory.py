@@ -199,3 +199,14 @@ def test_a_program_beyond_the_limit_does_not_abort() -> None:
     done = subprocess.run(words, capture_output=True, text=True, check=False, env=environment)
     assert done.returncode == 1, done.stderr
     assert done.stderr.startswith("a cone program of 6000 rows and 300 numbers: needs ")
+
+
+@pytest.mark.parametrize("name", ["long.gif", "long.mp4"])
+def test_a_film_of_too_many_turns_is_refused_before_it_is_computed(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Positions, paths and a support's motion over 500 turns took half a minute, for nothing."""
+    monkeypatch.setattr("equipoise.results.analysis.analyze", None)
+    said = refused(equipoise("animate", turning("yamashita-1", 500), "--out", name))
+    assert "the film has" in said and "fewer turns" in said
+    assert not Path(name).exists()

@@ -119,6 +119,8 @@ def animate(
         options["turns"] = turns
     count = _angles_of(kind, seconds)
     with naming(file):
+        if kind != "svg" and mode is None:
+            _check_film(machine, kind, seconds, turns, width)
         if mode is not None:
             scene = _in_mode(machine, mode, count)
         else:
@@ -130,6 +132,17 @@ def animate(
         data = _animated(scene, machine.title, kind, options)
     write(name, data)
     wrote(name)
+
+
+def _check_film(machine: Machine, kind: str, seconds: float, turns: int | None, width: int) -> None:
+    """Refuse a film of a cycle of too many turns before all of it is computed."""
+    from equipoise.figures.film import check_frames
+    from equipoise.figures.stage import in_a_turn
+    from equipoise.mechanism.assembly.linkage import assemble
+
+    cycle = assemble(machine).cycle.turns
+    if cycle > 1:
+        check_frames(in_a_turn(kind, seconds) * (turns or cycle), width)
 
 
 def _check_support(
