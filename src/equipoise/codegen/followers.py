@@ -128,10 +128,13 @@ class Pieces:
     picked from tables.
     """
 
-    def __init__(self, trace: Trace, curve: Curve, since: Any) -> None:
-        """since : way from the curve's beginning, rounding ahead."""
+    def __init__(self, trace: Trace, curve: Curve, since: Any, few: int = FEW) -> None:
+        """since : way from the curve's beginning, rounding ahead.
+
+        few : pieces up to which they are told apart by comparing.
+        """
         self.graph, self.curve, self.since = trace.graph, curve, since
-        self.few, self.even = len(curve.powers) <= FEW, False
+        self.few, self.even = len(curve.powers) <= few, False
         if self.few:
             return
         if np.allclose(np.diff(curve.knots), curve.length / len(curve.powers), rtol=1e-12, atol=0):

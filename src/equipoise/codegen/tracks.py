@@ -14,6 +14,9 @@ from equipoise.mechanism.formulas.curve_kernels import plane_piece
 from equipoise.mechanism.formulas.curves import MOST_POWERS, Curve
 from equipoise.mechanism.formulas.plane_curves import PlaneCurve
 
+FEW = 2
+"""Pieces that are told apart by comparing: of a dozen numbers each, more take long to compile."""
+
 
 class TracedCurve:
     """A `PlaneCurve`, which no design changes, at parameters that are terms."""
@@ -48,7 +51,7 @@ class TracedCurve:
             s = s - tau * floor(s * (1 / tau))
         count = len(knots) - 1
         curve = Curve(knots, np.zeros((count, MOST_POWERS)), np.zeros((count, 3)))
-        pieces = Pieces(self.trace, curve, greatest(0.0, s))
+        pieces = Pieces(self.trace, curve, greatest(0.0, s), FEW)
         return s - pieces.beginning(), pieces
 
 
