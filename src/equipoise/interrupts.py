@@ -17,6 +17,7 @@ import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from time import monotonic
 from types import FrameType
 
 _received = False
@@ -31,13 +32,18 @@ _again: threading.Timer | None = None
 """What interrupts again, should nothing have been raised when an import had ended."""
 SOON = 0.1
 """s until then."""
+PATIENCE = 1.0
+"""s in which an import may end; one that takes longer is interrupted."""
+_first: float | None = None
+"""When the interrupt came that waits for an import, s."""
 
 
 def _raise(number: int, frame: FrameType | None) -> None:
-    global _received, _came, _again  # noqa: PLW0603 - there is one process, and it gets the signal
+    global _received, _came, _again, _first  # noqa: PLW0603 - there is one process with signals
     _received = _came = True
+    _first = _first or monotonic()
     importing = _importing(frame)
-    if importing is None:
+    if importing is None or monotonic() - _first > PATIENCE:
         raise KeyboardInterrupt
     importing.f_trace, importing.f_trace_opcodes = _raise_there, True
     sys.settrace(lambda *_: None)  # else no frame is traced
@@ -80,13 +86,13 @@ def recorded() -> Iterator[None]:
     Python raises interrupts in the main thread only; in others, and where a program has a handler
     of its own, nothing changes.
     """
-    global _received, _came, _begun  # noqa: PLW0603
+    global _received, _came, _begun, _first  # noqa: PLW0603
     here = threading.current_thread() is threading.main_thread()
     if not here or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
         with _taken_back():
             yield
         return
-    _received, _came, report = False, False, sys.unraisablehook
+    _received, _came, _first, report = False, False, None, sys.unraisablehook
     _begun = sys._getframe(2)  # of whoever says `with`
     signal.signal(signal.SIGINT, _raise)
     sys.unraisablehook = _report_others
@@ -101,7 +107,7 @@ def recorded() -> Iterator[None]:
         sys.unraisablehook = report
         if signal.getsignal(signal.SIGINT) is _raise:
             signal.signal(signal.SIGINT, signal.default_int_handler)
-        _received, _begun = False, None
+        _received, _begun, _first = False, None, None
 
 
 @contextmanager

@@ -222,6 +222,25 @@ def test_an_interrupt_at_any_import(way: str, name: str, folder: Path) -> None:
         assert {*work.iterdir()} == {work / STUDY}, at
 
 
+LASTING = """
+import signal, sys
+signal.raise_signal(signal.SIGINT)
+for _ in range(10 ** 9):
+    pass
+"""
+
+
+def test_an_import_that_lasts_is_interrupted(folder: Path) -> None:
+    (folder / "lasting.py").write_text(LASTING)
+    begin = (
+        "import equipoise.results.analysis as one; "
+        "one.analyze = lambda *_, **__: __import__('lasting')"
+    )
+    words = [sys.executable, "-c", f"{begin}; {SCRIPT}", "analyze", "yamashita-1"]
+    done = heeding(words)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "equipoise: interrupted\n")
+
+
 SWALLOWING = """
 import signal
 import numpy
