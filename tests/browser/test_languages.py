@@ -62,3 +62,22 @@ def test_korean_particles_go_by_the_name_before_them(
     page.keyboard.press("?")
     keys = page.get_by_role("dialog", name=ko["Keys"]).locator("kbd").all_inner_texts()
     assert "Delete" in keys and ko["Delete"] not in keys
+
+
+def test_a_loader_has_cycles_and_no_crank_angles(live: Live) -> None:
+    """What the page itself says goes by the machine that is open, and back again."""
+    page = live.page
+    finder = page.locator(".finder input").last
+    expect(finder).to_have_attribute("aria-label", "Any output over crank angle")
+    for name, called in (
+        ("hydraulic-loader", "Any output over the cycle"),
+        ("yamashita-1", "Any output over crank angle"),
+    ):
+        page.get_by_role("combobox", name="Example").select_option(name)
+        live.settled()
+        expect(page.get_by_role("combobox", name=called)).to_be_visible()
+        why = page.get_by_role("button", name="Shaking force, polar: what does it show?")
+        why.click()
+        shown = page.locator(".explained:visible p").first
+        expect(shown).to_contain_text("cycle" if "cycle" in called else "crank")
+        why.click()
