@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 
 from equipoise.mechanism.formulas import joint_kernels, kernels
-from equipoise.mechanism.parts.couplings import tooth_line
 from laws.formulas import FORMULAS, Formula, constants, evaluate
 
 ANGLES = np.array([0.1, 0.9, 1.7, 2.6, 3.5, 4.4, 5.8])
@@ -406,9 +405,7 @@ def test_flank_forces(trial: int, radial: float) -> None:
     line = 1j * outward + radial * sense * outward
     columns = [rows(1, 0.0), rows(1j, 0.0), rows(line, kernels.cross(u * lever, line))]
     x = np.linalg.solve(np.array(columns).T, rows(force, moment))
-    found = tooth_line(lever, radial)
-    numbers = found.radius, found.across, found.along
-    got = joint_kernels.flank_forces(force, moment, u, sense, *numbers)
+    got = joint_kernels.flank_forces(force, moment, u, sense, lever, -radial)
     close(got, [complex(*x[0:2]), line * x[2], x[2]])
 
 
@@ -477,14 +474,13 @@ SIGNATURES = {
     "prp_forces": "uucrcruu",
     "rpp_forces": "ccucrcruu",
     "flank": "r",
-    "flank_forces": "crurrcc",
+    "flank_forces": "crurcr",
     "strand_forces": "crurrcc",
     "flank_ahead": "cuu",
-    "sliding_forces": "crccurucc",
+    "sliding_forces": "crccurur",
     "pitch_slope": "rr",
     "pitch_place": "cuc",
     "slant": "rrr",
-    "rolling_push": "rcrr",
     "rolling_forces": "crurcrr",
 }
 """Arguments of the force kernels: c a vector, u a rotation, r a real number."""

@@ -8,12 +8,11 @@ from math import isfinite
 
 from equipoise.balancing.balanced import Balanced
 from equipoise.errors import ChangePointError, RangeError, UsageError, needed, unknown
-from equipoise.exchange.formats import FORMATS, RACK, SLOT, Format, Job
+from equipoise.exchange.formats import FORMATS, Format, Job
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import numbered
-from equipoise.mechanism.parts.couplings import coupling_kinds
-from equipoise.mechanism.parts.joint_kinds import joint_kinds
+from equipoise.mechanism.parts.element_kinds import part_kinds
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.schema.files import printable, write
 from equipoise.studies.selection import write_designs
@@ -78,7 +77,7 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
         check_turning(machine, one.title)
     _check_joints(machine, one)
     job = Job(machine, crank_angle, changes)
-    if RACK in one.lacks:
+    if one.joints == ():  # its joints bear no preload either
         for coupling in machine.couplings:
             if coupling.preload:
                 lost = f"the tension of the {coupling.noun} {coupling.name}"
@@ -90,15 +89,14 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
 
 
 def _check_joints(machine: Machine, one: Format) -> None:
-    """Refuse a machine with joints that a format lacks."""
-    slots = [table for table in joint_kinds(type(machine)) if getattr(machine, table)]
-    if slots and SLOT in one.lacks:
-        raise UsageError(f"{slots[0]}[1]: a file of {one.title} has no {SLOT}; give another format")
-    for table in coupling_kinds(type(machine)):
-        for where, coupling in numbered(table, getattr(machine, table)):
-            if coupling.special in one.lacks:
+    """Refuse a machine with parts that a format lacks."""
+    if one.joints is None:
+        return
+    for table in part_kinds(type(machine)):
+        for where, part in numbered(table, getattr(machine, table)):
+            if part.special and part.special not in one.joints:
                 raise UsageError(
-                    f"{where}: a file of {one.title} has no {coupling.special}; give another format"
+                    f"{where}: a file of {one.title} has no {part.special}; give another format"
                 )
 
 

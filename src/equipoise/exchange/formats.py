@@ -15,10 +15,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parts.machine import Machine
 
 
-CAM, RACK, VARYING, SLOT = "cam", "rack", "gears of varying ratio", "pin in a slot"
-"""Joints that some formats lack."""
-
-
 @dataclass(frozen=True)
 class Format:
     """One kind of file.
@@ -29,7 +25,8 @@ class Format:
     `exchange`.  of_store : whether it is of the designs of a study, not of a machine.
     posed : whether it shows the machine at a crank angle, or begins there.
     turns : whether it turns the driven link all the way round at constant speed.
-    lacks : joints that it has none for.
+    joints : that it has beside pins, guides and what turns two links in a fixed ratio, as kinds of
+    parts call them (`PartKind.special`); None where it has all.
     """
 
     name: str
@@ -40,7 +37,7 @@ class Format:
     of_store: bool = False
     posed: bool = True
     turns: bool = False
-    lacks: tuple[str, ...] = ()
+    joints: tuple[str, ...] | None = None
     module: str = ""
 
     @property
@@ -59,7 +56,7 @@ FORMATS: Mapping[str, Format] = {
             "bodies, pins, sliders, gears, belts, springs, linear torsion springs, constant loads, "
             "rows, the support on its mounts, the drive at constant speed",
             turns=True,
-            lacks=(CAM, RACK, VARYING, SLOT),
+            joints=(),
         ),
         Format(
             "exudyn",
@@ -68,7 +65,7 @@ FORMATS: Mapping[str, Format] = {
             "a script that builds and runs bodies, pins, sliders, gears, belts, springs, constant "
             "loads, rows, the support on its mounts in the plane, the drive at constant speed",
             turns=True,
-            lacks=(CAM, RACK, VARYING, SLOT),
+            joints=(),
         ),
         Format(
             "urdf",
@@ -76,7 +73,7 @@ FORMATS: Mapping[str, Format] = {
             "robots (URDF)",
             "the tree: links with masses, hinges, slides, gears and belts of two joints; loops are "
             "cut",
-            lacks=(CAM, RACK, VARYING, SLOT),
+            joints=(),
         ),
         Format(
             "fmu",
@@ -86,7 +83,7 @@ FORMATS: Mapping[str, Format] = {
             "belts, racks, springs, torsion springs, constant loads; C sources, and a library "
             "where a C compiler is found",
             turns=True,
-            lacks=(CAM, VARYING),
+            joints=("rack", "pin in a slot"),
         ),
         Format(
             "modelica",
@@ -95,7 +92,7 @@ FORMATS: Mapping[str, Format] = {
             "one flat model: equations of motion of each link, pins, sliders, gears, belts, "
             "springs, torsion springs, constant loads, the drive at constant speed",
             turns=True,
-            lacks=(CAM, RACK, VARYING, SLOT),
+            joints=(),
         ),
         Format(
             "dxf",

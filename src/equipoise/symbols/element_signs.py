@@ -26,5 +26,6 @@ def sign_of(kind: type[Element]) -> Sign | None:
 def element_signs(elements: Iterable[Element], joints: Structure, bodies: Bodies) -> Iterator[Mark]:
     """The signs of each element that has one of its own."""
     for one in elements:
-        if sign := sign_of(type(one)):
+        kind: Any = type(one)
+        if sign := sign_of(kind):
             yield from sign(one, joints, bodies)

@@ -141,14 +141,13 @@ class Scale:
 
 
 SECTIONS = {
-    **GROUPS,
     "drive": to_say("drive"),
     "frame": to_say("frame"),
     "rows": to_say("rows"),
     "planting": to_say("planting"),
     "support": to_say("support"),
 }
-"""Groups that are no links -> what they are called."""
+"""Groups that are no links, and no kinds of parts -> what they are called."""
 WEIGHT = "counterweight on "
 """Before the name of a link: the group of its counterweight."""
 
@@ -157,8 +156,9 @@ def _heading(field: Field) -> str:
     """What the group of a number is called, in the language that is spoken."""
     if field.path.startswith("counterweights."):
         return say("counterweight on {link}", link=field.group.removeprefix(WEIGHT))
-    of_link = field.path.startswith("links.")
-    return field.group if of_link else say(SECTIONS.get(field.group, field.group))
+    if field.path.startswith("links."):
+        return field.group
+    return say(SECTIONS.get(field.group) or GROUPS.get(field.group, field.group))
 
 
 @lru_cache(4096)
@@ -184,9 +184,7 @@ def fields_of(design: Design) -> dict[str, Field]:
         _drive,
         _links,
         _frame,
-        _gears,
-        _cams,
-        _elements,
+        _parts,
         _joints,
         _rows,
         _planting,
@@ -281,22 +279,10 @@ def _frame(machine: Machine) -> Iterator[Field]:
         yield from _point(("frame", "points", point), "frame", point, place)
 
 
-def _gears(machine: Machine) -> Iterator[Field]:
-    for number, gear in enumerate(machine.gears, 1):
-        label = say("{gear}, angle of {link} at the start", gear=gear.name, link=gear.driven)
-        yield _field(("gears", str(number), "start"), "gears", label, "angle", gear.start)
-
-
-def _cams(machine: Machine) -> Iterator[Field]:
-    for number, cam in enumerate(machine.cams, 1):
-        without = () if cam.rides == "roller" else ("roller_radius",)
-        yield from _numbers(("cams", str(number)), "cams", cam.name, cam, without)
-
-
-def _elements(machine: Machine) -> Iterator[Field]:
-    for table, number, element in machine.elements:
-        place, of = (table, str(number + 1)), element.label.said()
-        yield from _numbers(place, table, of, element, element.idle_keys)
+def _parts(machine: Machine) -> Iterator[Field]:
+    for table, number, part in machine.parts:
+        place, of = (table, str(number + 1)), part.label.said()
+        yield from _numbers(place, table, of, part, part.idle_keys)
 
 
 def _joints(machine: Machine) -> Iterator[Field]:

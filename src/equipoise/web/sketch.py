@@ -7,8 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from equipoise.mechanism.kinematics.outline import STILL, Outline, Pose
-from equipoise.mechanism.parts.couplings import coupling_kinds
-from equipoise.mechanism.parts.element_kinds import element_kinds
+from equipoise.mechanism.parts.element_kinds import part_kinds
 from equipoise.mechanism.parts.machine import FRAME, Link, Machine, Vector
 from equipoise.mechanism.parts.shown_units import ShownUnits
 from equipoise.quantities import clean_place
@@ -22,7 +21,7 @@ REST = tuple(
     )
 )
 """Fields of a machine that a sketch hands on as they are; sides and places follow from it."""
-LISTS = (*coupling_kinds(Machine), "loads", *element_kinds(Machine), "joints")
+LISTS = (*part_kinds(Machine), "loads", "joints")
 """Those of them that have names of links and points in them."""
 
 

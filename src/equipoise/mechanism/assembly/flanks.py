@@ -29,7 +29,7 @@ from equipoise.mechanism.assembly.steps import (
     u,
 )
 from equipoise.mechanism.formulas import joint_kernels, kernels
-from equipoise.mechanism.parts.couplings import Coupling, Law, Line, RollingLine, Seat
+from equipoise.mechanism.parts.couplings import Coupling, Law, Line, RollingLine, Seat, StrandLine
 
 
 @dataclass(frozen=True)
@@ -89,18 +89,18 @@ class Flank:
     coupling: Coupling
     driver: Held
     driven: Held
-    line: Line
+    line: Line | StrandLine | RollingLine
     arm: Any = 0j
 
     @property
     def couples(self) -> bool:
-        """Whether the force goes with a couple about the driven body's pin."""
-        return self.line.couples
+        """Whether the force goes with a couple, about the driven body's pin."""
+        return isinstance(self.line, StrandLine)
 
     @property
     def pin(self) -> str:
         """From which the lever is counted."""
-        return (self.driven if self.driven.guide is None else self.driver).point
+        return (self.driver if self.driven.guide else self.driven).point
 
     @property
     def push(self) -> Reaction:
@@ -111,47 +111,41 @@ class Flank:
         return Reaction(name, self.coupling.table, link, self.driver.body, at, force, couple)
 
     def steps(self, ground: Reaction) -> tuple[Step, ...]:
-        """Steps that find the push, and what holds the driven body on the carrier: `ground`."""
-        carrier, line = self.coupling.carrier, self.line
-        if self.couples:
-            return self.pushed(ground, joint_kernels.strand_forces)
-        at = Call(kernels.point, (*p(self.pin), *u(carrier)), (line.lever,), p(self.push.at))
+        """Steps that find the push, and what holds the driven body on the carrier: `ground`.
+
+        What the driven body needs tells which flank, or strand, bears.
+        """
+        line, name, turn = self.line, self.coupling.name, f"u({self.coupling.carrier})"
+        sense, (force, moment) = f"flank({name})", demand_names(self.driven.body)
+        asked = Call(joint_kernels.flank, (moment,), (), (sense,))
+        inputs: tuple[str, ...] = (force, moment, turn, sense)
+        outputs = (*ground.outputs, *self.push.outputs, f"T({name})")
+        numbers: tuple[Any, ...]
+        if isinstance(line, StrandLine):
+            numbers = (line.radius, line.across, line.along)
+            return asked, Call(joint_kernels.strand_forces, inputs, numbers, outputs)
+        pitch = f"p({self.push.at})"
+        if isinstance(line, RollingLine):
+            place = lever, _ = f"lever({name})", f"slope({name})"
+            angles = (f"phi({self.driver.body})", f"phi({self.coupling.carrier})")
+            kernel = joint_kernels.rolling_forces
+            return (
+                Call(rolled, angles, (line.law, line.centres), place),
+                Call(joint_kernels.pitch_place, (f"p({self.pin})", turn, lever), (), (pitch,)),
+                asked,
+                Call(kernel, (*inputs, *place), (line.radial,), outputs),
+            )
+        at = Call(kernels.point, (*p(self.pin), *u(self.coupling.carrier)), (line.lever,),
+                  p(self.push.at))  # fmt: skip
         if self.driven.guide is None:
-            return (at, *self.pushed(ground, joint_kernels.flank_forces))
-        along, sense = self.driven.guide.along, f"flank({self.coupling.name})"
-        force, moment = demand_names(self.driven.body)
-        places = (f"p({self.driven.point})", f"p({self.push.at})", f"u({carrier})")
+            numbers = (line.lever, line.slope)
+            return at, asked, Call(joint_kernels.flank_forces, inputs, numbers, outputs)
+        along = self.driven.guide.along
+        inputs = (force, moment, f"p({self.driven.point})", pitch, turn, sense)
         return (
             at,
-            Call(joint_kernels.flank_ahead, (force, f"u({carrier})"), (along,), (sense,)),
-            Call(
-                joint_kernels.sliding_forces,
-                (force, moment, *places, sense),
-                (along, line.across, line.along),
-                (*ground.outputs, self.push.force, f"T({self.coupling.name})"),
-            ),
-        )
-
-    def pushed(self, ground: Reaction, kernel: Callable[..., tuple[Any, ...]]) -> tuple[Step, ...]:
-        """What a flank, or a strand, does to what turns: the moment that this needs tells which."""
-        line = self.line
-        return self.turned(ground, kernel, (line.radius, line.across, line.along))
-
-    def turned(
-        self,
-        ground: Reaction,
-        kernel: Callable[..., tuple[Any, ...]],
-        numbers: tuple[Any, ...],
-        reads: tuple[str, ...] = (),
-    ) -> tuple[Step, ...]:
-        """The same with given numbers; reads : names of what the kernel takes before these."""
-        name, link = self.coupling.name, self.driven.body
-        sense = f"flank({name})"
-        inputs = (*demand_names(link), f"u({self.coupling.carrier})", sense, *reads)
-        outputs = (ground.force, *self.push.outputs, f"T({name})")
-        return (
-            Call(joint_kernels.flank, (f"M({link})",), (), (sense,)),
-            Call(kernel, inputs, numbers, outputs),
+            Call(joint_kernels.flank_ahead, (force, turn), (along,), (sense,)),
+            Call(joint_kernels.sliding_forces, inputs, (along, line.slope), outputs),
         )
 
     def group(self, builder: Builder, joints: Structure) -> Group:
@@ -194,46 +188,29 @@ class Flank:
 
     def place(self, poses: Poses) -> Any:
         """Where the push acts, complex, m."""
-        return poses[self.coupling.carrier].place_of(self.arm + self.line.lever)
+        return poses[self.coupling.carrier].place_of(self.arm + self._placed(poses)[0])
 
     def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
         """Force and couple on the driven body for a push of 1; `sense` tells which flank bears."""
         line, turn = self.line, poses[self.coupling.carrier].turn[0]
-        couple = line.radius if line.couples else 0.0
-        return [(turn * (line.across + sense * line.along), couple)]
+        if isinstance(line, StrandLine):
+            return [(turn * (line.across + sense * line.along), line.radius)]
+        lever, bend = self._placed(poses)
+        if isinstance(line, RollingLine):
+            slope = -joint_kernels.slant(sense, line.radial, bend)
+        else:
+            slope = line.slope * sense
+        guide = self.driven.guide
+        ahead = guide.along if guide else 1j * lever * (1 / kernels.length(lever))
+        return [(turn * ahead * (1 + 1j * slope), 0.0)]
 
-
-@dataclass(frozen=True)
-class RollingFlank(Flank):
-    """Flanks of gears whose ratio varies: the line between them moves on the carrier."""
-
-    line: RollingLine  # type: ignore[assignment]
-
-    def steps(self, ground: Reaction) -> tuple[Step, ...]:
-        name, carrier = self.coupling.name, self.coupling.carrier
-        place = lever, _ = f"lever({name})", f"slope({name})"
-        angles = (f"phi({self.driver.body})", f"phi({carrier})")
-        at = (f"p({self.pin})", f"u({carrier})", lever)
-        kernel, numbers = joint_kernels.rolling_forces, (self.line.radial,)
-        return (
-            Call(rolled, angles, (self.line.law, self.line.centres), place),
-            Call(joint_kernels.pitch_place, at, (), (f"p({self.push.at})",)),
-            *self.turned(ground, kernel, numbers, place),
-        )
-
-    def rolled(self, poses: Poses) -> tuple[Any, Any]:
-        """Lever of the pitch point, and slope of the pitch curves there."""
-        driver, carrier = (poses[one].angle for one in (self.driver.body, self.coupling.carrier))
-        return rolled(driver, carrier, self.line.law, self.line.centres)
-
-    def place(self, poses: Poses) -> Any:
-        lever, _ = self.rolled(poses)
-        return poses[self.coupling.carrier].place_of(self.arm + lever)
-
-    def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
-        lever, slope = self.rolled(poses)
-        push = joint_kernels.rolling_push(sense, lever, slope, self.line.radial)
-        return [(poses[self.coupling.carrier].turn[0] * push, 0.0)]
+    def _placed(self, poses: Poses) -> tuple[Any, Any]:
+        """Where the push acts, from the pin, and the slope of pitch curves there."""
+        line = self.line
+        if isinstance(line, RollingLine):
+            driver, carrier = poses[self.driver.body], poses[self.coupling.carrier]
+            return rolled(driver.angle, carrier.angle, line.law, line.centres)
+        return (line.lever if isinstance(line, Line) else 0.0), 0.0
 
 
 def rolled(angle_r: Any, angle_c: Any, law: Law, centres: Any) -> tuple[Any, Any]:
@@ -266,8 +243,7 @@ def contact(builder: Builder, joints: Structure, coupling: Coupling) -> Flank:
 
     where = place_in_file(joints, coupling)
     line = coupling.line(Seat(where, pins, centres, way, others))
-    kind = Flank if isinstance(line, Line) else RollingFlank
-    return kind(coupling, driver, driven, line)  # type: ignore[arg-type]
+    return Flank(coupling, driver, driven, line)
 
 
 def _pins(joints: Structure, coupling: Coupling) -> tuple[str, str]:

@@ -72,24 +72,31 @@ def flank(moment):
     return (moment / (abs(moment) + 1e-300),)
 
 
-def flank_forces(force, moment, u, sense, radius, across, along):
-    """Demand of a body about its pin that a flank, or strands, turn.
+def flank_forces(force, moment, u, sense, lever, slope):
+    """Demand of a body about its pin that a flank at the end of a lever turns.
 
-    u : rotation of the carrier.  sense : see `flank`.  radius : by which the push turns the body.
-    across, along : force in the carrier's axes for a push of 1, and what comes to it on the side of
-    `sense`: through the slope of teeth, or as the tight strand alone pulls.
-    Returns force on the body at its pin, force of the flank or strands on it, and their push,
-    positive where it turns the body counterclockwise.
+    u : rotation of the carrier.  sense : see `flank`.  lever : from the pin to where the flank
+    pushes, in the carrier's axes.  slope : of the push against the way square to the lever, to the
+    left, where the sense is 1.
+    Returns force on the body at its pin, force of the flank on it, and the part of that square to
+    the lever, positive where it turns the body counterclockwise.
     """
-    push = moment / radius
-    exerted = u * ((across + sense * along) * push)
+    push = moment / length(lever)
+    exerted = (1j - slope * sense) * (u * lever) * (1 / length(lever)) * push
     return force - exerted, exerted, push
 
 
 def strand_forces(force, moment, u, sense, radius, across, along):
-    """As `flank_forces`, with the couple of the strands about the pin before their push."""
-    at_pin, exerted, push = flank_forces(force, moment, u, sense, radius, across, along)
-    return at_pin, exerted, moment, push
+    """Demand of a body about its pin that two strands turn by a radius.
+
+    u, sense : as of `flank_forces`.  across, along : force in the carrier's axes for an effective
+    pull of 1, and what comes to it on the side of `sense` where the tight strand alone pulls.
+    Returns force on the body at its pin, force and couple of the strands on it about the pin, and
+    their effective pull, positive where it turns the body counterclockwise.
+    """
+    pull = moment / radius
+    both = u * ((across + sense * along) * pull)
+    return force - both, both, moment, pull
 
 
 def flank_ahead(force, u, guide):
@@ -98,16 +105,17 @@ def flank_ahead(force, u, guide):
     return (sense,)
 
 
-def sliding_forces(force, moment, c, pitch, u, sense, guide, across, along):
+def sliding_forces(force, moment, c, pitch, u, sense, guide, slope):
     """Demand of a body about its point c on a guide, along which a flank pushes it.
 
     pitch : where that acts.  guide : unit vector of the guide in the carrier's axes.
-    u, sense, across, along : as of `flank_forces`.
+    u, sense, slope : as of `flank_forces`, of the way along the guide.
     Returns the guide's force on the body at c with its couple, the flank's force on it, and the
     part of this along the guide.
     """
-    push = dot(u * guide, force)
-    exerted = u * ((across + sense * along) * push)
+    n = u * guide
+    push = dot(n, force)
+    exerted = n * ((1 + 1j * slope * sense) * push)
     return force - exerted, moment - cross(pitch - c, exerted), exerted, push
 
 
@@ -124,15 +132,8 @@ def slant(sense, radial, slope):
     return (radial * sense - slope) / (1 + radial * sense * slope)
 
 
-def rolling_push(sense, lever, slope, radial):
-    """Force in the carrier's axes for a push of 1, of gears whose ratio varies; lever : from the
-    pin to the pitch point, along the line of centres.
-    """
-    return lever * ((1j + slant(sense, radial, slope)) * (1 / length(lever)))
-
-
 def rolling_forces(force, moment, u, sense, lever, slope, radial):
-    """As `flank_forces`, of gears whose ratio varies."""
-    across = rolling_push(sense, lever, slope, radial)
-    at_pin, mesh, tangential = flank_forces(force, moment, u, 0.0, length(lever), across, 0.0)
+    """As `flank_forces`, of gears whose ratio varies; lever : along the line of centres."""
+    turned = -slant(sense, radial, slope)
+    at_pin, mesh, tangential = flank_forces(force, moment, u, 1.0, lever, turned)
     return at_pin, mesh, tangential

@@ -320,41 +320,26 @@ def part_in_loops(part: str) -> Callable[[Callable[..., Any]], Any]:
     return lambda value: value("coupling part", part)
 
 
-def _coupled(table: str) -> Callable[..., None]:
-    """Outputs of couplings; linear for the flanks in contact and the strands that pull."""
+CONTACT: dict[str, Any] = {"loop": looked_up("joint force"), "summed": (True, False),
+                           "compared": FORCE, "yardstick": "acting"}  # fmt: skip
+"""Of the whole force of a coupling."""
+PART_OF_FORCE = {"summed": False, "reason": "{what} is only read; take the whole force instead"}
+"""Of one part of it."""
+
+
+def of_coupling(table: str) -> Callable[..., None]:
+    """A way to declare outputs of the couplings of a list of the file, which are linear for the
+    flanks in contact and the strands that pull.
+    """
     shared: dict[str, Any] = {"linear": True, "internal": True, **_members_of(table)}
     read = lambda name, found, item: _members(found.forces.couplings[table], name, item)  # noqa: E731
     return alike(table + ".{}", read, **shared)
 
 
-TOOTH: dict[str, Any] = {"loop": looked_up("joint force"), "summed": (True, False),
-                         "compared": FORCE, "yardstick": "acting"}  # fmt: skip
-PART_OF_TOOTH = {"summed": False, "reason": "{what} is only read; take the whole force instead"}
-for of_teeth in (_coupled("gears"), _coupled("racks")):
-    of_teeth("", "force", to_say("tooth force {name}"), FORCES, **TOOTH)
-    of_teeth(".tangential", "force", to_say("tangential tooth force {name}"), **PART_OF_TOOTH)
-    of_teeth(".radial", "force", to_say("radial tooth force {name}"), **PART_OF_TOOTH)
-of_belt = _coupled("belts")
-of_belt(".pull", "force", to_say("effective pull {name}"), compared=FORCE,
-        loop=part_in_loops("pull"), yardstick="acting")  # fmt: skip
-of_belt(".left", "force", to_say("tension of the left strand {name}"), compared=FORCE,
-        loop=part_in_loops("left"))  # fmt: skip
-of_belt(".right", "force", to_say("tension of the right strand {name}"), compared=FORCE,
-        loop=part_in_loops("right"))  # fmt: skip
-
-of_cam = _coupled("cams")
-of_cam("", "force", to_say("contact force {name}"), FORCES,
-       loop=looked_up("joint force"), summed=(True, False), compared=FORCE,
-       yardstick="acting")  # fmt: skip
-READ = "{what} is only read; take the whole contact force instead"
-of_cam(".normal", "force", to_say("contact force along the normal {name}"), reason=READ,
-       loop=part_in_loops("normal"))  # fmt: skip
-of_shape = alike("cams.{}.", lambda name, found, cam: getattr(found.motion, name + "s")[cam],
-                 needs="motion", **_members_of("cams"))  # fmt: skip
-of_shape("pressure_angle", "angle", to_say("pressure angle {name}"),
-         loop=True,
-         yardstick="pressure")  # fmt: skip
-of_shape("curvature", "per length", to_say("curvature of the cam {name}"))
+def of_contacts(table: str) -> Callable[..., None]:
+    """A way to declare what the motion tells of the contacts of couplings of a list."""
+    read = lambda name, found, item: getattr(found.motion, name + "s")[item]  # noqa: E731
+    return alike(table + ".{}.", read, needs="motion", **_members_of(table))
 
 
 def of_element(table: str, name: str, dimension: Dimension, label: str) -> None:
@@ -366,16 +351,6 @@ def of_element(table: str, name: str, dimension: Dimension, label: str) -> None:
         needs="motion",
     )(name, dimension, label, loop=lambda value: value("element", table, name))
 
-
-of_element("circular_slots", "angle", "angle", to_say("angle in circular slot {name}"))
-of_element("circular_slots", "speed", "speed", to_say("sliding speed in circular slot {name}"))
-of_element("curved_slots", "distance", "length", to_say("distance along curved slot {name}"))
-of_element("curved_slots", "speed", "speed", to_say("sliding speed in curved slot {name}"))
-of_element("springs", "pull", "force", to_say("pull of spring {name}"))
-of_element("springs", "length", "length", to_say("length of spring {name}"))
-of_element("torsion_springs", "torque", "torque", to_say("torque of torsion spring {name}"))
-of_element("torsion_springs", "angle", "angle", to_say("angle of torsion spring {name}"))
-of_element("torsion_springs", "energy", "energy", to_say("energy of torsion spring {name}"))
 
 # -- rows and support ------------------------------------------------------------------------------
 

@@ -14,14 +14,15 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any, Literal
-
-import numpy as np
+from itertools import dropwhile
+from typing import TYPE_CHECKING, Any, Literal
 
 from equipoise.i18n import Note, say, speaking, spoken, to_say
 from equipoise.quantities import SI, Dimension
 
-Array = np.ndarray[Any, Any]
+if TYPE_CHECKING:
+    from equipoise.signals import Array
+
 Needs = Literal["motion", "masses", "planes", "rows", "support"]
 Measure = Literal["rms", "ripple", "peak", "peak_to_peak", "area"]
 """What is told of an output as one number; see `mechanism.parts.objectives`."""
@@ -46,18 +47,11 @@ GROUPS = {
     "drives": to_say("drives"),
     "joints": to_say("joints"),
     "bearings": to_say("bearings"),
-    "gears": to_say("gears"),
-    "racks": to_say("racks"),
-    "belts": to_say("belts"),
-    "cams": to_say("cams"),
-    "circular_slots": to_say("circular slots"),
-    "curved_slots": to_say("curved slots"),
-    "springs": to_say("springs"),
-    "torsion_springs": to_say("torsion springs"),
     "rows": to_say("all rows together"),
     "gauges": to_say("gauges"),
 }
-"""Groups of outputs and their headings, in the order in which they are offered."""
+"""Groups of outputs and their headings, in the order in which they are offered; kinds of parts add
+theirs before those of all rows."""
 
 
 @lru_cache(maxsize=4096)  # asked for again with every analysis
@@ -204,7 +198,7 @@ class Declared:
     def values(self, found: Any, item: str = "") -> Array:
         """Values (N,) of an analysis; the component, or the size, of what is a vector."""
         whole = self.component(self.vector(found, item))
-        return np.abs(whole) if self.is_vector else whole
+        return abs(whole) if self.is_vector else whole
 
     def component(self, whole: Array) -> Array:
         """That component of a vector which this is; all of it where it is its size."""
@@ -219,6 +213,8 @@ class Declared:
         """
         assert self.read is not None
         whole = self.read(found, item) if self.is_family else self.read(found)
+        import numpy as np  # here, so that a file is read without it
+
         return np.asarray(getattr(whole, "value", whole))
 
 
@@ -291,12 +287,25 @@ def output(
 @contextmanager
 def declaring() -> Iterator[None]:
     """Inside, outputs may be declared that are forgotten at the end."""
-    before = dict(DECLARED)
+    before = [(known, dict(known)) for known in (DECLARED, GROUPS)]
     try:
         yield
     finally:
-        DECLARED.clear()
-        DECLARED.update(before)
+        for known, values in before:
+            known.clear()
+            known.update(values)  # type: ignore[arg-type]
+
+
+@contextmanager
+def of_parts() -> Iterator[None]:
+    """Inside, outputs and groups are declared that stand before those of all rows."""
+    last: list[tuple[dict[str, Any], dict[str, Any]]] = []
+    for known in (DECLARED, GROUPS):
+        later = [*dropwhile(lambda name: name.partition(".")[0] != "rows", known)]
+        last.append((known, {name: known.pop(name) for name in later}))
+    yield
+    for known, values in last:
+        known.update(values)
 
 
 def matches(name: str) -> Iterator[tuple[Declared, str]]:

@@ -6,12 +6,12 @@ Where there is none, for it lies at infinity, or has no bound, values are NaN.
 from __future__ import annotations
 
 from itertools import combinations
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from equipoise.mechanism.checks import FRAME, bodies_at
-from equipoise.signals import Array
+
+if TYPE_CHECKING:
+    from equipoise.signals import Array
 
 PARALLEL = 1e-12
 """Difference of two rates of turning, over the larger of them and the crank's, below which bodies
@@ -42,6 +42,8 @@ def instant_center(motion: Any, pair: str) -> Array:
 
     That of two bodies that share a pin is there, even while they turn alike.
     """
+    import numpy as np  # here, so that a file is read without it
+
     one, other = pairs(motion.machine)[pair]
     bodies = motion.machine.bodies
     if shared := [point for point in bodies[one] if point in bodies[other]]:
@@ -57,6 +59,8 @@ def instant_center(motion: Any, pair: str) -> Array:
 
 def _carried(motion: Any, body: str) -> tuple[Array, Array]:
     """Velocity by crank angle of a body's point at the frame's origin, and how the body turns."""
+    import numpy as np
+
     if body == FRAME:
         return np.zeros(len(motion.crank_angle), complex), np.zeros(len(motion.crank_angle))
     anchor = motion.points[motion.linkage.anchors[body]]
@@ -69,5 +73,7 @@ def advantage(rate: Array) -> Array:
 
     rate : derivative of its place by crank angle, m or 1.
     """
+    import numpy as np
+
     moves = np.abs(rate) > PARALLEL * np.max(np.abs(rate), initial=0.0)
     return np.where(moves, 1 / np.where(moves, rate, 1.0), np.nan)

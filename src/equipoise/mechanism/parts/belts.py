@@ -20,11 +20,12 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.outputs.declared import FORCE, of_coupling, part_in_loops
 from equipoise.mechanism.parts.couplings import (
-    Line,
     Pushed,
     Relation,
     Seat,
+    StrandLine,
     Turning,
     as_fraction,
 )
@@ -49,6 +50,7 @@ class Belt(Turning):
 
     table: ClassVar[str] = "belts"
     noun = to_say("belt")
+    group = to_say("belts")
     heading = Note("Belt")
     pushes = False
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"start", "tension"}}
@@ -127,7 +129,7 @@ class Belt(Turning):
         first, second = self.pitch_radii
         return Strands(apart, first, -second if self.crossed else second)
 
-    def line(self, seat: Seat) -> Line:
+    def line(self, seat: Seat) -> StrandLine:
         """Force and couple of both strands on the driven pulley about its pin."""
         import numpy as np
 
@@ -155,7 +157,7 @@ class Belt(Turning):
                 raise ModelError(seat.where, crossed)
         across = 0.5 * (strands.way(RIGHT) - strands.way(LEFT)) * np.sign(strands.other)
         along = -0.5 * strands.toward if self.tension is None else 0.0
-        return Line(0j, across, along, abs(strands.other), couples=True)
+        return StrandLine(abs(strands.other), across, along)
 
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         """What turns the driven link at its pitch radius, positive counterclockwise, and the
@@ -166,6 +168,16 @@ class Belt(Turning):
         mean = at.sense * half if self.tension is None else at.preload
         left = -half if self.crossed else half
         return {"pull": at.push, "left": mean + left, "right": mean - left}
+
+    @classmethod
+    def declare_outputs(cls, table: str) -> None:
+        declare = of_coupling(table)
+        declare(".pull", "force", to_say("effective pull {name}"), compared=FORCE,
+                loop=part_in_loops("pull"), yardstick="acting")  # fmt: skip
+        declare(".left", "force", to_say("tension of the left strand {name}"), compared=FORCE,
+                loop=part_in_loops("left"))  # fmt: skip
+        declare(".right", "force", to_say("tension of the right strand {name}"), compared=FORCE,
+                loop=part_in_loops("right"))  # fmt: skip
 
     def preload_rate(self, distance: Any) -> Any:
         """Sum of both tensions along the line of the pins, over their distance, N/m."""

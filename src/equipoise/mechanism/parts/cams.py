@@ -10,6 +10,13 @@ from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Conditions, Table, Text, declared, key, not_both
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link, unknown_point
+from equipoise.mechanism.outputs.declared import (
+    CONTACT,
+    FORCES,
+    of_contacts,
+    of_coupling,
+    part_in_loops,
+)
 from equipoise.mechanism.parts.couplings import Coupling, Pushed, Relation, coupled
 from equipoise.mechanism.parts.law_checks import CAM, wrong_law
 from equipoise.mechanism.parts.laws import AngleLaw, Law, LengthLaw
@@ -32,6 +39,7 @@ class Cam(Coupling):
     called = to_say("{what} of cam {number}")
     table: ClassVar[str] = "cams"
     noun = to_say("cam")
+    group = to_say("cams")
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"base_radius", "roller_radius", "normal"}}
     special = "cam"
     contact = "surface"
@@ -109,6 +117,10 @@ class Cam(Coupling):
         return ((self.driven, self.point),)
 
     @property
+    def idle_keys(self) -> tuple[str, ...]:
+        return () if self.rides == "roller" else ("roller_radius",)
+
+    @property
     def law(self) -> Law:
         """Displacement over the angle that the cam has turned against the carrier."""
         return self.lift or self.swing or ROUND
@@ -135,6 +147,17 @@ class Cam(Coupling):
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         """Along the normal away from the cam; below 0 where the follower is held back."""
         return {"normal": at.push}
+
+    @classmethod
+    def declare_outputs(cls, table: str) -> None:
+        declare, of_contact = of_coupling(table), of_contacts(table)
+        declare("", "force", to_say("contact force {name}"), FORCES, **CONTACT)
+        declare(".normal", "force", to_say("contact force along the normal {name}"),
+                loop=part_in_loops("normal"),
+                reason="{what} is only read; take the whole contact force instead")  # fmt: skip
+        of_contact("pressure_angle", "angle", to_say("pressure angle {name}"), loop=True,
+                   yardstick="pressure")  # fmt: skip
+        of_contact("curvature", "per length", to_say("curvature of the cam {name}"))
 
     def sentence(self) -> Note:
         """Its bodies."""

@@ -16,7 +16,7 @@ from equipoise.keys import Listing, Quantity, Text, declared, key
 from equipoise.mechanism.checks import Bodies, unknown_point
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.joint_kinds import JointKind, Rider
-from equipoise.quantities import told
+from equipoise.quantities import Dimension, told
 
 BEYOND = to_say(
     "the pin would leave its slot at crank angle {crank_angle:.4g} deg; make the arc longer, or "
@@ -33,6 +33,11 @@ class CircularSlot(JointKind):
 
     sign = "equipoise.symbols.slots:circular_sign"
     title = to_say("Circular slots, each with its crank angle; angles in the axes of their bodies")
+    group = to_say("circular slots")
+    outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
+        "angle": ("angle", to_say("angle in circular slot {name}")),
+        "speed": ("speed", to_say("sliding speed in circular slot {name}")),
+    }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "angle": (to_say("smallest angle"), to_say("largest")),
         "speed": (to_say("smallest sliding speed"), to_say("largest")),

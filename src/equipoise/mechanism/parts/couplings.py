@@ -21,6 +21,8 @@ from equipoise.keys import Frozen, Key, Keys, Listing, Text, declared, inside, k
 from equipoise.keys.declaring import listed_types, once
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body
 from equipoise.mechanism.formulas.rolling_kernels import followed
+from equipoise.mechanism.outputs.declared import CONTACT, FORCES, PART_OF_FORCE, of_coupling
+from equipoise.mechanism.parts.element_kinds import PartKind
 from equipoise.quantities import number
 
 Relation = tuple[Callable[..., tuple[Any, ...]], tuple[Any, ...]]
@@ -73,19 +75,29 @@ class Seat:
 
 @dataclass(frozen=True)
 class Line:
-    """Along which line a coupling pushes its driven body, in the carrier's axes.
+    """Along which line a flank pushes the driven body, in the carrier's axes.
 
     lever : from the pin (the driven body's; the driver's where that slides) to where it acts, m.
-    across, along : force for a push of 1, and what comes to it on the side on which it bears.
-    radius : by which the push turns the driven body, m; None of one that slides.
-    couples : whether it is a force at the pin with a couple, as of two strands.
+    slope : of its force to the left of the way in which it moves the driven body where that needs
+    a positive push, to the right for a negative one: the tangent of the pressure angle, with a
+    sign.
     """
 
     lever: Any
+    slope: Any
+
+
+@dataclass(frozen=True)
+class StrandLine:
+    """What two strands do to the driven body about its pin, in the carrier's axes.
+
+    radius : by which they turn it, m.  across, along : their force for an effective pull of 1, and
+    what comes to it on the side of the pull where the tight strand alone pulls.
+    """
+
+    radius: Any
     across: Any
     along: Any
-    radius: Any = None
-    couples: bool = False
 
 
 @dataclass(frozen=True)
@@ -101,24 +113,14 @@ class RollingLine:
     centres: Any
     radial: Any
 
-    couples: ClassVar[bool] = False
 
-
-def tooth_line(lever: Any, radial: Any) -> Line:
-    """Of teeth at the end of a lever from the driven body's pin; radial : as of `RollingLine`."""
-    unit = lever / abs(lever)
-    return Line(lever, 1j * unit, radial * unit, abs(lever))
-
-
-class Coupling(Frozen):
+class Coupling(PartKind):
     """Two bodies of which one drives the other, both on a carrier.
 
     table : key of its list in the model file, which is the `kind` of its `Reaction` too.
-    most : that a machine may have.  noun : what one is called.  counted : how one, and several, are
+    noun : what one is called.  counted : how one, and several, are
         counted.  pushes : whether it is one force at one place, told as a whole and in parts.
     preload : what its sides pull with where no torque is passed on, N.
-    special : what it is called by formats of other programs, some of which lack it; empty of what
-        turns both in a fixed ratio.
     contact : how it pushes: along the line that `line` tells, or square to a surface.
     grows : whether its pitch circles are as large as the distance of its pins sets them.
     columns : numbers that columns of designs may have, and of what is inside of it by its key.
@@ -131,10 +133,8 @@ class Coupling(Frozen):
     table: ClassVar[str]
     noun: ClassVar[str]
     counted: ClassVar[tuple[str, str]]
-    most: ClassVar[int] = 200
     pushes: ClassVar[bool] = True
     preload: ClassVar[Any] = 0.0
-    special: ClassVar[Any] = ""
     contact: ClassVar[Literal["line", "surface"]] = "line"
     grows: ClassVar[bool] = False
     columns: ClassVar[Mapping[str, Set[str]]] = {}
@@ -162,9 +162,9 @@ class Coupling(Frozen):
         return self.driver, self.driven, self.carrier
 
     @property
-    def points(self) -> tuple[tuple[str, str], ...]:
-        """Bodies and points that it names."""
-        return ()
+    def label(self) -> Note:
+        """Its name, by which it is told from others."""
+        return Note("{name}", name=self.name)
 
     @property
     @abstractmethod
@@ -212,7 +212,7 @@ class Coupling(Frozen):
         """
         return ""
 
-    def line(self, seat: Seat) -> Line | RollingLine:
+    def line(self, seat: Seat) -> Line | StrandLine | RollingLine:
         """Along which line it pushes; of those whose `contact` asks for it.
 
         Raises
@@ -244,10 +244,6 @@ class Coupling(Frozen):
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         """Parts of its force by the names of their outputs, N."""
 
-    @abstractmethod
-    def sentence(self) -> Note:
-        """What it is, for a report."""
-
     def circles(self, distance: Callable[[], Any]) -> Iterator[tuple[str, Any]]:
         """Bodies with the radii of their pitch circles about their pins on the carrier, m; the mean
         where the ratio varies.
@@ -269,9 +265,13 @@ class Coupling(Frozen):
         """
         return iter(())
 
-    @abstractmethod
-    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
-        """Everything that is wrong with it in a machine of these bodies."""
+
+def declare_teeth(table: str) -> None:
+    """Declare the force of teeth, whole and in parts, of a list of couplings."""
+    declare = of_coupling(table)
+    declare("", "force", to_say("tooth force {name}"), FORCES, **CONTACT)
+    declare(".tangential", "force", to_say("tangential tooth force {name}"), **PART_OF_FORCE)
+    declare(".radial", "force", to_say("radial tooth force {name}"), **PART_OF_FORCE)
 
 
 @once

@@ -28,7 +28,7 @@ from equipoise.keys import (
 from equipoise.mechanism.checks import Bodies, unknown_point
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.joint_kinds import JointKind, Rider, Track
-from equipoise.quantities import told
+from equipoise.quantities import Dimension, told
 
 if TYPE_CHECKING:
     from equipoise.mechanism.formulas.plane_curves import PlaneCurve
@@ -79,6 +79,11 @@ class CurvedSlot(JointKind):
 
     sign = "equipoise.symbols.slots:curved_sign"
     title = to_say("Curved slots, each with its crank angle; distances along the curve")
+    group = to_say("curved slots")
+    outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
+        "distance": ("length", to_say("distance along curved slot {name}")),
+        "speed": ("speed", to_say("sliding speed in curved slot {name}")),
+    }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "distance": (to_say("smallest distance"), to_say("largest")),
         "speed": (to_say("smallest sliding speed"), to_say("largest")),

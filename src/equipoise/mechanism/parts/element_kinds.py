@@ -1,8 +1,8 @@
-"""Kinds of elements of a machine that declare themselves: force elements, and kinds of joints.
+"""Kinds of parts of a machine that declare themselves: couplings, force elements, kinds of joints.
 
 A kind has its keys, its outputs, and what can be wrong with it.  Whatever reads, shows or refuses a
-machine asks for `Element`, and for no kind of it.  What a kind computes is arithmetic, so that it
-runs on arrays and on terms alike.
+machine asks for `PartKind` or `Element`, and for no kind of it.  What a kind computes is
+arithmetic, so that it runs on arrays and on terms alike.
 """
 
 from __future__ import annotations
@@ -15,6 +15,9 @@ from equipoise.i18n import Note
 from equipoise.keys import Frozen
 from equipoise.keys.declaring import listed_types, once
 from equipoise.mechanism.checks import Bodies
+from equipoise.mechanism.outputs.declared import GROUPS, of_element
+from equipoise.mechanism.outputs.declaring import of_parts
+from equipoise.quantities import Dimension
 
 if TYPE_CHECKING:
     from equipoise.errors import ModelError
@@ -51,31 +54,27 @@ class Placed(Protocol):
         """
 
 
-class Element(Frozen):
+class PartKind(Frozen):
     """What a machine has in a list of its file, and what declares itself.
 
     most : that a machine may have.
-    title : of the table of their outputs.  headings : of those outputs that it shows, of the
-        smallest and of the largest value.
-    sign : ``module:function`` of the room of symbols that draws it, from the element, the joints
-        and the bodies to marks; empty where it has no sign of its own.
-    still : fields whose numbers no design changes, so that compiled loops have them as they are.
+    group : what several are called, above their outputs and their numbers.
+    special : what it is called by formats of other programs, some of which lack it; empty of what
+        all have.
     """
 
     most: ClassVar[int] = 200
-    sign: ClassVar[str] = ""
-    still: ClassVar[tuple[str, ...]] = ()
-    title: ClassVar[str]
-    headings: ClassVar[Mapping[str, tuple[str, str]]]
+    group: ClassVar[str]
+    special: ClassVar[Any] = ""
 
     @property
     @abstractmethod
-    def bodies(self) -> tuple[str, str]:
-        """The bodies between which it is, the link first."""
+    def bodies(self) -> tuple[str, ...]:
+        """The bodies between which it is."""
 
     @property
     def points(self) -> tuple[tuple[str, str], ...]:
-        """Bodies and points at which it holds on to them; empty where it has none."""
+        """Bodies and points that it names."""
         return ()
 
     @property
@@ -88,22 +87,54 @@ class Element(Frozen):
     def label(self) -> Note:
         """What tells it from others of its kind."""
 
+    @abstractmethod
+    def sentence(self) -> Note:
+        """What it is, for a report."""
+
+    @abstractmethod
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with it in a machine of these bodies."""
+
+    @classmethod
+    def declare_outputs(cls, table: str) -> None:
+        """Declare its outputs, of which the machine has those of a list of the file."""
+
+
+class Element(PartKind):
+    """A part between two bodies, which has outputs by its place in its list.
+
+    outputs : dimension and label of each, by name.
+    title : of the table of their outputs.  headings : of those outputs that it shows, of the
+        smallest and of the largest value.
+    sign : ``module:function`` of the room of symbols that draws it, from the element, the joints
+        and the bodies to marks; empty where it has no sign of its own.
+    still : fields whose numbers no design changes, so that compiled loops have them as they are.
+    """
+
+    sign: ClassVar[str] = ""
+    still: ClassVar[tuple[str, ...]] = ()
+    outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {}
+    title: ClassVar[str]
+    headings: ClassVar[Mapping[str, tuple[str, str]]]
+
+    @property
+    @abstractmethod
+    def bodies(self) -> tuple[str, str]:
+        """The bodies between which it is, the link first."""
+
     @property
     @abstractmethod
     def route(self) -> tuple[str, str]:
         """From where to where it acts."""
 
     @abstractmethod
-    def sentence(self) -> Note:
-        """What it is, for a report."""
-
-    @abstractmethod
     def values(self, at: Placed) -> Mapping[str, Any]:
         """Its outputs by name."""
 
-    @abstractmethod
-    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
-        """Everything that is wrong with it in a machine of these bodies."""
+    @classmethod
+    def declare_outputs(cls, table: str) -> None:
+        for name, (dimension, label) in cls.outputs.items():
+            of_element(table, name, dimension, label)
 
     def demands(self) -> Iterator[Any]:
         """What has to be true of its numbers, or of columns of them."""
@@ -112,6 +143,24 @@ class Element(Frozen):
     @abstractmethod
     def summary(self) -> str:
         """What it is with all its numbers, in a line of `check`."""
+
+
+@once
+def part_kinds(of: type[Frozen]) -> Mapping[str, type[PartKind]]:
+    """Kinds of parts that a class of machines has, by field, couplings before elements, each in the
+    order of the file.
+    """
+    kinds = listed_types(of).items()
+    found = {field: kind for field, kind in kinds if issubclass(kind, PartKind)}
+    return dict(sorted(found.items(), key=lambda item: issubclass(item[1], Element)))
+
+
+def declare_outputs(of: type[Frozen]) -> None:
+    """Declare the outputs of all parts of a class of machines, and what they are called."""
+    with of_parts():
+        for table, kind in part_kinds(of).items():
+            GROUPS[table] = kind.group
+            kind.declare_outputs(table)
 
 
 @once

@@ -35,9 +35,9 @@ from equipoise.mechanism.parts.couplings import (
     Turning,
     as_fraction,
     coupled,
+    declare_teeth,
     is_pressure_angle,
     pressure_angle,
-    tooth_line,
 )
 from equipoise.mechanism.parts.gear_shapes import GearShape, wrong_shape
 
@@ -61,6 +61,7 @@ class Gear(Turning):
 
     table: ClassVar[str] = "gears"
     noun = to_say("pair of gears")
+    group = to_say("gears")
     columns: ClassVar[Mapping[str, Set[str]]] = {
         "": {"start", "pressure_angle"},
         "shape": {"eccentricity", "phase", "cosines", "sines"},
@@ -167,7 +168,7 @@ class Gear(Turning):
         radial = np.tan(self.pressure_angle) * (1 if ring_driven else -1)
         if self.law is not None:
             return RollingLine(self.law, seat.centres, radial)
-        return tooth_line(seat.centres / (1 - ratio), radial)
+        return Line(seat.centres / (1 - ratio), -radial)
 
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         """Along the pitch curves, positive where it turns the driven gear counterclockwise, and
@@ -175,6 +176,10 @@ class Gear(Turning):
         """
         radial = -kernels.dot(at.arm, at.force) / abs(at.arm)
         return {"tangential": at.push, "radial": radial}
+
+    @classmethod
+    def declare_outputs(cls, table: str) -> None:
+        declare_teeth(table)
 
     def demands(self, distance: Callable[[], Any]) -> Iterator[Any]:
         """A pressure angle that there is, and pitch curves that roll on each other."""

@@ -61,6 +61,8 @@ class Rider:
 class JointKind(Element):
     """A pin of a link that follows a path on another body."""
 
+    special = "pin in a slot"
+
     @property
     @abstractmethod
     def name(self) -> str:

@@ -47,7 +47,13 @@ from equipoise.mechanism.parts.drives import (
     Driven,
     FurtherDrive,
 )
-from equipoise.mechanism.parts.element_kinds import Element, element_kinds
+from equipoise.mechanism.parts.element_kinds import (
+    Element,
+    PartKind,
+    declare_outputs,
+    element_kinds,
+    part_kinds,
+)
 from equipoise.mechanism.parts.field import Planting
 from equipoise.mechanism.parts.force_elements import (
     Load,
@@ -220,6 +226,11 @@ class Machine(Driven, Displayed, Frozen):
         return tuple(one for table in coupling_kinds(type(self)) for one in getattr(self, table))
 
     @property
+    def parts(self) -> Iterator[tuple[str, int, PartKind]]:
+        """Couplings and elements, with their list and their place from 0."""
+        return self._listed(part_kinds(type(self)))
+
+    @property
     def elements(self) -> Iterator[tuple[str, int, Element]]:
         """What declares itself, with its list and its place from 0."""
         return self._listed(element_kinds(type(self)))
@@ -367,3 +378,6 @@ class Machine(Driven, Displayed, Frozen):
     def assembled_points(self, body: str) -> Mapping[str, Vector]:
         """Points of a body as it is put together, as of `assembled_bodies`."""
         return self.assembled_bodies[body] if self.riders else self.points_of(body)
+
+
+declare_outputs(Machine)

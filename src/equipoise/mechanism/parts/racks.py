@@ -18,9 +18,9 @@ from equipoise.mechanism.parts.couplings import (
     Pushed,
     Relation,
     Seat,
+    declare_teeth,
     is_pressure_angle,
     pressure_angle,
-    tooth_line,
 )
 from equipoise.quantities import told
 
@@ -36,6 +36,7 @@ class Rack(Coupling):
 
     table: ClassVar[str] = "racks"
     noun = to_say("rack")
+    group = to_say("racks")
     columns: ClassVar[Mapping[str, Set[str]]] = {"": {"angle", "travel", "pressure_angle"}}
     special = "rack"
     counted = to_say("{count} rack"), to_say("{count} racks")
@@ -150,15 +151,17 @@ class Rack(Coupling):
 
         slope = np.tan(self.pressure_angle)
         lever = -1j * self.left * self.radius * seat.way
-        if self.drives == "rack":
-            return tooth_line(lever, -slope)
-        return Line(lever, seat.way, -1j * self.left * slope * seat.way)
+        return Line(lever, slope if self.drives == "rack" else -self.left * slope)
 
     def parts(self, at: Pushed) -> Mapping[str, Any]:
         """Along the rack, positive where it moves the driven body ahead, and what pushes both
         apart.
         """
         return {"tangential": at.push, "radial": tan(self.pressure_angle) * at.sense * at.push}
+
+    @classmethod
+    def declare_outputs(cls, table: str) -> None:
+        declare_teeth(table)
 
     def demands(self, distance: Callable[[], Any]) -> Iterator[Any]:
         """A pressure angle that there is."""

@@ -12,7 +12,7 @@ from equipoise.mechanism.checks import FRAME, Bodies, unknown, unknown_body, unk
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement
-from equipoise.quantities import told
+from equipoise.quantities import Dimension, told
 
 
 @declared
@@ -22,6 +22,11 @@ class Spring(ForceElement):
     called = to_say("{what} of spring {number}")
 
     title = to_say("Springs, each with its crank angle; below 0 they push their ends apart")
+    group = to_say("springs")
+    outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
+        "pull": ("force", to_say("pull of spring {name}")),
+        "length": ("length", to_say("length of spring {name}")),
+    }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "length": (to_say("shortest"), to_say("longest")),
         "pull": (to_say("smallest pull"), to_say("largest")),

@@ -25,7 +25,7 @@ from equipoise.keys import (
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_body, unknown_link
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement
-from equipoise.quantities import told
+from equipoise.quantities import Dimension, told
 
 MOST_ROWS = 200
 """Of a table, each of which is a term of the torque in compiled loops."""
@@ -61,6 +61,12 @@ class TorsionSpring(ForceElement):
 
     sign = "equipoise.symbols.torsion_springs:torsion_sign"
     title = to_say("Torsion springs, each with its crank angle; torques on the link")
+    group = to_say("torsion springs")
+    outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
+        "torque": ("torque", to_say("torque of torsion spring {name}")),
+        "angle": ("angle", to_say("angle of torsion spring {name}")),
+        "energy": ("energy", to_say("energy of torsion spring {name}")),
+    }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {
         "angle": (to_say("smallest angle"), to_say("largest")),
         "torque": (to_say("smallest torque"), to_say("largest")),

@@ -10,7 +10,7 @@ from equipoise.keys import wrong_values
 from equipoise.mechanism.checks import Bodies, numbered, too_many, unknown_link, wrong_text
 from equipoise.mechanism.parts.couplings import coupling_kinds
 from equipoise.mechanism.parts.drive_checks import wrong_drive, wrong_further, wrong_together
-from equipoise.mechanism.parts.element_kinds import element_kinds
+from equipoise.mechanism.parts.element_kinds import part_kinds
 from equipoise.mechanism.parts.field import wrong_planting
 from equipoise.mechanism.parts.force_elements import wrong_load
 from equipoise.mechanism.parts.joint_kinds import JointKind, wrong_names
@@ -46,16 +46,15 @@ def problems_of(machine: Any) -> Iterator[ModelError]:
     for name, wrong in LISTS.items():
         for where, item in numbered(name, getattr(machine, name)):
             yield from wrong(where, item, bodies)
-    kinds = coupling_kinds(type(machine))
     placed: list[tuple[str, Any]] = [
         one
-        for table in (*kinds, *element_kinds(type(machine)))
+        for table in part_kinds(type(machine))
         for one in numbered(table, getattr(machine, table))
     ]
     for where, item in placed:
         yield from item.problems(where, bodies)
     for where, item in numbered("joints", machine.joints):
-        yield from wrong_joint(where, item, ("joints", *kinds))
+        yield from wrong_joint(where, item, ("joints", *coupling_kinds(type(machine))))
     sliders = [one.name for one in machine.sliders]
     joints = [(where, one) for where, one in placed if isinstance(one, JointKind)]
     yield from wrong_names(joints, bodies, sliders)
@@ -76,9 +75,8 @@ def _too_much(machine: Any) -> Iterator[ModelError]:
     yield from too_many("points", points, MOST["points"])
     for what in ("sliders", "loads", "joints", "drives"):
         yield from too_many(what, getattr(machine, what), MOST[what])
-    for kinds in (coupling_kinds(type(machine)), element_kinds(type(machine))):
-        for table, kind in kinds.items():
-            yield from too_many(table, getattr(machine, table), kind.most)
+    for table, kind in part_kinds(type(machine)).items():
+        yield from too_many(table, getattr(machine, table), kind.most)
     yield from wrong_text("title", machine.title)
     for body, names in machine.bodies.items():
         yield from wrong_text("links", body)

@@ -1,0 +1,241 @@
+"""A kind of coupling that this test declares, and then finds wherever couplings are.
+
+Rollers that are pressed together drive as gears do whose teeth have no pressure angle, and with a
+`lean` as gears whose teeth have that angle.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Set
+from dataclasses import fields, replace
+from fractions import Fraction
+from math import radians, tan
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.figures import Figure
+from equipoise.codegen.javascript import javascript
+from equipoise.errors import MobilityError, ModelError, UsageError
+from equipoise.i18n import Note
+from equipoise.keys import Listing, Quantity, Table, Tables, declared, key
+from equipoise.mechanism import Gear, Machine
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.checks import Bodies
+from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.outputs.declared import CONTACT, FORCES, GROUPS, declaring, of_coupling
+from equipoise.mechanism.parts.couplings import Line, Pushed, Relation, Seat, Turning
+from equipoise.mechanism.parts.element_kinds import declare_outputs
+from equipoise.results.machine_blocks import model_blocks
+from equipoise.schema.places import Context
+from equipoise.schema.reading import read_table
+from equipoise.schema.writing import Writer, toml_text
+from equipoise.symbols.pieces import pieces
+from equipoise.symbols.scene import Scene
+from equipoise.web.design import Design
+from equipoise.web.fields import fields_of
+from equipoise.web.tables import tables_of
+from secondroute.test_javascript import run
+from unit.mechanism.test_newton import only_loops, with_position
+from unit.schema.key_tables import key_table
+
+
+@declared
+class Rollers(Turning):
+    """Two rollers that drive each other by friction."""
+
+    called = "{what} of rollers {number}"
+    table: ClassVar[str] = "rollers"
+    noun = "pair of rollers"
+    group = "rollers"
+    heading = Note("Rollers")
+    counted = "{count} pair of rollers", "{count} pairs of rollers"
+    special = "pair of rollers"
+    columns: ClassVar[Mapping[str, Set[str]]] = {"": {"start", "lean"}}
+
+    radii: tuple[float, float] = key(
+        Listing(Quantity("length"), (2,)), "of both", example=["20 mm", "40 mm"], above=0
+    )
+    lean: float = key("angle", "of the push from the line square to that of the centres", default=0)
+
+    @property
+    def switches(self) -> bool:
+        return bool(np.any(self.lean))
+
+    @property
+    def speed_ratio(self) -> float:
+        return -self.radii[0] / self.radii[1]
+
+    @property
+    def exact_ratio(self) -> Fraction | None:
+        return Fraction(self.speed_ratio).limit_denominator(1000)
+
+    @property
+    def relation(self) -> Relation:
+        return kernels.gear, (self.speed_ratio,)
+
+    def line(self, seat: Seat) -> Line:
+        return Line(seat.centres / (1 - self.speed_ratio), np.tan(self.lean))
+
+    def parts(self, at: Pushed) -> Mapping[str, Any]:
+        return {"friction": at.push}
+
+    def circles(self, distance: Callable[[], Any]) -> Iterator[tuple[str, Any]]:
+        return zip((self.driver, self.driven), self.radii, strict=True)
+
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        return self.wrong_ends(where, bodies)
+
+    @classmethod
+    def declare_outputs(cls, table: str) -> None:
+        declare = of_coupling(table)
+        declare("", "force", "contact force of rollers {name}", FORCES, **CONTACT)
+        declare(".friction", "force", "friction of rollers {name}",
+                loop=lambda value: value("coupling part", "friction"))  # fmt: skip
+
+
+@declared
+class Rolled(Machine):
+    """A machine that may have rollers."""
+
+    rollers: tuple[Rollers, ...] = key(Tables(Table(Rollers)), "rollers", default=())
+
+
+BASE = eq.load("geared-counterweight")
+(GEAR,) = BASE.gears
+RADII = (0.05, 0.05 / abs(GEAR.speed_ratio))
+ROLLERS = Rollers(GEAR.driver, GEAR.driven, RADII, carrier=GEAR.carrier, start=GEAR.start)
+NAME = ROLLERS.name
+
+
+def rolled(*rollers: Rollers) -> Rolled:
+    given = {one.name: getattr(BASE, one.name) for one in fields(Machine)}
+    return Rolled(**{**given, "gears": (), "balance": None}, rollers=rollers)
+
+
+def with_gear(angle: float) -> Machine:
+    """The same with teeth."""
+    gear = Gear(GEAR.driver, GEAR.driven, ratio=ROLLERS.speed_ratio, carrier=GEAR.carrier,
+                start=GEAR.start, pressure_angle=angle)  # fmt: skip
+    return replace(BASE, gears=(gear,), balance=None)
+
+
+MACHINE = rolled(ROLLERS)
+
+
+@pytest.fixture(autouse=True)
+def outputs() -> Iterator[None]:
+    with declaring():
+        declare_outputs(Rolled)
+        yield
+    assert "rollers" not in GROUPS
+
+
+def test_it_is_read_written_and_refused() -> None:
+    text = toml_text(Rolled, Writer({}).content(Rolled, MACHINE))
+    assert "[[rollers]]\n" in text
+    assert f'between = ["{GEAR.driver}", "{GEAR.driven}"]\n' in text
+    assert read_table(Rolled, tomllib.loads(text), Context()) == MACHINE
+    wrong = text.replace(f'between = ["{GEAR.driver}"', 'between = ["rockr"')
+    with pytest.raises(ModelError, match=r"^rollers\[1\]\.between\[1\]: .* did you mean 'rocker'"):
+        read_table(Rolled, tomllib.loads(wrong), Context())
+    with pytest.raises(ModelError, match=r"^rollers: got 201"):
+        rolled(*[ROLLERS] * 201)
+    with pytest.raises(ModelError, match=r"^rollers\[1\]: 'counterweight' is moved already|^roll"):
+        eq.move(rolled(replace(ROLLERS, driver=GEAR.driven, driven="crank")))
+    with pytest.raises(MobilityError, match=r"2 free motions \(.*\)"):
+        eq.move(rolled())
+
+
+@pytest.mark.parametrize("angle", [0.0, radians(20)])
+def test_analysis_has_its_force_and_its_outputs(angle: float) -> None:
+    """As those of teeth with that pressure angle, also where all is solved as loops."""
+    machine, geared = rolled(replace(ROLLERS, lean=angle)), eq.analyze(with_gear(angle), 90)
+    one_by_one, rough = eq.analyze(machine, 90), with_position(machine)
+    with only_loops():
+        by_loops = eq.analyze(rough, 90)
+    for found in (one_by_one, by_loops):
+        force, teeth = found.forces.couplings["rollers"][NAME], geared.forces.gears[NAME]
+        largest = np.max(np.abs(teeth.value))
+        np.testing.assert_allclose(force.value, teeth.value, atol=1e-9 * largest)
+        np.testing.assert_allclose(force.friction, teeth.tangential, atol=1e-9 * largest)
+        for name, joint in geared.forces.joints.items():
+            np.testing.assert_allclose(
+                found.forces.joints[name].value, joint.value, atol=1e-9 * np.max(joint.size)
+            )
+        values = found.outputs[f"rollers.{NAME}.friction"].values
+        np.testing.assert_allclose(values, force.friction)
+    told = " ".join(str(block) for block in model_blocks(machine))
+    assert f"Rollers: {GEAR.driver} drives {GEAR.driven} on frame" in told
+
+
+def test_its_cycle_and_its_share_of_mobility_follow() -> None:
+    linkage = assemble(MACHINE)
+    assert linkage.joints.mobility == 1
+    assert linkage.cycle.turns == assemble(with_gear(0.0)).cycle.turns
+
+
+def test_compiled_loops_have_designs_by_its_numbers() -> None:
+    names = ("drive_torque", f"rollers.{NAME}", f"rollers.{NAME}.friction")
+    wanted = [Figure(name, "peak") for name in names]
+    batch = Batch(MACHINE, ["rollers[1].lean", "rollers[1].start"], wanted, angles=90)
+    sizes = [(0.0, 0.3), (0.35, 1.0)]
+    figures, reason = batch(np.array(sizes))
+    assert not np.any(reason)
+    for row, (lean, start) in zip(figures, sizes, strict=True):
+        summary = eq.analyze(rolled(replace(ROLLERS, lean=lean, start=start)), 90).summary
+        np.testing.assert_allclose(row, [summary[name].peak for name in names], rtol=1e-9)
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="needs Node to run JavaScript")
+def test_scripts_have_it(tmp_path: Path) -> None:
+    linkage, names = assemble(MACHINE), ["drive_torque", f"rollers.{NAME}.friction"]
+    script, found = javascript(linkage, names), eq.analyze(MACHINE, 24)
+    got = run(script, script.numbers(linkage), found.motion.crank_angle, tmp_path)
+    for name, values in zip(names, got, strict=True):
+        wanted = found.outputs[name].values
+        np.testing.assert_allclose(values, wanted, atol=1e-12 * np.max(np.abs(wanted)))
+
+
+def test_drawings_have_its_circles() -> None:
+    scene = Scene.of(eq.analyze(MACHINE, 12).motion)
+    sizes = {wheel.link: wheel.radius for wheel in scene.wheels}
+    assert sizes == dict(zip((GEAR.driver, GEAR.driven), RADII, strict=True))
+    parts = [piece.part for piece in pieces(scene)]
+    assert ("rollers", NAME) in parts
+
+
+def test_the_page_has_its_form_its_numbers_and_its_group() -> None:
+    tables = tables_of(MACHINE)
+    keys = [one["key"] for one in tables["forms"]["Rollers"]["controls"]]
+    assert {"radii", "lean", "carrier", "start"} <= {*keys}
+    (group,) = (one for one in tables["groups"] if one["place"] == ["rollers"])
+    assert len(group["entries"]) == 1
+    numbers = fields_of(Design("mine", MACHINE))
+    assert {"rollers.1.lean", "rollers.1.start"} <= numbers.keys()
+    assert GROUPS["rollers"] == "rollers"
+    assert [*GROUPS].index("rollers") < [*GROUPS].index("rows")
+
+
+def test_the_documentation_has_its_keys() -> None:
+    rows = key_table(Rollers)
+    assert "`radii`" in rows
+    assert "of the push from the line square" in rows
+
+
+def test_formats_without_it_say_so(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=r"^rollers\[1\]: a file of .* no pair of rollers; give"):
+        eq.export(MACHINE, tmp_path / "mine.xml")
+
+
+def test_slope_of_its_line_is_the_tangent_of_its_lean() -> None:
+    seat = Seat("rollers[1]", ("A", "B"), -0.3 + 0j, 0j, lambda: iter(()))
+    line = replace(ROLLERS, lean=0.3).line(seat)
+    assert line.slope == pytest.approx(tan(0.3))
+    assert abs(line.lever) == pytest.approx(0.3 / (1 + RADII[0] / RADII[1]))
