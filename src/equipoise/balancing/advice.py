@@ -3,9 +3,9 @@
 First what is large on the machine (`results.yardsticks`).  Balancing aims at the largest figure
 that shakes: what gauges read at the speeds at which the machine runs, a force, a moment or a
 couple.  Remedies are other phases of rows, which cost nothing, holes, and counterweights of steel
-plate in the room that there is (`balancing.room`, `balancing.remedies`).  A remedy is offered where
-it takes away enough of its aim for its mass, and leaves no headline figure worse; to leave the
-machine as it is, is an answer too.
+plate in the room that is assumed (`balancing.room`, `balancing.remedies`).  A remedy is offered
+where it takes away enough of its aim for its mass, and leaves no headline figure worse; to leave
+the machine as it is, is an answer too.
 """
 
 from __future__ import annotations
@@ -14,23 +14,32 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import cached_property
 
-from equipoise.balancing.balanced import Balanced, Price
+import numpy as np
+
+from equipoise.balancing.balanced import Balanced, MoreRoom, Price
 from equipoise.balancing.beyond_masses import Beyond, beyond_masses
 from equipoise.balancing.headlines import (
+    NEAR_ZERO,
     Advice,
+    AssessedMachine,
+    HeadlineLimit,
+    Saving,
     assessed,
     headline_objectives,
     watched_of,
 )
 from equipoise.balancing.multi_row import Rows, Term
 from equipoise.balancing.objectives import unit_of
-from equipoise.balancing.optimisation import balance
+from equipoise.balancing.optimisation import balance, in_phases
+from equipoise.balancing.phase_bound import Proof
+from equipoise.balancing.phase_search import PhaseSearch
+from equipoise.balancing.phasing import phasing_of
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.remedies import (
+    LEAST_GAIN,
     MASS_PRICE,
     MOST_ADDED,
     Comparison,
-    HeadlineLimit,
     added_sector,
     best_cuts,
     best_holes,
@@ -45,14 +54,14 @@ from equipoise.balancing.resonant_mounts import (
     outweighs,
     resonant_mounts_for,
 )
-from equipoise.balancing.room import Room, pivots_of, room_about, rooms_of_planes
+from equipoise.balancing.room import Room, pivots_of, room_about, rooms_about, rooms_of_planes
 from equipoise.balancing.workshop import Change
 from equipoise.errors import EquipoiseError, MassError, ModelError, ResponseError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.dynamics.forces import massless
 from equipoise.mechanism.parts.balance import Balance, Limit, Objective, Phases
 from equipoise.mechanism.parts.machine import Machine
-from equipoise.mechanism.parts.objectives import GAUGES, ROWS
+from equipoise.mechanism.parts.objectives import GAUGES, OF_ROWS, ROWS
 from equipoise.results.yardsticks import FigureAssessment
 from equipoise.vibration.forced import check_moving
 from equipoise.vibration.linear import Linear, gauges_of
@@ -69,6 +78,8 @@ AIMED = 0.5
 little is worth building there too."""
 NOTICED = 0.01
 """Share of an aim from which a change of it is told."""
+LEVEL = 1e-4
+"""Of the couples that phases make between the rows: what is left of them, they may keep."""
 ROUNDING = 1e-9
 """Over a limit: by how much a figure may be above it."""
 LOUD, MOST_RESONANCES = 0.1, 2
@@ -112,11 +123,17 @@ def beside(found: Balanced, machine: Machine) -> Balanced:
     judged = replace(found, original=machine, objectives=objectives)
     old, new = assessed(machine), assessed(found.machine)
     share = max(judged.added_mass, 0.0) / (machine.mass or 1.0)
-    worth, worse = found.helps and bool(is_worth(judged.gain, share)), old.worse_in(new)
+    worth = found.helps and bool(is_worth(judged.gain, share))
+    worse = old.worse_in(new, _saving(old, judged))
     offered = worth and not worse
     return replace(
         judged, advice=replace(advice, before=old.headline, worse=worse, offered=offered)
     )
+
+
+def _saving(before: AssessedMachine, found: Balanced) -> Saving:
+    pairs = {one: found.objectives[one.name] for one in found.plan.objectives}
+    return before.saving(pairs, found.gain)
 
 
 class _Adviser:
@@ -149,11 +166,28 @@ class _Adviser:
             if good := [one for one in found if one.helps]:
                 most = max(map(_score, good))
                 best = next(one for one in good if _score(one) >= CLEAR * most)
-                return replace(best, tried=tuple(tried))
+                return self.with_more_room(replace(best, tried=tuple(tried)))
         if not tried:
             return self.unchanged()
         first = [one for one in tried if one.plan.objectives == tried[0].plan.objectives]
-        return replace(max(first, key=lambda one: one.gain), tried=tuple(tried))
+        best = max(first, key=lambda one: one.gain)
+        return self.with_more_room(replace(best, tried=tuple(tried)))
+
+    def with_more_room(self, found: Balanced) -> Balanced:
+        """With the best counterweight of twice the room that is assumed, where it is worth it."""
+        plan = replace(self.own, objectives=found.plan.objectives)
+        least = _score(found) + LEAST_GAIN if found.helps else 0.0
+        more = [
+            MoreRoom(one, room.at, assumed, room.assumed)
+            for link in pivots_of(self.machine)
+            if any(room.is_limited_by_assumption for room in rooms_about(self.machine, link))
+            for assumed in [room_about(self.machine, link).assumed]
+            for room in rooms_about(self.machine, link, larger=2.0)
+            for one in self.first_good(self.counterweights(plan, (room,)))
+            if one.helps and _score(one) >= least and _radius_of(one) > assumed
+        ]
+        best = max(more, key=lambda one: _score(one.remedy), default=None)
+        return replace(found, with_room=best)
 
     def values(self, objectives: tuple[Objective, ...]) -> list[float]:
         """Values of the machine as it is."""
@@ -186,39 +220,54 @@ class _Adviser:
         if len(self.machine.rows) > 1:
             yield from self.phases(plan)
         for link in pivots_of(self.machine):
-            yield from self.changed(plan, (room_about(self.machine, link),))
+            for room in rooms_about(self.machine, link):
+                yield from self.changed(plan, (room,))
         for rooms in rooms_of_planes(self.machine):
             yield from self.changed(plan, rooms)
 
     def phases(self, plan: Balance) -> Iterator[Balanced]:
-        """Other phases of the rows."""
+        """Other phases of the rows; where they twist the machine more than they save, those too
+        that leave it without twist.
+        """
         rows = Rows(self.machine)
         try:
             moved = [one for one in plan.objectives if Term(one, rows.signals(one)).influenced]
             free = replace(plan, phases=Phases(), objectives=tuple(moved))
-            found = self.solve(self.machine, free)
+            found = self.judged(_in_whole_degrees(self.solve(self.machine, free)))
+            yield found
+            if twist := _twists_of(found):
+                limited = replace(free, limits=(*free.limits, *twist))
+                level = _in_whole_degrees(self.solve(self.machine, limited))
+                scope = (Note("without couples between the rows"), *level.scope)
+                yield self.judged(replace(level, plan=free, scope=scope))
         except EquipoiseError:  # aims within one row, or that no phase changes
             return
-        yield self.judged(found)
 
     def changed(self, plan: Balance, rooms: tuple[Room, ...]) -> Iterator[Balanced]:
         """Mass taken off a link, or sectors on it, that gain."""
-        comparison = Comparison(self.machine, plan, rooms, self.watched)
+        comparison = self.comparison(plan, rooms)
         if not comparison.influences:
             return
-        if len(rooms) == 1:
+        if len(rooms) == 1 and not rooms[0].beside:
             off = (with_hole(self.machine, rooms[0], one) for one in best_holes(comparison))
             yield from self.first_good((*one, plan) for one in off)
             off = (with_cut(self.machine, rooms[0], one) for one in best_cuts(comparison))
             yield from self.first_good((*one, plan) for one in off)
-        shapes = best_sectors(comparison, self.most_mass, opposite=len(rooms) > 1)
-        yield from self.first_good(
-            (
-                *with_sectors(self.machine, rooms, each),
-                replace(plan, masses=tuple(map(added_sector, rooms, each))),
-            )
-            for each in shapes
-        )
+        yield from self.first_good(self.counterweights(plan, rooms))
+
+    def comparison(self, plan: Balance, rooms: tuple[Room, ...]) -> Comparison:
+        """Shapes in some rooms beside each other."""
+        excess = self.before.excess_of(plan.objectives)
+        return Comparison(self.machine, plan, rooms, self.watched, excess)
+
+    def counterweights(self, plan: Balance, rooms: tuple[Room, ...]) -> Iterator[Remedy]:
+        """Sectors in some rooms, the best first."""
+        comparison = self.comparison(plan, rooms)
+        if not comparison.influences:
+            return
+        for each in best_sectors(comparison, self.most_mass, opposite=len(rooms) > 1):
+            masses = tuple(map(added_sector, rooms, each))
+            yield (*with_sectors(self.machine, rooms, each), replace(plan, masses=masses))
 
     def first_good(self, remedies: Iterable[Remedy]) -> Iterator[Balanced]:
         """The first that is worth building, with what is proved of it; else the first."""
@@ -255,10 +304,11 @@ class _Adviser:
         """With the bound of every sector in its room, round or not."""
         if not found.plan.masses:
             return found
+        excess = self.before.excess_of(found.plan.objectives)
         limits = tuple(
             limit
             for one in self.watched
-            for limit in one.limits()
+            for limit in one.limits(found.gain, excess)
             if not limit.objective.output.startswith(GAUGES)
         )
         kept = (Note("where no headline figure gets worse"),)
@@ -281,7 +331,7 @@ class _Adviser:
     def judged(self, found: Balanced) -> Balanced:
         """With what its figures are against their yardsticks, and whether it is offered."""
         after = assessed(found.machine)
-        worse = self.before.worse_in(after)
+        worse = self.before.worse_in(after, _saving(self.before, found))
         share = max(found.added_mass, 0.0) / (self.machine.mass or 1.0)
         enough = bool(is_worth(found.gain, share)) and self.keeps_limits(found)
         if self.mounts is not None:
@@ -327,6 +377,35 @@ class _Adviser:
         return replace(found, advice=Advice(headline, headline, (), False, self.beyond))
 
 
+def _in_whole_degrees(found: Balanced) -> Balanced:
+    """Phases that can be set: of the nearest whole degrees."""
+    plan, machine = found.plan, found.original
+    assert found.phasing is not None
+    search = PhaseSearch(machine, plan.objectives, Phases(), plan.combine)
+    phases = np.array(found.phasing.phases) - found.phasing.phases[0]
+    whole = np.radians(np.round(np.degrees(phases))) % search.cost.period
+    if np.array_equal(whole, phases):
+        return found
+    proof = Proof(whole, found.phasing.bound, found.looked_at, complete=True)
+    phasing = replace(phasing_of(search, whole, proof), notes=found.phasing.notes)
+    return in_phases(machine, plan, phasing, found.method, found.scope)
+
+
+def _twists_of(found: Balanced) -> tuple[Limit, ...]:
+    """Limits of the couples between the rows that phases make where there were none."""
+    assert found.advice is not None
+    made = (
+        (Objective(new.output.removeprefix(ROWS)), new)
+        for was, new in found.advice.worse
+        if abs(was.value) <= NEAR_ZERO * abs(new.value)
+    )
+    return tuple(
+        Limit(couple, at_most=LEVEL * abs(new.value))
+        for couple, new in made
+        if couple.output in OF_ROWS
+    )
+
+
 def _is_aim(one: FigureAssessment) -> bool:
     """Whether masses are tried against it: what shakes, and a torque, which weights may steady."""
     return one.ratio >= AIMED if one.is_shaking else one.is_large and one.is_torque
@@ -336,6 +415,12 @@ def _score(found: Balanced) -> float:
     """Gain, less the price of mass."""
     share = max(found.added_mass, 0.0) / (found.original.mass or 1.0)
     return found.gain - MASS_PRICE * share
+
+
+def _radius_of(found: Balanced) -> float:
+    """Of the largest piece that is added, m."""
+    pieces = (piece for one in found.changes for piece in one.values.get("pieces", ()))
+    return max((float(piece["outer_radius"]) for piece in pieces), default=0.0)
 
 
 def _most_of(limit: Limit, before: float) -> float:

@@ -68,6 +68,21 @@ class Price:
         return self.price > 0
 
 
+@dataclass(frozen=True)
+class MoreRoom:
+    """What more room would allow.
+
+    remedy : a machine with a counterweight there, beside the one that it comes from.
+    at : the pivot.  assumed, wanted : how far the room about it is taken to reach, and would
+        reach, m.
+    """
+
+    remedy: Balanced
+    at: str
+    assumed: float
+    wanted: float
+
+
 WHY = "see [Balancing](balancing.md#why-nothing-is-better)"
 
 
@@ -107,6 +122,7 @@ class Balanced(Result):
     scope : of what the bound is proved, where that is not all that the plan allows.
     tried : where nobody said what may be changed, every remedy that was tried, this one among them.
     advice : where nobody said so, what it is judged by.
+    with_room : where nobody said so, what more room would allow.
     """
 
     headline_in = "balancing.blocks.balanced_headline"
@@ -126,6 +142,7 @@ class Balanced(Result):
     scope: tuple[Note, ...] = ()
     tried: tuple[Balanced, ...] = ()
     advice: Advice | None = None
+    with_room: MoreRoom | None = None
 
     @property
     def gap(self) -> float:
@@ -286,6 +303,15 @@ class Balanced(Result):
         ]
         return phasing.to_dict() | {"objectives": objectives}
 
+    @property
+    def _with_room(self) -> dict[str, Any] | None:
+        """What more room would allow, as plain data."""
+        more = self.with_room
+        if more is None:
+            return None
+        room = {"at": more.at, "assumed": more.assumed, "wanted": more.wanted}
+        return room | {"gain": more.remedy.gain, "changes": _changes(more.remedy)}
+
     def to_dict(self, wanted: Collection[str] | None = None) -> dict[str, Any]:
         """The machine-readable output, SI units and radians.
 
@@ -422,6 +448,13 @@ class Balanced(Result):
             "`avoid` and `away`, rad/s, the `mounts` of it, and the `factor` of their stiffness "
             "that takes the share `gain` off what the gauges read; or null",
             read=lambda found: _plain(found.advice.beyond.mounts),
+            present="advice",
+        ),
+        "with_room": ResultOutput(
+            "there: what a counterweight would do with twice the room that is assumed: the pivot "
+            "`at`, how far the room about it reaches as it is `assumed` and as it is `wanted`, m, "
+            "`gain` and `changes`; or null",
+            read="_with_room",
             present="advice",
         ),
         "notes": NOTES,

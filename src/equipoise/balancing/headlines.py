@@ -2,27 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+
+import numpy as np
 
 from equipoise.balancing.beyond_masses import Beyond
 from equipoise.balancing.problem import Problem
-from equipoise.balancing.remedies import HeadlineLimit
 from equipoise.errors import ModelError, ResponseError
 from equipoise.mechanism.outputs.declared import declared
-from equipoise.mechanism.parts.balance import Objective
+from equipoise.mechanism.parts.balance import Limit, Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import GAUGES, MEASURES, ROWS
 from equipoise.results.analysis import Analysis, analyze
 from equipoise.results.yardsticks import FigureAssessment, assess, assess_parts
+from equipoise.signals import Array
 from equipoise.vibration.forced import respond
 
 GROWTH, GROWTH_OF_PART, TRIFLE = 1.01, 1.05, 0.1
 """Times its value before, a headline figure may be after, and that of a single joint or component,
 of which the life of a bearing falls by a seventh; share of its yardstick up to which a figure may
 grow."""
+OF_GAIN, SMALL, OF_SAVED = 0.1, 0.75, 0.5
+"""Growth of a figure that is as good as nothing beside the share of the aim that is gone, each over
+what is large of its kind; what stays so small, over that too, may grow more; by that part of what
+is saved."""
+NEAR_ZERO = 0.1
+"""Of a couple after a change: what it was less before, it was as good as nothing."""
 Assessment = tuple[FigureAssessment, ...]
-Pairs = tuple[tuple[FigureAssessment, FigureAssessment], ...]
+Pair = tuple[FigureAssessment, FigureAssessment]
+Pairs = tuple[Pair, ...]
 """Figures before and after."""
 
 
@@ -43,6 +52,33 @@ class Advice:
     beyond: Beyond
 
 
+@dataclass(frozen=True)
+class Saving:
+    """What a remedy takes away, beside which the growth of other figures is judged.
+
+    gain : share of the aims that is gone.  excess : of the largest aim as it was, over what is
+        large of its kind.  force, moment : RMS of what shakes that is gone, N and N m; None where
+        that is not the aim.  force_yardstick : against which the force is large, N.
+    """
+
+    gain: float = 0.0
+    excess: float = 0.0
+    force: float | None = None
+    moment: float | None = None
+    force_yardstick: float = 0.0
+
+    def moment_against(self, couple: FigureAssessment) -> float:
+        """What is gone as a moment, N m, RMS: a force at the arm that the couple acts at.
+
+        Endless where the aim is neither.
+        """
+        if self.moment is not None:
+            return self.moment
+        if self.force is not None:
+            return self.force * couple.yardstick / self.force_yardstick
+        return float("inf")
+
+
 @dataclass(frozen=True, eq=False)
 class AssessedMachine:
     """A machine at constant speed, and its figures against their yardsticks.
@@ -54,12 +90,47 @@ class AssessedMachine:
     headline: Assessment
     parts: Assessment
 
-    def worse_in(self, after: AssessedMachine) -> Pairs:
-        """Figures that are worse in another machine, headline figures first."""
-        whole = worse_headlines(self.headline, after.headline)
-        known = {new.figure for _, new in whole}
-        parts = worse_parts(self.parts, after.parts)
-        return (*whole, *(pair for pair in parts if pair[1].figure not in known))
+    def worse_in(self, after: AssessedMachine, saving: Saving) -> Pairs:
+        """Figures that are worse in another machine, couples first, then headline figures."""
+        couples = tuple(self._couples_made(after, saving))
+        whole = (*couples, *worse_headlines(self.headline, after.headline, saving))
+        parts = worse_parts(self.parts, after.parts, saving)
+        known = {new.figure: (was, new) for was, new in reversed((*whole, *parts))}
+        return tuple(reversed(known.values()))
+
+    def _couples_made(self, after: AssessedMachine, saving: Saving) -> Iterator[Pair]:
+        """Moments that were as good as nothing, and are larger now than what is saved."""
+        for new in after.headline:
+            if new.is_shaking and new.dimension == "torque":
+                was, made = (_rms(one.analysis, new.output) for one in (self, after))
+                if was <= NEAR_ZERO * made and made - was > saving.moment_against(new):
+                    yield _before(self.headline, new), new
+
+    def aims(self, objectives: Iterable[Objective]) -> Iterator[tuple[Objective, FigureAssessment]]:
+        """Aims that are headline figures, and these."""
+        entries = {one.output: one for one in self.headline}
+        for one in objectives:
+            for name in (f"{ROWS}{one.output}", one.output):
+                if name in entries:
+                    yield one, entries[name]
+                    break
+
+    def excess_of(self, objectives: Iterable[Objective]) -> float:
+        """The largest excess of aims; 0 where none is a headline figure."""
+        return max((entry.excess for _, entry in self.aims(objectives)), default=0.0)
+
+    def saving(self, objectives: Mapping[Objective, tuple[float, float]], gain: float) -> Saving:
+        """What a remedy takes away of aims, each before and after in SI units."""
+        gone = [
+            (objectives[one][0] - objectives[one][1], entry)
+            for one, entry in self.aims(objectives)
+            if entry.is_shaking
+        ]
+        forces = [(value, one.yardstick) for value, one in gone if one.dimension == "force"]
+        moments = [value for value, one in gone if one.dimension == "torque"]
+        force, yardstick = max(forces, default=(None, 0.0))
+        excess = self.excess_of(objectives)
+        return Saving(gain, excess, force, max(moments, default=None), yardstick)
 
 
 def assessed(machine: Machine) -> AssessedMachine:
@@ -74,43 +145,84 @@ def assessed(machine: Machine) -> AssessedMachine:
     return AssessedMachine(analysis, assess(analysis, readings), assess_parts(analysis))
 
 
-def worse_headlines(before: Assessment, after: Assessment) -> Pairs:
-    """Figures of two assessments that grew by more than 1 %, each before and after.
+def worse_headlines(before: Assessment, after: Assessment, saving: Saving) -> Pairs:
+    """Figures of two assessments that grew by more than they may, each before and after.
 
-    What stays below a tenth of its yardstick is no headline.  What was nothing is worse where it
-    becomes large.  Yardsticks are those before, which the change itself may have moved.
+    Yardsticks are those before, which the change itself may have moved.
     """
-    old = {one.family: one for one in before}
-    pairs = ((old.get(new.family, replace(new, value=0.0, ratio=0.0)), new) for new in after)
-    return tuple((was, new) for was, new in pairs if _is_worse(was, new))
+    pairs = ((_before(before, new), new) for new in after)
+    return tuple((was, new) for was, new in pairs if _ratio(was, new) > allowed_ratio(was, saving))
 
 
-def _is_worse(was: FigureAssessment, new: FigureAssessment) -> bool:
-    if not was.ratio:
-        return new.is_large
-    return _ratio(was, new) > allowed_ratio(was)
+def _before(before: Assessment, new: FigureAssessment) -> FigureAssessment:
+    """The figure of the same family before; 0 where there was none."""
+    same = (one for one in before if one.family == new.family)
+    return next(same, replace(new, value=0.0, ratio=0.0))
 
 
-def worse_parts(
-    before: Assessment, after: Assessment
-) -> Iterator[tuple[FigureAssessment, FigureAssessment]]:
-    """Single joints and components that grew by more than 5 %, each before and after."""
+def worse_parts(before: Assessment, after: Assessment, saving: Saving) -> Iterator[Pair]:
+    """Single joints and components that grew by more than they may, each before and after."""
     old = {one.figure: one for one in before}
     for new in after:
         was = old.get(new.figure)
-        if was is not None and _ratio(was, new) > allowed_ratio(was, GROWTH_OF_PART):
+        if was is not None and _ratio(was, new) > allowed_ratio(was, saving, GROWTH_OF_PART):
             yield was, new
 
 
-def allowed_ratio(was: FigureAssessment, growth: float = GROWTH) -> float:
-    """The ratio that a figure may have after a change."""
-    return max(growth * was.ratio, TRIFLE)
+def allowed_ratio(was: FigureAssessment, saving: Saving, growth: float = GROWTH) -> float:
+    """The ratio that a figure may have after a change: what it was, and a little more; or more of
+    what is small and stays small.
+    """
+    return float(allowed_ratios(was, np.array(saving.gain), saving.excess, growth))
+
+
+def allowed_ratios(was: FigureAssessment, gain: Array, excess: float, growth: float) -> Array:
+    """The same (...) of many changes, by the share (...) that each takes off aims of an excess."""
+    beside = was.excess + OF_GAIN * gain * min(was.excess, excess)
+    grown = np.maximum(growth * was.excess, beside)
+    small = np.minimum(SMALL, was.excess + OF_SAVED * gain * excess)
+    return np.asarray(np.maximum(np.maximum(grown, small) * was.large_from, TRIFLE))
+
+
+def _rms(analysis: Analysis, output: str) -> float:
+    """RMS; 0 of what a machine does not have."""
+    return float(analysis.outputs[output].figures.rms) if output in analysis.outputs else 0.0
 
 
 def _ratio(was: FigureAssessment, new: FigureAssessment) -> float:
     """The ratio of a figure after a change, by the yardstick before."""
     by_value = not new.is_limit and bool(was.value)
     return was.ratio * abs(new.value / was.value) if by_value else new.ratio
+
+
+@dataclass(frozen=True)
+class HeadlineLimit:
+    """A figure that may not grow by more than beside a gain.
+
+    objectives : the figure of each member of a family, of which the largest counts.
+    at_most : SI units, whatever is gained.
+    entry : the figure as it is, of one that may grow with what is gained; growth : times its value,
+        it may be in any case.
+    """
+
+    objectives: tuple[Objective, ...]
+    at_most: float = 0.0
+    entry: FigureAssessment | None = None
+    growth: float = GROWTH
+
+    def most(self, gain: Array, excess: float) -> Array:
+        """What the figure may become (...), SI units, where shares (...) of aims of an excess are
+        gone.
+        """
+        if self.entry is None:
+            return np.full(np.shape(gain), self.at_most)
+        ratio = allowed_ratios(self.entry, gain, excess, self.growth)
+        return np.asarray(ratio * abs(self.entry.value) / self.entry.ratio)
+
+    def limits(self, gain: float = 0.0, excess: float = 0.0) -> Iterator[Limit]:
+        """Limits of a plan where a share of aims of an excess is gone."""
+        at_most = float(self.most(np.array(gain), excess))
+        yield from (Limit(one, at_most=at_most) for one in self.objectives)
 
 
 def watched_of(found: AssessedMachine) -> Iterator[HeadlineLimit]:
@@ -131,7 +243,7 @@ def _watched(one: FigureAssessment, outputs: list[str], growth: float) -> Iterat
     if known is None or known[0].reason or measure not in MEASURES:
         return
     objectives = tuple(Objective(name.removeprefix(ROWS), measure) for name in outputs)
-    yield HeadlineLimit(objectives, allowed_ratio(one, growth) * abs(one.value) / one.ratio)
+    yield HeadlineLimit(objectives, entry=one, growth=growth)
 
 
 def _watched_gauge(machine: Machine, one: FigureAssessment) -> Iterator[HeadlineLimit]:

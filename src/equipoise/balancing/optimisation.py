@@ -237,7 +237,7 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
         solution, phasing = together.run(first, told)
         method = Note("branch and bound over all phases of the rows and all masses")
         scope = together.scope
-    found = _in_phases(machine, plan, phasing, method, scope)
+    found = in_phases(machine, plan, phasing, method, scope)
     if solution is None:
         return found
     changed = result_of(machine, plan, solution)
@@ -260,7 +260,7 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
     )
 
 
-def _in_phases(
+def in_phases(
     machine: Machine, plan: Balance, phasing: Phasing, method: Note, scope: tuple[Note, ...]
 ) -> Balanced:
     """The result where nothing but phases has changed."""

@@ -21,7 +21,7 @@ from equipoise.balancing.told import (
     proof_told,
     worse_told,
 )
-from equipoise.balancing.workshop import sentences
+from equipoise.balancing.workshop import in_its_plane, phases_told, sentences
 from equipoise.i18n import say, to_say
 from equipoise.quantities import change, display, percent, told
 from equipoise.results.blocks import Block, Cell, Change, Column, Table, Text
@@ -133,7 +133,7 @@ def reasons_to_leave(found: Balanced) -> Iterator[str]:
     assert advice is not None
     if found.changes:
         yield say(
-            "Leave the masses as they are: the best that can be built in the room that there is, "
+            "Leave the masses as they are: the best that fits the room that is assumed, "
             "{remedy}, takes {gain} % off {aims}; {why}.",
             aims=aims_told(found),
             remedy=remedy_named(found),
@@ -144,8 +144,8 @@ def reasons_to_leave(found: Balanced) -> Iterator[str]:
         yield say("Leave the machine as it is: nothing is large beside its yardstick.")
     elif largest.is_shaking:
         yield say(
-            "Leave the masses as they are: in the room that there is, no change of a mass about a "
-            "pivot of the frame makes {aims} noticeably smaller.",
+            "Leave the masses as they are: in the room that is assumed, no change of a mass about "
+            "a pivot of the frame makes {aims} noticeably smaller.",
             aims=aims_told(found),
         )
     else:
@@ -164,6 +164,7 @@ def sentences_beyond_masses(found: Balanced) -> Iterator[str]:
             yield from _mounts_first(found.advice)
         machine = found.machine if found.helps else found.original
         yield from sentences_beyond(found.advice.beyond, machine, found.helps)
+        yield from _with_more_room(found)
 
 
 def _mounts_first(advice: Advice) -> Iterator[str]:
@@ -171,12 +172,34 @@ def _mounts_first(advice: Advice) -> Iterator[str]:
         yield from mount_sentences(advice.beyond.mounts)
 
 
+def _with_more_room(found: Balanced) -> Iterator[str]:
+    """What a counterweight would do where there is more room than is assumed."""
+    if (more := found.with_room) is not None:
+        assumed, wanted = display("length", [more.assumed, more.wanted]), more.wanted
+        yield say(
+            "The room about {at} is assumed, from the lengths of the links, to reach {assumed}: "
+            "with {wanted} there, {remedy} would take {gain} % off with {mass}.",
+            at=more.at,
+            assumed=assumed.with_unit(assumed.text(more.assumed, digits=2)),
+            wanted=assumed.with_unit(assumed.text(wanted, digits=2)),
+            remedy=remedy_named(more.remedy),
+            mass=told(more.remedy.added_mass, "mass", digits=3),
+            gain=percent(more.remedy.gain, 0),
+        )
+
+
 def remedy_named(found: Balanced) -> str:
     """What is changed, in a few words."""
     off = [change.link for change in found.changes if change.kind == "removed mass"]
     if off:
         return say("less mass on {link}", link=listed(off))
-    return listed(freedoms(found.plan))
+    phases = [phases_told(change.values["phases"]) for change in found.changes
+              if change.kind == "phases"]  # fmt: skip
+    if phases:
+        return say("phases {phases} of the rows", phases=phases[0])
+    beside = {pin: None for change in found.changes for pin in change.values.get("beside", ())}
+    remedy = listed(freedoms(found.plan))
+    return in_its_plane(remedy, {"beside": beside}) if beside else remedy
 
 
 def why_not(found: Balanced) -> str:
@@ -238,9 +261,15 @@ def _asking_for_more(found: Balanced) -> Iterator[str]:
         yield say(
             "A change is offered that takes away at least {least} % of its aim, and as large a "
             "share of it as it adds to the mass of the moving links, and that makes no headline "
-            "figure worse by more than 1 %, and no force in a single joint and no component of the "
-            "shaking force by more than 5 %.",
+            "figure worse by more than 1 %, or a tenth of the share that is gone, no force in a "
+            "single joint and no component of the shaking force by more than 5 %, but for what is "
+            "small beside its yardstick and stays so; and no couple that was not there, larger "
+            "than what is gone.",
             least=percent(LEAST_GAIN, 0),
+        )
+        yield say(
+            "How far the room about a pivot reaches where nothing is in the way is assumed from "
+            "the lengths of the links."
         )
     of_one = to_say(
         "The file does not say what may be changed: [balance] in it asks for something else, or "

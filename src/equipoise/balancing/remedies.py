@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.balancing.effects import Signal
+from equipoise.balancing.headlines import HeadlineLimit
 from equipoise.balancing.objectives import measured_each
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.room import Room, outline_of
@@ -26,7 +27,6 @@ from equipoise.mechanism.parts.balance import (
     MATERIALS,
     AddedMass,
     Balance,
-    Limit,
     Objective,
     Weight,
 )
@@ -54,24 +54,10 @@ DIRECTIONS, WIDTHS = range(-180, 180, 10), (30, 60, 90, 120, 150, 180)
 """Degrees that are tried first."""
 FINE_DIRECTIONS, FINE_WIDTHS = range(-9, 10), range(-25, 30, 5)
 """Degrees about the best of these."""
+PLATE_SHARES, OUTER_SHARES = (1.0, 0.5, 0.25, 0.125), (1.0, 0.85, 0.7, 0.5)
+"""Of the thickest plate and of the largest radius: what is tried."""
 FEW = 4
 """Of the best shapes, how many are looked at in full."""
-
-
-@dataclass(frozen=True)
-class HeadlineLimit:
-    """A headline figure that may not grow.
-
-    objectives : the figure of each member of a family, of which the largest counts.
-    at_most : SI units.
-    """
-
-    objectives: tuple[Objective, ...]
-    at_most: float
-
-    def limits(self) -> Iterator[Limit]:
-        """The same as limits of a plan."""
-        yield from (Limit(one, at_most=self.at_most) for one in self.objectives)
 
 
 @dataclass(frozen=True)
@@ -128,12 +114,14 @@ class Comparison:
     """What shapes about the pivots of some links do to aims and headline figures.
 
     plan : whose objectives are the aims.
+    excess : of the largest aim, over what is large of its kind.
     """
 
     machine: Machine
     plan: Balance
     rooms: tuple[Room, ...]
     watched: tuple[HeadlineLimit, ...]
+    excess: float
 
     @cached_property
     def problem(self) -> Problem:
@@ -184,13 +172,13 @@ class Comparison:
         together = np.hypot.reduce(whole) if squares else np.sum(whole, axis=0)
         return np.asarray(1 - together / self.problem.whole)
 
-    def harmless(self, numbers: Array) -> Array:
-        """Whether (M,) no headline figure grows."""
+    def harmless(self, numbers: Array, gain: Array) -> Array:
+        """Whether (M,) no headline figure grows by more than it may beside a gain (M,)."""
         fine = np.ones(len(numbers), bool)
         for figure in self.watched:
             left = np.flatnonzero(fine)
             most = [self._values(one, numbers[left]) for one in figure.objectives]
-            fine[left] = np.max(most, axis=0) <= figure.at_most
+            fine[left] = np.max(most, axis=0) <= figure.most(gain[left], self.excess)
         return fine
 
     def _values(self, one: Objective, numbers: Array) -> Array:
@@ -221,7 +209,7 @@ class Comparison:
         worth = order[is_worth(gain[order], share[order])]
         found: list[int] = []
         for some in np.array_split(worth, 1 + len(worth) // CHUNK):
-            found += some[self.harmless(numbers[some])].tolist()
+            found += some[self.harmless(numbers[some], gain[some])].tolist()
             if len(found) >= FEW:
                 break
         best = found[:FEW] or [int(np.argmax(gain))]
@@ -306,8 +294,8 @@ def _coarse(rooms: Sequence[Room]) -> Iterator[Sector]:
     steps = floor(largest / grid * (1 + 1e-9))
     if steps < 2:
         return
-    thick = sorted({plate_of(thickest * share) for share in (1.0, 0.5, 0.25)}, reverse=True)
-    for outer in dict.fromkeys(max(2, floor(steps * share)) for share in (1.0, 0.75, 0.5)):
+    thick = sorted({plate_of(thickest * share) for share in PLATE_SHARES}, reverse=True)
+    for outer in dict.fromkeys(max(2, floor(steps * share)) for share in OUTER_SHARES):
         inner = max(1, round(outer * HUB))
         for plate, way, width in product(thick, DIRECTIONS, WIDTHS):
             yield Sector(outer * grid, inner * grid, plate, _turned(way), width)
@@ -356,7 +344,9 @@ def with_sectors(
                 }
             ],
         }
-        plane = {} if room.plane is None else {"plane": room.plane}
+        plane: dict[str, object] = {} if room.plane is None else {"plane": room.plane}
+        beside = [pin for pin, way in room.beside.items() if way < shape.outer + room.clearance]
+        plane |= {"beside": beside} if beside else {}
         changes.append(Change("added mass", room.link, values | plane))
     return machine, tuple(changes)
 

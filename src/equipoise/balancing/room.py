@@ -3,13 +3,17 @@
 Pins and shafts are taken to reach through every plane.  Links are where they are declared
 to be: the outlines of their bodies, or straight lines between their points.  Where no planes are
 declared, a link is taken to lie beside those that it is pinned to and those that it passes over,
-and in one plane with all others.
+and in one plane with all others.  There a weight may lie in a plane of its own too, on the side of
+its link where no other link is: pins that move freely end before it, shafts and pins of the frame,
+and pins that are guided along it, do not.
+
+How far the room reaches, if nothing is in the way, is assumed from the lengths of the links.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -30,9 +34,11 @@ ANGLES, EDGE_SAMPLES, CIRCLE_SAMPLES = 120, 9, 24
 CLEARANCE, LEAST_CLEARANCE = 0.02, 2e-3
 """Over the size of the largest link, and m: both together keep a counterweight from the edge of a
 body, and from the middle of a pin whose radius is not given; the second alone from a pin's edge."""
-SIZE, LARGER = 0.25, 2.0
+SIZE, LARGER, OF_CRANK = 0.25, 2.0, 2.5
 """Over the size of the largest link, and over the reach of its own link, up to twice that share of
-the largest link: how far a counterweight reaches at most, where its link does not reach farther."""
+the largest link: how far a counterweight is assumed to reach at most, where its link does not reach
+farther; and over the throw of a crank that turns, as webs and discs of cranks do, within what the
+machine sweeps."""
 LARGEST = 0.6
 """m: beyond which nobody cuts a counterweight of plate."""
 DIRECTIONS = 360
@@ -49,6 +55,9 @@ class Room:
     own_pins : (K,) complex, m, further pins of the link itself, seen from the pivot.
     own_clearances : (K,) m, from the middle of each of these.
     most_thick : m, of a plate.  clearance : m, from the edges of bodies.
+    assumed : m, how far it is taken to reach where nothing is in the way.
+    beside : of a room in a plane of its own: pins that come into it where they are in its plane,
+        and how near they come to the pivot, m.
     """
 
     link: str
@@ -59,6 +68,13 @@ class Room:
     own_clearances: Array
     most_thick: float
     clearance: float
+    assumed: float
+    beside: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def is_limited_by_assumption(self) -> bool:
+        """Whether nothing is in the way in some direction."""
+        return self.largest >= self.assumed * (1 - 1e-9)
 
     @property
     def largest(self) -> float:
@@ -90,36 +106,85 @@ def pivots_of(machine: Machine) -> dict[str, str]:
     return {name: found[name] for name in sorted(found, key=lambda name: name != drive)}
 
 
-def room_about(machine: Machine, link: str, plane: float | None = None) -> Room:
+def rooms_about(machine: Machine, link: str, larger: float = 1.0) -> Iterator[Room]:
+    """The room about a link's pivot, and that in a plane of its own where that is another.
+
+    larger : times what is assumed, that it reaches.
+    """
+    yield room_about(machine, link, larger=larger)
+    if not machine.has_planes:
+        apart = room_about(machine, link, larger=larger, alone=True)
+        if apart.beside:
+            yield apart
+
+
+def room_about(
+    machine: Machine,
+    link: str,
+    plane: float | None = None,
+    larger: float = 1.0,
+    alone: bool = False,
+) -> Room:
     """The room about a link's pivot.
 
-    plane : z of the weight's middle, m; that of the link if None.
+    plane : z of the weight's middle, m; that of the link if None.  larger : times what is assumed,
+    that it reaches.  alone : in a plane in which no other link is.
     """
     motion, at, own = move(machine, ANGLES), pivots_of(machine)[link], machine.links[link]
-    size = size_of_links(machine)
-    clearance = CLEARANCE * size + LEAST_CLEARANCE
+    clearance = CLEARANCE * size_of_links(machine) + LEAST_CLEARANCE
     pivot = complex(*machine.frame[at])
     turn = np.exp(-1j * motion.links[link].angle)
-    reach = _reach(own, at)
-    most = max(reach, SIZE * size, min(LARGER * reach, LARGER * SIZE * size))
-    most = min(most, LARGEST)
+    most = min(larger * _assumed(motion, link, at), LARGEST)
     thick = _most_thick(machine, link, most)
     free = np.full(DIRECTIONS, min(most, _over_ground(machine, pivot)))
     own_wheels, wheels = _wheels(motion, link, at)
     free = np.minimum(free, min(own_wheels, default=np.inf))
-    bodies = _bodies(motion, link, plane, thick)
     apart = _from_pins(motion)
-    pins = ((motion.points[pin].place, apart.get(pin, clearance)) for pin in _pins(motion, link))
-    for places, clear in (*pins, *((track, clearance) for track in (*bodies, *wheels))):
+    fixed = _through_every_plane(machine)
+    pins = [*_pins(motion, link)]
+    passing = [pin for pin in pins if pin not in fixed] if alone else []
+    bodies = [] if alone else [*_bodies(motion, link, plane, thick)]
+    kept = [(motion.points[pin].place, apart.get(pin, clearance)) for pin in pins
+            if pin not in passing]  # fmt: skip
+    for places, clear in (*kept, *((track, clearance) for track in (*bodies, *wheels))):
         seen = (np.broadcast_to(places, turn.shape) - pivot) * turn
         _keep_clear(free, seen, clear)
+    free = np.maximum(free, 0.0)
+    nearest = {pin: float(np.min(np.abs(motion.points[pin].place - pivot))) for pin in passing}
+    beside = {pin: way for pin, way in nearest.items() if way < np.max(free) + clearance}
     # A weight in a plane of its own lies beyond the webs between which the link's pins are.
-    names = sorted(_joined(machine) & own.points.keys() - {at}) if plane is None else []
+    within = plane is None and not alone
+    names = sorted(_joined(machine) & own.points.keys() - {at}) if within else []
     center = complex(*own.points[at])
     own_pins = np.array([complex(*own.points[pin]) - center for pin in names], complex)
-    assumed = np.minimum(clearance, np.abs(own_pins) / 2)
-    own_clear = np.array([apart.get(pin, assumed[k]) for k, pin in enumerate(names)])
-    return Room(link, at, plane, np.maximum(free, 0.0), own_pins, own_clear, thick, clearance)
+    near = np.minimum(clearance, np.abs(own_pins) / 2)
+    own_clear = np.array([apart.get(pin, near[k]) for k, pin in enumerate(names)])
+    return Room(link, at, plane, free, own_pins, own_clear, thick, clearance, most, beside)
+
+
+def _assumed(motion: Motion, link: str, at: str) -> float:
+    """How far a counterweight on a link reaches from its pivot where nothing is in the way, m."""
+    machine = motion.machine
+    size, reach = size_of_links(machine), _reach(machine.links[link], at)
+    turned = motion.links[link].angle
+    if abs(turned[-1] - turned[0]) > np.pi and machine.crank_turns:
+        return max(reach, SIZE * size, min(OF_CRANK * reach, _swept(motion, at)))
+    return max(reach, SIZE * size, min(LARGER * reach, LARGER * SIZE * size))
+
+
+def _swept(motion: Motion, at: str) -> float:
+    """Farthest that any point or centre of mass of a link comes from a pivot, m."""
+    machine = motion.machine
+    pivot = complex(*machine.frame[at])
+    tracks = [motion.points[point].place for one in machine.links.values() for point in one.points]
+    centers = {name: one.center_of_mass for name, one in machine.links.items()}
+    tracks += [_track(motion, name, complex(*one)) for name, one in centers.items() if one]
+    return max(float(np.max(np.abs(track - pivot))) for track in tracks)
+
+
+def _through_every_plane(machine: Machine) -> set[str]:
+    """Pins and shafts of the frame, and pins that are guided along it."""
+    return {*machine.frame, *(one.point for one in machine.sliders if one.on == "frame")}
 
 
 def rooms_of_planes(machine: Machine) -> Iterator[tuple[Room, Room]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cmath import exp, phase, rect
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import acos, degrees, pi, sin, sqrt
 from typing import Any
@@ -131,10 +131,7 @@ def sentences(change: Change) -> Iterator[str]:
         )
     elif change.kind == "added mass":
         what = _added(link, values)
-        if "plane" in values and values["pieces"]:
-            plane = told(values["plane"], "length")
-            what = say("{what}, in the plane z = {plane}", what=what, plane=plane)
-        yield what
+        yield in_its_plane(what, values) if values["pieces"] else what
         for piece in values["pieces"]:
             yield say(
                 "{link}, made as: {piece}",
@@ -148,10 +145,7 @@ def sentences(change: Change) -> Iterator[str]:
     elif change.kind == "gears":
         yield "; ".join(_gears(link, values))
     else:
-        *others, last = values["phases"]
-        plain = (direction_named(one, named=False) for one in others)
-        phases = ", ".join([*plain, direction_named(last)])
-        yield say("Rows: set the phases to {phases}", phases=phases)
+        yield say("Rows: set the phases to {phases}", phases=phases_told(values["phases"]))
 
 
 def in_short(change: Change) -> Iterator[str]:
@@ -166,10 +160,18 @@ def in_short(change: Change) -> Iterator[str]:
         return
     for piece in pieces:
         what = say("{link}: add a {piece}", link=link, piece=_made(piece, values["at"]))
-        if "plane" in values:
-            plane = told(values["plane"], "length")
-            what = say("{what}, in the plane z = {plane}", what=what, plane=plane)
-        yield what
+        yield in_its_plane(what, values)
+
+
+def in_its_plane(what: str, values: Mapping[str, Any]) -> str:
+    """A mass and the plane in which it lies, where it matters."""
+    if "plane" in values:
+        plane = told(values["plane"], "length")
+        return say("{what}, in the plane z = {plane}", what=what, plane=plane)
+    if "beside" in values:
+        pins = say(", ").join(values["beside"])
+        return say("{what}, in a plane of its own beside pin {pins}", what=what, pins=pins)
+    return what
 
 
 def _added(link: str, values: dict[str, Any]) -> str:
@@ -282,6 +284,14 @@ def _gears(link: str, values: dict[str, Any]) -> Iterator[str]:
             second=second,
             driver=values["driver"],
         )
+
+
+def phases_told(phases: Sequence[float]) -> str:
+    """Phases of rows (rad) with their unit behind the last."""
+    *others, last = phases
+    return ", ".join(
+        [*(direction_named(one, named=False) for one in others), direction_named(last)]
+    )
 
 
 def direction_named(radians: float, named: bool = True) -> str:

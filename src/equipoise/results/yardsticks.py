@@ -144,10 +144,15 @@ class FigureAssessment:
         return self.yardstick_kind == "effort" and self.against == MEAN
 
     @property
+    def large_from(self) -> float:
+        """Ratio from which figures of its kind are large."""
+        kind = self.yardstick_kind
+        return LARGE if self.is_swing_about_mean else LARGE_FROM.get(kind, LARGE)
+
+    @property
     def excess(self) -> float:
         """Its ratio over that from which it is large, by which figures are ranked."""
-        about_mean = self.is_swing_about_mean
-        return self.ratio / (LARGE if about_mean else LARGE_FROM.get(self.yardstick_kind, LARGE))
+        return self.ratio / self.large_from
 
     @property
     def is_large(self) -> bool:
