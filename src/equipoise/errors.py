@@ -9,6 +9,7 @@
     │   ├── RangeError      the crank cannot turn fully
     │   └── ChangePointError  the linkage passes a position in which its branch is undecided
     ├── MassError           forces were asked for, but masses are missing
+    ├── LockError           friction in its joints locks the machine
     ├── ResponseError       the machine on its support, or with its motor, has no steady state
     └── UsageError          an argument of a function or command cannot be used
 """
@@ -209,6 +210,10 @@ class ChangePointError(MotionError):
 
 class MassError(EquipoiseError):
     """Forces need mass, centre of mass and inertia of every link."""
+
+
+class LockError(EquipoiseError):
+    """Friction in its joints locks a machine, whatever turns its drive."""
 
 
 class ResponseError(EquipoiseError):

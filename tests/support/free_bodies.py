@@ -12,7 +12,7 @@ package states: couples count as forces at the largest distance of two joints on
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain, combinations
 
@@ -80,6 +80,10 @@ class FreeBodies:
     frame_moment: Array
 
 
+Acting = tuple[str, Array, Array, Array | float]
+"""A body, a place, a force and a torque."""
+
+
 @dataclass
 class System:
     """The linear equations of all links at all crank angles."""
@@ -114,6 +118,7 @@ def solve(
     poses: Poses,
     pairs: Mapping[str, tuple[str, str]] | None = None,
     told: Mapping[str, Array] | None = None,
+    acting: Sequence[Acting] = (),
 ) -> FreeBodies:
     """Solve the free bodies of a machine.
 
@@ -123,6 +128,7 @@ def solve(
         pair fewer than bodies.  Without it the first body of all holds the others.
     told : forces on driven gears (N, 2) to be tried, where joints share them: their flanks are
         taken, and those that vanish are left out.  What is found has to push on the same flanks.
+    acting : what acts on bodies beside: places (N, 2), forces (N, 2) and torques (N,).
     """
     joints = [*pin_contacts(machine, poses, pairs or {}), *slider_contacts(machine, poses)]
     slots = (*machine.circular_slots, *machine.curved_slots)
@@ -132,6 +138,10 @@ def solve(
     racks = [rack_contact(rack, machine, poses) for rack in machine.racks]
     belts = [strand_contacts(belt, machine, poses) for belt in machine.belts]
     system = equations(machine, poses)
+    for body, at, force, torque in acting:
+        given = np.zeros_like(system.known)
+        system.press(given, body, at, force, torque)
+        system.known -= given
     passing = [*joints, *gears, *racks, *belts]
     unknowns = solved(system, passing)
     unknown = sum(1 if isinstance(one, tuple) else one.size for one in passing)

@@ -21,7 +21,7 @@ from equipoise.balancing.phasing import Phasing
 from equipoise.balancing.problem import ADDED
 from equipoise.balancing.solution import Solution
 from equipoise.balancing.workshop import Change
-from equipoise.i18n import Note
+from equipoise.i18n import Note, all_of
 from equipoise.mechanism.dynamics.forces import forces
 from equipoise.mechanism.kinematics.motion import move
 from equipoise.mechanism.outputs.declared import declared
@@ -492,6 +492,8 @@ def proved_of(found: Solution) -> Iterator[Note]:
         yield Note("within where it was stopped")
     if problem.flips:
         yield Note("for the flanks of teeth and strands of chains that bear here")
+    if problem.rubs:
+        yield Note("without friction in joints")
     if any(geared_range(geared) for geared in problem.plan.geared):
         yield Note("for each of the gears tried")
 
@@ -533,6 +535,12 @@ def _notes(found: Solution) -> Iterator[Note]:
     problem, rows = found.problem, len(found.problem.machine.rows)
     if problem.machine.drive.acceleration:
         yield Note("the drive's acceleration is left out: the crank is taken as turning steadily")
+    if problem.rubs:
+        yield Note(
+            "with friction in joints {outputs} is not linear in masses: the best was sought "
+            "without friction, and is told with it; the bound is that without",
+            outputs=all_of([*problem.rubs], commas=True),
+        )
     if problem.reads_gauges and problem.supports_more:
         yield Note(
             "added mass makes the support heavier, which bends what is linear "

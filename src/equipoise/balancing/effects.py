@@ -193,8 +193,10 @@ class Effects:
 
     @cached_property
     def start(self) -> Forces:
-        """Forces of the machine from which the numbers count."""
-        return forces(self.motion)
+        """Forces of the machine from which the numbers count; without friction where there are
+        numbers, as forces are linear in these without it only.
+        """
+        return replace(forces(self.motion), rubs=not self.parts)
 
     @cached_property
     def inertia(self) -> Demand:
@@ -254,7 +256,8 @@ class Effects:
         if self.like is None or not self.machine.couplings:
             return self.start.solved
         theta = ANGLES if self.motion.sampling is None else self.motion.crank_angle
-        return forces(move(self.like, theta, acceleration=0.0).at(self.motion.speed)).solved
+        like = forces(move(self.like, theta, acceleration=0.0).at(self.motion.speed))
+        return replace(like, rubs=False).solved
 
     def full(self, columns: Array) -> Array:
         """Columns (K, N), also where the output is the same at every crank angle."""

@@ -21,6 +21,7 @@ from equipoise.balancing.program import Affine, Program
 from equipoise.balancing.weights import AddedWeight
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
+from equipoise.mechanism.outputs.declared import declared
 from equipoise.mechanism.parts.balance import Balance, Objective
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.objectives import WITHIN
@@ -90,6 +91,15 @@ class Problem:
         strand of a chain pulls.
         """
         return self.start.switches and any(one.output.startswith(WITHIN) for one in self.asked)
+
+    @property
+    def rubs(self) -> tuple[str, ...]:
+        """Outputs asked of that friction in joints changes, so that they are not linear."""
+        if not self.machine.rubs:
+            return ()
+        asked = dict.fromkeys(one.output for one in self.asked)
+        known = ((name, declared(name)) for name in asked)
+        return tuple(name for name, one in known if one is not None and one[0].by_friction)
 
     @cached_property
     def supports_more(self) -> bool:

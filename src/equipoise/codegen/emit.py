@@ -35,6 +35,7 @@ from equipoise.mechanism.parts.force_kinds import force_kinds
 from equipoise.mechanism.parts.joint_properties import JOINTS, family_of
 from equipoise.mechanism.parts.machine import Machine
 
+RUBS = Note("what friction in joints changes cannot be computed in a loop")
 _OF_FORCES = re.compile(
     r"drive\..+|gravity\..+|links\..+\.(mass|inertia|center_of_mass\..+)"
     r"|links\..+\.bodies\[\d+\]\..+"
@@ -76,6 +77,8 @@ class Signals:
         one, item = declared(signal) or (None, "")
         if one is None or one.loop is None or not self._has(one):
             raise UsageError(unknown(signal, self._known(), "signal"))
+        if one.by_friction and self.machine.rubs:
+            raise UsageError(RUBS)
         try:
             value = one.loop(partial(self.of_member, item) if one.is_family else self.of_machine)
         except _Missing:

@@ -76,7 +76,10 @@ def made(what: Machine | Balanced, one: Format, crank_angle: float) -> tuple[Job
     if one.turns:
         check_turning(machine, one.title)
     _check_joints(machine, one)
-    job = Job(machine, crank_angle, changes)
+    frictionless = machine.rubs and not one.rubs
+    job = Job(machine.without_friction() if frictionless else machine, crank_angle, changes)
+    if frictionless:
+        job.leave_out("friction in joints: forces are those without it")
     if one.joints == ():  # its joints bear no preload either
         for coupling in machine.couplings:
             if coupling.preload:

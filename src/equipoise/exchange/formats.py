@@ -27,6 +27,7 @@ class Format:
     turns : whether it turns the driven link all the way round at constant speed.
     joints : that it has beside pins, guides and what turns two links in a fixed ratio, as kinds of
     parts call them (`PartKind.special`); None where it has all.
+    rubs : whether it holds friction in joints, or what follows from it.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Format:
     turns: bool = False
     joints: tuple[str, ...] | None = None
     module: str = ""
+    rubs: bool = True
 
     @property
     def maker(self) -> str:
@@ -57,6 +59,7 @@ FORMATS: Mapping[str, Format] = {
             "rows, the support on its mounts, the drive at constant speed",
             turns=True,
             joints=(),
+            rubs=False,
         ),
         Format(
             "exudyn",
@@ -66,6 +69,7 @@ FORMATS: Mapping[str, Format] = {
             "loads, rows, the support on its mounts in the plane, the drive at constant speed",
             turns=True,
             joints=(),
+            rubs=False,
         ),
         Format(
             "urdf",
@@ -74,6 +78,7 @@ FORMATS: Mapping[str, Format] = {
             "the tree: links with masses, hinges, slides, gears and belts of two joints; loops are "
             "cut",
             joints=(),
+            rubs=False,
         ),
         Format(
             "fmu",
@@ -84,6 +89,7 @@ FORMATS: Mapping[str, Format] = {
             "where a C compiler is found",
             turns=True,
             joints=("rack", "pin in a slot"),
+            rubs=False,
         ),
         Format(
             "modelica",
@@ -93,6 +99,7 @@ FORMATS: Mapping[str, Format] = {
             "springs, torsion springs, constant loads, the drive at constant speed",
             turns=True,
             joints=(),
+            rubs=False,
         ),
         Format(
             "dxf",
@@ -133,6 +140,7 @@ FORMATS: Mapping[str, Format] = {
             "one file that computes in a browser, without server or network: joints to drag, "
             "numbers to change, forces, torque and charts that follow at once",
             module="web.interactive",
+            rubs=False,
         ),
         Format("csv", ".csv", "CSV", "all designs of a store", of_store=True),
         Format("parquet", ".parquet", "Parquet", "all designs of a store", of_store=True),

@@ -169,7 +169,7 @@ def _causes(analysis: Analysis, output: str, kind: Dimension) -> Panel:
     largest = max(float(np.max(np.abs(part))) for part in parts.values())
     curves = [
         Curve(*over(analysis, parts[name]), say(CAUSES[name]), f"several {number}")
-        for number, name in enumerate(CAUSES, 1)
+        for number, name in enumerate(parts, 1)
         if np.max(np.abs(parts[name])) > RESIDUE * largest
     ]
     if not curves:

@@ -33,9 +33,12 @@ if TYPE_CHECKING:
     from equipoise.mechanism.assembly.linkage import Linkage
     from equipoise.mechanism.kinematics.motion import Motion
     from equipoise.mechanism.parts.force_elements import Motor
+    from equipoise.mechanism.parts.joint_properties import JointProperties
     from equipoise.mechanism.parts.machine import Machine
     from equipoise.mechanism.parts.support import Gauge, Mount
 
+UNUSUAL = 0.5
+"""Coefficient of friction above which it is asked whether it is meant."""
 
 # -- linkages --------------------------------------------------------------------------------------
 
@@ -146,7 +149,27 @@ def _joints(machine: Machine) -> Iterator[str]:
     for one in machine.joints:
         radius = "" if one.radius is None else f", radius {_length(one.radius)}"
         stiff = "" if one.stiffness is None else f", {told(one.stiffness, 'stiffness', 'N/m')}"
-        yield f"{one.joint}{radius}{stiff}"
+        yield f"{one.joint}{radius}{stiff}{_friction(one)}"
+
+
+def _friction(one: JointProperties) -> str:
+    """What a joint resists its motion with; a coefficient that is unusual is asked about."""
+    found = ""
+    if one.friction is not None:
+        asked = " (is it meant? dry steel on steel has 0.2)" if one.friction > UNUSUAL else ""
+        found += f", friction {number(one.friction)}{asked}"
+    if one.static_friction is not None and one.stribeck_speed is not None:
+        speed = told(one.stribeck_speed, "speed", "m/s")
+        found += f", {number(one.static_friction)} at rest (Stribeck speed {speed})"
+    if one.guide_length is not None:
+        found += f", guide of {_length(one.guide_length)}"
+    sizes: list[tuple[str, float, Dimension]] = [
+        ("damping", one.damping, "damping"),
+        ("damping", one.torsional_damping, "torsional damping"),
+        ("drag", one.drag_force, "force"),
+        ("drag", one.drag_torque, "torque"),
+    ]
+    return found + "".join(f", {what} {told(size, kind)}" for what, size, kind in sizes if size)
 
 
 def _drive_train(machine: Machine) -> Iterator[str]:

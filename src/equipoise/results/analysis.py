@@ -17,7 +17,7 @@ from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dynamics.assessment import FourBar, four_bar, remarks
 from equipoise.mechanism.dynamics.cam_contacts import CamFigures, cam_figures
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
-from equipoise.mechanism.dynamics.shares import CAUSES
+from equipoise.mechanism.dynamics.losses import Losses, losses_of
 from equipoise.mechanism.dynamics.undecided import undecided
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.dwell import Dwell
@@ -125,6 +125,13 @@ class Analysis(Result):
         if motion is self.motion:
             return self
         return Analysis(motion, None if self.solved is None else forces(motion, self.solved.about))
+
+    @cached_property
+    def losses(self) -> Losses | None:
+        """What friction in joints costs in a cycle; None where there is none, or no whole cycle
+        that is turned evenly.
+        """
+        return None if self.solved is None else losses_of(self.resolved.forces)
 
     @cached_property
     def outputs(self) -> Outputs:
@@ -247,6 +254,7 @@ class Analysis(Result):
                 if ends or family == "joints":
                     result[family] = ends
             result.update(_undecided(self.motion.linkage))
+            result.update(_friction(self.losses))
             result["about"] = {"x": found.about.real, "y": found.about.imag}
             if not self.machine.has_crank and self.motion.whole_cycle:
                 works = self.resolved.forces.work
@@ -351,13 +359,26 @@ def _split(found: Forces) -> Values:
             continue
         for item in one.items_of(read):
             whole = one.vector(read, item)
-            for key, names, axis in (("by_cause", CAUSES, 1), ("by_link", found.split.links, 0)):
+            for key, names, axis in (
+                ("by_cause", found.split.causes, 1),
+                ("by_link", found.split.links, 0),
+            ):
                 parts = zip(names, whole.sum(axis=axis), strict=True)
                 values = result[key]
                 for step in one.path(item)[:-1]:
                     values = values.setdefault(step, {})
                 values[one.path(item)[-1]] = {name: _parts(part) for name, part in parts}
     return result
+
+
+def _friction(losses: Losses | None) -> Values:
+    """What friction in joints costs, where there is some."""
+    if losses is None:
+        return {}
+    joints = {name: dict(vars(one)) for name, one in losses.joints.items()}
+    total = {"loss": losses.loss, "efficiency": losses.efficiency}
+    given = {"drive": losses.drive, "loads": losses.loads}
+    return {"friction": {**given, **total, "joints": joints}}
 
 
 def _undecided(linkage: Linkage) -> Values:
@@ -410,6 +431,7 @@ def analyze(
     Raises
     ------
     MobilityError, MotionError, ModelError : the linkage cannot be moved so.
+    LockError : friction in its joints locks it.
     UsageError : an argument cannot be used.
     """
     motion = move(machine, angles, speed, acceleration)
@@ -417,4 +439,7 @@ def analyze(
         in_frame(machine.frame, about)  # a wrong point is told of a model without masses too
     if massless(machine):
         return Analysis(motion, None)
-    return Analysis(motion, forces(motion, about))
+    found = forces(motion, about)
+    if machine.rubs:
+        _ = found.solved  # where friction locks it, there are no forces
+    return Analysis(motion, found)

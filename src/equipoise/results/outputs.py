@@ -263,6 +263,7 @@ CAUSES = {
     "weight": to_say("weight"),
     "load": to_say("loads"),
     "spring": to_say("springs"),
+    "friction": to_say("friction"),
 }
 DIMENSIONS = {unit: dimension for dimension, unit in SI.items()}
 """SI unit -> what it is of."""

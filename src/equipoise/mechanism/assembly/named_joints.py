@@ -9,7 +9,11 @@ from equipoise.i18n import Note
 from equipoise.mechanism.assembly.joints import Structure, name_in_outputs
 from equipoise.mechanism.assembly.steps import Reaction
 from equipoise.mechanism.checks import numbered, unknown
-from equipoise.mechanism.parts.joint_properties import JointProperties, family_of
+from equipoise.mechanism.parts.joint_properties import (
+    JointProperties,
+    family_of,
+    wrong_of_kind,
+)
 from equipoise.mechanism.parts.machine import Machine
 
 ReactionsByName = dict[str, list[Reaction]]
@@ -78,7 +82,7 @@ def given_properties(
                     before=before,
                 )
                 raise ModelError(f"{where}.joint", told)
-            if one.radius is not None and joint.kind != "pin":
-                told = Note("{joint!r} is no pin and has no radius; leave it out", joint=one.joint)
-                raise ModelError(f"{where}.radius", told)
+            in_slot = joint.name in joints.riders
+            for problem in wrong_of_kind(where, one, joint.kind, in_slot):
+                raise problem
             yield where, joint, one

@@ -164,7 +164,7 @@ def springs_across(motion: Motion) -> dict[str, Any]:
 
 
 def apart(whole: Across, exerted: Mapping[str, JointForce], shape: tuple[int, ...]) -> Across:
-    """What links do across the plane, by cause and link: arrays of a shape (5, L, N)."""
+    """What links do across the plane, by cause and link: arrays of a shape (C, L, N)."""
 
     def by(cause: int, needed: Needed) -> Needed:
         found = {}

@@ -29,8 +29,10 @@ from equipoise.mechanism.dynamics.across import (
     springs_across,
 )
 from equipoise.mechanism.dynamics.exerted import Exerted
+from equipoise.mechanism.dynamics.friction import unit_demands, with_friction
 from equipoise.mechanism.dynamics.reactions import (
     Demand,
+    JointFriction,
     Pass,
     VectorSignal,
     demands_of,
@@ -41,6 +43,7 @@ from equipoise.mechanism.dynamics.reactions import (
 from equipoise.mechanism.dynamics.shares import CAUSES, Split
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.rubbing import rubbing_joints
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.machine import Link, Machine, Vector
 from equipoise.mechanism.parts.places import in_frame
@@ -55,6 +58,7 @@ class Forces(Exerted, Displayed):
     inertia, weights, loads, springs : link -> its demand, by what makes it; loads and springs
         only where there are.
     inner : those of the loads whose opposite the frame bears.
+    rubs : whether friction in joints counts.
     """
 
     motion: Motion
@@ -64,6 +68,7 @@ class Forces(Exerted, Displayed):
     loads: Mapping[str, Demand]
     springs: Mapping[str, Demand] = field(default_factory=dict)
     inner: Mapping[str, Demand] = field(default_factory=dict)
+    rubs: bool = True
 
     @property
     def caption(self) -> str:
@@ -106,7 +111,20 @@ class Forces(Exerted, Displayed):
         for more in (self.weights, self.loads, self.springs):
             for link, (force, moment) in more.items():
                 total[link] = (total[link][0] + force, total[link][1] + moment)
+        if self.rubs and self.motion.machine.rubs:
+            return with_friction(self.motion, total, other)
         return reactions(self.motion, total, other)
+
+    @property
+    def frictions(self) -> Mapping[str, JointFriction]:
+        """What joints resist their motion with, by name; of those that do."""
+        return self.solved.friction
+
+    @property
+    def friction_loss(self) -> Array:
+        """Power (N,) that all joints lose by friction, W."""
+        losses = [one.loss for one in self.frictions.values()]
+        return full(self.motion, sum(losses, start=np.zeros(())), float)
 
     @property
     def frame_force(self) -> VectorSignal:
@@ -309,14 +327,16 @@ def _inertia(motion: Motion, link: str, *numbers: Any) -> Demand:
 def split(whole: Forces) -> Split:
     """Run the joints once for every cause and link."""
     motion, links = whole.motion, tuple(whole.inertia)
-    shape = (len(CAUSES), len(links), len(motion.crank_angle))
+    causes = len(CAUSES) if whole.frictions else len(CAUSES) - 1
+    shape = (causes, len(links), len(motion.crank_angle))
     demands = {}
     for k, link in enumerate(links):
         force, moment = np.zeros(shape, complex), np.zeros(shape)
         for c, (f, m) in enumerate(_causes(whole, link)):
             force[c, k], moment[c, k] = f, m
         demands[link] = (force, moment)
-    solved = reactions(motion, demands, whole.solved)
+    solved = reactions(motion, _with_friction(whole, demands, shape), whole.solved)
+    solved = replace(solved, friction=_split_frictions(whole, links, shape))
 
     def preload_shares(coupling: Coupling) -> Array:
         """With the springs, and with the driven link."""
@@ -324,9 +344,9 @@ def split(whole: Forces) -> Split:
         own[CAUSES.index("spring"), links.index(coupling.driven)] = coupling.preload
         return own
 
-    inertial = np.array([1, 1, 0, 0, 0])[:, None, None]
+    inertial = np.array([1, 1, 0, 0, 0, 0])[:causes, None, None]
     # A spring's pull on the frame and what it makes the joints bear there cancel.
-    on_frame = np.array([1, 1, 1, 1, 0])[:, None, None]
+    on_frame = np.array([1, 1, 1, 1, 0, 1])[:causes, None, None]
     frame_force = np.broadcast_to(on_frame * solved.frame_force, shape).copy()
     frame_moment = np.broadcast_to(on_frame * solved.frame_moment(whole.about), shape).copy()
     for link, demand in whole.inner.items():
@@ -348,8 +368,42 @@ def split(whole: Forces) -> Split:
     )
 
 
+def _owner(links: Sequence[str], friction: JointFriction) -> int:
+    """The link, by its place, with which the friction of a joint is told."""
+    return links.index(friction.on if friction.on in links else friction.by)
+
+
+def _with_friction(
+    whole: Forces, demands: Mapping[str, Demand], shape: tuple[int, ...]
+) -> dict[str, Demand]:
+    """Demands of a shape (C, L, N), with what holds friction on both bodies of each joint."""
+    motion, links, total = whole.motion, tuple(whole.inertia), dict(demands)
+    joints = rubbing_joints(motion.linkage) if whole.frictions else ()
+    for joint, unit in zip(joints, unit_demands(motion, joints), strict=True):
+        friction = whole.frictions[joint.name]
+        at = CAUSES.index("friction"), _owner(links, friction)
+        for body, own in unit.items():
+            if body not in total:
+                total[body] = np.zeros(shape, complex), np.zeros(shape)
+            for part, one in zip(total[body], own, strict=True):
+                part[at] += friction.effort * one
+    return total
+
+
+def _split_frictions(
+    whole: Forces, links: Sequence[str], shape: tuple[int, ...]
+) -> dict[str, JointFriction]:
+    """The friction of each joint, (C, L, N)."""
+    found = {}
+    for name, one in whole.frictions.items():
+        effort = np.zeros(shape)
+        effort[CAUSES.index("friction"), _owner(links, one)] = one.effort
+        found[name] = replace(one, effort=effort)
+    return found
+
+
 def _causes(whole: Forces, link: str) -> list[Demand]:
-    """Demands of a link in the order of `CAUSES`."""
+    """Demands of a link in the order of `CAUSES`, but for friction."""
     motion = whole.motion
     body = motion.machine.links[link]
     mass, moment, _ = inertia_about(body, whole.anchor(link))

@@ -8,7 +8,7 @@ and springs make demands of their own.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -102,6 +102,36 @@ class CouplingForce(JointForce):
         return self.parts[name]
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class JointFriction(Brief):
+    """What a joint resists its motion with; arrays (N,).
+
+    on, by : it acts on the first body.  is_pin : whether that turns, against the other.
+    effort : torque in a pin, N m, or force along the line of a slider, N; by damping and drag too.
+    pressing : what presses the surfaces on each other, N.
+    rate : of the first body against the other, rad/s or m/s.
+    reach : from the rate to the sliding speed: the radius of a pin, m; 1 of a slider.
+    """
+
+    on: str
+    by: str
+    is_pin: bool
+    effort: Array
+    pressing: Array
+    rate: Array
+    reach: float
+
+    @property
+    def loss(self) -> Array:
+        """Power lost, W."""
+        return -self.effort * self.rate
+
+    @property
+    def sliding_power(self) -> Array:
+        """What presses, times the sliding speed, W: its integral over time is what wears."""
+        return self.pressing * np.abs(self.rate) * self.reach
+
+
 CouplingForces = Mapping[str, Mapping[str, CouplingForce]]
 """Forces of couplings, by list of the file and name."""
 
@@ -142,10 +172,12 @@ class Pass:
     """Joint forces of one run over the groups, for one demand or a stack of them.
 
     state : every value, by the names told in `mechanism.assembly.steps`; shapes (..., N).
+    friction : of joints that resist their motion, by name; its arrays are (..., N).
     """
 
     motion: Motion
     state: State
+    friction: Mapping[str, JointFriction] = field(default_factory=dict)
 
     @cached_property
     def drives(self) -> dict[str, Array]:
@@ -241,6 +273,8 @@ class Pass:
         at = self.state[f"p({reaction.at})"] - self.motion.point(slider.point).place
         moment = sign * self.state[reaction.couple] + kernels.cross(at, force)
         normal = kernels.cross(direction, force)
+        if (rubs := self.friction.get(slider.name)) is not None:
+            force = force + (1.0 if rubs.on == on else -1.0) * rubs.effort * direction
         return SliderForce(force, on, by, normal, full(self.motion, moment, float))
 
     def _force(self, coupling: Coupling, reaction: Reaction, preload: Any) -> CouplingForce:

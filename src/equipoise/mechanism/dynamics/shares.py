@@ -19,9 +19,9 @@ from equipoise.mechanism.dynamics.reactions import (
     SliderForce,
 )
 
-CAUSES = ("translation", "rotation", "weight", "load", "spring")
+CAUSES = ("translation", "rotation", "weight", "load", "spring", "friction")
 """Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside, and
-springs and preloads of couplings."""
+springs and preloads of couplings; friction, where joints have it."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -57,7 +57,8 @@ class Shares(Coupled, Brief):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Split(Shares):
-    """Outputs by cause and link: arrays (5, L, N), causes as in `CAUSES`, links in file order.
+    """Outputs by cause and link: arrays (C, L, N), causes as in `CAUSES`, of which the
+    last only with friction; links in file order.
 
     Gears are taken with the flank in contact that the whole load gives, and chains with the strand
     that pulls.
@@ -65,9 +66,14 @@ class Split(Shares):
 
     links: tuple[str, ...]
 
+    @property
+    def causes(self) -> tuple[str, ...]:
+        """Those of `CAUSES` that it has."""
+        return CAUSES[: len(self.shaking_moment)]
+
     def by_cause(self, output: str) -> dict[str, Array]:
         """An output, such as ``drive_torque`` or ``joints.B``, summed over links."""
-        return dict(zip(CAUSES, self._array(output).sum(axis=1), strict=True))
+        return dict(zip(self.causes, self._array(output).sum(axis=1), strict=True))
 
     def by_link(self, output: str) -> dict[str, Array]:
         """An output, such as ``drive_torque`` or ``joints.B``, summed over causes."""

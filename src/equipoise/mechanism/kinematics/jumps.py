@@ -1,6 +1,7 @@
 """Crank angles at which forces jump, and motions that are taken piece by piece between them.
 
-Loads, motion laws and soil say themselves where they set in, end or change suddenly.
+Loads, motion laws and soil say themselves where they set in, end or change suddenly; dry friction
+does so where a joint turns back.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import numpy as np
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.kinematics.motion import Motion, move
+from equipoise.mechanism.kinematics.rubbing import rubbing_joints
 from equipoise.mechanism.kinematics.tip import crossings, surface_of
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.machine import FRAME, Machine
@@ -40,7 +42,7 @@ def jumps_of(linkage: Linkage) -> Array:
     known: Array | None = linkage.__dict__.get("_jumps")
     if known is None:
         known = np.empty(0)
-        if may_jump(linkage.machine):
+        if may_jump(linkage.machine) or linkage.machine.rubs:
             turns = linkage.cycle.turns
             every = [*declared_jumps(linkage.machine, turns), *_jumps_on_the_way(linkage)]
             known = _within(every, turns)
@@ -122,6 +124,9 @@ def _jumps_on_the_way(linkage: Linkage) -> Iterator[Array]:
     machine = linkage.machine
     for cam in machine.cams:
         yield from _knots(linkage, cam)
+    for joint in rubbing_joints(linkage):
+        if joint.jumps:
+            yield _crossed(linkage, joint.rate)
     if machine.planting is not None and machine.planting.soil is not None:
         surface = surface_of(machine)
         for arm in machine.planting.every_arm:

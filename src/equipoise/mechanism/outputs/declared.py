@@ -147,7 +147,8 @@ linear("shaking_moment", "torque", to_say("shaking moment"), about=True, ordered
        compared=MOMENT, yardstick="span")  # fmt: skip
 TURNED: dict[str, Any] = {"members": lambda machine: () if machine.drive.pushes else ("",)}
 PUSHED: dict[str, Any] = {"members": lambda machine: ("",) if machine.drive.pushes else ()}
-EFFORT: dict[str, Any] = {"ordered": True, "compared": TORQUE, "yardstick": "effort"}
+EFFORT: dict[str, Any] = {"ordered": True, "compared": TORQUE, "yardstick": "effort",
+                          "by_friction": True}  # fmt: skip
 linear("drive_torque", "torque", to_say("drive torque"), **TURNED, **EFFORT)
 linear("drive_force", "force", to_say("drive force"), loop=None, **PUSHED, **EFFORT)
 linear("frame_force", "force", to_say("force on the frame"), XY, summed=(True, False))
@@ -202,7 +203,7 @@ def _told(machine: Any, effort_in: str) -> list[str]:
     return [link for link in machine.told_drives if kinds[link] == effort_in]
 
 
-of_drive = alike("drives.{}.", _of_drive, linear=True)
+of_drive = alike("drives.{}.", _of_drive, linear=True, by_friction=True)
 of_drive(
     "torque",
     "torque",
@@ -246,6 +247,7 @@ of_joint = alike(
     spoken=joint_named,
     linear=True,
     internal=True,
+    by_friction=True,
 )
 of_joint(
     "",
@@ -295,6 +297,7 @@ of_bearing = alike(
     items=lambda found: found.forces.across.bearings if found.machine.bearings else (),
     linear=True,
     internal=True,
+    by_friction=True,
 )
 of_bearing(
     "",
@@ -305,6 +308,45 @@ of_bearing(
     summed=(True, False),
     compared=FORCE,
     yardstick="acting",
+)
+
+
+def _of_friction(name: str, found: Any, joint: str) -> Any:
+    return getattr(found.forces.frictions[joint], name)
+
+
+def _rubbing(*kinds: str) -> dict[str, Any]:
+    """Joints that resist their motion, pins or sliders."""
+
+    def members(machine: Any) -> list[str]:
+        sliders = slider_names(machine) if machine.rubs else []
+        names = joint_names(machine) if machine.rubs else []
+        rubbing = {one.joint.removeprefix("joints.") for one in machine.joints if one.rubs}
+        mine = [one for one in names if {one, one.partition("/")[0]} & rubbing]
+        return [one for one in mine if ("slider" if one in sliders else "pin") in kinds]
+
+    def items(found: Any) -> list[str]:
+        frictions = found.forces.frictions.items()
+        return [name for name, one in frictions if ("pin" if one.is_pin else "slider") in kinds]
+
+    return {"members": members, "items": items, "spoken": joint_named}
+
+
+of_friction = alike("joints.{}.", _of_friction)
+of_friction("friction_torque", "torque", to_say("friction torque in joint {name}"), had="effort",
+            **_rubbing("pin"))  # fmt: skip
+of_friction("friction_force", "force", to_say("friction force in joint {name}"), had="effort",
+            **_rubbing("slider"))  # fmt: skip
+BOTH = _rubbing("pin", "slider")
+of_friction("friction_loss", "power", to_say("friction loss in joint {name}"), had="loss",
+            **BOTH)  # fmt: skip
+of_friction("sliding_power", "power", to_say("contact force times sliding speed in joint {name}"),
+            **BOTH)  # fmt: skip
+alike("", _force)(
+    "friction_loss",
+    "power",
+    to_say("friction loss in all joints"),
+    members=lambda machine: ("",) if machine.rubs else (),
 )
 
 
@@ -331,7 +373,8 @@ def of_coupling(table: str) -> Callable[..., None]:
     """A way to declare outputs of the couplings of a list of the file, which are linear for the
     flanks in contact and the strands that pull.
     """
-    shared: dict[str, Any] = {"linear": True, "internal": True, **_members_of(table)}
+    shared: dict[str, Any] = {"linear": True, "internal": True, "by_friction": True}
+    shared |= _members_of(table)
     read = lambda name, found, item: _members(found.forces.couplings[table], name, item)  # noqa: E731
     return alike(table + ".{}", read, **shared)
 
@@ -361,9 +404,9 @@ of_rows("shaking_moment", "torque", to_say("shaking moment"), compared=FORCE, ya
 of_rows("roll_moment", "torque", to_say("roll moment"), compared=FORCE, yardstick="bearings")
 of_rows("yaw_moment", "torque", to_say("yaw moment"), compared=FORCE, yardstick="bearings")
 of_rows("drive_torque", "torque", to_say("drive torque"), compared=TORQUE, yardstick="effort",
-        **TURNED)  # fmt: skip
+        by_friction=True, **TURNED)  # fmt: skip
 of_rows("drive_force", "force", to_say("drive force"), compared=TORQUE, yardstick="effort",
-        **PUSHED)  # fmt: skip
+        by_friction=True, **PUSHED)  # fmt: skip
 DECLARED["gauges.{}"] = Declared(
     "gauges.{}",
     "length",

@@ -95,6 +95,8 @@ class Declared:
     unbounded : whether there are crank angles at which it is infinite, which NaN stands for; it is
         had by its name alone.
     yardstick : against what it is measured to say whether it is large; empty where it is not.
+    by_friction : whether friction in joints changes it, so that with it masses do not enter it
+        linearly.
     """
 
     name: str
@@ -117,6 +119,7 @@ class Declared:
     compared: tuple[Measure, ...] = ()
     unbounded: bool = False
     yardstick: Yardstick = ""
+    by_friction: bool = False
 
     @property
     def unit(self) -> str:
@@ -145,7 +148,11 @@ class Declared:
         return self.is_of_row and not self.reason
 
     def linear_in(self, machine: Any) -> bool:
-        """Whether it is linear in the masses of a machine: no contact in it changes sides."""
+        """Whether it is linear in the masses of a machine: no contact in it changes sides, and no
+        friction in it follows from forces.
+        """
+        if self.by_friction and machine.rubs:
+            return False
         return self.linear and not (self.internal and machine.switches)
 
     @property

@@ -11,10 +11,14 @@ from typing import ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Conditions, Frozen, Text, any_of, declared, key
+from equipoise.keys import Conditions, Frozen, Number, Text, any_of, declared, key
 
 JOINTS = ("pin", "slider")
 """Kinds of joints that hold bodies together, which no coupling is."""
+OF_PIN = ("radius", "torsional_damping", "drag_torque")
+OF_SLIDER = ("guide_length", "damping", "drag_force")
+RUBBING = ("friction", "damping", "torsional_damping", "drag_force", "drag_torque")
+"""Keys of which each alone makes a joint resist its motion."""
 
 
 def family_of(kind: str) -> str:
@@ -27,8 +31,17 @@ class JointProperties(Frozen):
     """Properties of one joint, each of which may be left out."""
 
     called = to_say("{what} of joint {number}")
-    file_order = ("joint", "radius", "stiffness")
-    conditions: ClassVar[Conditions] = any_of("radius", "stiffness")
+    file_order = (
+        "joint", "radius", "stiffness", "friction", "static_friction", "stribeck_speed",
+        "guide_length", "damping", "torsional_damping", "drag_force", "drag_torque",
+    )  # fmt: skip
+    conditions: ClassVar[Conditions] = any_of("radius", "stiffness", *RUBBING) | {
+        "dependentRequired": {
+            "static_friction": ["friction", "stribeck_speed"],
+            "stribeck_speed": ["static_friction"],
+            "guide_length": ["friction"],
+        }
+    }
 
     joint: str = key(
         Text(),
@@ -43,6 +56,57 @@ class JointProperties(Frozen):
         example="20000 kN/m",
         above=0,
     )
+    friction: float | None = key(
+        Number(),
+        "coefficient of dry friction; a pin with one needs its `radius`",
+        default=None,
+        example=0.1,
+        at_least=0,
+    )
+    static_friction: float | None = key(
+        Number(),
+        "coefficient at standstill, from which it falls to `friction` (Stribeck)",
+        default=None,
+        at_least=0,
+    )
+    stribeck_speed: float | None = key(
+        "speed",
+        "sliding speed at which 37 % of the difference between both is left",
+        default=None,
+        example="5 mm/s",
+        above=0,
+    )
+    guide_length: float | None = key(
+        "length",
+        "of the sliding link along its guide, in the middle of which its point is: a moment there "
+        "presses both ends of it on the guide; left out, the normal force alone rubs",
+        default=None,
+        example="60 mm",
+        above=0,
+    )
+    damping: float = key("damping", "of a slider, viscous", default=0.0, at_least=0)
+    torsional_damping: float = key(
+        "torsional damping", "of a pin, viscous", default=0.0, at_least=0
+    )
+    drag_force: float = key(
+        "force",
+        "of a slider, always against its motion, such as of a seal",
+        default=0.0,
+        example="20 N",
+        at_least=0,
+    )
+    drag_torque: float = key(
+        "torque",
+        "of a pin, always against its motion, such as of a seal",
+        default=0.0,
+        example="0.05 N m",
+        at_least=0,
+    )
+
+    @property
+    def rubs(self) -> bool:
+        """Whether the joint resists its motion."""
+        return any(getattr(self, name) for name in (*RUBBING, "static_friction"))
 
 
 def wrong_joint(where: str, one: JointProperties, families: Iterable[str]) -> Iterator[ModelError]:
@@ -53,5 +117,51 @@ def wrong_joint(where: str, one: JointProperties, families: Iterable[str]) -> It
     if not one.joint.startswith((*(f"{family}." for family in families),)):
         told = Note("got {joint!r}; give a joint as joints.B", joint=one.joint)
         yield ModelError(f"{where}.joint", told)
-    if one.radius is None and one.stiffness is None:
-        yield ModelError(where, Note("give radius, stiffness or both of the joint"))
+    if one.radius is None and one.stiffness is None and one.friction is None and not one.rubs:
+        yield ModelError(where, Note("give radius, stiffness or friction of the joint"))
+    yield from _wrong_friction(where, one)
+
+
+def _wrong_friction(where: str, one: JointProperties) -> Iterator[ModelError]:
+    """Report keys of friction that do not go together."""
+    if (one.static_friction is None) != (one.stribeck_speed is None):
+        missing = "static_friction" if one.static_friction is None else "stribeck_speed"
+        told = Note("missing; static_friction and stribeck_speed go together")
+        yield ModelError(f"{where}.{missing}", told)
+    for name in ("static_friction", "guide_length"):
+        if one.friction is None and getattr(one, name) is not None:
+            yield ModelError(f"{where}.{name}", Note("goes with friction; give that too"))
+    if one.friction is not None and (one.static_friction or one.friction) < one.friction:
+        told = Note(
+            "got {static}; give at least the friction of {friction}, from which it falls",
+            static=f"{one.static_friction:g}",
+            friction=f"{one.friction:g}",
+        )
+        yield ModelError(f"{where}.static_friction", told)
+
+
+def wrong_of_kind(
+    where: str, one: JointProperties, kind: str, in_slot: bool
+) -> Iterator[ModelError]:
+    """Report properties that a joint of this kind does not have, or lacks.
+
+    in_slot : whether it is a pin in a slot.
+    """
+    if in_slot and one.rubs:
+        told = Note("friction of a pin in a slot is not computed; leave it out")
+        yield ModelError(where, told)
+    if one.radius is not None and kind != "pin":
+        told = Note("{joint!r} is no pin and has no radius; leave it out", joint=one.joint)
+        yield ModelError(f"{where}.radius", told)
+    for names, of in ((OF_PIN[1:], "pin"), (OF_SLIDER, "slider")):
+        for name in names:
+            if getattr(one, name) and kind != of:
+                what = to_say("{joint!r} is no pin; this key is of pins, leave it out")
+                if of == "slider":
+                    what = to_say("{joint!r} is no slider; this key is of sliders, leave it out")
+                yield ModelError(f"{where}.{name}", Note(what, joint=one.joint))
+    if one.friction is not None and kind not in JOINTS:
+        told = Note("{joint!r} is no pin or slider; leave friction out", joint=one.joint)
+        yield ModelError(f"{where}.friction", told)
+    if one.friction is not None and kind == "pin" and one.radius is None:
+        yield ModelError(f"{where}.radius", Note("missing; friction in a pin acts at its radius"))

@@ -272,6 +272,11 @@ class Machine(Driven, Displayed, Frozen):
         return any(one.switches for one in self.couplings)
 
     @property
+    def rubs(self) -> bool:
+        """Whether joints resist their motion, by friction, damping or drag."""
+        return any(one.rubs for one in self.joints)
+
+    @property
     def has_planes(self) -> bool:
         """Whether it tells where its parts lie across the plane of its motion."""
         return bool(self.bearings) or any(
@@ -353,6 +358,12 @@ class Machine(Driven, Displayed, Frozen):
     def with_springs(self, springs: Iterable[Spring]) -> Machine:
         """Return the machine with other springs."""
         return self._same_motion(replace(self, springs=tuple(springs)))
+
+    def without_friction(self) -> Machine:
+        """Return the machine whose joints move freely."""
+        free = (JointProperties(one.joint, one.radius, one.stiffness)
+                for one in self.joints if (one.radius, one.stiffness) != (None, None))  # fmt: skip
+        return self._same_motion(replace(self, joints=tuple(free)))
 
     def with_balance(self, balance: Balance | None) -> Machine:
         """Return the machine with another plan of what may be changed, or with none."""

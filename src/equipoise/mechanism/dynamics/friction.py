@@ -1,0 +1,331 @@
+"""Friction in joints: dry with a Stribeck peak, viscous, and a constant drag.
+
+A joint that turns or slides at the speed v, rad/s or m/s, resists with the torque or force
+
+    f = -(sign(v) (mu(v) P + D) + c v),    mu(v) = mu + (mu_0 - mu) exp(-(s / v_s)^2)
+
+where s is the sliding speed, D the drag and c the damping.  P presses the surfaces on each other:
+the force of a pin, at its radius; of a slider its normal force N or, with a guide of length l and a
+moment M about the slider's point, the sum max(|N|, 2 |M| / l) of the forces at both its ends.
+
+The pass over the joints is linear in what acts on links, friction too.  So what presses in each
+joint is known, by one stack of passes, as a sum of what it is without friction and of what a unit
+of each friction adds; and the friction of all joints follows by Newton's method, at all crank
+angles at once.  Where coefficients grow from 0, the solution changes smoothly until the matrix of
+this method is singular: there a machine locks itself, and beyond no drive torque moves it that way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import degrees
+
+import numpy as np
+
+from equipoise.errors import LockError
+from equipoise.i18n import Note, all_of
+from equipoise.mechanism.assembly.steps import Array
+from equipoise.mechanism.dynamics.reactions import (
+    Acting,
+    Demand,
+    JointFriction,
+    Pass,
+    demands_of,
+    full,
+    reactions,
+)
+from equipoise.mechanism.formulas.kernels import cross
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.rubbing import RubbingJoint, rubbing_joints
+
+Demands = Mapping[str, Demand]
+
+CLOSE = 1e-13
+"""Share of the largest friction at a crank angle by which the law may be missed."""
+MOST_ROUNDS = 20
+"""Of Newton's method, which takes 3 to 6: the law is a piecewise linear or a smooth one."""
+FLANKS = 8
+"""Rounds after which flanks, or strands, that friction loads the other way have to stay."""
+FIRST_STEP, LAST_STEP = 0.25, 1e-4
+"""Shares of the coefficients, by which they grow at first, and at least, where a machine is looked
+at that may lock itself."""
+LEADING = 0.3
+"""Share of the largest power, in the friction forces that grow where it locks, of a joint that is
+named."""
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionLaw:
+    """The joints of a motion that resist it, with what does not depend on their forces.
+
+    rates : (J, N) rad/s or m/s.  grip : (J, N) with the sign of the motion, what friction is of
+    what presses: coefficients times radii.  given : (J, N) drag and viscous part, N m or N.
+    """
+
+    joints: tuple[RubbingJoint, ...]
+    rates: Array
+    grip: Array
+    given: Array
+
+    @classmethod
+    def of(cls, joints: Sequence[RubbingJoint], rates: Array, senses: Array) -> FrictionLaw:
+        """From speeds (J, N) of the joints, and the signs that count where they are 0."""
+        grip, given = np.zeros((2, *rates.shape))
+        for k, joint in enumerate(joints):
+            one, reach = joint.given, joint.reach
+            mu = np.full(rates.shape[1:], one.friction or 0.0)
+            if one.static_friction is not None and one.stribeck_speed is not None:
+                slides = reach * rates[k] / one.stribeck_speed
+                mu = mu + (one.static_friction - mu) * np.exp(-(slides**2))
+            grip[k] = senses[k] * mu * reach
+            drag, damping = one.drag_torque, one.torsional_damping
+            if joint.slider is not None:
+                drag, damping = one.drag_force, one.damping
+            given[k] = senses[k] * drag + damping * rates[k]
+        return cls(tuple(joints), rates, grip, given)
+
+    @cached_property
+    def levers(self) -> Array:
+        """(J, 2): by which both parts of what presses count; see `pressing_parts`."""
+        rows = []
+        for joint in self.joints:
+            length = joint.given.guide_length
+            rows.append((1.0, 1.0 if joint.slider is None else 2 / length if length else 0.0))
+        return np.array(rows)
+
+    def pressing(self, parts: Array) -> tuple[Array, Array]:
+        """What presses (J, N), N, by parts (J, 2, N), and its derivatives (J, 2, N) by them."""
+        scaled = parts * self.levers[..., None]
+        is_pin = np.array([joint.slider is None for joint in self.joints])[:, None]
+        first, second = np.abs(scaled[:, 0]), np.abs(scaled[:, 1])
+        size = np.where(is_pin, np.hypot(first, second), np.maximum(first, second))
+        slopes = np.sign(scaled)
+        round_pin = scaled / np.where(size > 0, size, 1.0)[:, None]
+        larger = np.stack([first >= second, second > first], axis=1)
+        slopes = np.where(is_pin[:, None], round_pin, slopes * larger)
+        return size, slopes * self.levers[..., None]
+
+    def missed(self, efforts: Array, share: Array, press: Press) -> tuple[Array, Array]:
+        """By how much efforts (J, N) miss the law, and its derivatives (N, J, J) by them.
+
+        share : (N,) of the coefficients.
+        """
+        size, slopes = self.pressing(press.parts(efforts))
+        grip = share * self.grip
+        missed = efforts + grip * size + self.given
+        slope = np.einsum("jn,jcn,jckn->njk", grip, slopes, press.response)
+        return missed, slope + np.eye(len(self.joints))
+
+    def at(self, some: Array) -> FrictionLaw:
+        """At some of the N crank angles."""
+        return FrictionLaw(self.joints, self.rates[:, some], self.grip[:, some],
+                           self.given[:, some])  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Press:
+    """What presses in joints, as parts: x and y of a pin's force, normal force and moment of a
+    slider.
+
+    without : (J, 2, N) without friction.  response : (J, 2, J, N) to a unit of each friction.
+    """
+
+    without: Array
+    response: Array
+
+    def parts(self, efforts: Array) -> Array:
+        """(J, 2, N), with friction (J, N)."""
+        added = np.einsum("jckn,kn->jcn", self.response, efforts)
+        return np.asarray(self.without + added)
+
+    def at(self, some: Array) -> Press:
+        """At some of the N crank angles."""
+        return Press(self.without[..., some], self.response[..., some])
+
+
+# -- the law and the balance of forces together ----------------------------------------------------
+
+
+def balanced(law: FrictionLaw, press: Press, start: Array | None = None) -> tuple[Array, Array]:
+    """Friction (J, N) that obeys the law with the forces that it makes itself, and the share (N,)
+    of the coefficients up to which there is one: 1 where it is that of the whole.
+    """
+    count = law.rates.shape[1]
+    efforts = np.zeros_like(law.rates) if start is None else start
+    whole = np.ones(count)
+    efforts, good = _newton(law, press, efforts, whole)
+    if not np.all(good):
+        bad = np.flatnonzero(~good)
+        efforts[:, bad], whole[bad] = _grown(law.at(bad), press.at(bad))
+    return efforts, whole
+
+
+def _newton(law: FrictionLaw, press: Press, efforts: Array, share: Array) -> tuple[Array, Array]:
+    """Efforts (J, N), and where they obey the law and are those that grow from none (N,)."""
+    good = np.zeros(efforts.shape[1], bool)
+    for _ in range(MOST_ROUNDS):
+        missed, slopes = law.missed(efforts, share, press)
+        size = np.max(np.abs(efforts), axis=0, initial=0.0) + np.max(np.abs(law.given), axis=0)
+        good = np.max(np.abs(missed), axis=0) <= CLOSE * size
+        if np.all(good):
+            break
+        with np.errstate(all="ignore"):
+            singular = ~(np.abs(np.linalg.det(slopes)) > 0)
+            slopes[singular] = np.eye(len(slopes[0]))
+            step = np.linalg.solve(slopes, missed.T[..., None])[..., 0].T
+        efforts = efforts - np.where(np.isfinite(step), step, 0.0)
+    _, slopes = law.missed(efforts, share, press)
+    return efforts, good & (np.linalg.det(slopes) > 0)
+
+
+def _grown(law: FrictionLaw, press: Press) -> tuple[Array, Array]:
+    """The same by coefficients that grow step by step from 0, and the share that they reach."""
+    share = np.zeros(law.rates.shape[1])
+    step = np.full_like(share, FIRST_STEP)
+    efforts = -law.given
+    while np.any(going := (share < 1) & (step >= LAST_STEP)):
+        some = np.flatnonzero(going)
+        tried = np.minimum(share[some] + step[some], 1.0)
+        found, good = _newton(law.at(some), press.at(some), efforts[:, some], tried)
+        efforts[:, some[good]], share[some[good]] = found[:, good], tried[good]
+        step[some] *= np.where(good, 1.0, 0.5)
+    return efforts, share
+
+
+# -- of a motion -----------------------------------------------------------------------------------
+
+
+def law_of(motion: Motion) -> FrictionLaw:
+    """The law of the joints of a motion."""
+    joints = rubbing_joints(motion.linkage)
+    rates = np.array([joint.rate(motion) for joint in joints]) * motion.speed
+    return FrictionLaw.of(joints, rates, np.sign(rates))
+
+
+def unit_demands(motion: Motion, joints: Sequence[RubbingJoint]) -> list[dict[str, Demand]]:
+    """What holds a unit of friction in each joint, on both its bodies."""
+    found = []
+    for joint in joints:
+        ends: list[Acting] = [(joint.on, None, 0j, 1.0), (joint.by, None, 0j, -1.0)]  # type: ignore[list-item]
+        if joint.slider is not None:
+            at, along = motion.point(joint.slider.point).place, direction(motion, joint)
+            ends = [(joint.on, at, along, 0.0), (joint.by, at, -along, 0.0)]
+        found.append(demands_of(motion, ends))
+    return found
+
+
+def direction(motion: Motion, joint: RubbingJoint) -> Array:
+    """Unit vector (N,) along the line of a slider, complex."""
+    assert joint.slider is not None
+    line = np.exp(1j * joint.slider.direction)
+    return full(motion, motion.state[f"u({joint.slider.on})"] * line, complex)
+
+
+def pressing_parts(solved: Pass, joints: Sequence[RubbingJoint], shape: tuple[int, ...]) -> Array:
+    """Parts (J, 2, ..., N) of what presses in joints, of a pass whose values have a shape."""
+    motion, found = solved.motion, []
+    for joint in joints:
+        reaction, state = joint.reaction, solved.state
+        force = np.broadcast_to(state[reaction.force], shape)
+        if joint.slider is None:
+            found.append((force.real, force.imag))
+            continue
+        arm = state[f"p({reaction.at})"] - motion.point(joint.slider.point).place
+        moment = np.broadcast_to(state[reaction.couple or ""], shape) + cross(arm, force)
+        found.append((cross(direction(motion, joint), force), moment))
+    return np.array(found)
+
+
+def with_friction(motion: Motion, demands: Demands, like: Pass | None = None) -> Pass:
+    """Joint forces that meet the demands of all links, and friction as it follows from them.
+
+    like : as of `reactions`.
+
+    Raises
+    ------
+    LockError : the machine locks itself.
+    """
+    law = law_of(motion)
+    units = unit_demands(motion, law.joints)
+    found = like
+    if found is None and motion.machine.switches:
+        found = reactions(motion, demands)
+    efforts = np.zeros_like(law.rates)
+    for _ in range(FLANKS):
+        press = press_of(motion, demands, law.joints, units, found)
+        efforts, whole = balanced(law, press, efforts)
+        if np.any(whole < 1):
+            raise _locked(motion, law, press, efforts, whole)
+        solved = reactions(motion, added(demands, units, efforts), like)
+        if found is None or like is not None or _same_flanks(found, solved):
+            break
+        found = solved
+    size, _ = law.pressing(press.parts(efforts))
+    frictions = [
+        JointFriction(
+            joint.on, joint.by, joint.slider is None, efforts[k], size[k], law.rates[k], joint.reach
+        )
+        for k, joint in enumerate(law.joints)
+    ]
+    names = [joint.name for joint in law.joints]
+    return Pass(motion, solved.state, dict(zip(names, frictions, strict=True)))
+
+
+def press_of(
+    motion: Motion,
+    demands: Demands,
+    joints: Sequence[RubbingJoint],
+    units: Sequence[Demands],
+    like: Pass | None,
+) -> Press:
+    """What presses in joints, by one stack of passes: of the demands, and of each unit."""
+    count, angles = len(joints), len(motion.crank_angle)
+    shape = (1 + count, angles)
+    stack: dict[str, Demand] = {}
+    for body in dict.fromkeys([*motion.machine.links, *demands, *(b for u in units for b in u)]):
+        force, moment = np.zeros(shape, complex), np.zeros(shape)
+        for row, one in enumerate((demands, *units)):
+            if body in one:
+                force[row], moment[row] = one[body]
+        stack[body] = force, moment
+    parts = pressing_parts(reactions(motion, stack, like), joints, shape)
+    return Press(parts[:, :, 0], parts[:, :, 1:])
+
+
+def added(demands: Demands, units: Sequence[Demands], efforts: Array) -> dict[str, Demand]:
+    """Demands with what holds friction (J, N) of so many units."""
+    total = dict(demands)
+    for effort, unit in zip(efforts, units, strict=True):
+        for body, (force, moment) in unit.items():
+            own = total.get(body, (0j, 0.0))
+            total[body] = own[0] + effort * force, own[1] + effort * moment
+    return total
+
+
+def _same_flanks(one: Pass, other: Pass) -> bool:
+    flanks = other.flanks
+    return all(np.array_equal(value, flanks[name]) for name, value in one.flanks.items())
+
+
+def _locked(
+    motion: Motion, law: FrictionLaw, press: Press, efforts: Array, share: Array
+) -> LockError:
+    """That a machine locks itself: where with the least friction, and in which joints."""
+    worst = int(np.argmin(share))
+    at = np.array([worst])
+    _, slopes = law.at(at).missed(efforts[:, at], share[at], press.at(at))
+    _, _, ways = np.linalg.svd(slopes[0])
+    power = np.abs(ways[-1] * law.rates[:, worst])
+    leading = power >= LEADING * np.max(power)
+    names = [joint.name for joint, leads in zip(law.joints, leading, strict=True) if leads]
+    return LockError(
+        Note(
+            "friction in {joints} locks the machine at crank angle {angle:.4g} deg, however large "
+            "the drive torque; it moves with less than {share:.3g} of the coefficients given",
+            joints=all_of([f"joints.{name}" for name in names], commas=True),
+            angle=degrees(motion.crank_angle[worst]),
+            share=max(float(share[worst]), LAST_STEP),
+        )
+    )

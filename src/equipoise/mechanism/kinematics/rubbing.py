@@ -1,0 +1,89 @@
+"""Joints that resist their motion, and how fast they turn or slide."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from equipoise.mechanism.assembly.linkage import Linkage
+from equipoise.mechanism.assembly.named_joints import given_properties
+from equipoise.mechanism.assembly.steps import Array, Reaction, size_of_links
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.machine import Slider
+
+STILL = 1e-10
+"""rad or lengths of the largest link, by rad of the crank: a joint that moves less is at rest, as
+rounding would tell the sense."""
+
+
+@dataclass(frozen=True)
+class RubbingJoint:
+    """A joint that resists its motion.
+
+    name : in outputs.  reaction : its force.  given : what the file says of it.
+    slider : the sliding joint that it is; None of a pin.
+    still : rad or m by rad of the crank, below which it is at rest.
+    """
+
+    name: str
+    reaction: Reaction
+    given: JointProperties
+    slider: Slider | None
+    still: float
+
+    @property
+    def on(self) -> str:
+        """The body whose motion against `by` counts, and on which friction is given."""
+        return self.reaction.on if self.slider is None else self.slider.link
+
+    @property
+    def by(self) -> str:
+        """The other body."""
+        return self.reaction.by if self.slider is None else self.slider.on
+
+    @property
+    def reach(self) -> float:
+        """From its turning to its sliding: the radius of a pin, m; 1 of a slider."""
+        return 1.0 if self.slider is not None else self.given.radius or 0.0
+
+    @property
+    def jumps(self) -> bool:
+        """Whether its friction changes suddenly where it turns back."""
+        given = self.given
+        return bool(given.friction or given.static_friction or given.drag_force
+                    or given.drag_torque)  # fmt: skip
+
+    def rate(self, motion: Motion) -> Array:
+        """How fast it turns (rad) or slides (m) by rad of the crank (N,); 0 where it rests."""
+        if self.slider is None:
+            turns = [motion.state[f"w({body})"] for body in (self.on, self.by)]
+            rate = np.broadcast_to(np.asarray(turns[0] - turns[1], float), motion.crank_angle.shape)
+        else:
+            rate = motion.slider(self.slider).travel_1
+        return np.where(np.abs(rate) > self.still, rate, 0.0)
+
+
+def rubbing_joints(linkage: Linkage) -> tuple[RubbingJoint, ...]:
+    """Joints of a linkage that resist their motion; kept with it."""
+    if not linkage.machine.rubs:
+        return ()
+    known: tuple[RubbingJoint, ...] | None = linkage.__dict__.get("_rubbing")
+    if known is None:
+        known = tuple(_rubbing(linkage))
+        linkage.__dict__["_rubbing"] = known
+    return known
+
+
+def _rubbing(linkage: Linkage) -> list[RubbingJoint]:
+    machine = linkage.machine
+    names = {one.force: name for name, one in linkage.named_reactions}
+    sliders = {one.name: one for one in machine.sliders}
+    size, found = size_of_links(machine), []
+    for _, reaction, one in given_properties(machine, linkage.joints, linkage.reactions):
+        if one.rubs:
+            slider = sliders[reaction.name] if reaction.kind == "slider" else None
+            still = STILL * (1.0 if slider is None else size)
+            found.append(RubbingJoint(names[reaction.force], reaction, one, slider, still))
+    return found

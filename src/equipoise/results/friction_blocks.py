@@ -1,0 +1,51 @@
+"""What an analysis shows of friction: what each joint loses, and what is left."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from equipoise.i18n import say
+from equipoise.mechanism.outputs.spoken import joint_named
+from equipoise.quantities import Dimension, percent, told
+from equipoise.results.blocks import Block, Cell, Column, Facts, Table, Value
+from equipoise.results.machine_blocks import largest
+
+if TYPE_CHECKING:
+    from equipoise.results.analysis import Analysis
+
+
+def friction_blocks(analysis: Analysis) -> Iterator[Block]:
+    """Losses of all joints, and the efficiency."""
+    whole = analysis.resolved
+    losses, forces = whole.losses, whole.forces
+    if losses is None:
+        return
+    total = losses.loss
+    rows: list[tuple[Cell, ...]] = []
+    for name, one in losses.joints.items():
+        friction = forces.frictions[name]
+        kind: Dimension = "torque" if friction.is_pin else "force"
+        figures = forces.motion.figures(abs(friction.effort))
+        resists = largest(figures, dimension=kind)
+        share = f"{percent(one.loss / total)} %" if total else ""
+        rows.append((joint_named(name), Value(one.loss), share, resists, Value(one.wear_work)))
+    columns = (
+        "",
+        Column(say("mean loss"), "power"),
+        say("share"),
+        say("largest friction"),
+        Column(say("contact force times sliding way in a turn"), "energy"),
+    )
+    yield Table.of(say("Friction in joints; largest with its crank angle"), columns, rows)
+    lines = [
+        say(
+            "drive gives {drive}, loads give {loads}, joints lose {loss} in the mean",
+            drive=told(losses.drive, "power", "W"),
+            loads=told(losses.loads, "power", "W"),
+            loss=told(total, "power", "W"),
+        )
+    ]
+    if losses.efficiency is not None:
+        lines.append(say("efficiency {share} %", share=percent(losses.efficiency)))
+    yield Facts(say("Power in the mean of a cycle"), tuple(lines))

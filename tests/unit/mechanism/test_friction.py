@@ -1,0 +1,329 @@
+"""Friction in joints: closed forms of textbooks, laws of power, keys, and what is said of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import atan, pi, radians, tan
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import LockError, ModelError
+from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.kinematics.jumps import jumps_of
+from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Weight
+from equipoise.mechanism.parts.force_elements import Load
+from equipoise.mechanism.parts.joint_properties import JointProperties
+from laws.subjects import gravity_power, kinetic_power, load_power, spring_power
+from surface.running import equipoise
+from unit.schema.samples import survives
+
+ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 60, endpoint=False)
+ENGINE = replace(eq.load("slider-crank-engine"), balance=None)
+
+
+def weightless(machine: eq.Machine, **changes: Any) -> eq.Machine:
+    """The machine with links that weigh nothing."""
+    links = {
+        name: replace(link, mass=0.0, center_of_mass=(0.0, 0.0), inertia=0.0, bodies=())
+        for name, link in machine.links.items()
+    }
+    return replace(machine, links=links, balance=None, **changes)
+
+
+def rubbing(machine: eq.Machine, **given: JointProperties | float) -> eq.Machine:
+    """A machine with friction in some pins, by coefficient times 20 mm, and in sliders."""
+    joints = [
+        JointProperties(f"joints.{name}", radius=0.02, friction=one)
+        for name, one in given.items()
+        if isinstance(one, float)
+    ]
+    return replace(machine, joints=tuple(joints), balance=None)
+
+
+WORN = replace(
+    ENGINE,
+    joints=(
+        JointProperties("joints.A", radius=0.02, friction=0.05, torsional_damping=1e-4),
+        JointProperties("joints.B", radius=0.02, friction=0.05, drag_torque=0.1),
+        JointProperties("joints.C", radius=0.01, friction=0.1, static_friction=0.15,
+                        stribeck_speed=0.5),
+        JointProperties("joints.piston on frame", friction=0.1, guide_length=0.06, damping=2.0,
+                        drag_force=10.0),
+    ),
+)  # fmt: skip
+
+
+# -- closed forms ----------------------------------------------------------------------------------
+
+
+def test_a_rod_pushes_along_the_tangent_of_its_friction_circles() -> None:
+    """Without mass its line of action touches a circle of mu r about each of its pins."""
+    push, mu, radius = 1000.0, 0.1, 0.02
+    machine = weightless(ENGINE, loads=(Load("piston", "C", force=(0.0, -push)),))
+    found = eq.analyze(rubbing(machine, B=mu, C=mu), ANGLES).forces
+    plain = eq.analyze(machine, ANGLES).motion
+    crank, rod = plain.links["crank"], plain.links["rod"]
+    a, b, c = (plain.points[name].place for name in "ABC")
+    turns_b = np.sign(rod.angular_velocity - crank.angular_velocity)
+    turns_c = np.sign(rod.angular_velocity)  # the piston does not turn
+    # The couple of the rod's two forces, S L sin(delta), balances the torques mu r S of both pins.
+    lean = np.arcsin(mu * radius * (turns_b + turns_c) / np.abs(c - b))
+    along = (c - b) / np.abs(c - b)
+    for sign in (1.0, -1.0):
+        line = along * np.exp(1j * sign * lean)
+        if np.allclose(found.joints["C"].value.real / np.abs(found.joints["C"].value),
+                       line.real * np.sign(line.imag), rtol=0, atol=1e-10):  # fmt: skip
+            break
+    else:
+        raise AssertionError("the rod's force has another direction")
+    thrust = push / line.imag  # of the rod on the piston, whose guide has no friction
+    on_crank = -thrust * line
+    lever = (np.conj(b - a) * on_crank).imag + mu * radius * np.abs(thrust) * turns_b
+    np.testing.assert_allclose(found.drive_torque, -lever, atol=1e-10 * np.max(np.abs(lever)))
+
+
+def wedge(slope: float, friction: float) -> eq.Machine:
+    """A Scotch yoke whose yoke is a wedge: a shoe on it lifts a load of 100 N."""
+    yoke = eq.load("scotch-yoke")
+    links = dict(yoke.links) | {
+        "shoe": eq.Link({"D": (0.0, 0.0)}, 0.0, (0.0, 0.0), 0.0),
+        "lift": eq.Link({"D": (0.0, 0.0)}, 0.0, (0.0, 0.0), 0.0),
+    }
+    frame = {**yoke.frame, "E": (0.2, 0.0)}
+    slider = type(yoke.sliders[0])
+    sliders = (
+        *yoke.sliders,
+        slider("shoe", "D", "yoke", "Y", pi - slope),
+        slider("lift", "D", "frame", "E", pi / 2),
+    )
+    machine = replace(yoke, links=links, frame=frame, sliders=sliders, balance=None,
+                      loads=(Load("lift", "D", force=(0.0, -100.0)),))  # fmt: skip
+    joint = JointProperties("joints.shoe on yoke", friction=friction)
+    return replace(weightless(machine), joints=(joint,))
+
+
+@pytest.mark.parametrize("friction", [0.1, 0.3, 1.0])
+@pytest.mark.parametrize("slope", [10.0, 30.0])
+def test_a_wedge_lifts_with_the_tangent_of_both_angles(slope: float, friction: float) -> None:
+    """F = W tan(slope + phi) forwards, and W tan(slope - phi) back: below 0 it has to be pulled."""
+    found = eq.analyze(wedge(radians(slope), friction), ANGLES)
+    way = found.motion.points["Y"].place_1.real
+    phi, rising = atan(friction), found.motion.points["D"].velocity.imag > 0
+    force = 100.0 * np.where(rising, tan(radians(slope) + phi), tan(radians(slope) - phi))
+    # the wedge rises to the left, so that going right lifts
+    np.testing.assert_allclose(found.forces.drive_torque, force * way, atol=1e-10)
+
+
+def test_a_wedge_that_locks_is_refused_with_its_place() -> None:
+    """From mu = cot(slope) on no force drives it; below, the force grows without bound."""
+    limit = 1 / tan(radians(50.0))
+    near = eq.analyze(wedge(radians(50.0), 0.999 * limit), ANGLES)
+    assert np.max(np.abs(near.forces.drive_torque)) > 100 * 100.0 * 0.03
+    with pytest.raises(LockError) as caught:
+        eq.analyze(wedge(radians(50.0), 1.25 * limit), ANGLES)
+    assert str(caught.value).startswith(
+        "friction in joints.shoe on yoke locks the machine at crank angle "
+    )
+    assert str(caught.value).endswith("it moves with less than 0.8 of the coefficients given")
+
+
+def test_a_locked_machine_is_told_in_a_sentence(tmp_path: Any) -> None:
+    file = tmp_path / "wedge.toml"
+    eq.save(wedge(radians(50.0), 2.0), file)
+    for command in ("analyze", "report"):
+        done = equipoise(
+            command, str(file), *(["-o", str(tmp_path / "r.html")] * (command == "report"))
+        )
+        assert done.status == 2 and done.err.count("\n") == 1
+        assert "locks the machine" in done.err
+
+
+# -- laws ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("speed", "acceleration"), [(None, None), (-7.0, 0.0), (5.0, 60.0)])
+def test_power_fed_in_is_the_rate_of_energy_and_what_friction_takes(
+    speed: float | None, acceleration: float | None
+) -> None:
+    found = eq.analyze(WORN, ANGLES, speed, acceleration).forces
+    rows = [*kinetic_power(found), *-gravity_power(found), *-load_power(found)]
+    rows = [*rows, *-spring_power(found), found.friction_loss]
+    size = np.max(np.sum(np.abs(rows), axis=0))
+    np.testing.assert_allclose(found.power, np.sum(rows, axis=0), atol=1e-12 * size)
+    assert all(np.all(one.loss >= 0) for one in found.frictions.values())
+    assert np.all(found.friction_loss > 0)
+
+
+def test_friction_changes_neither_shaking_nor_the_load_on_the_frame() -> None:
+    worn, plain = (eq.analyze(one, ANGLES).forces for one in (WORN, ENGINE))
+    for name in ("shaking_force", "frame_force"):
+        got, want = getattr(worn, name).value, getattr(plain, name).value
+        np.testing.assert_allclose(got, want, atol=1e-11 * np.max(np.abs(want)))
+    for name in ("shaking_moment", "frame_moment"):
+        got, want = getattr(worn, name), getattr(plain, name)
+        np.testing.assert_allclose(got, want, atol=1e-11 * max(np.max(np.abs(want)), 1.0))
+
+
+def test_causes_and_links_add_up_with_friction_among_them() -> None:
+    found = eq.analyze(WORN, ANGLES).forces
+    for name, whole in {
+        "drive_torque": found.drive_torque,
+        "joints.piston on frame": found.joints["piston on frame"].value,
+        "joints.A": found.joints["A"].value,
+        "frame_moment": found.frame_moment,
+    }.items():
+        causes, links = found.split.by_cause(name), found.split.by_link(name)
+        size = np.max(np.abs(whole))
+        assert [*causes][-1] == "friction"
+        np.testing.assert_allclose(sum(causes.values()), whole, atol=1e-11 * size)
+        np.testing.assert_allclose(sum(links.values()), whole, atol=1e-11 * size)
+    plain = eq.analyze(ENGINE, ANGLES).forces.split.by_cause("drive_torque")
+    assert "friction" not in plain
+    np.testing.assert_allclose(found.split.by_cause("drive_torque")["load"], plain["load"])
+
+
+def test_means_are_taken_piece_by_piece_between_reversals() -> None:
+    """Constant drag: the work of a turn is drag times twice the stroke, at any number of angles."""
+    drag = JointProperties("joints.piston on frame", drag_force=10.0)
+    machine = replace(weightless(ENGINE, loads=()), joints=(drag,))
+    assert len(jumps_of(assemble(machine))) == 2
+    stroke = eq.analyze(machine).strokes["piston on frame"].stroke
+    for angles in (24, 360):
+        analysis = eq.analyze(machine, angles)
+        loss = analysis.summary["friction_loss"].mean
+        assert loss * 2 * pi / machine.drive.speed == pytest.approx(2 * stroke * 10.0, rel=1e-9)
+        assert analysis.summary["drive_torque"].mean == pytest.approx(stroke * 10.0 / pi, rel=1e-9)
+
+
+def test_losses_efficiency_and_wear_of_a_cycle() -> None:
+    slope, mu = radians(30.0), 0.1
+    machine = wedge(slope, mu)
+    losses = eq.analyze(machine).losses
+    assert losses is not None and losses.efficiency is None  # a weight comes back
+    assert losses.drive == pytest.approx(losses.loss, rel=1e-9)
+    phi, stroke = atan(mu), 0.06
+    up, down = (100.0 * tan(slope + sign * phi) * stroke for sign in (1, -1))
+    turns = machine.drive.speed / (2 * pi)
+    assert losses.loss == pytest.approx((up - down) * turns, rel=1e-9)
+    # what wears: normal force times way along the slope, up and down
+    press = 100.0 / np.cos(slope) / np.array([1 - mu * tan(slope), 1 + mu * tan(slope)])
+    way = stroke / np.cos(slope)
+    assert losses.joints["shoe on yoke"].wear_work == pytest.approx(np.sum(press) * way, rel=1e-6)
+    gas = eq.analyze(WORN).losses
+    assert gas is not None and gas.efficiency == pytest.approx(-gas.drive / gas.loads)
+    assert gas.drive + gas.loads == pytest.approx(gas.loss, rel=1e-9)
+
+
+def test_at_rest_nothing_rubs() -> None:
+    found = eq.analyze(WORN, ANGLES, 0.0, 0.0).forces
+    assert not np.any(found.friction_loss)
+    plain = eq.analyze(ENGINE, ANGLES, 0.0, 0.0).forces
+    np.testing.assert_allclose(found.drive_torque, plain.drive_torque)
+
+
+def test_flanks_bear_as_friction_loads_them() -> None:
+    """A geared counterweight driven against a strong drag on its gear: its teeth never change."""
+    machine = replace(eq.load("geared-counterweight"), balance=None)
+    names = [name for name, one in assemble(machine).named_reactions if one.kind == "pin"]
+    last = names[-1]
+    size = np.max(np.abs(eq.analyze(machine).forces.drive_torque))
+    drag = JointProperties(f"joints.{last}", drag_torque=100 * size)
+    found = eq.analyze(replace(machine, joints=(drag,)), ANGLES).forces
+    rows = [*kinetic_power(found), *-gravity_power(found), *-load_power(found), found.friction_loss]
+    np.testing.assert_allclose(found.power, np.sum(rows, axis=0),
+                               atol=1e-11 * np.max(np.abs(found.power)))  # fmt: skip
+
+
+# -- keys ------------------------------------------------------------------------------------------
+
+
+def test_a_file_tells_friction_and_check_says_it(tmp_path: Any) -> None:
+    text = survives(WORN)
+    assert 'friction = 0.1\nguide_length = "60 mm"\ndamping = "2 N s/m"\n' in text
+    file = tmp_path / "worn.toml"
+    file.write_text(text.replace("friction = 0.1\nguide", "friction = 0.7\nguide"))
+    out = equipoise("check", str(file)).out
+    assert "joints.piston on frame, friction 0.7000 (is it meant?" in out.replace("\n  ", " ")
+    assert "drag 10.00 N" in out
+
+
+WRONG: list[tuple[dict[str, Any], str]] = [
+    ({"joint": "joints.C", "friction": 0.1}, "joints[1].radius: missing; friction in a pin acts"),
+    ({"joint": "joints.C", "friction": -0.1}, "joints[1].friction: got -0.1"),
+    ({"joint": "joints.C", "radius": 0.01, "guide_length": 0.1}, "joints[1].guide_length: goes"),
+    (
+        {"joint": "joints.C", "radius": 0.01, "friction": 0.1, "guide_length": 0.1},
+        "joints[1].guide_length: 'joints.C' is no slider",
+    ),
+    ({"joint": "joints.C", "damping": 1.0}, "joints[1].damping: 'joints.C' is no slider"),
+    (
+        {"joint": "joints.piston on frame", "drag_torque": 1.0},
+        "joints[1].drag_torque: 'joints.piston on frame' is no pin",
+    ),
+    (
+        {"joint": "joints.piston on frame", "friction": 0.1, "static_friction": 0.2},
+        "joints[1].stribeck_speed: missing",
+    ),
+    (
+        {
+            "joint": "joints.piston on frame",
+            "friction": 0.3,
+            "static_friction": 0.2,
+            "stribeck_speed": 0.1,
+        },
+        "joints[1].static_friction: got 0.2; give at least the friction of 0.3",
+    ),
+]
+
+
+@pytest.mark.parametrize(("given", "sentence"), WRONG)
+def test_what_is_no_friction_of_this_joint_is_refused(given: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        assemble(replace(ENGINE, joints=(JointProperties(**given),)))
+    assert str(caught.value).startswith(sentence)
+
+
+def test_a_pin_in_a_slot_has_no_friction_yet() -> None:
+    machine = eq.load("flap-folder")
+    name = next(iter(machine.riders))
+    joint = JointProperties(f"joints.{name}", radius=0.004, friction=0.1)
+    with pytest.raises(ModelError, match=r"^joints\[1\]: friction of a pin in a slot"):
+        assemble(replace(machine, joints=(joint,), balance=None))
+
+
+# -- what is not linear any more -------------------------------------------------------------------
+
+
+def test_balancing_says_what_it_sought_without_friction() -> None:
+    weight = AddedMass("crank", "A", Weight("any", 0.05, at_most=0.2))
+    plan = Balance(masses=(weight,), objectives=(Objective("joints.A"),))
+    worn, plain = (eq.balance(one, plan) for one in (WORN, ENGINE))
+    assert worn.machine.links["crank"].mass == pytest.approx(plain.machine.links["crank"].mass)
+    assert any("is not linear in masses" in str(note) for note in worn.notes)
+    assert not any("is not linear in masses" in str(note) for note in plain.notes)
+    before, after = worn.objectives["rms of joints.A"]
+    assert before == pytest.approx(eq.analyze(WORN).summary["joints.A"].rms, rel=1e-5)
+    assert after == pytest.approx(eq.analyze(worn.machine).summary["joints.A"].rms, rel=1e-5)
+
+
+def test_studies_compute_what_friction_changes_machine_by_machine() -> None:
+    from equipoise.codegen.emit import can_compute
+    from equipoise.codegen.figures import Figure
+    from equipoise.codegen.gram import can_use
+
+    paths = ["links.crank.mass"]
+    for machine, fast in ((ENGINE, True), (WORN, False)):
+        torque = Figure("drive_torque", "rms")
+        assert can_compute(machine, paths, torque) == fast
+        assert can_use(machine, paths, [torque]) == fast
+        assert can_compute(machine, paths, Figure("shaking_force", "rms"))
+
+
+@pytest.mark.parametrize("ending", ["fmu", "html", "mo", "xml", "py"])
+def test_formats_say_that_they_leave_friction_out(ending: str, tmp_path: Any) -> None:
+    left_out = eq.export(WORN, tmp_path / f"worn.{ending}")
+    assert "friction in joints: forces are those without it" in left_out
+    assert not any("friction" in one for one in eq.export(ENGINE, tmp_path / f"p.{ending}"))
