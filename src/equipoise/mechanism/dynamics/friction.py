@@ -24,6 +24,7 @@ from math import degrees
 
 import numpy as np
 
+from equipoise.decompositions import svd
 from equipoise.errors import LockError
 from equipoise.i18n import Note, all_of
 from equipoise.mechanism.assembly.steps import Array
@@ -316,7 +317,7 @@ def _locked(
     worst = int(np.argmin(share))
     at = np.array([worst])
     _, slopes = law.at(at).missed(efforts[:, at], share[at], press.at(at))
-    _, _, ways = np.linalg.svd(slopes[0])
+    _, _, ways = svd(slopes[0])
     power = np.abs(ways[-1] * law.rates[:, worst])
     leading = power >= LEADING * np.max(power)
     names = [joint.name for joint, leads in zip(law.joints, leading, strict=True) if leads]
