@@ -24,6 +24,7 @@ from equipoise.mechanism.kinematics.jumps import bends_of_rows, jumps_of_rows
 from equipoise.mechanism.kinematics.motion import Motion, move
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import Row
+from equipoise.running.rubbing import Friction
 from equipoise.running.sources import Source, sources_of
 from equipoise.running.tabulated import Tabulated
 from equipoise.signals import Array
@@ -65,8 +66,14 @@ class CrankEquation:
 
     @cached_property
     def sources(self) -> tuple[Source, ...]:
-        """What acts on the crank beside the drive."""
-        return tuple(sources_of(self.machine))
+        """What acts on the crank beside the drive; friction in joints comes last."""
+        friction = () if self.friction is None else (self.friction,)
+        return (*sources_of(self.machine), *friction)
+
+    @cached_property
+    def friction(self) -> Friction | None:
+        """Friction in joints, where they have some."""
+        return Friction(self.machine) if self.machine.rubs else None
 
     @property
     def shaft_inertia(self) -> float:
@@ -113,7 +120,11 @@ class CrankEquation:
             columns = [inertia, *(c for one in self.sources for c in one.columns(motions))]
             return np.array([np.broadcast_to(column, theta.shape) for column in columns])
 
-        return Tabulated(functions, self.edges)
+        groups = [0]
+        for source, part in zip(self.sources, self.slices, strict=True):
+            first = max(groups) + 1
+            groups += [first + number for number in source.groups(part.stop - part.start)]
+        return Tabulated(functions, self.edges, np.array(groups))
 
     @cached_property
     def slices(self) -> tuple[slice, ...]:
@@ -123,13 +134,38 @@ class CrankEquation:
         ends = 1 + np.cumsum([0, *counts])
         return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
 
-    def torques(self, columns: Array, speed: Array) -> Array:
-        """Torque (K, ...) of each source, N m, by columns (C, ...) of the table, at speeds."""
+    def torques(self, columns: Array, speed: Array, driving: Array, sense: float) -> Array:
+        """Torque (K, ...) of each source, N m, by columns (C, ...) of the table, at speeds.
+
+        driving : torque (...) of the drive.  sense : in which the crank turns, 1 or -1.
+        """
         each = zip(self.sources, self.slices, strict=True)
-        found = [source.torque(columns[part], speed) for source, part in each]
+        found = [source.torque(columns[part], speed) for source, part in each
+                 if source is not self.friction]  # fmt: skip
+        if self.friction is not None:
+            acting, part = sum(found, start=driving), self.slices[-1]
+            found.append(
+                self.friction.torque_beside(columns[0], columns[part], speed, sense, acting)
+            )
         return np.array(found) if found else np.zeros((0, *np.shape(speed)))
 
-    def at(self, theta: float, speed: float) -> tuple[float, float, Array]:
-        """J, J' and the torque of each source at a crank angle and speed."""
+    def at(
+        self, theta: float, speed: float, driving: float, sense: float
+    ) -> tuple[float, float, Array]:
+        """J, J' and the torque of each source at a crank angle and speed, as of `torques`."""
         values, slopes = self.table.at(theta)
-        return float(values[0]), float(slopes[0]), self.torques(values, np.asarray(speed))
+        torques = self.torques(values, np.asarray(speed), np.asarray(driving), sense)
+        return float(values[0]), float(slopes[0]), torques
+
+    def at_rest(self, theta: float) -> tuple[float, dict[float, float]]:
+        """Torque of all sources but friction on a crank that stands still, N m, and the torque
+        beyond which it leaves its rest, by the sense.
+        """
+        values, _ = self.table.at(theta)
+        each = zip(self.sources, self.slices, strict=True)
+        acting = sum(float(source.torque(values[part], np.zeros(())))
+                     for source, part in each if source is not self.friction)  # fmt: skip
+        if self.friction is None:
+            return acting, dict.fromkeys((1.0, -1.0), 0.0)
+        columns = values[self.slices[-1]]
+        return acting, {sense: self.friction.breakaway(columns, sense) for sense in (1.0, -1.0)}

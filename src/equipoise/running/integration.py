@@ -32,6 +32,9 @@ RELATIVE, ABSOLUTE = 1e-11, 1e-13
 RESOLVED = 1e-9
 """Share of its largest value below which the last coefficients of 1 / speed have to lie in a piece
 whose angle is the clock."""
+WITH_CORNERS = 1e-7
+"""The same with friction, whose torque has corners where what presses changes its side: time and
+speed are off by less than that, and a piece takes a hundredth of the time that one in time does."""
 CLOSE, MOST_ITERATIONS = 1e-13, 8
 """Change of the kinetic energy, over its largest, at which a piece is solved; it takes 3 rounds."""
 NUDGE = 1e-6
@@ -139,17 +142,16 @@ class Integration:
 
     # -- at rest -----------------------------------------------------------------------------------
 
-    def torques_at_rest(self, angle: float) -> tuple[float, float]:
-        """Torque of all sources, and of the drive, on a crank that stands still, N m."""
-        acting = float(np.sum(self.equation.at(angle, 0.0)[2]))
-        return acting, float(self.driver.torque(np.zeros(())))
-
     def _sets_off(self, now: Instant) -> bool:
         """Choose the direction in which a crank at rest starts; note why where it does not."""
-        acting, driving = self.torques_at_rest(now.angle)
+        acting, holding = self.equation.at_rest(now.angle)
+        driving = float(self.driver.torque(np.zeros(())))
         net = acting + driving
-        if abs(net) <= AT_REST * max(abs(acting), abs(driving)):
-            self._note("standstill", now)
+        held = holding[copysign(1.0, net)] + AT_REST * max(abs(acting), abs(driving))
+        if abs(net) <= held:
+            rubs = holding[copysign(1.0, net)] > 0
+            pushes = rubs and self.driver.on and net * self.driver.sense > 0
+            self._note("stall" if pushes else "standstill", now)
             return False
         if self.driver.on and net * self.driver.sense < 0:
             self._note("stall", now)
@@ -204,7 +206,8 @@ class Integration:
         else:
             return None
         pace = 1 / speed
-        if roughness(pace) > RESOLVED * np.max(np.abs(pace)):
+        resolved = RESOLVED if self.equation.friction is None else WITH_CORNERS
+        if roughness(pace) > resolved * np.max(np.abs(pace)):
             return None
         rates = np.array([pace, *torques])
 
@@ -228,8 +231,9 @@ class Integration:
 
     def _torques(self, columns: Array, speed: Array) -> Array:
         """Of each source and of the drive (K + 1, ...)."""
-        sources = self.equation.torques(columns, speed)
-        return np.concatenate([sources, self.driver.torque(speed)[None]])
+        driving = self.driver.torque(speed)
+        sources = self.equation.torques(columns, speed, driving, self.direction)
+        return np.concatenate([sources, driving[None]])
 
     def _first_in(
         self, begin: Instant, ends: tuple[float, float], at: Callable[[float], Instant]
@@ -310,8 +314,8 @@ class Integration:
 
     def _rates(self, _: float, state: Array) -> list[float]:
         angle, speed = float(state[0]), float(state[1])
-        inertia, slope, torques = self.equation.at(angle, speed)
         driving = float(self.driver.torque(np.asarray(speed)))
+        inertia, slope, torques = self.equation.at(angle, speed, driving, self.direction)
         change = (float(np.sum(torques)) + driving - 0.5 * slope * speed * speed) / inertia
         return [speed, change, *(torques * speed).tolist(), driving * speed]
 

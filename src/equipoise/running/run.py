@@ -155,9 +155,9 @@ class Run(Result):
         if self.end.kind != "stall":
             return None
         driver = Driver(self.machine)
-        acting = float(np.sum(self.equation.at(self.end.crank_angle, 0.0)[2]))
+        acting, holding = self.equation.at_rest(self.end.crank_angle)
         given = float(driver.torque(np.zeros(())))
-        return -driver.sense * acting, driver.sense * given
+        return holding[driver.sense] - driver.sense * acting, driver.sense * given
 
     def columns(self) -> list[tuple[str, str, Array]]:
         """Name, unit and values (M,) of every signal."""

@@ -40,6 +40,12 @@ class Source(ABC):
     def columns(self, motions: Motions) -> list[Array]:
         """Smooth functions (N,) of the crank angle that it needs."""
 
+    def groups(self, count: int) -> list[int]:
+        """Of each of so many columns, the group that it belongs to: one whose largest value tells
+        what is rounding in all of it; each is a group of its own where not said otherwise.
+        """
+        return [*range(count)]
+
     @abstractmethod
     def torque(self, columns: Array, speed: Array) -> Array:
         """Generalized force (...), N m, by these (C, ...) and the crank's speed (...), rad/s."""

@@ -63,9 +63,13 @@ class Tabulated:
 
     functions : values (C, N) at crank angles (N,).
     edges : rising from 0 to the period, between which the functions are smooth.
+    groups : (C,) of each function, the number of the group whose largest value is its measure of
+        rounding; each is measured by itself if None.
     """
 
-    def __init__(self, functions: Callable[[Array], Array], edges: Array) -> None:
+    def __init__(
+        self, functions: Callable[[Array], Array], edges: Array, groups: Array | None = None
+    ) -> None:
         self.period = float(edges[-1])
         lows, highs = edges[:-1], edges[1:]
         pieces: list[tuple[Array, Array, Array]] = []
@@ -79,7 +83,10 @@ class Tabulated:
                 )
             values = functions(theta.ravel()).reshape(-1, *theta.shape)
             scale = np.maximum(scale, np.max(np.abs(values), axis=(1, 2)))
-            rough = np.any(roughness(values) > FINE * scale[:, None], axis=0) & (left > 0)
+            size = scale
+            if groups is not None:
+                size = np.array([np.max(scale[groups == number]) for number in groups])
+            rough = np.any(roughness(values) > FINE * size[:, None], axis=0) & (left > 0)
             pieces.append((lows[~rough], highs[~rough], values[:, ~rough]))
             if not np.any(rough):
                 break

@@ -281,18 +281,27 @@ def press_of(
     units: Sequence[Demands],
     like: Pass | None,
 ) -> Press:
-    """What presses in joints, by one stack of passes: of the demands, and of each unit."""
-    count, angles = len(joints), len(motion.crank_angle)
-    shape = (1 + count, angles)
-    stack: dict[str, Demand] = {}
-    for body in dict.fromkeys([*motion.machine.links, *demands, *(b for u in units for b in u)]):
-        force, moment = np.zeros(shape, complex), np.zeros(shape)
-        for row, one in enumerate((demands, *units)):
-            if body in one:
-                force[row], moment[row] = one[body]
-        stack[body] = force, moment
-    parts = pressing_parts(reactions(motion, stack, like), joints, shape)
+    """What presses in joints: of the demands, and of each unit."""
+    parts = pressing_rows(motion, [demands, *units], joints, like)
     return Press(parts[:, :, 0], parts[:, :, 1:])
+
+
+def pressing_rows(
+    motion: Motion, rows: Sequence[Demands], joints: Sequence[RubbingJoint], like: Pass | None
+) -> Array:
+    """Parts (J, 2, R, N) of what presses in joints with each of R demands, by one stack of passes.
+
+    like : as of `reactions`.
+    """
+    shape = (len(rows), len(motion.crank_angle))
+    stack: dict[str, Demand] = {}
+    for body in dict.fromkeys([*motion.machine.links, *(body for row in rows for body in row)]):
+        force, moment = np.zeros(shape, complex), np.zeros(shape)
+        for number, row in enumerate(rows):
+            if body in row:
+                force[number], moment[number] = row[body]
+        stack[body] = force, moment
+    return pressing_parts(reactions(motion, stack, like), joints, shape)
 
 
 def added(demands: Demands, units: Sequence[Demands], efforts: Array) -> dict[str, Demand]:

@@ -1,0 +1,128 @@
+"""Runs with friction: closed forms, what holds a machine at rest, and inverse dynamics."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import log, pi
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import UsageError
+from equipoise.mechanism.parts.force_elements import Load, Motor
+from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.running.blocks import verdict
+from equipoise.running.drivers import Driver
+
+MASS, VISCOUS, DRY, OFFSET = 95.11, 203.5, 20.39, -3.165
+"""Of the electro-mechanical positioning system (EMPS): kg, N s/m, N, N."""
+HALT = DRY - OFFSET
+ENGINE = replace(eq.load("slider-crank-engine"), balance=None, loads=())
+JOINTS = (
+    JointProperties("joints.A", radius=0.02, friction=0.05, torsional_damping=1e-4),
+    JointProperties("joints.B", radius=0.02, friction=0.05),
+    JointProperties("joints.C", radius=0.01, friction=0.1, static_friction=0.15,
+                    stribeck_speed=0.5),
+    JointProperties("joints.piston on frame", friction=0.1, guide_length=0.06, damping=2.0,
+                    drag_force=10.0),
+)  # fmt: skip
+WORN = replace(ENGINE, joints=JOINTS)
+
+
+def emps(motor: Motor | None = None, **given: Any) -> eq.Machine:
+    """The positioning system as a wheel: what it slides, in m, is its angle."""
+    wheel = eq.Link({"A": (0.0, 0.0)}, 1.0, (0.0, 0.0), MASS)
+    joint = JointProperties("joints.A", torsional_damping=VISCOUS, drag_torque=DRY, **given)
+    return eq.Machine("EMPS", eq.Drive("wheel", 1.0, motor=motor), {"A": (0.0, 0.0)},
+                      {"wheel": wheel}, loads=(Load("wheel", torque=OFFSET),),
+                      joints=(joint,))  # fmt: skip
+
+
+@pytest.mark.parametrize("speed", [0.1, 1.0])
+def test_a_positioning_system_comes_to_rest_as_viscous_and_dry_friction_have_it(
+    speed: float,
+) -> None:
+    found = eq.run(emps(), speed=speed)
+    assert found.end.kind == "standstill"
+    time = MASS / VISCOUS * log(1 + VISCOUS * speed / HALT)
+    assert found.end.time == pytest.approx(time, rel=1e-8)
+    wanted = (speed + HALT / VISCOUS) * np.exp(-found.time * VISCOUS / MASS) - HALT / VISCOUS
+    np.testing.assert_allclose(found.crank_speed, wanted, atol=1e-9 * speed)
+    assert found.energy_error < 1e-9
+    way = MASS / VISCOUS * speed - HALT / VISCOUS * time
+    assert found.end.crank_angle == pytest.approx(way, rel=1e-8)
+
+
+def test_a_positioning_system_is_driven_to_its_steady_speed() -> None:
+    force = 100.0
+    found = eq.run(emps(Motor(torque=force)), "3 s")
+    steady = (force - HALT) / VISCOUS
+    wanted = steady * (1 - np.exp(-found.time * VISCOUS / MASS))
+    np.testing.assert_allclose(found.crank_speed, wanted, atol=1e-9)
+    lost = found.work["friction"][-1]
+    assert lost == pytest.approx(-np.trapezoid((DRY + VISCOUS * wanted) * wanted, found.time),
+                                 rel=1e-2)  # fmt: skip
+    assert found.energy_error < 1e-9
+
+
+@pytest.mark.parametrize(("torque", "moves"), [(HALT * 0.999, False), (HALT * 1.001, True)])
+def test_it_stays_put_until_the_torque_breaks_it_away(torque: float, moves: bool) -> None:
+    found = eq.run(emps(Motor(torque=torque)), "1 s")
+    assert (found.end.kind == "time") == moves
+    if not moves:
+        assert (found.end.kind, found.turned) == ("stall", 0.0)
+        assert found.lacking_torque == pytest.approx((HALT, torque))
+        assert "needs 23.55 N m to go on, and has 23.53 N m" in verdict(found)
+
+
+def test_a_load_below_what_holds_it_does_not_start_a_machine() -> None:
+    """The offset is smaller than dry friction, which holds a machine without a motor at rest."""
+    assert eq.run(emps(), speed=0.0).end.kind == "standstill"
+
+
+@pytest.mark.parametrize("machine", [WORN, replace(WORN, rows=(eq.mechanism.Row(),
+                         eq.mechanism.Row(phase=pi / 2)))])  # fmt: skip
+def test_a_coast_down_loses_its_energy_in_joints(machine: eq.Machine) -> None:
+    found = eq.run(machine, speed=100.0)
+    assert found.end.kind == "standstill" and found.energy_error < 1e-9
+    energy = found.kinetic_energy
+    lost = found.work["friction"] + found.work["weight"]
+    np.testing.assert_allclose(energy - energy[0], lost, atol=1e-9 * energy[0])
+    assert np.all(np.diff(found.work["friction"]) <= 1e-12 * energy[0])
+
+
+def test_the_acceleration_is_that_of_which_inverse_dynamics_needs_no_torque() -> None:
+    """Inverse dynamics, whose friction knows nothing of runs, asks for what the drive gives."""
+    found = eq.run(WORN, speed=100.0, turns=1)
+    equation = found.equation
+    for k in np.linspace(1, len(found.time) - 2, 15).astype(int):
+        angle, speed = float(found.crank_angle[k]), float(found.crank_speed[k])
+        if np.min(np.abs(equation.edges - angle)) < 1e-6:
+            continue  # there a slider turns back, and its friction has two values
+        inertia, slope, torques = equation.at(angle, speed, 0.0, 1.0)
+        rate = (float(np.sum(torques)) - slope * speed**2 / 2) / inertia
+        forces = eq.analyze(WORN, [angle], speed, rate).forces
+        size = abs(float(torques[-1])) + inertia * abs(rate)
+        assert abs(float(forces.drive_torque[0])) < 1e-9 * size
+
+
+def test_a_motor_works_against_friction() -> None:
+    motor = Motor(300.0, 30.0)
+    drive = replace(WORN.drive, speed=200.0, motor=motor)
+    found = eq.run(replace(WORN, drive=drive))
+    assert found.end.kind == "steady"
+    cycle = found.last_cycle
+    assert cycle is not None and cycle.energy > 0
+    free = eq.run(replace(ENGINE, drive=drive)).last_cycle
+    assert free is not None and cycle.mean_speed < free.mean_speed
+    torque = Driver(found.machine).torque(np.array(cycle.mean_speed))
+    assert cycle.energy_per_turn == pytest.approx(2 * pi * float(torque), rel=0.05)
+
+
+def test_soil_and_teeth_are_not_run_with_friction() -> None:
+    planter = eq.load("geared-counterweight")
+    joint = JointProperties("joints.A", drag_torque=0.1)
+    with pytest.raises(UsageError, match="together with soil, or with teeth"):
+        eq.run(replace(planter, joints=(joint,), balance=None))
