@@ -165,20 +165,36 @@ def balanced(law: FrictionLaw, press: Press, start: Array | None = None) -> tupl
 
 def _newton(law: FrictionLaw, press: Press, efforts: Array, share: Array) -> tuple[Array, Array]:
     """Efforts (J, N), and where they obey the law and are those that grow from none (N,)."""
-    good = np.zeros(efforts.shape[1], bool)
     for _ in range(MOST_ROUNDS):
         missed, slopes = law.missed(efforts, share, press)
         size = np.max(np.abs(efforts), axis=0, initial=0.0) + np.max(np.abs(law.given), axis=0)
         good = np.max(np.abs(missed), axis=0) <= CLOSE * size
         if np.all(good):
             break
-        with np.errstate(all="ignore"):
-            singular = ~(np.abs(np.linalg.det(slopes)) > 0)
-            slopes[singular] = np.eye(len(slopes[0]))
-            step = np.linalg.solve(slopes, missed.T[..., None])[..., 0].T
+        step = _step(slopes, missed)
         efforts = efforts - np.where(np.isfinite(step), step, 0.0)
-    _, slopes = law.missed(efforts, share, press)
-    return efforts, good & (np.linalg.det(slopes) > 0)
+    return efforts, good & _grows_from_none(slopes)
+
+
+def _step(slopes: Array, missed: Array) -> Array:
+    """A step (J, N) of Newton's method; NaN where its matrix is singular."""
+    with np.errstate(all="ignore"):
+        try:
+            return np.asarray(np.linalg.solve(slopes, missed.T[..., None])[..., 0].T)
+        except np.linalg.LinAlgError:
+            singular = ~(np.abs(np.linalg.det(slopes)) > 0)
+            slopes = np.where(singular[:, None, None], np.nan, slopes)
+            return np.asarray(np.linalg.solve(slopes, missed.T[..., None])[..., 0].T)
+
+
+def _grows_from_none(slopes: Array) -> Array:
+    """Whether determinants (N,) are above 0, as they are without friction; which they are, too,
+    where friction's part of the matrix has row sums below 1.
+    """
+    own = np.eye(slopes.shape[-1])
+    if np.max(np.sum(np.abs(slopes - own), axis=-1), initial=0.0) < 1:
+        return np.ones(len(slopes), bool)
+    return np.asarray(np.linalg.det(slopes) > 0)
 
 
 def _grown(law: FrictionLaw, press: Press) -> tuple[Array, Array]:

@@ -6,7 +6,7 @@ does so where a joint turns back.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from math import pi
@@ -17,8 +17,8 @@ import numpy as np
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Array
 from equipoise.mechanism.kinematics.motion import Motion, move
-from equipoise.mechanism.kinematics.rubbing import rubbing_joints
-from equipoise.mechanism.kinematics.tip import crossings, surface_of
+from equipoise.mechanism.kinematics.rubbing import RubbingJoint, rubbing_joints
+from equipoise.mechanism.kinematics.tip import crossings, roots, surface_of
 from equipoise.mechanism.parts.cams import Cam
 from equipoise.mechanism.parts.machine import FRAME, Machine
 from equipoise.signals import JumpSampling
@@ -124,9 +124,9 @@ def _jumps_on_the_way(linkage: Linkage) -> Iterator[Array]:
     machine = linkage.machine
     for cam in machine.cams:
         yield from _knots(linkage, cam)
-    for joint in rubbing_joints(linkage):
-        if joint.jumps:
-            yield _crossed(linkage, joint.rate)
+    joints = [joint for joint in rubbing_joints(linkage) if joint.jumps]
+    if joints:
+        yield _turned_back(linkage, joints)
     if machine.planting is not None and machine.planting.soil is not None:
         surface = surface_of(machine)
         for arm in machine.planting.every_arm:
@@ -151,6 +151,28 @@ def _beyond(cam: Cam, knot: float, read: Callable[[Any], Any], motion: Motion) -
     ends = (cam.driver, cam.carrier)
     driver, carrier = (0.0 if one == FRAME else motion.links[one].angle for one in ends)
     return np.asarray(read(driver - carrier - knot))
+
+
+def _turned_back(linkage: Linkage, joints: Sequence[RubbingJoint]) -> Array:
+    """Crank angles of a cycle at which joints turn back: of all of them from the same motions."""
+    turns = linkage.cycle.turns
+    nodes = np.linspace(0.0, 2 * pi * turns, ANGLES * turns + 1)
+
+    def rates(theta: Array) -> Array:
+        motion = move(linkage.machine, theta)
+        return np.array([joint.rate(motion) for joint in joints])
+
+    back = rates(nodes) < 0
+    back[:, -1] = back[:, 0]  # the same instant, whatever rounding says
+    joint, k = np.nonzero(back[:, :-1] != back[:, 1:])
+    if not k.size:
+        return np.empty(0)
+
+    def signal(theta: Array) -> Array:
+        return rates(theta[0])[joint, np.arange(k.size)][None]
+
+    found: Array = roots(signal, nodes[None, k], nodes[None, k + 1])[0]
+    return found
 
 
 def _crossed(linkage: Linkage, read: Callable[[Motion], Array]) -> Array:
