@@ -134,23 +134,26 @@ class CrankEquation:
         ends = 1 + np.cumsum([0, *counts])
         return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
 
-    def torques(self, columns: Array, speed: Array, driving: Array, sense: float) -> Array:
+    def torques(
+        self, columns: Array, speed: Array, driving: Array | float = 0.0, sense: float = 1.0
+    ) -> Array:
         """Torque (K, ...) of each source, N m, by columns (C, ...) of the table, at speeds.
 
-        driving : torque (...) of the drive.  sense : in which the crank turns, 1 or -1.
+        driving : torque (...) of the drive.  sense : in which the crank turns, 1 or -1.  Both
+            matter to friction only.
         """
         each = zip(self.sources, self.slices, strict=True)
         found = [source.torque(columns[part], speed) for source, part in each
                  if source is not self.friction]  # fmt: skip
         if self.friction is not None:
-            acting, part = sum(found, start=driving), self.slices[-1]
+            acting, part = np.asarray(sum(found, start=driving)), self.slices[-1]
             found.append(
                 self.friction.torque_beside(columns[0], columns[part], speed, sense, acting)
             )
         return np.array(found) if found else np.zeros((0, *np.shape(speed)))
 
     def at(
-        self, theta: float, speed: float, driving: float, sense: float
+        self, theta: float, speed: float, driving: float = 0.0, sense: float = 1.0
     ) -> tuple[float, float, Array]:
         """J, J' and the torque of each source at a crank angle and speed, as of `torques`."""
         values, slopes = self.table.at(theta)

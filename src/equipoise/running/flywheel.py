@@ -99,9 +99,17 @@ class SteadyCycle:
 
     def _torque(self, speed: Array) -> Array:
         """Of all but the drive at the nodes (P, NODES), about its mean, N m."""
-        each = self.equation.torques(self.equation.table.values, speed)
-        torque = np.sum(each, axis=0) + np.zeros_like(speed)
-        return np.asarray(torque - self._integral(torque) / self.equation.period)
+        values, driving = self.equation.table.values, 0.0
+        if self.equation.friction is not None:
+            values = np.concatenate([self._inertia[None], values[1:]])
+        sense = float(np.sign(self.equation.machine.drive.speed))
+        for _ in range(ROUNDS if self.equation.friction is not None else 1):
+            each = self.equation.torques(values, speed, driving, sense)
+            torque = np.sum(each, axis=0) + np.zeros_like(speed)
+            before, driving = driving, -self._integral(torque) / self.equation.period
+            if abs(driving - before) <= SAME * abs(driving):
+                break
+        return np.asarray(torque + driving)
 
     def _work(self, torque: Array) -> Array:
         """Done since the crank angle 0 at the nodes (P, NODES), J."""
