@@ -11,6 +11,12 @@ from typing import TYPE_CHECKING
 from equipoise.balancing.beyond_masses import sentences_beyond
 from equipoise.balancing.headlines import Advice
 from equipoise.balancing.objectives import unit_of
+from equipoise.balancing.opposite_arms import (
+    arm_sentence,
+    end_sentences,
+    end_weights_for,
+    opposite_arm_for,
+)
 from equipoise.balancing.remedies import LEAST_GAIN
 from equipoise.balancing.resonant_mounts import mount_sentences, outweighs
 from equipoise.balancing.told import (
@@ -24,6 +30,7 @@ from equipoise.balancing.told import (
 from equipoise.balancing.workshop import in_its_plane, phases_told, sentences
 from equipoise.i18n import say, to_say
 from equipoise.quantities import change, display, percent, told
+from equipoise.results.analysis import analyze
 from equipoise.results.blocks import Block, Cell, Change, Column, Table, Text
 from equipoise.results.outputs import objective_named, shown_in
 from equipoise.results.yardsticks import FigureAssessment, sentence
@@ -56,6 +63,8 @@ def helps_told(balanced: Balanced) -> Iterator[str]:
             unit=unit.name,
             change=change(before, after) or percent(0),
         )
+    if balanced.advice is not None:
+        yield from _stays_large(balanced)
     yield from worse_told(balanced)
     yield from proof_told(balanced)
     if balanced.planting_kept:
@@ -162,9 +171,27 @@ def sentences_beyond_masses(found: Balanced) -> Iterator[str]:
     if found.advice is not None:
         if found.helps:
             yield from _mounts_first(found.advice)
+        yield from _other_designs(found)
         machine = found.machine if found.helps else found.original
         yield from sentences_beyond(found.advice.beyond, machine, found.helps)
         yield from _with_more_room(found)
+
+
+def _stays_large(found: Balanced) -> Iterator[str]:
+    """What is largest still after a change that was advised, and large."""
+    assert found.advice is not None
+    for one in [one for one in found.advice.after if one.is_large][:1]:
+        yield say("Large after that: {figure}.", figure=sentence(one, found.original.crank_turns))
+
+
+def _other_designs(found: Balanced) -> Iterator[str]:
+    """What a second arm, or weights at the ends of a shaft, do on the machine as it is."""
+    analysis, crank = analyze(found.original, acceleration=0.0), found.original.drive.link
+    assert found.advice is not None
+    if (opposite := opposite_arm_for(analysis, found.advice.before)) is not None:
+        yield arm_sentence(opposite, crank)
+    if (ends := end_weights_for(analysis, found.advice.before)) is not None:
+        yield from end_sentences(ends, crank)
 
 
 def _mounts_first(advice: Advice) -> Iterator[str]:

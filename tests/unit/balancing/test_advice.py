@@ -16,6 +16,7 @@ from equipoise.balancing.advice import advise, running_speeds
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.blocks import outcome_blocks
 from equipoise.balancing.headlines import Saving, worse_headlines
+from equipoise.balancing.opposite_arms import end_weights_for, opposite_arm_for
 from equipoise.balancing.outcome import helps_told
 from equipoise.balancing.remedies import LEAST_GAIN, plate_of, sectors
 from equipoise.balancing.remedies import Sector as SectorShape
@@ -540,3 +541,36 @@ def test_a_crank_that_jams_on_its_way_is_refused_by_all() -> None:
             compute(machine)
         assert "it stops at -103.09 deg" in str(caught.value)
         assert "motion = { between = " in str(caught.value)
+
+
+def test_a_second_arm_opposite_leaves_even_orders_alone() -> None:
+    """The sum of the force and of the same half a turn later, sample by sample."""
+    machine = bare("planetary-planting-arm")
+    found = advise(machine)
+    assert found.advice is not None
+    opposite = opposite_arm_for(eq.analyze(machine, acceleration=0.0), found.advice.before)
+    assert opposite is not None
+    force = eq.analyze(machine, 720, acceleration=0.0).forces.shaking_force.value
+    both = force + np.roll(force, len(force) // 2)
+    left = np.sqrt(np.mean(np.abs(both) ** 2) / np.mean(np.abs(force) ** 2))
+    assert opposite.gain == pytest.approx(1 - left, abs=1e-6)
+    told = " ".join(helps_told(found))
+    assert "A second arm like this one, opposite on carrier" in told
+    assert "Large after that: Shaking force, peak: 25.4 N" in told
+
+
+def test_two_weights_at_the_ends_take_the_couple_that_turns_with_the_crank() -> None:
+    """The best two by least squares on the samples of the couple of three rows."""
+    machine = eq.load(ADVISED / "inline-3-rows.toml")
+    found, analysis = advise(machine), eq.analyze(machine, acceleration=0.0)
+    assert found.advice is not None
+    ends = end_weights_for(analysis, found.advice.before)
+    assert ends is not None
+    roll, yaw = (analysis.outputs[f"rows.{name}_moment"].values for name in ("roll", "yaw"))
+    couple = roll + 1j * yaw
+    turned = np.exp(1j * analysis.motion.crank_angle) * machine.drive.speed**2 * ends.apart
+    best = np.linalg.lstsq(turned[:, None], couple)[0]
+    left = np.linalg.norm(couple - turned * best[0]) / np.linalg.norm(couple)
+    assert ends.gain == pytest.approx(1 - left, abs=1e-9)
+    assert abs(best[0]) == pytest.approx(ends.moment)
+    assert "opposite each other and 176 mm apart" in " ".join(helps_told(found))

@@ -1,0 +1,104 @@
+"""What a second arm does opposite on a carrier, and two weights at the ends of a shaft."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from equipoise.balancing.first_order import WORTHWHILE
+from equipoise.i18n import say
+from equipoise.mechanism.parts.support import Row
+from equipoise.quantities import percent, told
+from equipoise.results.analysis import Analysis, analyze
+from equipoise.results.yardsticks import FigureAssessment
+
+
+@dataclass(frozen=True)
+class OppositeArm:
+    """A second arm like the first, half a turn behind it on the same carrier.
+
+    gain : share of the RMS of the shaking force that is gone.
+    """
+
+    gain: float
+
+
+@dataclass(frozen=True)
+class EndWeights:
+    """Two weights opposite each other at both ends of a shaft, against a couple between planes.
+
+    moment : kg m, of each.  apart : m.  gain : share of the RMS of the couple that is gone.
+    """
+
+    moment: float
+    apart: float
+    gain: float
+
+
+def opposite_arm_for(
+    analysis: Analysis, entries: tuple[FigureAssessment, ...]
+) -> OppositeArm | None:
+    """A second arm opposite, against a large shaking force; None of a machine of which more than
+    the driven link is held by the frame, which has no place for one in its plane.
+    """
+    machine = analysis.machine
+    force = next((one for one in entries if one.output == "shaking_force"), None)
+    others = [link for name, link in machine.links.items() if name != machine.drive.link]
+    held = any(point in machine.frame for link in others for point in link.points)
+    held |= any(one.on == "frame" for one in machine.sliders)
+    if force is None or not force.is_large or held or machine.rows or not others:
+        return None
+    if not machine.has_crank or not machine.crank_turns:
+        return None
+    both = analyze(machine.with_rows((Row(), Row(phase=np.pi))), acceleration=0.0).summary
+    gain = 1 - both["rows.shaking_force"].rms / analysis.summary["shaking_force"].rms
+    return OppositeArm(float(gain)) if gain >= WORTHWHILE else None
+
+
+def end_weights_for(analysis: Analysis, entries: tuple[FigureAssessment, ...]) -> EndWeights | None:
+    """Weights at both ends of a shaft against a large couple between rows; None where little of it
+    turns with the crank.
+
+    A force F (complex) in the plane z has the moment M_x + i M_y = i z F, so that a couple A e^(ia)
+    and the rest asks for |A| / (w^2 L) at the distance L.
+    """
+    machine, motion, outputs = analysis.machine, analysis.motion, analysis.outputs
+    large = any(one.is_large and one.yardstick_kind == "bearings" for one in entries)
+    if len(machine.rows) < 2 or not large or not machine.has_crank:
+        return None
+    x, y = (outputs[name].values for name in ("rows.roll_moment", "rows.yaw_moment"))
+    planes = [row.lateral for row in machine.rows]
+    apart = max(planes) - min(planes)
+    whole, turned = x + 1j * y, np.exp(1j * motion.crank_angle)
+    size = float(np.sqrt(motion.mean(abs(whole) ** 2)))
+    if not apart or not size:
+        return None
+    ahead = motion.mean(whole / turned)
+    left = float(np.sqrt(motion.mean(abs(whole - ahead * turned) ** 2)))
+    gain = 1 - left / size
+    moment = float(abs(ahead)) / (motion.speed**2 * apart)
+    return EndWeights(moment, apart, gain) if gain >= WORTHWHILE else None
+
+
+def arm_sentence(opposite: OppositeArm, crank: str) -> str:
+    """What a second arm would do."""
+    return say(
+        "A second arm like this one, opposite on {crank}, would take {gain} % off the shaking "
+        "force, and work twice in a turn.",
+        crank=crank,
+        gain=percent(opposite.gain, 0),
+    )
+
+
+def end_sentences(ends: EndWeights, crank: str) -> Iterator[str]:
+    """What two weights at the ends of a shaft would do."""
+    yield say(
+        "Two weights of {moment} on {crank} instead, opposite each other and {apart} apart, would "
+        "take {gain} % off the couple of the rows.",
+        moment=told(ends.moment, "unbalance", "kg mm", digits=2),
+        crank=crank,
+        apart=told(ends.apart, "length", digits=3),
+        gain=percent(ends.gain, 0),
+    )
