@@ -13,7 +13,7 @@ from equipoise.balancing import box_bounds, multi_row
 from equipoise.balancing.box_bounds import largest_reading
 from equipoise.balancing.multi_row import Cost, RowSignals, Term
 from equipoise.balancing.phase_grid import Grid
-from equipoise.mechanism.assembly.least import least
+from equipoise.mechanism.assembly.shared import least
 from equipoise.mechanism.parts.balance import Measure, Objective
 from equipoise.signals import Array, Periodic
 

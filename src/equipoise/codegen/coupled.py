@@ -2,26 +2,48 @@
 
 Where the crank angle alone tells the angles of driver and carrier, it tells the driven link's too,
 up to the angle at which each design starts.
+
+Followers of cams are moved by laws of their cams' angles, gears of varying ratio by laws of their
+drivers' and with each design's own numbers; where the crank angle alone does not tell these angles,
+a law is evaluated at each design's own, and its piece is looked up in tables, without a branch.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from itertools import pairwise
+from math import ceil, pi, prod
 from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.terms import rotation
+from equipoise.codegen.terms import angle_of, floor, least, pick, rotation, select
 from equipoise.codegen.trace import Array, Trace, links_of
+from equipoise.mechanism.assembly.cam_groups import Displacement
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.assembly.steps import Call, u
-from equipoise.mechanism.formulas import kernels
+from equipoise.mechanism.formulas import cam_kernels, kernels, rolling_kernels
+from equipoise.mechanism.formulas.curve_kernels import piece_value
+from equipoise.mechanism.formulas.curves import ROUNDING, Curve
+from equipoise.mechanism.formulas.rolling import HalfAngle, PitchCurve, RatioTable, RatioWaves
 from equipoise.mechanism.parts.couplings import Coupling
 from equipoise.mechanism.parts.machine import FRAME
 
 Turning = Callable[[Array], tuple[Any, Any, Any]]
 """Angle of a link at crank angles (N,), rad, and its two derivatives by them."""
+FEW = 16
+"""Pieces of a curve that are told apart by comparing, which handles several angles at once."""
+ALIKE = 1e-14
+"""Of the largest of some values: what differs by less than this does so by rounding."""
+DIGITS = 13
+"""Of phases, rad, so that those that differ by rounding are the same."""
+MOST_BINS = 20_000
+"""Parts of a curve's length, of which none has more than one of its knots."""
+NOWHERE = 1e300
+"""A knot that is never reached."""
+MOST_PRODUCTS = 6
+"""Power of a rotation up to which it is multiplied by itself."""
 
 
 def known_by_crank(trace: Trace) -> dict[str, Turning]:
@@ -131,3 +153,289 @@ def _start(found: Linkage, link: str) -> Any:
                 offset = step.parameters[1]
                 return _follows(step, _start(found, driver), _start(found, carrier), offset)
     return 0.0
+
+
+def can_trace_followers(linkage: Linkage) -> bool:
+    """Whether the pieces of all laws can be looked up."""
+    return all(bins(cam.law.curve.knots) <= MOST_BINS for cam in linkage.machine.cams)
+
+
+def trace_displacement(trace: Trace, step: Displacement) -> None:
+    """What a law says at the angle that a cam has turned against its carrier."""
+    turnings = known_by_crank(trace)
+    if {step.driver, step.carrier} <= turnings.keys() - trace.shifted:
+        driver, carrier = turnings[step.driver], turnings[step.carrier]
+        for place, output in enumerate(step.outputs):
+            of = partial(_displaced, step, driver, carrier, place)
+            trace.state[output] = trace.row(output, of)
+        return
+    driver_angle, carrier_angle = (
+        trace.state[f"phi({body})"] for body in (step.driver, step.carrier)
+    )
+    angle = driver_angle - carrier_angle - float(step.law.origin)
+    trace.put(step.outputs, curve_value(trace, step.law.curve, angle))
+
+
+def _displaced(
+    step: Displacement, driver: Turning, carrier: Turning, place: int, theta: Array
+) -> Array:
+    return np.asarray(step.law.value(driver(theta)[0] - carrier(theta)[0])[place])
+
+
+def curve_value(trace: Trace, curve: Curve, angle: Any) -> tuple[Any, Any, Any]:
+    """A curve, and its two derivatives, at an angle that is each design's own."""
+    curve, counted = _from_the_start(_rested(curve))
+    near, length = ROUNDING * curve.length, curve.length
+    rounds = floor((angle + near) * (1 / length))
+    since = angle - rounds * length
+    pieces = Pieces(trace, curve, since + near)
+    way = since if counted else since - pieces.beginning()
+    powers = [pieces.value(values) for values in curve.powers.T]
+    amplitude, rate, phase = (pieces.value(values) for values in _waves(curve).T)
+    wave = rotation(0.0 if isinstance(amplitude, float) and not amplitude else rate * way + phase)
+    value, first, second = piece_value(way, *powers, amplitude, rate, wave.real, wave.imag)  # type: ignore[call-arg,no-untyped-call]
+    return value + curve.rise * rounds, first, second
+
+
+def _rested(curve: Curve) -> Curve:
+    """A curve with one piece for each rest, whatever law the rest is given by."""
+    still = ~np.any(curve.powers[:, 1:], axis=1) & (curve.waves[:, 0] == 0)
+    same = np.abs(np.diff(curve.powers[:, 0])) <= ALIKE * np.max(np.abs(curve.powers[:, 0]))
+    kept = np.append(True, ~(still[1:] & still[:-1] & same))
+    knots = np.append(curve.knots[:-1][kept], curve.knots[-1])
+    return Curve(knots, curve.powers[kept], curve.waves[kept])
+
+
+def _from_the_start(curve: Curve) -> tuple[Curve, bool]:
+    """A curve of parabolas and waves with the ways counted from its start, so that there is less to
+    choose; of higher powers that would lose digits, and the curve stays as it is.
+    """
+    c0, c1, c2 = curve.powers.T[:3]
+    if len(curve.powers) > FEW or np.any(curve.powers[:, 3:]):
+        return curve, False
+    begins, powers, waves = curve.knots[:-1], np.zeros_like(curve.powers), curve.waves.copy()
+    powers[:, :3] = np.transpose([c0 - (c1 - c2 * begins) * begins, c1 - 2 * c2 * begins, c2])
+    phases = waves[:, 2] - waves[:, 1] * begins
+    halves = np.floor(phases / pi + ROUNDING)
+    waves[:, 0] *= np.where(halves % 2, -1.0, 1.0)
+    waves[:, 2] = np.round(phases - halves * pi, DIGITS)
+    return Curve(curve.knots, powers, waves), True
+
+
+def _waves(curve: Curve) -> Array:
+    """Waves of the pieces (K, 3); those of pieces without one are like that before, so that there
+    is less to choose.
+    """
+    waves = curve.waves.copy()
+    for k in range(-len(waves) + 1, len(waves)):
+        if waves[k, 0] == 0:
+            waves[k, 1:] = waves[k - 1, 1:]
+    return waves
+
+
+def _alike(values: list[float]) -> list[float]:
+    """Values of which those that differ by rounding are the same."""
+    least = ALIKE * max(map(abs, values))
+    found: list[float] = []
+    for value in values:
+        near = (one for one in found if abs(one - value) <= least)
+        found.append(next(near, value))
+    return found
+
+
+class Pieces:
+    """Finds the piece of a curve, and its numbers: chosen by comparing where there are few, else
+    picked from tables.
+    """
+
+    def __init__(self, trace: Trace, curve: Curve, since: Any, few: int = FEW) -> None:
+        """since : way from the curve's beginning, rounding ahead.
+
+        few : pieces up to which they are told apart by comparing.
+        """
+        self.graph, self.curve, self.since = trace.graph, curve, since
+        self.few, self.even = len(curve.powers) <= few, False
+        if self.few:
+            return
+        if np.allclose(np.diff(curve.knots), curve.length / len(curve.powers), rtol=1e-12, atol=0):
+            self.even = True
+            whole = floor(since * (len(curve.powers) / curve.length))
+            self.piece = least(float(len(curve.powers) - 1), whole)
+            return
+        count = bins(curve.knots)
+        part = since * (count / curve.length)
+        first, knot = (pick(self.graph.table(values), part) for values in _in_bins(curve, count))
+        self.piece = first + select(since, knot, 1.0, 0.0)
+
+    def beginning(self) -> Any:
+        """Where the piece begins."""
+        if self.even:
+            return self.piece * float(self.curve.knots[1])
+        return self.value(self.curve.knots[:-1])
+
+    def value(self, values: Array) -> Any:
+        """What the piece has of values (K,)."""
+        numbers = _alike(values.tolist())
+        if len({*numbers}) == 1:
+            return numbers[0]
+        if not self.few:
+            return pick(self.graph.table(numbers), self.piece)
+        chosen: Any = numbers[0]
+        knots = self.curve.knots[1:-1].tolist()
+        for knot, (before, after) in zip(knots, pairwise(numbers), strict=True):
+            if before != after:
+                chosen = select(self.since, knot, after, chosen)
+        return chosen
+
+
+def bins(knots: Array) -> int:
+    """Equal parts of a curve's length that are shorter than its pieces."""
+    return ceil(1.01 * float(knots[-1] / np.min(np.diff(knots))))
+
+
+def _in_bins(curve: Curve, count: int) -> tuple[Array, Array]:
+    """Of each part the piece at its beginning, and the knot within it; one more at the end."""
+    inner = curve.knots[1:-1]
+    edges = np.arange(count + 1) * (curve.length / count)
+    first = np.searchsorted(inner, edges, side="right")
+    ahead = np.append(inner, NOWHERE)[first]
+    knot = np.where(ahead < edges + curve.length / count, ahead, NOWHERE)
+    return first.astype(float), knot
+
+
+def trace_swung(trace: Trace, step: Call, number: int) -> None:
+    """How a pinned follower turns whose carrier turns in proportion to the crank."""
+    y, y1, y2, w_r, a_r, _, w, a = (trace.state.get(name) for name in step.inputs)
+    link, carrier = (name[len("phi(") : -1] for name in (step.outputs[0], step.inputs[5]))
+    rest = trace.slot(f"rest({link})", partial(_turned, number), vector=True)
+    sense = float(step.parameters[1])
+    lean, *rates = cam_kernels.swung(y, y1, y2, w_r, a_r, 0.0, w, a, 0.0, sense)
+    trace.put(u(link), (trace.state[f"u({carrier})"] * rest * rotation(lean), *rates))
+
+
+def _turned(number: int, found: Linkage) -> Any:
+    step = found.motion[number]
+    assert isinstance(step, Call)
+    return np.exp(1j * np.asarray(step.parameters[0]))
+
+
+def trace_law(trace: Trace, step: Call, number: int) -> None:
+    """How a gear turns whose ratio varies: the step of this number of the ``motion``."""
+    _Law(trace, step, number).trace_gear()
+
+
+class _Law:
+    """A law in its place, and what of it each design has of its own.
+
+    angle : of the driver, seen from the carrier, from the law's zero on.
+    """
+
+    def __init__(self, trace: Trace, step: Call, number: int) -> None:
+        self.trace, self.number = trace, number
+        self.driver, self.carrier, self.link = links_of(step)
+        self.law: Any = step.parameters[0]
+        driver, carrier = (trace.state[f"phi({one})"] for one in (self.driver, self.carrier))
+        self.angle = driver - carrier - self.own("zero")
+
+    def trace_gear(self) -> None:
+        link, state = self.link, self.trace.state
+        match self.law:
+            case HalfAngle():
+                y, ratio, bend = self._half_angle(self.law)
+            case RatioWaves():
+                y, ratio, bend = self._waves(self.law)
+            case _:
+                curve, begin = curve_of(self.law)
+                y, ratio, bend = curve_value(self.trace, curve, self.angle - begin)
+        offset = self.slot("offset", lambda found: _parameters(found, self.number)[1])
+        state[f"phi({link})"] = state[f"phi({self.carrier})"] + y + offset
+        state[f"ratio({link})"], state[f"bend({link})"] = ratio, bend
+        rates = [state[name] for one in (self.driver, self.carrier) for name in u(one)[1:]]
+        self.trace.put(u(link)[1:], rolling_kernels.followed(ratio, bend, *rates))  # type: ignore[no-untyped-call]
+
+    def slot(self, what: str, read: Callable[[Linkage], Any], vector: bool = False) -> Any:
+        return self.trace.slot(f"{what} of {self.link}", read, vector)
+
+    def own(self, key: str) -> Any:
+        """A number of the law."""
+        return self.slot(key, lambda found: getattr(_parameters(found, self.number)[0], key))
+
+    @property
+    def once(self) -> Any:
+        """exp(i x), with x counted from the law's zero."""
+        driver, carrier = (self.trace.state[f"u({one})"] for one in (self.driver, self.carrier))
+        zero = self.slot(
+            "turned back", lambda found: np.exp(-1j * _parameters(found, self.number)[0].zero), True
+        )
+        return driver * carrier.conjugate() * zero
+
+    def turned(self, lobes: int) -> Any:
+        """exp(i lobes x), with x counted from the law's zero."""
+        if lobes > MOST_PRODUCTS:
+            return rotation(float(lobes) * self.angle)
+        return prod([self.once] * (lobes - 1), start=self.once)
+
+    def _half_angle(self, law: HalfAngle) -> tuple[Any, Any, Any]:
+        lobes, mean = law.lobes, float(law.mean)
+        numbers = mean, float(law.share), self.own("depth"), lobes
+        whole, twice, ratio, bend = rolling_kernels.half_angle(self.turned(lobes), *numbers)  # type: ignore[no-untyped-call]
+        (along,) = rolling_kernels.unit(whole)  # type: ignore[no-untyped-call]
+        self._rotate(law, along, twice)
+        return mean * self.angle + float(2 * law.share / lobes) * angle_of(along), ratio, bend
+
+    def _rotate(self, law: HalfAngle, along: Any, twice: Any) -> None:
+        """The rotation itself, where what swings is a product of others."""
+        mean, times = float(law.mean), float(2 * law.share / law.lobes)
+        if not times.is_integer() or abs(times) > MOST_PRODUCTS:
+            return
+        factors = [self.trace.state[f"u({self.carrier})"]]
+        if mean.is_integer() and abs(mean) <= MOST_PRODUCTS and law.lobes <= MOST_PRODUCTS:
+            factors += [_power(self.once, mean)] * abs(round(mean))
+        else:
+            factors.append(rotation(mean * self.angle))
+        factors += [_power(twice, times)] * (abs(round(times)) // 2)
+        factors += [_power(along, times)] * (round(times) % 2)
+
+        def begun(found: Linkage) -> Any:
+            return np.exp(1j * _parameters(found, self.number)[1])
+
+        self.trace.state[f"u({self.link})"] = prod(factors, start=self.slot("begun", begun, True))
+        self.trace.rotated.add(self.link)
+
+    def _waves(self, law: RatioWaves) -> tuple[Any, Any, Any]:
+        turn, wave, mean = self.turned(law.waves.lobes), 1.0, float(law.mean)
+        levels: tuple[Any, ...] = (self.angle, 1.0, 0.0)
+        for k, (_, _, order) in enumerate(law.waves.terms):
+            pair = [
+                self.slot(f"{key} {k + 1}", partial(_term, self.number, k, place))
+                for place, key in enumerate(("cosine", "sine"))
+            ]
+            wave = wave * turn
+            levels = rolling_kernels.series_term(*levels, wave, *pair, float(order))  # type: ignore[call-arg,no-untyped-call]
+        y, ratio, bend = (mean * level for level in levels)
+        return y, ratio, bend
+
+
+def curve_of(law: RatioTable | PitchCurve) -> tuple[Curve, float]:
+    """A law as a curve, and the angle at which this begins."""
+    if isinstance(law, PitchCurve):
+        return law.summed()
+    curve, factor = law.table.spline, law.factor
+    assert isinstance(curve, Curve)
+    return Curve(curve.knots, factor * curve.powers, curve.waves), law.table.origin
+
+
+def _parameters(found: Linkage, number: int) -> tuple[Any, ...]:
+    """Law and offset."""
+    step = found.motion[number]
+    assert isinstance(step, Call)
+    return step.parameters
+
+
+def _term(number: int, k: int, place: int, found: Linkage) -> Any:
+    """A cosine or sine of a series."""
+    return [*_parameters(found, number)[0].waves.terms][k][place]
+
+
+def _power(factor: Any, sign: float) -> Any:
+    return factor if sign > 0 else factor.conjugate()

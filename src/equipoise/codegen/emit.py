@@ -14,8 +14,8 @@ from typing import Any
 
 from equipoise.codegen.across import bearing_force
 from equipoise.codegen.applied import traced_element
+from equipoise.codegen.coupled import can_trace_followers
 from equipoise.codegen.figures import Figure, Gathered
-from equipoise.codegen.followers import can_trace_followers
 from equipoise.codegen.loops import can_trace
 from equipoise.codegen.source import Source, source_of
 from equipoise.codegen.steps import trace_demands, trace_joints, trace_motion

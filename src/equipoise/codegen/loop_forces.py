@@ -15,7 +15,7 @@ import numpy as np
 from equipoise.codegen.loops import Minors, group_of
 from equipoise.codegen.trace import Trace
 from equipoise.mechanism.assembly.linkage import Linkage
-from equipoise.mechanism.assembly.loop_forces import LoopForces
+from equipoise.mechanism.assembly.loopgroup import LoopForces
 from equipoise.mechanism.assembly.loops import Loop, Place, Poses
 from equipoise.mechanism.formulas.kernels import cross, dot
 

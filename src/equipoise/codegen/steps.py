@@ -15,9 +15,13 @@ import numpy as np
 
 from equipoise.codegen.across import trace_across
 from equipoise.codegen.applied import Held, trace_element, trace_limits, trace_load, trace_preload
-from equipoise.codegen.coupled import trace_coupling, trace_rolled
-from equipoise.codegen.followers import trace_displacement, trace_swung
-from equipoise.codegen.laws import trace_law
+from equipoise.codegen.coupled import (
+    trace_coupling,
+    trace_displacement,
+    trace_law,
+    trace_rolled,
+    trace_swung,
+)
 from equipoise.codegen.loop_forces import trace_loop_forces
 from equipoise.codegen.loops import trace_loops
 from equipoise.codegen.prescribed import trace_prescribed
@@ -26,7 +30,7 @@ from equipoise.codegen.trace import Array, Read, Trace, links_of, running_angle
 from equipoise.errors import MassError
 from equipoise.mechanism.assembly.cam_groups import Displacement
 from equipoise.mechanism.assembly.flanks import rolled
-from equipoise.mechanism.assembly.loop_forces import LoopForces
+from equipoise.mechanism.assembly.loopgroup import LoopForces
 from equipoise.mechanism.assembly.newton import LoopGroup
 from equipoise.mechanism.assembly.steps import (
     Call,

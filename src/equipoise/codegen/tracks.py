@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.followers import MOST_BINS, Pieces, bins
+from equipoise.codegen.coupled import MOST_BINS, Pieces, bins
 from equipoise.codegen.terms import Pair, angle_of, floor, greatest, select
 from equipoise.codegen.trace import Array, Trace
 from equipoise.mechanism.formulas.curve_kernels import plane_piece

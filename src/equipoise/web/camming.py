@@ -15,8 +15,7 @@ from typing import Any
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.assembly.builder import Guide
-from equipoise.mechanism.assembly.cam_demands import check_shape
-from equipoise.mechanism.assembly.cam_fits import fitted
+from equipoise.mechanism.assembly.cam_fits import check_shape, fitted
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.formulas.kernels import cross, dot
 from equipoise.mechanism.kinematics.outline import Pose

@@ -9,8 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.mechanism.assembly.builder import Builder, Group, guide_reaction
-from equipoise.mechanism.assembly.cam_demands import check_shape
-from equipoise.mechanism.assembly.cam_fits import Fit, fitted
+from equipoise.mechanism.assembly.cam_fits import Fit, check_shape, fitted
 from equipoise.mechanism.assembly.joints import Structure
 from equipoise.mechanism.assembly.loops import CouplingLoop, End, Poses
 from equipoise.mechanism.assembly.steps import (

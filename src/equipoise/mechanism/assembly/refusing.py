@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism.assembly.cam_demands import can_be_made
-from equipoise.mechanism.assembly.cam_fits import fits_of
+from equipoise.mechanism.assembly.cam_fits import can_be_made, fits_of
 from equipoise.mechanism.assembly.family import Columns, joints_of
 from equipoise.mechanism.assembly.joints import coupling_pins
 from equipoise.mechanism.assembly.linkage import Linkage

@@ -7,12 +7,18 @@ The same free bodies serve a linkage that goes on through change points.  Links 
 and that statics decides, are left to their own steps, which hand on what their joints ask for.
 
 Drive torque, and force and moment on the frame as a whole, follow from the demands alone.
+
+Along which line teeth push depends on the sign of their push, and where joints share, how large
+the push is depends on all these lines.  From the flanks that pushes without any slant ask for,
+flanks are changed until all push the way they lie.  Teeth that push back on either flank bear
+least where they bear nothing: they are idle there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import degrees
 from typing import Any
 
 import numpy as np
@@ -20,21 +26,53 @@ import numpy as np
 from equipoise.decompositions import singular_values, svd
 from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note, all_of, to_say
-from equipoise.mechanism.assembly.agreeing import agreeing
 from equipoise.mechanism.assembly.builder import Builder, Group
 from equipoise.mechanism.assembly.joints import Structure, name_in_outputs, no_motion
-from equipoise.mechanism.assembly.least import in_blocks, least, parts_of
-from equipoise.mechanism.assembly.loop_forces import LoopForces
-from equipoise.mechanism.assembly.loopgroup import Maker
-from equipoise.mechanism.assembly.loops import CouplingLoop, Poses
-from equipoise.mechanism.assembly.misfits import AGREES, Fit
+from equipoise.mechanism.assembly.loopgroup import LoopForces, Maker
+from equipoise.mechanism.assembly.loops import CouplingLoop, Loop, Poses
 from equipoise.mechanism.assembly.named_joints import given_properties
 from equipoise.mechanism.assembly.newton import LoopGroup, poses_in
-from equipoise.mechanism.assembly.steps import Array, Reaction, State, planar
+from equipoise.mechanism.assembly.steps import Array, Reaction, State, planar, running_angle
 from equipoise.mechanism.formulas import kernels
 from equipoise.mechanism.parts.joint_properties import family_of
 from equipoise.mechanism.parts.machine import FRAME, Machine
 
+ROUNDED = 1e-11
+"""Share of a singular value in the largest that rounding explains."""
+CLEAR = 1e-8
+"""The same of rows that clearly do not depend on each other."""
+APART = 1e5
+"""By how much, at most, products of rows let errors grow."""
+ENTRIES_AT_ONCE = 2**20
+"""Entries of matrices that are worked on at a time: what is in between takes several times that."""
+STEPS_AT_ONCE = 3
+"""Steps in which all flanks that do not agree are changed; after them one of each crank angle."""
+NO_SIGN = 1e-12
+"""Share of the largest push up to which one has no sign."""
+AGREES = 1e-9
+"""Misfit, in sizes of the machine or radians, that rounding of lengths explains."""
+
+FIXED = to_say(
+    "{second} of {link!r} comes {misfit:.4g} mm beside its pin, at crank angle {angle:.4g} deg; "
+    "its points {first} and {second} are {given:.7g} mm apart, and {low:.7g} mm would fit"
+)
+MOVING = to_say(
+    "{second} of {link!r} comes {misfit:.4g} mm beside its pin, at crank angle {angle:.4g} deg; "
+    "its points {first} and {second} are {given:.7g} mm apart, and the others bring the pins "
+    "{low:.7g} to {high:.7g} mm apart as the crank turns"
+)
+MISPLACED = to_say(
+    "{name!r} of {link!r} is {misfit:.4g} mm beside where it should be at crank angle "
+    "{angle:.4g} deg; give lengths that agree, or leave it out"
+)
+AHEAD = to_say(
+    "{name!r} turns {link!r} {misfit:.4g} deg beside where other joints turn it at crank angle "
+    "{angle:.4g} deg; give ratios that agree, or leave it out"
+)
+AT_START = to_say(
+    "{name!r} starts {link!r} at {given:.6g} deg, where other joints have it at {found:.6g} deg; "
+    "give it that start"
+)
 OPEN = 1e-9
 """Share of a joint in forces that hold each other, up to which it has none."""
 WEAK = 1e-6
@@ -49,6 +87,164 @@ SHARE = to_say(
     "the torque; drive one of them"
 )
 LINED_UP = Note("parallel linkages go on through their change points with one drive only")
+
+
+def least(matrix: Array, right: Array) -> Array:
+    """Least solutions (N, m, k) of equations (N, n, m) with right sides (N, n, k)."""
+    found = np.empty((matrix.shape[0], matrix.shape[2], right.shape[2]))
+    for some in in_blocks(matrix):
+        found[some] = _least_by_products(matrix[some], right[some])
+    return found
+
+
+def in_blocks(matrix: Array) -> Iterator[slice]:
+    """Slices of a stack of matrices (N, n, m), of as many as are worked on at a time."""
+    step = max(1, ENTRIES_AT_ONCE // max(1, matrix[:1].size))
+    return (slice(begin, begin + step) for begin in range(0, len(matrix), step))
+
+
+def _least_by_products(matrix: Array, right: Array) -> Array:
+    """By the products of rows, and by the rows themselves where products lose digits."""
+    across = np.swapaxes(matrix, -1, -2)
+    products = matrix @ across
+    probe = np.cos(np.arange(matrix.shape[1]))  # of no meaning: shows how much errors can grow
+    probe = np.broadcast_to(probe[:, None], (*matrix.shape[:2], 1))
+    try:
+        told = np.linalg.solve(products, np.concatenate([right, probe], axis=-1))
+    except np.linalg.LinAlgError:
+        return _least_by_rows(matrix, right)
+    found = np.asarray(across @ told[..., :-1])
+    sizes = np.max(np.abs(told[..., -1]), axis=-1) * np.trace(products, axis1=1, axis2=2)
+    if not np.all(apart := sizes < APART):
+        found[~apart] = _least_by_rows(matrix[~apart], right[~apart])
+    return found
+
+
+def _least_by_rows(matrix: Array, right: Array) -> Array:
+    """By QR, and by singular values where rows nearly depend on each other."""
+    across, triangle = np.linalg.qr(np.swapaxes(matrix, -1, -2))
+    sizes = np.abs(np.diagonal(triangle, axis1=-2, axis2=-1))
+    clear = np.min(sizes, axis=-1) > CLEAR * np.max(sizes, axis=-1)
+    triangle[~clear] = np.eye(triangle.shape[-1])
+    found = across @ np.linalg.solve(np.swapaxes(triangle, -1, -2), right)
+    if not np.all(clear):
+        found[~clear] = parts_of(matrix[~clear])[0] @ right[~clear]
+    return np.asarray(found)
+
+
+def parts_of(matrix: Array) -> tuple[Array, Array]:
+    """Least-squares inverse of matrices (N, n, m), and unknowns (N, m, k) that they make nothing
+    of.
+    """
+    left, sizes, right = svd(matrix, full_matrices=True)
+    rank = sizes.shape[-1]
+    kept = sizes > ROUNDED * sizes[:, :1]
+    over = np.where(kept, 1 / np.where(kept, sizes, 1.0), 0.0)
+    right = np.swapaxes(right, -1, -2)
+    return right[..., :rank] * over[:, None] @ np.swapaxes(left, -1, -2), right[..., rank:]
+
+
+def agreeing(pushes: Callable[[Array, Array], Array], senses: Array) -> tuple[Array, Array]:
+    """Senses (G, N) that agree with the pushes that follow, and which of these are idle (G, N).
+
+    pushes : those (G, N) of given senses, of which some are idle.  senses : to begin with.
+    """
+    idle = np.zeros(senses.shape, bool)
+    changed = np.zeros(senses.shape, bool)
+    for step in range(STEPS_AT_ONCE + len(senses) * (len(senses) + 2)):
+        found = pushes(senses, idle)
+        wrong = np.where(idle, 0.0, -found * senses)
+        against = wrong > NO_SIGN * np.max(np.abs(found), initial=0.0)
+        if not np.any(against):
+            break
+        if step >= STEPS_AT_ONCE:
+            worst = np.arange(len(senses))[:, None] == np.argmax(wrong, axis=0)
+            against &= worst
+            given_up = against & changed
+            idle |= given_up
+            changed = (changed | against) & ~np.any(given_up, axis=0)
+        senses = np.where(against, -senses, senses)
+    return senses, idle
+
+
+@dataclass(frozen=True)
+class Fit:
+    """What has to fit.
+
+    loops : all joints.  groups : how the motion is solved.  size : of the machine, m.
+    starts : of couplings by name, where the file has them start, rad or m; 0 if left out.
+    """
+
+    loops: tuple[Loop, ...]
+    groups: tuple[Group, ...]
+    size: float
+    starts: Mapping[str, float]
+
+    def misfit(self, state: State, poses: Poses) -> Note | str:
+        """Say which joint does not fit, and by how much; nothing where all do.
+
+        state, poses : over the whole cycle.
+        """
+        theta, size = state["theta"], self.size
+        poses = {body: replace(pose, angle=state.get(f"phi({body})", running_angle(state, body)))
+                 for body, pose in poses.items()}  # fmt: skip
+        misfits = [np.broadcast_to(gap(one, poses, size), np.shape(theta)) for one in self.loops]
+        worst, at = np.unravel_index(np.argmax(misfits), np.shape(misfits))
+        if misfits[worst][at] <= AGREES * size:
+            return next(self.off_at_start(poses), "")
+        told = too_short(self.groups, state, size)
+        return told or _beside(self.loops[worst], misfits[worst], theta, at, size)
+
+    def off_at_start(self, poses: Poses) -> Iterator[Note]:
+        """Say of couplings that start a link at another angle than other joints have it."""
+        for loop in self.loops:
+            if isinstance(loop, CouplingLoop) and not loop.slides:
+                given, found = self.starts[loop.name], float(np.ravel(poses[loop.on.body].angle)[0])
+                if given and abs(np.exp(1j * (given - found)) - 1) > AGREES:
+                    yield Note(AT_START, name=loop.name, link=loop.on.body, given=degrees(given),
+                               found=degrees(np.angle(np.exp(1j * found))))  # fmt: skip
+
+
+def gap(loop: Loop, poses: Poses, size: float) -> Any:
+    """By how much a joint does not fit, m; an angle counts at the size of the machine."""
+    if isinstance(loop, CouplingLoop):
+        (value,) = loop.gaps(poses, 0)
+        ahead = np.abs(value - np.ravel(value)[0])
+        return ahead if loop.slides else ahead * size
+    first, second = loop.gaps(poses, 0)
+    if loop.turns:
+        first = first * size
+    return np.hypot(first, second)
+
+
+def _beside(loop: Loop, misfit: Array, theta: Array, at: Any, size: float) -> Note:
+    turned = isinstance(loop, CouplingLoop) and not loop.slides
+    apart = degrees(misfit[at] / size) if turned else misfit[at] * 1e3
+    template = AHEAD if turned else MISPLACED
+    return Note(template, name=loop.name, link=loop.on.body, misfit=apart, angle=degrees(theta[at]))
+
+
+def too_short(groups: Sequence[Group], state: State, size: float) -> Note | str:
+    """Say of the link that two pins hold which distance of them is needed."""
+    found = []
+    for group in groups:
+        if group.kind != "pointed":
+            continue
+        call: Any = group.motion[-1]
+        first, second = call.inputs[0], call.inputs[3]
+        needed = np.abs(state[second] - state[first]) + 0 * state["theta"]
+        off = np.abs(needed - abs(call.parameters[0]))
+        at = int(np.argmax(off))
+        found.append((off[at], at, group.links[0], first[2:-1], second[2:-1], needed, call))
+    if not found or (worst := max(found, key=lambda one: one[0]))[0] <= AGREES * size:
+        return ""
+    off, at, link, first, second, needed, call = worst
+    low, high = float(np.min(needed)), float(np.max(needed))
+    same = high - low <= AGREES * size
+    template = FIXED if same else MOVING
+    return Note(template, link=link, first=first, second=second,
+                misfit=off * 1e3, angle=degrees(state["theta"][at]), low=low * 1e3,
+                high=high * 1e3, given=abs(call.parameters[0]) * 1e3)  # fmt: skip
 
 
 @dataclass(frozen=True)
