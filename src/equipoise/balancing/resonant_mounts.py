@@ -27,8 +27,10 @@ FACTORS = (1 / 2, 1 / 3, 1 / 4, 2.0, 3.0, 4.0)
 SHARE = 0.1
 """Of the energy of a mode, from which a mount takes part in it."""
 CLEAR = 0.5
-"""Share of the most that other mounts bring from which milder ones are enough, and from which a
-change of masses is worth it as well."""
+"""Share of the most that other mounts bring from which milder ones are enough."""
+WORTH_IT = 2 / 3
+"""Share of what other mounts bring from which a change of masses is worth it as well: beside a
+resonance mass moves the frequency too, so that less is a matter of luck."""
 LEAST = 0.15
 """Share of what gauges read that has to go."""
 
@@ -56,7 +58,7 @@ class ResonantMounts:
 
 def outweighs(gain: float, mounts: ResonantMounts) -> bool:
     """Whether a change of masses is worth it beside what other mounts bring."""
-    return gain >= CLEAR * mounts.gain
+    return gain >= WORTH_IT * mounts.gain
 
 
 def resonant_mounts_for(
