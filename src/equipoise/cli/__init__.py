@@ -77,15 +77,9 @@ def run(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Sequence[str] | None) -> int:
-    given = sys.argv[1:] if arguments is None else arguments
-    columns = shutil.get_terminal_size().columns
-    if columns > MOST or "COLUMNS" in os.environ:  # for every library that asks, and may take a 0
-        os.environ["COLUMNS"] = str(min(columns, MOST))
-    app.console = _console(LEAST) if columns < LEAST else None
-    if not given or given[0].startswith("-"):  # the help has a line of each command
-        for name in COMMANDS:
-            _ = app[name]
     try:
+        given = sys.argv[1:] if arguments is None else arguments
+        _prepare(given)
         with recorded(), together(), _signs_of_life(given):
             check_repeated(given)
             app(
@@ -114,6 +108,17 @@ def _run(arguments: Sequence[str] | None) -> int:
         _drop_output()
         return _refuse(UsageError(_mishap(error)))
     return 0
+
+
+def _prepare(given: Sequence[str]) -> None:
+    """Fit the output to the terminal, and load what the help lists."""
+    columns = shutil.get_terminal_size().columns
+    if columns > MOST or "COLUMNS" in os.environ:  # for every library that asks, and may take a 0
+        os.environ["COLUMNS"] = str(min(columns, MOST))
+    app.console = _console(LEAST) if columns < LEAST else None
+    if not given or given[0].startswith("-"):  # the help has a line of each command
+        for name in COMMANDS:
+            _ = app[name]
 
 
 MOST_REPEATED = 200

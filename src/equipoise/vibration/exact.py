@@ -19,7 +19,7 @@ from equipoise.mechanism.dynamics.reactions import Pass
 from equipoise.mechanism.parts.machine import Machine
 from equipoise.mechanism.parts.support import FREEDOMS
 from equipoise.results.analysis import analyze
-from equipoise.signals import Array, JumpSampling, Periodic, mean
+from equipoise.signals import GAUSS_POINTS, Array, JumpSampling, Periodic, mean
 from equipoise.vibration.body import IN_PLANE, PITCH, Body, Reading
 from equipoise.vibration.coupled import TO_SETTLE, Coupled, StallError, follow, settled
 from equipoise.vibration.linear import Linear, gauges_of
@@ -167,7 +167,8 @@ class ExactSolution:
         if self.system.torque is not None:
             orbit, time = self.found.orbit, self.system.count - 2
             jumps = orbit.at(jumps)[time] * (2 * pi * self.turns / orbit.starts[time, -1])
-        return JumpSampling.of(self._steps, self.turns, jumps)
+        # every order counts: curves are drawn by them, and their derivatives taken
+        return JumpSampling.of(self._steps, self.turns, jumps, steps=GAUSS_POINTS // 2)
 
     @property
     def _steps(self) -> Array:
