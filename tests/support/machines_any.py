@@ -503,6 +503,11 @@ def of_kind(chance: random.Random) -> tuple[Document, Files]:
     machine = replace(machine, loads=tuple(x for x in machine.loads if x not in plain))
     if chance.random() < 0.2:
         machine = machines_planes.set_apart(machine, np.random.default_rng(seed))
+    return with_tables(machine)
+
+
+def with_tables(machine: Machine) -> tuple[Document, Files]:
+    """A machine as its file, and the tables that it names."""
     text, tables = taken_along(machine, "model.toml")
     return tomllib.loads(text), tables
 

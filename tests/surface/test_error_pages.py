@@ -29,6 +29,12 @@ damping = "150 N s/m"
 [support.gauges.stand]
 point = ["100 mm", "0 mm"]
 """
+RUBBING = """
+[[joints]]
+joint = "joints.B"
+radius = "30 mm"
+friction = 1
+"""
 CASES: dict[str, tuple[Callable[..., object], list[Change], list[Change]]] = {
     "The crank cannot turn fully": (
         analyze,
@@ -44,6 +50,11 @@ CASES: dict[str, tuple[Callable[..., object], list[Change], list[Change]]] = {
         analyze,
         [('points = ["Q", "B"]', 'points = ["Q", "C"]')],
         [('points = ["Q", "C"]', 'points = ["Q", "B"]')],
+    ),
+    "Friction locks the machine": (
+        analyze,
+        [*WEIGHED, ("[assembly]", RUBBING + "[assembly]")],
+        [("friction = 1", "friction = 0.7")],
     ),
     "A side is missing in assembly": (
         analyze,

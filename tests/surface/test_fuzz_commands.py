@@ -37,6 +37,8 @@ from equipoise.web.replies import packed
 from equipoise.web.session import Session
 from support import machines_any
 from support.chosen import few
+from support.machines import KINDS as KINDS_MADE
+from support.machines import make
 from surface.running import (
     EXAMPLES,
     STUDIES,
@@ -394,14 +396,26 @@ def test_every_command_on_machines_from_nothing(part: int) -> None:
         machine_tried(seed)
 
 
-@pytest.mark.parametrize("seed", [300627, 400567])
-def test_a_machine_of_a_kind_brings_its_tables(seed: int) -> None:
+@pytest.mark.parametrize("kind", [kind for kind in KINDS_MADE if kind.startswith("torsion_")])
+def test_a_machine_of_a_kind_brings_its_tables(kind: str) -> None:
     """Torsion springs of a random machine may have a table, which a file alone cannot hold."""
-    files, _ = machine_of(seed)
-    for name, text in files.items():
+    document, tables = machines_any.with_tables(make(kind, 0).machine)
+    model = tomli_w.dumps({"schema": 1, "title": kind} | document)
+    for name, text in {"model.toml": model, **tables}.items():
         Path(name).write_text(text, encoding="utf-8")
-    assert "table = " in files["model.toml"]
+    assert "table = " in model
     assert equipoise("check", "model.toml").status == 0
+
+
+def test_machines_from_nothing_have_the_tables_that_they_name() -> None:
+    """Of a hundred, some of which name one."""
+    made = [machine_of(seed)[0] for seed in range(100)]
+    named = [
+        {*re.findall(r'"([^"]+\.csv)"', files["model.toml"])} <= {*files}
+        for files in made
+        if "table = " in files["model.toml"]
+    ]
+    assert all(named) and len(named) > 5
 
 
 def test_every_command_is_tried() -> None:

@@ -135,6 +135,8 @@ def _length(content: Content, found: Found) -> Note | None:
     points: Any = content
     for step in found.place[:-1]:
         points = _below(points, step)
+    if not isinstance(points, dict):  # a list of points has no origin among them
+        return None
     places = {name: vector_of(one) for name, one in points.items()}
     name = str(found.place[-1])
     own = places.pop(name)

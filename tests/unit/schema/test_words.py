@@ -37,6 +37,7 @@ def said(name: str, path: str, language: str = "en") -> str:
         ("slider-crank-engine", "sliders[1].angle", "angle of the guide of the piston"),
         ("slider-crank-engine", "loads[1].force.y", "force of load 1, y"),
         ("geared-counterweight", "gears[1].ratio", "ratio of gear 1"),
+        ("baler-pickup", "curved_slots[1].points[2].x", "points of curved slot 1, 2, x"),
         ("yamashita-rig", "support.mounts.spring.stiffness", "stiffness of mount spring"),
         ("yamashita-rig", "drive.motor.no_load_speed", "no-load speed of the motor"),
         ("brush-cutter", "shaft.length", "length of the shaft"),

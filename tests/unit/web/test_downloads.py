@@ -91,7 +91,7 @@ def test_a_page_that_computes_is_that_of_export(monkeypatch: pytest.MonkeyPatch)
     fields = {field["path"]: field for field in held["fields"]}
     assert fields["links.crank.mass"]["value"] == 0.5
     assert held["language"] == "ko" and held["words"]["RMS"] == catalogue("ko")["RMS"]
-    session, _ = opened("class-three")
+    session, _ = opened("hydraulic-loader")
     said = refusal(ask(session, "download", seq=1, kind="interactive")[-1:])
     assert "an interactive page computes in the browser" in said
     said = refusal(ask(session, "download", seq=2, kind="interactive", language="xx")[-1:])
