@@ -224,9 +224,12 @@ def remedy_named(found: Balanced) -> str:
               if change.kind == "phases"]  # fmt: skip
     if phases:
         return say("phases {phases} of the rows", phases=phases[0])
-    beside = {pin: None for change in found.changes for pin in change.values.get("beside", ())}
     remedy = listed(freedoms(found.plan))
-    return in_its_plane(remedy, {"beside": beside}) if beside else remedy
+    for kind in ("beside", "beside_links"):
+        beside = {name: None for one in found.changes for name in one.values.get(kind, ())}
+        if beside:
+            return in_its_plane(remedy, {kind: beside})
+    return remedy
 
 
 def why_not(found: Balanced) -> str:

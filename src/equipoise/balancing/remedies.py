@@ -345,10 +345,18 @@ def with_sectors(
             ],
         }
         plane: dict[str, object] = {} if room.plane is None else {"plane": room.plane}
-        beside = [pin for pin, way in room.beside.items() if way < shape.outer + room.clearance]
-        plane |= {"beside": beside} if beside else {}
+        plane |= _passing(room, shape)
         changes.append(Change("added mass", room.link, values | plane))
     return machine, tuple(changes)
+
+
+def _passing(room: Room, shape: Sector) -> dict[str, object]:
+    """Pins, or links where no pin is, for which a sector needs the plane of its own."""
+    for kind, ways in (("beside", room.beside), ("beside_links", room.beside_links)):
+        near = [name for name, way in ways.items() if way < shape.outer + room.clearance]
+        if near:
+            return {kind: near}
+    return {}
 
 
 def _with_masses_of(machine: Machine, name: str, link: Link) -> Machine:

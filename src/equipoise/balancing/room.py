@@ -12,7 +12,7 @@ How far the room reaches, if nothing is in the way, is assumed from the lengths 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations, pairwise
 
@@ -58,6 +58,7 @@ class Room:
     assumed : m, how far it is taken to reach where nothing is in the way.
     beside : of a room in a plane of its own: pins that come into it where they are in its plane,
         and how near they come to the pivot, m.
+    beside_links : the same of links.
     """
 
     link: str
@@ -70,6 +71,7 @@ class Room:
     clearance: float
     assumed: float
     beside: Mapping[str, float] = field(default_factory=dict)
+    beside_links: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def is_limited_by_assumption(self) -> bool:
@@ -143,15 +145,18 @@ def room_about(
     fixed = _through_every_plane(machine)
     pins = [*_pins(motion, link)]
     passing = [pin for pin in pins if pin not in fixed] if alone else []
-    bodies = [] if alone else [*_bodies(motion, link, plane, thick)]
+    others = [*_bodies(motion, link, plane, thick)]
+    bodies = [] if alone else [track for _, track in others]
     kept = [(motion.points[pin].place, apart.get(pin, clearance)) for pin in pins
             if pin not in passing]  # fmt: skip
     for places, clear in (*kept, *((track, clearance) for track in (*bodies, *wheels))):
         seen = (np.broadcast_to(places, turn.shape) - pivot) * turn
         _keep_clear(free, seen, clear)
     free = np.maximum(free, 0.0)
-    nearest = {pin: float(np.min(np.abs(motion.points[pin].place - pivot))) for pin in passing}
-    beside = {pin: way for pin, way in nearest.items() if way < np.max(free) + clearance}
+    most_near = float(np.max(free)) + clearance
+    ways = [(pin, motion.points[pin].place) for pin in passing]
+    beside = _nearer(ways, pivot, most_near)
+    beside_links = _nearer(others if alone else [], pivot, most_near)
     # A weight in a plane of its own lies beyond the webs between which the link's pins are.
     within = plane is None and not alone
     names = sorted(_joined(machine) & own.points.keys() - {at}) if within else []
@@ -159,7 +164,19 @@ def room_about(
     own_pins = np.array([complex(*own.points[pin]) - center for pin in names], complex)
     near = np.minimum(clearance, np.abs(own_pins) / 2)
     own_clear = np.array([apart.get(pin, near[k]) for k, pin in enumerate(names)])
-    return Room(link, at, plane, free, own_pins, own_clear, thick, clearance, most, beside)
+    return Room(
+        link, at, plane, free, own_pins, own_clear, thick, clearance, most, beside, beside_links
+    )
+
+
+def _nearer(tracks: Iterable[tuple[str, Array]], pivot: complex, most: float) -> dict[str, float]:
+    """How near what goes along tracks comes to a pivot, by name, where that is nearer than most."""
+    found = dict[str, float]()
+    for name, track in tracks:
+        way = float(np.min(np.abs(track - pivot)))
+        if way < most:
+            found[name] = min(way, found.get(name, way))
+    return found
 
 
 def _assumed(motion: Motion, link: str, at: str) -> float:
@@ -252,8 +269,10 @@ def _pins(motion: Motion, link: str) -> Iterator[str]:
             yield name
 
 
-def _bodies(motion: Motion, link: str, plane: float | None, thick: float) -> Iterator[Array]:
-    """Places on other links that lie in the plane of a weight on a link."""
+def _bodies(
+    motion: Motion, link: str, plane: float | None, thick: float
+) -> Iterator[tuple[str, Array]]:
+    """Other links that lie in the plane of a weight on a link, and where places on them go."""
     machine = motion.machine
     known, own = machine.has_planes, machine.links[link]
     z = own.plane if plane is None else plane
@@ -268,7 +287,7 @@ def _bodies(motion: Motion, link: str, plane: float | None, thick: float) -> Ite
             if not known or abs(there - z) < (thick + across) / 2:
                 tracks += [_track(motion, name, place) for place in outline_of(other, body)]
         if known or not _pass_over(motion, link, tracks):
-            yield from tracks
+            yield from ((name, track) for track in tracks)
 
 
 def _wheels(motion: Motion, link: str, at: str) -> tuple[list[float], list[Array]]:

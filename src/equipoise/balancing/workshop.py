@@ -171,6 +171,9 @@ def in_its_plane(what: str, values: Mapping[str, Any]) -> str:
     if "beside" in values:
         pins = say(", ").join(values["beside"])
         return say("{what}, in a plane of its own beside pin {pins}", what=what, pins=pins)
+    if "beside_links" in values:
+        links = say(", ").join(values["beside_links"])
+        return say("{what}, in a plane of its own beside {links}", what=what, links=links)
     return what
 
 
