@@ -263,7 +263,7 @@ def test_a_geared_five_bar_is_made_by_keys(sheet: Sheet) -> None:
     numbers = {"crank A to C": "30 mm", "coupler C to D": "100 mm", "rocker B to E": "25 mm"}
     numbers |= {
         "link1 E to D": "90 mm",
-        "gears crank to rocker, angle of rocker at the start": "120 deg",
+        "gears crank to rocker, angle at the start": "120 deg",
     }
     sheet.type(**numbers)
     made, like = sheet.live.machine(), eq.loads(GEARED)

@@ -219,7 +219,7 @@ def _numbers(
     for key, one in quantities_of(item).items():
         value = getattr(item, one.field)
         if value is not None and key not in without and isinstance(one.kind, Quantity):
-            word = say(key.replace("_", " "))
+            word = say(one.word or key.replace("_", " "))
             label = listed(of, word) if of else word
             yield _field((*place, key), group, label, one.kind.dimension, value)
 
