@@ -43,10 +43,11 @@ def test_findings_are_those_of_the_functions() -> None:
     beside = np.interp(15.0, sweep.speed, at)
     assert float(response.gauges["gauge"].displacement.peak_to_peak) == pytest.approx(beside, 0.02)
     assert found.modes.modes[0].natural_frequency == pytest.approx(12.434, abs=1e-3)
-    assert found.balanced is not None and found.balanced.tried and found.after is None
-    helped = of("kim-chung-c")
-    assert helped.balanced is not None
-    assert helped.after is not None and helped.after.machine == helped.balanced.machine
+    for helped in (found, of("kim-chung-c")):
+        assert helped.balanced is not None
+        assert helped.after is not None and helped.after.machine == helped.balanced.machine
+    kept = of("class-three")
+    assert kept.balanced is not None and kept.balanced.tried and kept.after is None
     assert found.planting is None and found.notes == ()
 
 
