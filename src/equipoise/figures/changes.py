@@ -40,7 +40,7 @@ NO_LENGTH = 1e-6
 """mm."""
 FULL = 1e-6
 """rad: a sector that lacks less than this is a ring."""
-FAR, NEAR = 2.0, 0.02
+FAR, NEAR = 3.0, 0.02
 """Over the size of the machine: rooms that are larger do not set the scale; dots that are nearer to
 each other look like one."""
 NAMES = {
