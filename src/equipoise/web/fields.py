@@ -215,7 +215,7 @@ def _point(place: Place, group: str, label: str, point: Vector) -> Iterator[Fiel
 def _numbers(
     place: Place, group: str, of: str, item: Frozen, without: tuple[str, ...] = ()
 ) -> Iterator[Field]:
-    """Those keys of an object that are quantities and are given; `of` begins their labels."""
+    """Those keys of an object that are quantities and are given, by their words after `of`."""
     for key, one in quantities_of(item).items():
         value = getattr(item, one.field)
         if value is not None and key not in without and isinstance(one.kind, Quantity):

@@ -85,3 +85,11 @@ def test_a_sketch_keeps_planes_and_bearings() -> None:
     assert made.links["shaft"].planes == {"P": -0.04}
     assert {one.link for one in made.bearings.values()} == {"shaft"}
     assert not without_link(sketch, "crank").rest["bearings"]
+
+
+def test_numbers_of_couplings_are_called_by_their_words() -> None:
+    """Start alone would not say of what."""
+    session, _ = opened("knife-drive")
+    labels = {path: field.label for path, field in fields_of(session.shown.design).items()}
+    assert labels["belts.1.start"] == "shaft to crank, angle at the start"
+    assert labels["racks.1.travel"] == "sector to knife, travel at the start"
