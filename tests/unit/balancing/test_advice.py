@@ -18,11 +18,11 @@ from equipoise.balancing.blocks import outcome_blocks
 from equipoise.balancing.headlines import Saving, worse_headlines
 from equipoise.balancing.opposite_arms import end_weights_for, opposite_arm_for
 from equipoise.balancing.outcome import helps_told
-from equipoise.balancing.remedies import LEAST_GAIN, plate_of, sectors
+from equipoise.balancing.remedies import LEAST_GAIN, plate_of, sectors, with_sectors
 from equipoise.balancing.remedies import Sector as SectorShape
 from equipoise.balancing.room import pivots_of, room_about, rooms_about
 from equipoise.balancing.told import aims_told, proof_told, worse_told
-from equipoise.balancing.workshop import sentences
+from equipoise.balancing.workshop import in_short, sentences
 from equipoise.errors import EquipoiseError, MassError
 from equipoise.mechanism.parts.balance import AddedMass, Balance, Limit, Objective, Phases, Weight
 from equipoise.mechanism.parts.bodies import Body
@@ -212,6 +212,17 @@ def test_a_plane_of_its_own_is_crossed_by_shafts_and_guided_pins() -> None:
     assert 0.85 * shaft < room.largest < shaft - room.clearance * (1 - 1e-9)
     told = " ".join(helps_told(advise(rig)))
     assert "in a plane of its own beside pin C" in told
+
+
+def test_a_plane_of_its_own_is_said_where_only_a_link_comes_near() -> None:
+    """A pin says enough, as it ends the link too; what comes near neither needs no such plane."""
+    machine = bare("yamashita-1")
+    *_, room = rooms_about(machine, "crank")
+    room = replace(room, beside={"C": 0.07}, beside_links={"rocker": 0.04})
+    for outer, said in ((0.07, " beside pin C"), (0.04, " beside rocker"), (0.03, "")):
+        _, (change,) = with_sectors(machine, (room,), (SectorShape(outer, 0.01, 0.01, 0, 90),))
+        (text,) = in_short(change)
+        assert text.endswith(f", in a plane of its own{said}" if said else "its middle at 0°")
 
 
 def test_the_room_of_a_short_crank_is_larger_than_its_throw() -> None:
