@@ -71,6 +71,21 @@ def highest_at(values: Array, smooth: bool = True) -> Array:
     return found
 
 
+def first_below(angle: Array, values: Array, limit: float) -> float | None:
+    """The angle at which values fall below a limit for the first time, between two of the angles;
+    the first angle of values that are below it from there on; None where none is.
+
+    angle, values : (N,), the angles in order.
+    """
+    low = values < limit
+    falls = np.flatnonzero(low[1:] & ~low[:-1])
+    if len(falls):
+        k = int(falls[0])
+        share = (values[k] - limit) / (values[k] - values[k + 1])
+        return float(angle[k] + share * (angle[k + 1] - angle[k]))
+    return float(angle[0]) if len(low) and low[0] else None
+
+
 def within_period(angle: Array, period: float) -> Array:
     """Angles from 0 to less than the period; what is short of the period by rounding is 0."""
     inside = np.mod(angle, period)

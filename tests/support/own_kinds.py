@@ -1,11 +1,12 @@
-"""Where a kind of element that a test declares has to be found, whatever kind it is."""
+"""Where a kind of part that a test declares has to be found, whatever kind it is."""
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import fields, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import pytest
@@ -14,9 +15,11 @@ import equipoise as eq
 from equipoise.codegen.batch import Batch
 from equipoise.codegen.figures import Figure
 from equipoise.codegen.javascript import javascript
-from equipoise.errors import ModelError
+from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism import Machine
 from equipoise.mechanism.assembly.linkage import assemble
+from equipoise.mechanism.outputs.declared import GROUPS, declaring
+from equipoise.mechanism.parts.element_kinds import declare_outputs
 from equipoise.schema.places import Context
 from equipoise.schema.reading import read_table
 from equipoise.schema.writing import Writer, toml_text
@@ -27,9 +30,30 @@ from equipoise.web.fields import fields_of
 from equipoise.web.tables import tables_of
 from secondroute.test_javascript import run
 
+Made = TypeVar("Made", bound=Machine)
 
-def read_back(machine: Machine, rows: str, slip: tuple[str, str], refusal: str) -> None:
-    """It is written with these rows, read again, and refused with a slip in them."""
+
+def own_outputs(of: type[Machine]) -> Any:
+    """A fixture by which the tests of a file have the outputs of their kinds, and no others do."""
+
+    @pytest.fixture(autouse=True)
+    def outputs() -> Iterator[None]:
+        before = {*GROUPS}
+        with declaring():
+            declare_outputs(of)
+            yield
+        assert {*GROUPS} == before
+
+    return outputs
+
+
+def with_own(of: type[Made], base: Machine, **own: Any) -> Made:
+    """The base as a machine of another class, with what that has besides."""
+    return of(**{one.name: getattr(base, one.name) for one in fields(Machine)} | own)
+
+
+def read_back(machine: Machine, table: str, rows: str, slip: tuple[str, str], refusal: str) -> None:
+    """It is written with these rows, read again, and refused with a slip in them, or too many."""
     kind = type(machine)
     text = toml_text(kind, Writer({}).content(kind, machine))
     assert rows in text
@@ -38,6 +62,8 @@ def read_back(machine: Machine, rows: str, slip: tuple[str, str], refusal: str) 
     assert wrong != text
     with pytest.raises(ModelError, match=refusal):
         read_table(kind, tomllib.loads(wrong), Context())
+    with pytest.raises(ModelError, match=rf"^{table}: got 201"):
+        replace(machine, **{table: getattr(machine, table)[:1] * 201})
 
 
 def designs_by_numbers(
@@ -80,10 +106,16 @@ def on_the_page(machine: Machine, table: str, keys: Sequence[str], numbers: Sequ
     """The page has a form of its keys, an entry, and these of its numbers."""
     tables = tables_of(machine)
     (kind,) = {type(one).__name__ for one in getattr(machine, table)}
-    assert [one["key"] for one in tables["forms"][kind]["controls"]] == [*keys]
+    assert {one["key"] for one in tables["forms"][kind]["controls"]} == {*keys}
     (group,) = (one for one in tables["groups"] if one["place"] == [table])
     assert len(group["entries"]) == 1
     found = fields_of(Design("mine", machine))
     for number in numbers:
         value = getattr(getattr(machine, table)[0], number)
         assert found[f"{table}.1.{number}"].value == value
+
+
+def refused_by_formats(machine: Machine, table: str, special: str, folder: Path) -> None:
+    """A format that lacks the kind says so."""
+    with pytest.raises(UsageError, match=rf"^{table}\[1\]: a file of .* no {special}; give"):
+        eq.export(machine, folder / "mine.xml")

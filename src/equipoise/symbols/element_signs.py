@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from importlib import import_module
 from typing import Any
@@ -12,7 +12,7 @@ from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.element_kinds import Element
 from equipoise.symbols.shapes import Mark
 
-Sign = Callable[[Any, Structure, Bodies], Iterator[Mark]]
+Sign = Callable[[Any, Structure, Bodies, Mapping[str, float]], Iterator[Mark]]
 
 
 @cache
@@ -23,9 +23,14 @@ def sign_of(kind: type[Element]) -> Sign | None:
     return found
 
 
-def element_signs(elements: Iterable[Element], joints: Structure, bodies: Bodies) -> Iterator[Mark]:
-    """The signs of each element that has one of its own."""
+def element_signs(
+    elements: Iterable[Element], joints: Structure, bodies: Bodies, radii: Mapping[str, float]
+) -> Iterator[Mark]:
+    """The signs of each element that has one of its own.
+
+    radii : of pins that are drawn to scale, by point, m.
+    """
     for one in elements:
         kind: Any = type(one)
         if sign := sign_of(kind):
-            yield from sign(one, joints, bodies)
+            yield from sign(one, joints, bodies, radii)

@@ -156,7 +156,7 @@ class Scene:
             marks=(
                 *cams_of(machine, joints),
                 *strands_of(joints, machine.bodies),
-                *element_signs(elements, joints, machine.bodies),
+                *element_signs(elements, joints, machine.bodies, motion.linkage.pin_radii),
                 *racks_of(joints, machine.bodies, lambda one: motion.sliders[one.name].travel),
             ),
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -12,8 +12,8 @@ from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.symbols.shapes import PIN, Array, Mark, Shape
 
-HALF = PIN + 1.4
-"""Half the width of a slot, units: a pin with play."""
+PLAY = 1.4
+"""Between a pin and either edge of its slot, units."""
 SLOTS = ("path", "path-edge")
 """Roles of slots."""
 CORNERS = 96
@@ -22,34 +22,43 @@ CAP = np.exp(1j * np.linspace(-np.pi / 2, np.pi / 2, 9))
 """Round ends, seen along the way ahead."""
 
 
-def circular_sign(slot: CircularSlot, joints: Structure, bodies: Bodies) -> Iterator[Mark]:
+def circular_sign(
+    slot: CircularSlot, joints: Structure, bodies: Bodies, radii: Mapping[str, float]
+) -> Iterator[Mark]:
     """The slot in its body."""
     first, last = slot.arc or (0.0, 2 * np.pi)
     angle = np.linspace(first, last, CORNERS)
     way = np.exp(1j * angle)
-    for shape in slot_shapes(slot.radius * way, 1j * way, closed=not slot.arc):
+    for shape in slot_shapes(slot.radius * way, 1j * way, not slot.arc, radii.get(slot.point)):
         yield Mark(slot.on, slot.center, shape)
 
 
-def curved_sign(slot: CurvedSlot, joints: Structure, bodies: Bodies) -> Iterator[Mark]:
+def curved_sign(
+    slot: CurvedSlot, joints: Structure, bodies: Bodies, radii: Mapping[str, float]
+) -> Iterator[Mark]:
     """The slot in its body."""
     curve, turn = slot.curve, np.exp(1j * slot.direction)
     s = np.linspace(0.0, curve.knots[-1], CORNERS)
     middle, first, *_ = curve.at(s)
-    for shape in slot_shapes(turn * middle, turn * first / abs(first), closed=slot.closed):
+    ahead = turn * first / abs(first)
+    for shape in slot_shapes(turn * middle, ahead, slot.closed, radii.get(slot.point)):
         yield Mark(slot.on, slot.origin, shape)
 
 
-def slot_shapes(middle: Array, ahead: Array, closed: bool) -> Iterator[Shape]:
+def slot_shapes(
+    middle: Array, ahead: Array, closed: bool, radius: float | None = None
+) -> Iterator[Shape]:
     """A slot about its middle line (n,), complex, m, with the directions along it, of size 1.
 
-    closed : whether it ends where it begins.
+    closed : whether it ends where it begins.  radius : of its pin, m, where that is drawn to scale.
     """
-    aside = HALF * 1j * ahead
+    size, grown = (0.0, PIN + PLAY) if radius is None else (radius, PLAY)
+    aside = 1j * ahead
     if closed:
-        yield from (Shape("path-edge", middle, edge, closed=True) for edge in (aside, -aside))
+        for way in (aside, -aside):
+            yield Shape("path-edge", middle + size * way, grown * way, closed=True)
         return
-    ends = [HALF * CAP * ahead[-1], HALF * CAP * -ahead[0]]
+    rounds = [CAP * ahead[-1], CAP * -ahead[0]]
     places = [middle[::-1], np.full(len(CAP), middle[0]), middle, np.full(len(CAP), middle[-1])]
-    offsets = [aside[::-1], ends[1], -aside, ends[0]]
-    yield Shape("path", np.concatenate(places), np.concatenate(offsets), closed=True)
+    ways = np.concatenate([aside[::-1], rounds[1], -aside, rounds[0]])
+    yield Shape("path", np.concatenate(places) + size * ways, grown * ways, closed=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -17,7 +17,9 @@ END = 6.0
 """Units, of the straight end that holds on to the link."""
 
 
-def torsion_sign(spring: TorsionSpring, joints: Structure, bodies: Bodies) -> Iterator[Mark]:
+def torsion_sign(
+    spring: TorsionSpring, joints: Structure, bodies: Bodies, radii: Mapping[str, float]
+) -> Iterator[Mark]:
     """A spiral that turns with the link."""
     shared = joints.pins_between(spring.link, spring.on)
     point = shared[0] if shared else next(iter(bodies[spring.link]))

@@ -254,7 +254,7 @@ def scene_of(sketch: Sketch) -> Scene:
         tuple(bodies_of(sketch.links)),
         {name: place * one for name, place in sketch.places.items()},
         joints.pinned_points,
-        pin_radii(joints, sketch.rest.get("joints", ())),
+        _radii(sketch),
         centers,
         tuple(_wheels(sketch)),
         guides,
@@ -280,10 +280,15 @@ def _taut(sketch: Sketch) -> list[Mark]:
     try:
         cams = cams_of(sketch.machine(), sketch.joints) if sketch.rest.get("cams") else ()
         racks = racks_of(sketch.joints, sketch.bodies, sketch.travel)
-        held = element_signs(sketch.elements, sketch.joints, sketch.bodies)
+        held = element_signs(sketch.elements, sketch.joints, sketch.bodies, _radii(sketch))
         return [*cams, *strands_of(sketch.joints, sketch.bodies), *racks, *held]
     except (EquipoiseError, StopIteration, ValueError):  # a rack without its guide, or its pin
         return []
+
+
+def _radii(sketch: Sketch) -> dict[str, float]:
+    """Of pins that are drawn to scale, by point, m."""
+    return pin_radii(sketch.joints, sketch.rest.get("joints", ()))
 
 
 def _sense(sketch: Sketch) -> Drive:

@@ -7,9 +7,8 @@ Rollers that are pressed together drive as gears do whose teeth have no pressure
 from __future__ import annotations
 
 import shutil
-import tomllib
 from collections.abc import Callable, Iterator, Mapping, Set
-from dataclasses import fields, replace
+from dataclasses import replace
 from fractions import Fraction
 from math import radians, tan
 from pathlib import Path
@@ -19,29 +18,27 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.codegen.batch import Batch
-from equipoise.codegen.figures import Figure
-from equipoise.codegen.javascript import javascript
-from equipoise.errors import MobilityError, ModelError, UsageError
+from equipoise.errors import MobilityError, ModelError
 from equipoise.i18n import Note
 from equipoise.keys import Listing, Quantity, Table, Tables, declared, key
 from equipoise.mechanism import Gear, Machine
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.formulas import kernels
-from equipoise.mechanism.outputs.declared import CONTACT, FORCES, GROUPS, declaring, of_coupling
+from equipoise.mechanism.outputs.declared import CONTACT, FORCES, GROUPS, of_coupling
 from equipoise.mechanism.parts.couplings import Line, Pushed, Relation, Seat, Turning
-from equipoise.mechanism.parts.element_kinds import declare_outputs
 from equipoise.results.machine_blocks import model_blocks
-from equipoise.schema.places import Context
-from equipoise.schema.reading import read_table
-from equipoise.schema.writing import Writer, toml_text
 from equipoise.symbols.pieces import pieces
-from equipoise.symbols.scene import Scene
-from equipoise.web.design import Design
-from equipoise.web.fields import fields_of
-from equipoise.web.tables import tables_of
-from secondroute.test_javascript import run
+from support.own_kinds import (
+    designs_by_numbers,
+    drawn,
+    on_the_page,
+    own_outputs,
+    read_back,
+    refused_by_formats,
+    scripted,
+    with_own,
+)
 from unit.mechanism.test_newton import only_loops, with_position
 from unit.schema.key_tables import key_table
 
@@ -115,8 +112,7 @@ NAME = ROLLERS.name
 
 
 def rolled(*rollers: Rollers) -> Rolled:
-    given = {one.name: getattr(BASE, one.name) for one in fields(Machine)}
-    return Rolled(**{**given, "gears": (), "balance": None}, rollers=rollers)
+    return with_own(Rolled, BASE, gears=(), balance=None, rollers=rollers)
 
 
 def with_gear(angle: float) -> Machine:
@@ -129,24 +125,13 @@ def with_gear(angle: float) -> Machine:
 MACHINE = rolled(ROLLERS)
 
 
-@pytest.fixture(autouse=True)
-def outputs() -> Iterator[None]:
-    with declaring():
-        declare_outputs(Rolled)
-        yield
-    assert "rollers" not in GROUPS
+outputs = own_outputs(Rolled)
 
 
 def test_it_is_read_written_and_refused() -> None:
-    text = toml_text(Rolled, Writer({}).content(Rolled, MACHINE))
-    assert "[[rollers]]\n" in text
-    assert f'between = ["{GEAR.driver}", "{GEAR.driven}"]\n' in text
-    assert read_table(Rolled, tomllib.loads(text), Context()) == MACHINE
-    wrong = text.replace(f'between = ["{GEAR.driver}"', 'between = ["rockr"')
-    with pytest.raises(ModelError, match=r"^rollers\[1\]\.between\[1\]: .* did you mean 'rocker'"):
-        read_table(Rolled, tomllib.loads(wrong), Context())
-    with pytest.raises(ModelError, match=r"^rollers: got 201"):
-        rolled(*[ROLLERS] * 201)
+    rows = f'between = ["{GEAR.driver}", "{GEAR.driven}"]\n'
+    slip = r"^rollers\[1\]\.between\[1\]: .* did you mean 'rocker'"
+    read_back(MACHINE, "rollers", rows, ("rocker", "rockr"), slip)
     with pytest.raises(ModelError, match=r"^rollers\[1\]: 'counterweight' is moved already|^roll"):
         eq.move(rolled(replace(ROLLERS, driver=GEAR.driven, driven="crank")))
     with pytest.raises(MobilityError, match=r"2 free motions \(.*\)"):
@@ -183,28 +168,21 @@ def test_its_cycle_and_its_share_of_mobility_follow() -> None:
 
 def test_compiled_loops_have_designs_by_its_numbers() -> None:
     names = ("drive_torque", f"rollers.{NAME}", f"rollers.{NAME}.friction")
-    wanted = [Figure(name, "peak") for name in names]
-    batch = Batch(MACHINE, ["rollers[1].lean", "rollers[1].start"], wanted, angles=90)
-    sizes = [(0.0, 0.3), (0.35, 1.0)]
-    figures, reason = batch(np.array(sizes))
-    assert not np.any(reason)
-    for row, (lean, start) in zip(figures, sizes, strict=True):
-        summary = eq.analyze(rolled(replace(ROLLERS, lean=lean, start=start)), 90).summary
-        np.testing.assert_allclose(row, [summary[name].peak for name in names], rtol=1e-9)
+
+    def alone(lean: float, start: float) -> Machine:
+        return rolled(replace(ROLLERS, lean=lean, start=start))
+
+    paths = ["rollers[1].lean", "rollers[1].start"]
+    designs_by_numbers(MACHINE, paths, names, [(0.0, 0.3), (0.35, 1.0)], alone)
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="needs Node to run JavaScript")
 def test_scripts_have_it(tmp_path: Path) -> None:
-    linkage, names = assemble(MACHINE), ["drive_torque", f"rollers.{NAME}.friction"]
-    script, found = javascript(linkage, names), eq.analyze(MACHINE, 24)
-    got = run(script, script.numbers(linkage), found.motion.crank_angle, tmp_path)
-    for name, values in zip(names, got, strict=True):
-        wanted = found.outputs[name].values
-        np.testing.assert_allclose(values, wanted, atol=1e-12 * np.max(np.abs(wanted)))
+    scripted(MACHINE, ["drive_torque", f"rollers.{NAME}.friction"], tmp_path)
 
 
 def test_drawings_have_its_circles() -> None:
-    scene = Scene.of(eq.analyze(MACHINE, 12).motion)
+    scene, _ = drawn(MACHINE, "wheel")
     sizes = {wheel.link: wheel.radius for wheel in scene.wheels}
     assert sizes == dict(zip((GEAR.driver, GEAR.driven), RADII, strict=True))
     parts = [piece.part for piece in pieces(scene)]
@@ -212,13 +190,8 @@ def test_drawings_have_its_circles() -> None:
 
 
 def test_the_page_has_its_form_its_numbers_and_its_group() -> None:
-    tables = tables_of(MACHINE)
-    keys = [one["key"] for one in tables["forms"]["Rollers"]["controls"]]
-    assert {"radii", "lean", "carrier", "start"} <= {*keys}
-    (group,) = (one for one in tables["groups"] if one["place"] == ["rollers"])
-    assert len(group["entries"]) == 1
-    numbers = fields_of(Design("mine", MACHINE))
-    assert {"rollers.1.lean", "rollers.1.start"} <= numbers.keys()
+    keys = ["between", "carrier", "start", "radii", "lean"]
+    on_the_page(MACHINE, "rollers", keys, ["lean", "start"])
     assert GROUPS["rollers"] == "rollers"
     assert [*GROUPS].index("rollers") < [*GROUPS].index("rows")
 
@@ -230,8 +203,7 @@ def test_the_documentation_has_its_keys() -> None:
 
 
 def test_formats_without_it_say_so(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"^rollers\[1\]: a file of .* no pair of rollers; give"):
-        eq.export(MACHINE, tmp_path / "mine.xml")
+    refused_by_formats(MACHINE, "rollers", "pair of rollers", tmp_path)
 
 
 def test_slope_of_its_line_is_the_tangent_of_its_lean() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator, Mapping
-from dataclasses import fields
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -17,12 +16,20 @@ from equipoise.i18n import Note
 from equipoise.keys import Table, Tables, Text, declared, key
 from equipoise.mechanism import Machine
 from equipoise.mechanism.checks import FRAME, Bodies, unknown_link
-from equipoise.mechanism.outputs.declared import declaring, of_element
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.force_kinds import Action, ForceElement
 from equipoise.present.checks import machine_blocks
+from equipoise.quantities import Dimension
 from equipoise.symbols.shapes import Mark, circle
-from support.own_kinds import designs_by_numbers, drawn, on_the_page, read_back, scripted
+from support.own_kinds import (
+    designs_by_numbers,
+    drawn,
+    on_the_page,
+    own_outputs,
+    read_back,
+    scripted,
+    with_own,
+)
 
 
 @declared
@@ -32,6 +39,10 @@ class Magnet(ForceElement):
     called = "{what} of magnet {number}"
     sign = f"{__name__}:magnet_sign"
     title = "Magnets"
+    group = "magnets"
+    outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
+        "attraction": ("force", "attraction of magnet {name}")
+    }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {"attraction": ("least", "most")}
 
     link: str = key(Text(of="link"), "the link that it draws", example="rocker")
@@ -97,29 +108,22 @@ class Magnetic(Machine):
 
 
 def magnetic(*magnets: Magnet) -> Magnetic:
-    base = eq.load("spring-balanced-crank")
-    given = {one.name: getattr(base, one.name) for one in fields(Machine)}
-    return Magnetic(**{**given, "springs": (), "magnets": magnets})
+    return with_own(Magnetic, eq.load("spring-balanced-crank"), springs=(), magnets=magnets)
 
 
 MAGNET = Magnet("rocker", "C", "S", 30.0)
 MACHINE = magnetic(MAGNET)
 
 
-@pytest.fixture(autouse=True)
-def outputs() -> Iterator[None]:
-    with declaring():
-        of_element("magnets", "attraction", "force", "attraction of magnet {name}")
-        yield
+outputs = own_outputs(Magnetic)
 
 
 def test_it_is_read_written_and_refused() -> None:
     rows = '[[magnets]]\nlink = "rocker"\npoint = "C"\nto = "S"\nattraction = "30 N"\n'
-    read_back(MACHINE, rows, ("rocker", "rockr"), r"^magnets\[1\]\.link: .* did you mean 'rocker'")
+    slip = r"^magnets\[1\]\.link: .* did you mean 'rocker'"
+    read_back(MACHINE, "magnets", rows, ("rocker", "rockr"), slip)
     with pytest.raises(ModelError, match="give more than 0"):
         magnetic(Magnet("rocker", "C", "S", -1.0))
-    with pytest.raises(ModelError, match=r"^magnets: got 201"):
-        magnetic(*[MAGNET] * 201)
 
 
 def test_analysis_has_its_force_and_its_outputs() -> None:

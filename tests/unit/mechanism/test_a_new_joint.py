@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator, Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -15,19 +15,27 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.errors import ModelError, UsageError
+from equipoise.errors import ModelError
 from equipoise.i18n import Note
 from equipoise.keys import Table, Tables, Text, declared, key, with_fields
 from equipoise.mechanism import Machine
-from equipoise.mechanism.checks import Bodies, unknown_point
-from equipoise.mechanism.outputs.declared import declaring, of_element
 from equipoise.mechanism.parts.element_kinds import Placed
 from equipoise.mechanism.parts.joint_kinds import JointKind, Rider
 from equipoise.mechanism.parts.machine import Link
 from equipoise.mechanism.parts.sliders import Slider
 from equipoise.present.checks import machine_blocks
+from equipoise.quantities import Dimension
 from equipoise.symbols.shapes import Mark, circle
-from support.own_kinds import designs_by_numbers, drawn, on_the_page, read_back, scripted
+from support.own_kinds import (
+    designs_by_numbers,
+    drawn,
+    on_the_page,
+    own_outputs,
+    read_back,
+    refused_by_formats,
+    scripted,
+    with_own,
+)
 
 
 @declared
@@ -36,31 +44,17 @@ class StraightSlot(JointKind):
 
     called = "{what} of straight slot {number}"
     sign = f"{__name__}:slot_sign"
+    base = "through"
     title = "Straight slots"
+    group = "straight slots"
+    outputs: ClassVar[Mapping[str, tuple[Dimension, str]]] = {
+        "travel": ("length", "travel in straight slot {name}")
+    }
     headings: ClassVar[Mapping[str, tuple[str, str]]] = {"travel": ("least", "most")}
 
-    link: str = key(Text(of="link"), "the link that has the pin", example="rocker")
-    point: str = key(Text(of="point", on="link"), "its pin", example="C")
-    on: str = key(Text(of="body"), "the body that has the slot", example="frame")
     through: str = key(Text(of="point", on="on"), "a point of its middle line", example="S")
     direction: float = key("angle", "of that, in the axes of the body", default=0.0)
     shift: float = key("length", "of the line to the left", default=0.0)
-
-    @property
-    def name(self) -> str:
-        return f"{self.point} in {self.on}"
-
-    @property
-    def bodies(self) -> tuple[str, str]:
-        return self.link, self.on
-
-    @property
-    def points(self) -> tuple[tuple[str, str], ...]:
-        return (self.link, self.point), (self.on, self.through)
-
-    @property
-    def route(self) -> tuple[str, str]:
-        return self.on, self.link
 
     def rider(self) -> Rider:
         base = f"base of {self.name}"
@@ -75,12 +69,6 @@ class StraightSlot(JointKind):
         way = at.point(self.link, self.point) - at.point(self.on, self.through)
         along = at.turn(self.on) * np.exp(1j * self.direction)
         return {"travel": (along.conjugate() * way).real}
-
-    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
-        yield from self.wrong_bodies(where, bodies)
-        for body, point in self.points:
-            if body in bodies:
-                yield from unknown_point(f"{where}.point", point, body, bodies)
 
     def sentence(self) -> Note:
         return Note("Straight slot of {on}", on=self.on)
@@ -110,12 +98,10 @@ ROD = Link({"B": (0.0, 0.0), "C": (0.14, 0.0)}, mass=0.4, center_of_mass=(0.05, 
 
 def slotted(*slots: StraightSlot) -> Slotted:
     """A crank and a rod whose end is in a slot."""
-    given = {one.name: getattr(BASE, one.name) for one in fields(Machine)}
     links = {"crank": BASE.links["crank"], "rod": ROD}
     sides = {one.name: "forward" for one in slots}
-    given |= {"links": links, "sliders": (), "loads": (), "assembly": sides, "rows": (),
-              "support": None, "balance": None}  # fmt: skip
-    return Slotted(**given, straight_slots=slots)
+    return with_own(Slotted, BASE, links=links, sliders=(), loads=(), assembly=sides, rows=(),
+                    support=None, balance=None, straight_slots=slots)  # fmt: skip
 
 
 def with_block() -> Machine:
@@ -123,30 +109,23 @@ def with_block() -> Machine:
     block = Link({"C": (0.0, 0.0), "D": (0.0, -0.01)}, mass=0.0, center_of_mass=(0.0, 0.0),
                  inertia=0.0)  # fmt: skip
     bare = slotted(SLOT)
-    given = {one.name: getattr(bare, one.name) for one in fields(Machine)}
     slider = Slider("block", "D", "frame", "A", 0.1)
-    given |= {"links": {**bare.links, "block": block}, "sliders": (slider,),
-              "assembly": {"C": "forward"}}  # fmt: skip
-    return Machine(**given)
+    return with_own(Machine, bare, links={**bare.links, "block": block}, sliders=(slider,),
+                    assembly={"C": "forward"})  # fmt: skip
 
 
 MACHINE = slotted(SLOT)
 
 
-@pytest.fixture(autouse=True)
-def outputs() -> Iterator[None]:
-    with declaring():
-        of_element("straight_slots", "travel", "length", "travel in straight slot {name}")
-        yield
+outputs = own_outputs(Slotted)
 
 
 def test_it_is_read_written_and_refused() -> None:
     rows = '[[straight_slots]]\nlink = "rod"\npoint = "C"\non = "frame"\n'
-    read_back(MACHINE, rows, ("rod", "rodd"), r"^straight_slots\[1\]\.link: .* did you mean 'rod'")
+    slip = r"^straight_slots\[1\]\.link: .* did you mean 'rod'"
+    read_back(MACHINE, "straight_slots", rows, ("rod", "rodd"), slip)
     with pytest.raises(ModelError, match=r"^straight_slots\[2\]\.label: 'C in frame' is the name"):
         slotted(SLOT, SLOT)
-    with pytest.raises(ModelError, match=r"^straight_slots: got 201"):
-        slotted(*[SLOT] * 201)
     with pytest.raises(eq.EquipoiseError, match=r"2 free motions .*2 moving links, 2 pins"):
         eq.move(slotted())
 
@@ -193,10 +172,9 @@ def test_drawings_have_the_sign_that_it_names() -> None:
 
 
 def test_the_page_has_its_form_and_its_numbers() -> None:
-    keys = ["link", "point", "on", "through", "direction", "shift"]
+    keys = ["link", "point", "on", "label", "through", "direction", "shift"]
     on_the_page(MACHINE, "straight_slots", keys, ["direction", "shift"])
 
 
 def test_formats_without_it_say_so(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match=r"^straight_slots\[1\]: a file of .* pin in a slot"):
-        eq.export(MACHINE, tmp_path / "mine.xml")
+    refused_by_formats(MACHINE, "straight_slots", "pin in a slot", tmp_path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -14,7 +15,7 @@ from scipy.interpolate import make_interp_spline
 import equipoise as eq
 from equipoise.codegen.batch import Batch
 from equipoise.codegen.figures import Figure
-from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.errors import EquipoiseError, ModelError, MotionError, UsageError
 from equipoise.mechanism import Machine
 from equipoise.mechanism.assembly.linkage import assemble
 from equipoise.mechanism.formulas.plane_curves import curve_through
@@ -292,14 +293,27 @@ def test_slots_have_planes() -> None:
 
 def test_the_ends_of_an_open_curve_are_a_limit(tmp_path: Path) -> None:
     machine = in_curve(circle(9, 1.4, 2.0), closed=False)
-    with pytest.raises(ModelError, match=r"^curved_slots\[1\]: the pin would leave its slot at"):
+    with pytest.raises(ModelError, match=r"^curved_slots\[1\]: the pin reaches the end of its"):
         eq.analyze(machine)
     path = tmp_path / "mine.toml"
     eq.save(machine, path)
     for command in ("check", "analyze"):
         result = equipoise(command, path)
         assert result.status == 2
-        assert "curved_slots[1]: the pin would leave its slot at crank angle" in result.err
+        assert "curved_slots[1]: the pin reaches the end of its slot at crank angle" in result.err
+
+
+def test_a_pin_that_runs_out_of_an_open_curve_says_where() -> None:
+    """The polynomial of the last piece goes on beyond it, up to where nothing is near."""
+    machine = machine_named("baler-pickup")
+    slot = replace(machine.curved_slots[0], closed=False)
+    with pytest.raises(MotionError, match=r"^curved_slots\[1\]: the pin reaches the end") as error:
+        eq.analyze(replace(machine, curved_slots=(slot,)))
+    told = re.search(r"at crank angle ([\d.]+) deg; make the slot longer, or", str(error.value))
+    assert told
+    last = eq.move(machine, [np.radians(float(told[1]))]).points["R"].place[0]
+    place, before = (complex(*place) for place in slot.places[:-3:-1])
+    assert abs(last - place) < 0.02 * abs(place - before)
 
 
 @pytest.mark.parametrize(("change", "sentence"), [
@@ -410,6 +424,19 @@ def test_drawings_have_slots_with_their_ends() -> None:
     rings = [shape for one in pieces(Scene.of(motion)) for shape in one.shapes
              if shape.role == "path-edge"]  # fmt: skip
     assert len(rings) == 2
+
+
+def test_a_slot_is_as_wide_as_its_pin() -> None:
+    """The roller of 14 mm lies between both edges, whatever the scale."""
+    motion = eq.move(machine_named("baler-pickup"), 12)
+    scene = Scene.of(motion)
+    edges = [shape for one in pieces(scene) for shape in one.shapes if shape.role == "path-edge"]
+    (slot,) = motion.machine.curved_slots
+    for edge, side in zip(edges, (1, -1), strict=True):
+        middle, ahead, *_ = slot.curve.at(slot.curve.nearest(edge.places))
+        aside = (edge.places - middle) / (1j * ahead / np.abs(ahead))
+        np.testing.assert_allclose(aside, 0.014 * side, atol=1e-9)
+        assert np.all(np.abs(edge.offsets) > 0)
 
 
 def test_formats_without_it_say_so(tmp_path: Path) -> None:

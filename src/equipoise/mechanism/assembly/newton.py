@@ -12,7 +12,7 @@ neighbouring crank angles first, then any crank angle from the nearest one follo
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,8 +24,10 @@ import numpy as np
 from equipoise.decompositions import singular_values
 from equipoise.errors import MotionError
 from equipoise.i18n import Note
-from equipoise.mechanism.assembly.loops import Loop, Place, Pose, Poses
+from equipoise.mechanism.assembly.loops import Loop, Place, Pose, Poses, Riding
 from equipoise.mechanism.assembly.steps import Array, State, along, p, u
+from equipoise.mechanism.formulas.plane_curves import HERMITE
+from equipoise.signals import first_below
 
 ITERATIONS = 25
 SETTLED = 1e-11
@@ -38,21 +40,16 @@ LOOSE = 1e-6
 """Smallest singular value of slopes with columns of length 1, up to which a link is free."""
 JUMP = 0.02
 """Step, in sizes of the linkage and radians, that the branch's slope does not explain."""
-QUINTIC = np.array([
-    [1, 0, 0, -10, 15, -6],
-    [0, 1, 0, -6, 8, -3],
-    [0, 0, 0.5, -1.5, 1.5, -0.5],
-    [0, 0, 0, 10, -15, 6],
-    [0, 0, 0, -4, 7, -3],
-    [0, 0, 0, 0.5, -1, 0.5],
-])  # fmt: skip
-"""Between 0 and 1, by powers: what value, slope and curvature at 0, then at 1, contribute."""
 
 
 class BranchError(MotionError):
-    """Newton's method finds no solution near the one before, at `crank_angle` (rad)."""
+    """Newton's method finds no solution near the one before, at `crank_angle` (rad).
+
+    rider : what runs off the end of its track there; empty if none does.
+    """
 
     crank_angle: float = float("nan")
+    rider: str = ""
 
 
 Levels = tuple[Array, Array, Array]  # the unknowns, and their two derivatives
@@ -242,13 +239,17 @@ class LoopGroup:
 
     def follow_each(self, start: Array, known: Poses, theta: Array) -> Levels:
         here = start
-        found = []
+        found: list[Levels] = []
         for k, angle in enumerate(theta):
             now = {body: pose.pick((..., k)) for body, pose in known.items()}
             guess = here
-            here = self.solve(guess, now, angle)
-            if k:
-                self.check(np.all(self.sizes(here - guess) <= 10 * JUMP), angle)
+            try:
+                here = self.solve(guess, now, angle)
+                if k:
+                    self.check(np.all(self.sizes(here - guess) <= 10 * JUMP), angle)
+            except BranchError as error:
+                self.off_track(error, theta[:k], [q for q, *_ in found])
+                raise
             q1, q2 = self.derivatives(here, now)
             found.append((here, q1, q2))
             if k + 1 < len(theta):
@@ -256,6 +257,21 @@ class LoopGroup:
                 here = here + q1 * step + q2 * (0.5 * step * step)
         q, q1, q2 = (np.stack(level, axis=-1) for level in zip(*found, strict=True))
         return q, q1, q2
+
+    def off_track(self, error: BranchError, theta: Array, followed: Sequence[Array]) -> None:
+        """Let an error name the rider that has passed an end of its track before it, and where.
+
+        theta : (k,) crank angles before, rad.  followed : the unknowns (n,) at each.
+        """
+        begin = 0
+        for place in self.tree:
+            at, begin = begin, begin + len(place.turning)
+            if not isinstance(place, Riding) or (ends := place.curve.ends) is None or not followed:
+                continue
+            s = np.array([q[at] for q in followed])
+            left = first_below(theta, np.minimum(s - ends[0], ends[1] - s), 0.0)
+            if left is not None and not left > error.crank_angle:
+                error.crank_angle, error.rider = left, place.link
 
     def failure(self, angle: float) -> Note:
         return Note(
@@ -319,7 +335,7 @@ def between(theta: Array, posts: Array, q: Array, q1: Array, q2: Array) -> Array
     left = np.minimum(np.searchsorted(posts, np.arange(len(theta)), "right"), len(posts) - 1) - 1
     width = np.diff(theta[posts])[left]
     share = (theta - theta[posts[left]]) / width
-    weights = QUINTIC @ share ** np.arange(6)[:, None]
+    weights = HERMITE @ share ** np.arange(6)[:, None]
     ends = [(q, 1.0), (q1, width), (q2, width * width)]
     parts = [value[:, left + at] * scale for at in (0, 1) for value, scale in ends]
     return np.asarray(sum(part * weight for part, weight in zip(parts, weights, strict=True)))

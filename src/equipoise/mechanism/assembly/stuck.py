@@ -7,12 +7,15 @@ from math import acos, degrees, floor, log10, radians, sin
 
 import numpy as np
 
-from equipoise.errors import PASTE, ChangePointError, MotionError, RangeError
+from equipoise.errors import PASTE, ChangePointError, MotionError, RangeError, at_place
 from equipoise.i18n import Note, to_say
+from equipoise.mechanism.assembly.newton import BranchError
 from equipoise.mechanism.assembly.reach import Assembled, Reach, has_loops, margins_at, range_of
 from equipoise.mechanism.assembly.sides import key_text
 from equipoise.mechanism.checks import MODES
+from equipoise.mechanism.parts.joint_kinds import BEYOND
 from equipoise.mechanism.parts.laws import AngleLaw
+from equipoise.mechanism.parts.machine import Machine
 
 TRANSMISSION, LEAST_SHARE = radians(40), 1 / 3
 """Smallest transmission angle of a dyad in a swing, as in Norton, Design of Machinery, 4.10, rad;
@@ -48,8 +51,8 @@ def with_cures(linkage: Assembled, error: MotionError) -> MotionError:
     The error itself where a drive has a motion already, or the crank can be nowhere.
     """
     machine = linkage.machine
-    if not machine.has_crank:
-        return error
+    if not machine.has_crank or (isinstance(error, BranchError) and error.rider):
+        return _in_its_slot(machine, error)
     try:
         found = range_of(linkage, error)
     except MotionError:
@@ -79,6 +82,15 @@ def with_cures(linkage: Assembled, error: MotionError) -> MotionError:
         WITH_LINES, reason=error.reason, cure=cure, room=swing.room, lines=_pasted(lines)
     )
     return ChangePointError(message, error.crank_angle, error.joint, reason=error.reason)
+
+
+def _in_its_slot(machine: Machine, error: MotionError) -> MotionError:
+    """The error, which names the slot whose end a pin has reached, if that is what it is about."""
+    if not isinstance(error, BranchError) or not error.rider:
+        return error
+    slot = machine.pins_in_slots[error.rider]
+    place = next(f"{table}[{k + 1}]" for table, k, one in machine.elements if one is slot)
+    return BranchError(at_place(place, Note(BEYOND, crank_angle=degrees(error.crank_angle))))
 
 
 def _pasted(lines: list[str]) -> str:

@@ -58,6 +58,11 @@ class PlaneCurve:
     powers: Array
     closed: bool
 
+    @property
+    def ends(self) -> tuple[float, float] | None:
+        """Parameters of both ends; None of a closed curve."""
+        return None if self.closed else (float(self.knots[0]), float(self.knots[-1]))
+
     @cached_property
     def arcs(self) -> tuple[Array, Array]:
         """Knots (A + 1,), of which several lie in a piece, and coefficients (A, 6) between them of

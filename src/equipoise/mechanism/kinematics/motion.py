@@ -30,7 +30,7 @@ from equipoise.mechanism.parts.element_kinds import Element
 from equipoise.mechanism.parts.joint_kinds import joint_kinds
 from equipoise.mechanism.parts.machine import FRAME, Drive, FurtherDrive, Machine, Slider
 from equipoise.quantities import HUGE, Dimension, in_si, told
-from equipoise.signals import Figures, JumpSampling, Periodic
+from equipoise.signals import Figures, JumpSampling, Periodic, first_below
 
 MOST_ANGLES = 400_000
 """In one analysis; it takes about a kilobyte for each crank angle and link."""
@@ -380,9 +380,9 @@ class PlacedBodies:
     def within(self, value: Array, ends: tuple[float, float], wrong: str) -> None:
         """Raise a `ModelError` where a value leaves its range by more than rounding."""
         margin = np.minimum(value - ends[0], ends[1] - value)
-        if np.min(margin) < -ROUNDING:
-            angle = degrees(self.motion.crank_angle[int(np.argmin(margin))])
-            raise ModelError(self.where, Note(wrong, crank_angle=angle))
+        left = first_below(self.motion.crank_angle, margin, -ROUNDING)
+        if left is not None:
+            raise ModelError(self.where, Note(wrong, crank_angle=degrees(left)))
 
 
 def move(
@@ -403,7 +403,7 @@ def move(
     Raises
     ------
     MotionError : the linkage cannot reach the crank angles.
-    ModelError : a pin would leave its slot.
+    ModelError : a pin reaches the end of its slot.
     UsageError : the crank angles cannot be used.
     """
     linkage = assemble(machine)
@@ -428,7 +428,7 @@ def _in_slots(motion: Motion) -> Motion:
 
     Raises
     ------
-    ModelError : one would leave its slot.
+    ModelError : one reaches the end of its slot.
     """
     for table in joint_kinds(type(motion.machine)):
         for number in range(len(getattr(motion.machine, table))):

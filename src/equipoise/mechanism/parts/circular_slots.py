@@ -13,15 +13,10 @@ from typing import Any, ClassVar
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
 from equipoise.keys import Listing, Quantity, Text, declared, key
-from equipoise.mechanism.checks import Bodies, unknown_point
+from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.element_kinds import Placed
-from equipoise.mechanism.parts.joint_kinds import JointKind, Rider
+from equipoise.mechanism.parts.joint_kinds import BEYOND, JointKind, Rider
 from equipoise.quantities import Dimension, told
-
-BEYOND = to_say(
-    "the pin would leave its slot at crank angle {crank_angle:.4g} deg; make the arc longer, or "
-    "change lengths"
-)
 
 
 @declared
@@ -31,6 +26,7 @@ class CircularSlot(JointKind):
     called = to_say("{what} of circular slot {number}")
     file_order = ("link", "point", "on", "center", "radius", "arc", "label")
 
+    base = "center"
     sign = "equipoise.symbols.slots:circular_sign"
     title = to_say("Circular slots, each with its crank angle; angles in the axes of their bodies")
     group = to_say("circular slots")
@@ -43,12 +39,6 @@ class CircularSlot(JointKind):
         "speed": (to_say("smallest sliding speed"), to_say("largest")),
     }
 
-    link: str = key(Text(of="link"), "the link that has the pin", example="arm")
-    point: str = key(Text(of="point", on="link"), "its pin", example="P")
-    on: str = key(
-        Text(of="body"), 'the link that has the slot, or `"frame"`', example="frame",
-        word=to_say("other body"),
-    )  # fmt: skip
     center: str = key(
         Text(of="point", on="on"), "a point of that, the centre of the slot", example="S",
         word=to_say("centre of the slot"),
@@ -61,32 +51,6 @@ class CircularSlot(JointKind):
         default=(),
         example=["20 deg", "160 deg"],
     )
-    own_name: str = key(
-        Text(), "its name in outputs and in the table of sides, `POINT in BODY` if left out",
-        name="label",
-        word=to_say("name"),
-        default="",
-    )  # fmt: skip
-
-    @property
-    def name(self) -> str:
-        """Its label, or its pin and what has the slot."""
-        return self.own_name or f"{self.point} in {self.on}"
-
-    @property
-    def bodies(self) -> tuple[str, str]:
-        """The link that has the pin, and the body that has the slot."""
-        return self.link, self.on
-
-    @property
-    def points(self) -> tuple[tuple[str, str], ...]:
-        """The pin and the centre, each with its body."""
-        return (self.link, self.point), (self.on, self.center)
-
-    @property
-    def route(self) -> tuple[str, str]:
-        """From the body that has the slot to the link."""
-        return self.on, self.link
 
     def rider(self) -> Rider:
         """A link from the centre to the pin."""
@@ -110,10 +74,7 @@ class CircularSlot(JointKind):
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with it in a machine of these bodies."""
-        yield from self.wrong_bodies(where, bodies)
-        for key_name, (body, point) in zip(("point", "center"), self.points, strict=True):
-            if body in bodies:
-                yield from unknown_point(f"{where}.{key_name}", point, body, bodies)
+        yield from super().problems(where, bodies)
         if self.arc and not 0 < self.arc[1] - self.arc[0] < 2 * pi:
             first, last = map(degrees, self.arc)
             wrong = Note(

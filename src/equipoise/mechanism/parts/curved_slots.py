@@ -25,9 +25,9 @@ from equipoise.keys import (
     inside,
     key,
 )
-from equipoise.mechanism.checks import Bodies, unknown_point
+from equipoise.mechanism.checks import Bodies
 from equipoise.mechanism.parts.element_kinds import Placed
-from equipoise.mechanism.parts.joint_kinds import JointKind, Rider, Track
+from equipoise.mechanism.parts.joint_kinds import BEYOND, JointKind, Rider, Track
 from equipoise.quantities import Dimension, told
 
 if TYPE_CHECKING:
@@ -38,10 +38,6 @@ FEWEST, FEWEST_CLOSED = 2, 4
 """Points of an open curve, and of one that is closed."""
 NEAR = 1e-6
 """Of the curve's length: points nearer to each other coincide."""
-BEYOND = to_say(
-    "the pin would leave its slot at crank angle {crank_angle:.4g} deg; make the curve longer, or "
-    "change lengths"
-)
 
 
 @declared
@@ -77,6 +73,7 @@ class CurvedSlot(JointKind):
     }
     still: ClassVar[tuple[str, ...]] = ("points", "table")
 
+    base = "origin"
     sign = "equipoise.symbols.slots:curved_sign"
     title = to_say("Curved slots, each with its crank angle; distances along the curve")
     group = to_say("curved slots")
@@ -89,12 +86,6 @@ class CurvedSlot(JointKind):
         "speed": (to_say("smallest sliding speed"), to_say("largest")),
     }
 
-    link: str = key(Text(of="link"), "the link that has the pin", example="arm")
-    point: str = key(Text(of="point", on="link"), "its pin", example="P")
-    on: str = key(
-        Text(of="body"), 'the link that has the slot, or `"frame"`', example="frame",
-        word=to_say("other body"),
-    )  # fmt: skip
     origin: str = key(
         Text(of="point", on="on"), "a point of that, from which the points of the curve are given",
         example="S", word=to_say("origin of the curve"),
@@ -116,32 +107,6 @@ class CurvedSlot(JointKind):
         Flag(), "the curve goes on smoothly from its last point to its first", default=False
     )
     direction: float = key("angle", "of the curve's x axis, in the axes of `on`", default=0.0)
-    own_name: str = key(
-        Text(), "its name in outputs, `POINT in BODY` if left out",
-        name="label",
-        word=to_say("name"),
-        default="",
-    )  # fmt: skip
-
-    @property
-    def name(self) -> str:
-        """Its label, or its pin and what has the slot."""
-        return self.own_name or f"{self.point} in {self.on}"
-
-    @property
-    def bodies(self) -> tuple[str, str]:
-        """The link that has the pin, and the body that has the slot."""
-        return self.link, self.on
-
-    @property
-    def points(self) -> tuple[tuple[str, str], ...]:
-        """The pin and the origin, each with its body."""
-        return (self.link, self.point), (self.on, self.origin)
-
-    @property
-    def route(self) -> tuple[str, str]:
-        """From the body that has the slot to the link."""
-        return self.on, self.link
 
     @property
     def places(self) -> tuple[tuple[float, float], ...]:
@@ -170,10 +135,7 @@ class CurvedSlot(JointKind):
 
     def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
         """Everything that is wrong with it in a machine of these bodies."""
-        yield from self.wrong_bodies(where, bodies)
-        for key_name, (body, point) in zip(("point", "origin"), self.points, strict=True):
-            if body in bodies:
-                yield from unknown_point(f"{where}.{key_name}", point, body, bodies)
+        yield from super().problems(where, bodies)
         if bool(self.points_given) == (self.table is not None):
             yield ModelError(where, Note("give exactly one of points and table"))
             return

@@ -10,13 +10,13 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.i18n import Note
-from equipoise.keys import Frozen
+from equipoise.i18n import Note, to_say
+from equipoise.keys import Frozen, Text, declared, key
 from equipoise.keys.declaring import once
-from equipoise.mechanism.checks import Bodies, Vector, unknown_body, unknown_link
+from equipoise.mechanism.checks import Bodies, Vector, unknown_body, unknown_link, unknown_point
 from equipoise.mechanism.parts.element_kinds import Element, element_kinds
 from equipoise.mechanism.parts.sliders import Slider
 
@@ -58,15 +58,59 @@ class Rider:
     track: Track | None = None
 
 
+BEYOND = to_say(
+    "the pin reaches the end of its slot at crank angle {crank_angle:.4g} deg; make the slot "
+    "longer, or change lengths"
+)
+
+
+@declared
 class JointKind(Element):
-    """A pin of a link that follows a path on another body."""
+    """A pin at `point` of `link` that follows a path on the body `on`.
+
+    base : the field that names the point of `on` from which the path is given.
+    """
 
     special = "pin in a slot"
+    base: ClassVar[str]
+
+    link: str = key(Text(of="link"), "the link that has the pin", example="arm")
+    point: str = key(Text(of="point", on="link"), "its pin", example="P")
+    on: str = key(
+        Text(of="body"), 'the link that has the slot, or `"frame"`', example="frame",
+        word=to_say("other body"),
+    )  # fmt: skip
+    own_name: str = key(
+        Text(),
+        "its name in outputs, and in the table of sides if it is there; `POINT in BODY` if left "
+        "out",
+        name="label",
+        word=to_say("name"),
+        default="",
+        kw_only=True,
+    )  # fmt: skip
 
     @property
-    @abstractmethod
     def name(self) -> str:
-        """By which its force goes in outputs, and its side in the table of sides."""
+        """By which its force goes in outputs, and its side in the table of sides: its label, or its
+        pin and what has the slot.
+        """
+        return self.own_name or f"{self.point} in {self.on}"
+
+    @property
+    def bodies(self) -> tuple[str, str]:
+        """The link that has the pin, and the body that has the slot."""
+        return self.link, self.on
+
+    @property
+    def points(self) -> tuple[tuple[str, str], ...]:
+        """The pin and the point from which the path is given, each with its body."""
+        return (self.link, self.point), (self.on, getattr(self, self.base))
+
+    @property
+    def route(self) -> tuple[str, str]:
+        """From the body that has the slot to the link."""
+        return self.on, self.link
 
     @abstractmethod
     def rider(self) -> Rider:
@@ -83,13 +127,15 @@ class JointKind(Element):
         """Its name, by which it is told from others."""
         return Note("{name}", name=self.name)
 
-    def wrong_bodies(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
-        """What is wrong with the names of the bodies that it holds together."""
-        link, on = self.bodies
-        yield from unknown_link(f"{where}.link", link, bodies)
-        yield from unknown_body(f"{where}.on", on, bodies)
-        if link == on:
-            yield ModelError(f"{where}.on", Note("{link!r} cannot hold itself", link=link))
+    def problems(self, where: str, bodies: Bodies) -> Iterator[ModelError]:
+        """Everything that is wrong with it in a machine of these bodies."""
+        yield from unknown_link(f"{where}.link", self.link, bodies)
+        yield from unknown_body(f"{where}.on", self.on, bodies)
+        if self.link == self.on:
+            yield ModelError(f"{where}.on", Note("{link!r} cannot hold itself", link=self.link))
+        for key_name, (body, point) in zip(("point", self.base), self.points, strict=True):
+            if body in bodies:
+                yield from unknown_point(f"{where}.{key_name}", point, body, bodies)
 
 
 @once
