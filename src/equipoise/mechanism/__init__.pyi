@@ -32,6 +32,7 @@ from .parts.machine import Machine as Machine
 from .parts.machine import Position as Position
 from .parts.machine import Slider as Slider
 from .parts.racks import Rack as Rack
+from .parts.rolling_bearings import RollingBearing as RollingBearing
 from .parts.springs import Spring as Spring
 from .parts.support import Gauge as Gauge
 from .parts.support import Mount as Mount

@@ -149,7 +149,17 @@ def _joints(machine: Machine) -> Iterator[str]:
     for one in machine.joints:
         radius = "" if one.radius is None else f", radius {_length(one.radius)}"
         stiff = "" if one.stiffness is None else f", {told(one.stiffness, 'stiffness', 'N/m')}"
-        yield f"{one.joint}{radius}{stiff}{_friction(one)}"
+        yield f"{one.joint}{radius}{_bearing(one)}{stiff}{_friction(one)}"
+
+
+def _bearing(one: JointProperties) -> str:
+    """The bearing in a pin, plain or rolling."""
+    plain = "" if one.width is None else f", width {_length(one.width)}"
+    if (rolling := one.bearing) is None:
+        return plain
+    wanted = "" if rolling.life is None else f", for {told(rolling.life, 'time', 'h')}"
+    rating = told(rolling.dynamic_rating, "force")
+    return f"{plain}, {rolling.kind} bearing of {rating}{wanted}"
 
 
 def _friction(one: JointProperties) -> str:

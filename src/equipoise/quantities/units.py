@@ -37,6 +37,7 @@ Dimension = Literal[
     "bending stiffness",
     "mass per length",
     "modulus",
+    "pressure times speed",
     "unbalance",
     "per length",
 ]
@@ -282,18 +283,25 @@ KINDS: dict[Dimension, Kind] = {
         usual=("g/m", "kg/m"),
     ),
     "modulus": Kind(
-        to_say("a modulus of elasticity"),
+        to_say("a stress or modulus of elasticity"),
         {
             "Pa": "1",
             "kPa": "1000",
             "MPa": "1000000",
             "GPa": "1000000000",
+            "bar": "100000",
             "N/mm^2": "1000000",
             "kgf/mm^2": "9806650",
             "psi": "6894.757293168361336722673445",
         },
         example="70 GPa",
         usual=("GPa", "MPa"),
+    ),
+    "pressure times speed": Kind(
+        to_say("a pressure times speed"),
+        {"Pa m/s": "1", "MPa m/s": "1000000", "W/mm^2": "1000000"},
+        example="1.7 MPa m/s",
+        usual=("MPa m/s", "Pa m/s"),
     ),
     "unbalance": Kind(
         to_say("an unbalance"),

@@ -15,6 +15,7 @@ from equipoise.limits import check_memory
 from equipoise.mechanism.assembly.linkage import Linkage
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dynamics.assessment import FourBar, four_bar, remarks
+from equipoise.mechanism.dynamics.bearing_life import BearingLife, bearing_lives
 from equipoise.mechanism.dynamics.cam_contacts import CamFigures, cam_figures
 from equipoise.mechanism.dynamics.forces import Forces, forces, massless
 from equipoise.mechanism.dynamics.losses import Losses, losses_of
@@ -31,6 +32,7 @@ from equipoise.mechanism.parts.places import in_frame
 from equipoise.mechanism.parts.support import idle_parts
 from equipoise.quantities import Dimension, column_heading
 from equipoise.results.lost_contacts import lost_contacts
+from equipoise.results.named_figures import figures_by_name
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
 from equipoise.signals import Array, Figures, Periodic
@@ -132,6 +134,13 @@ class Analysis(Result):
         that is turned evenly.
         """
         return None if self.solved is None else losses_of(self.resolved.forces)
+
+    @cached_property
+    def rolling_bearings(self) -> Mapping[str, BearingLife]:
+        """Life of rolling bearings by joint; none where the crank is not turned evenly, or the
+        crank angles are no whole cycle.
+        """
+        return {} if self.solved is None else bearing_lives(self.resolved.forces)
 
     @cached_property
     def outputs(self) -> Outputs:
@@ -271,8 +280,8 @@ class Analysis(Result):
             result["outputs"] = {one.name: _or_none(one.values) for one in chosen}
         if strokes:
             result["strokes"] = {name: one.told() for name, one in self.strokes.items()}
-            for name, cam in self.cams.items():
-                result["cams"][name] |= cam.told()
+            for table, name, figures in figures_by_name(self):
+                result.setdefault(table, {}).setdefault(name, {}).update(figures.to_dict())
             result["notes"] = list(map(str, self.notes))
         summary: Values = {
             name: {**vars(figure), "peak_to_peak": figure.peak_to_peak}

@@ -21,7 +21,6 @@ from equipoise.results.belt_blocks import belt_blocks
 from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
 from equipoise.results.cam_blocks import cam_blocks
 from equipoise.results.drive_blocks import driven, drives_table
-from equipoise.results.friction_blocks import friction_blocks
 from equipoise.results.joint_blocks import elements_tables, joint_blocks
 from equipoise.results.machine_blocks import (
     angles_told,
@@ -60,7 +59,6 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
         return
     yield from force_blocks(analysis)
     yield from joint_blocks(analysis)
-    yield from friction_blocks(analysis)
     yield from belt_blocks(analysis.resolved.forces)
     yield from question_blocks(analysis)
 

@@ -14,7 +14,9 @@ from equipoise.mechanism.outputs.declared import DECLARED
 from equipoise.mechanism.outputs.spoken import body_named, joint_named
 from equipoise.mechanism.parts.element_kinds import Element, element_kinds
 from equipoise.quantities import Display, display
+from equipoise.results.bearing_blocks import bearing_blocks
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Value
+from equipoise.results.friction_blocks import friction_blocks
 from equipoise.results.machine_blocks import largest, smallest
 
 if TYPE_CHECKING:
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def joint_blocks(analysis: Analysis) -> Iterator[Block]:
-    """Forces in joints, and of which of them statics does not tell."""
+    """Forces in joints, of which of them statics does not tell, friction and bearings."""
     if analysis.forces.joints or analysis.forces.gears:
         yield joint_table(analysis)
     told = [*undecided(analysis.motion.linkage).told()]
@@ -32,6 +34,8 @@ def joint_blocks(analysis: Analysis) -> Iterator[Block]:
         told += analysis.forces.across.statics.told()
     if told:
         yield Notes(tuple(told))
+    yield from friction_blocks(analysis)
+    yield from bearing_blocks(analysis)
 
 
 def elements_tables(analysis: Analysis) -> Iterator[Table]:

@@ -14,7 +14,6 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics.cam_contacts import CamFigures
 from equipoise.mechanism.dynamics.undecided import refuse_unbounded
 from equipoise.mechanism.kinematics.stroke_figures import DeadPosition, Stroke, declared_figures
 from equipoise.mechanism.outputs.declared import DECLARED, GROUPS, Declared, declared
@@ -224,9 +223,9 @@ def documented_strokes() -> str:
     return _documented_figures({"": Stroke, "dead_positions[1].": DeadPosition})
 
 
-def documented_cams() -> str:
-    """The figures of cams."""
-    return _documented_figures({"": CamFigures})
+def documented_figures(of: type) -> str:
+    """The figures of a class that declares some."""
+    return _documented_figures({"": of})
 
 
 def _documented_figures(classes: Mapping[str, type]) -> str:

@@ -17,8 +17,6 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.dynamics.cam_contacts import CamFigures
-from equipoise.mechanism.kinematics.stroke_figures import declared_figures
 from equipoise.mechanism.kinematics.stroke_figures import dimension_of as of_stroke
 from equipoise.mechanism.outputs.declared import declared
 from equipoise.results.declaring import (
@@ -29,6 +27,7 @@ from equipoise.results.declaring import (
     dimension_at,
     flat,
 )
+from equipoise.results.named_figures import dimensions_by_path
 from equipoise.signals import figures
 
 if TYPE_CHECKING:
@@ -247,7 +246,7 @@ KINDS: dict[str, str | None] = {
     r"four_bar\..*|turns|by_order\.(.*\.)?orders": None,
     "speed": "angular speed",
     "acceleration": "angular acceleration",
-    **{rf"cams\..*\.{f.name}": f.metadata["dimension"] for f in declared_figures(CamFigures)},
+    **dimensions_by_path(),
 }
 """Of an analysis beside its outputs: paths without figures of lists, and their dimensions."""
 

@@ -25,6 +25,7 @@ from equipoise.planting.names import FIGURES, figure_named, of_all_arms
 from equipoise.planting.summary import PlantingFigures, plant
 from equipoise.quantities import Dimension, display
 from equipoise.results.analysis import Analysis
+from equipoise.results.named_figures import figures_by_name
 from equipoise.symbols.scene import Scene
 from equipoise.vibration.forced import respond
 from equipoise.vibration.resonance import around
@@ -280,15 +281,15 @@ def _strokes_of(analysis: Analysis) -> Iterator[tuple[str, _Told]]:
     for name, one in analysis.strokes.items():
         of_joint = partial(_of_joint, machine, name)
         yield from _declared_of(f"strokes.{name}", joint_named(name), one, of_joint)
-    for name, cam in analysis.cams.items():
-        yield from _declared_of(f"cams.{name}", name.replace(" to ", " → "), cam, _of_cam)
+    for table, name, figures in figures_by_name(analysis):
+        yield from _declared_of(f"{table}.{name}", name.replace(" to ", " → "), figures, _own)
 
 
 def _of_joint(machine: Machine, name: str, kind: Field[Any]) -> Dimension | None:
     return dimension_of(machine, f"{name}.{kind.name}")
 
 
-def _of_cam(kind: Field[Any]) -> Dimension | None:
+def _own(kind: Field[Any]) -> Dimension | None:
     found: Dimension | None = kind.metadata["dimension"]
     return found
 

@@ -65,7 +65,7 @@ WRONG: list[tuple[dict[str, Any], str]] = [
     ({"joint": "C", "radius": 0.01}, "joints[1].joint: got 'C'; give a joint as joints.B"),
     ({"joint": "joints.C", "radius": -0.01}, "joints[1].radius: got -0.01 m; give more than 0"),
     ({"joint": "joints.C", "radius": 0.0}, "joints[1].radius: got 0 m; give more than 0"),
-    ({"joint": "joints.C"}, "joints[1]: give radius, stiffness or friction of the joint"),
+    ({"joint": "joints.C"}, "joints[1]: give radius, stiffness, bearing or friction of the joint"),
     ({"joint": "joints.C", "stiffness": 1e6}, "joints[1].stiffness: statics decides"),
 ]  # fmt: skip
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,13 @@ from equipoise.mechanism.parts.balance import AddedMass, Balance, Objective, Wei
 from equipoise.present.composition import report_page
 from equipoise.present.findings import Findings
 from equipoise.results.blocks import Column, Table
-from equipoise.results.outputs import documented, documented_cams, documented_strokes, unit_of
+from equipoise.results.named_figures import NAMED_FIGURES
+from equipoise.results.outputs import (
+    documented,
+    documented_figures,
+    documented_strokes,
+    unit_of,
+)
 from equipoise.schema.documents import dumps
 from equipoise.schema.files import json_text, to_csv
 from equipoise.studies.figures import dimension_of
@@ -31,7 +38,9 @@ from support.printing import words
 
 DOCS = Path(__file__).parents[3] / "docs" / "output.md"
 BEGIN, END = "<!-- declared {} -->\n", "<!-- end of declared {} -->\n"
-TABLES = {"outputs": documented, "strokes": documented_strokes, "cams": documented_cams}
+TABLES = {"outputs": documented, "strokes": documented_strokes} | {
+    name: partial(documented_figures, of) for name, of in NAMED_FIGURES.items()
+}
 POWER = "drive_power"
 
 

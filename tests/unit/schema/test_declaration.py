@@ -39,6 +39,7 @@ from equipoise.mechanism.parts.circular_slots import CircularSlot
 from equipoise.mechanism.parts.curved_slots import CurvedSlot
 from equipoise.mechanism.parts.machine import Frame, Machine, Position
 from equipoise.mechanism.parts.racks import Rack
+from equipoise.mechanism.parts.rolling_bearings import RollingBearing
 from equipoise.mechanism.parts.springs import Spring
 from equipoise.mechanism.parts.torsion_springs import TorsionSpring
 from equipoise.schema import finding, models, schemas
@@ -63,7 +64,7 @@ DOCUMENTED: dict[str, type[Frozen]] = {
         laws.AngleSegment, laws.LengthLaw, laws.LengthSegment, force_elements.Motor, Frame,
         links.Link,
         bodies.Body, bodies.Hole, sliders.Bearing, sliders.Slider, gears.Gear,
-        joint_properties.JointProperties,
+        joint_properties.JointProperties, RollingBearing,
         gear_shapes.GearShape, Belt, Rack, cams.Cam,
         CircularSlot, CurvedSlot,
         force_elements.Load, Spring, TorsionSpring, Position, field.Planting,

@@ -47,7 +47,7 @@ class CamFigures:
     lift_off_at: float | None = figure(to_say("lifts off at crank angle"), "angle")
     lost: tuple[tuple[float, float], ...] = ()
 
-    def told(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """As plain data."""
         return vars(self) | {"lost": [{"from": a, "to": b} for a, b in self.lost]}
 

@@ -30,6 +30,7 @@ from equipoise.mechanism.dynamics.across import (
 )
 from equipoise.mechanism.dynamics.exerted import Exerted
 from equipoise.mechanism.dynamics.friction import unit_demands, with_friction
+from equipoise.mechanism.dynamics.pin_bearings import PlainBearing, plain_bearings
 from equipoise.mechanism.dynamics.reactions import (
     Demand,
     JointFriction,
@@ -119,6 +120,11 @@ class Forces(Exerted, Displayed):
     def frictions(self) -> Mapping[str, JointFriction]:
         """What joints resist their motion with, by name; of those that do."""
         return self.solved.friction
+
+    @cached_property
+    def plain_bearings(self) -> Mapping[str, PlainBearing]:
+        """Pressure in pins whose radius and width are given, by name."""
+        return plain_bearings(self.motion, self.joints)
 
     @property
     def friction_loss(self) -> Array:

@@ -315,14 +315,19 @@ def _of_friction(name: str, found: Any, joint: str) -> Any:
     return getattr(found.forces.frictions[joint], name)
 
 
+def _named_in_file(machine: Any, wanted: Callable[[Any], bool]) -> list[str]:
+    """Joints of which the file says something that is wanted, as far as names tell."""
+    given = {one.joint.removeprefix("joints.") for one in machine.joints if wanted(one)}
+    names = joint_names(machine) if given else ()
+    return [one for one in names if {one, one.partition("/")[0]} & given]
+
+
 def _rubbing(*kinds: str) -> dict[str, Any]:
     """Joints that resist their motion, pins or sliders."""
 
     def members(machine: Any) -> list[str]:
         sliders = slider_names(machine) if machine.rubs else []
-        names = joint_names(machine) if machine.rubs else []
-        rubbing = {one.joint.removeprefix("joints.") for one in machine.joints if one.rubs}
-        mine = [one for one in names if {one, one.partition("/")[0]} & rubbing]
+        mine = _named_in_file(machine, lambda one: one.rubs)
         return [one for one in mine if ("slider" if one in sliders else "pin") in kinds]
 
     def items(found: Any) -> list[str]:
@@ -348,6 +353,17 @@ alike("", _force)(
     to_say("friction loss in all joints"),
     members=lambda machine: ("",) if machine.rubs else (),
 )
+
+of_plain_bearing = alike(
+    "joints.{}.",
+    lambda name, found, joint: getattr(found.forces.plain_bearings[joint], name),
+    members=lambda machine: _named_in_file(machine, lambda one: one.width is not None),
+    items=lambda found: found.forces.plain_bearings,
+    spoken=joint_named,
+)
+of_plain_bearing("pressure", "modulus", to_say("pressure in joint {name}"))
+of_plain_bearing("pressure_speed", "pressure times speed",
+                 to_say("pressure times sliding speed in joint {name}"))  # fmt: skip
 
 
 def _members_of(table: str) -> dict[str, Any]:

@@ -11,14 +11,17 @@ from typing import ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.i18n import Note, to_say
-from equipoise.keys import Conditions, Frozen, Number, Text, any_of, declared, key
+from equipoise.keys import Conditions, Frozen, Number, Table, Text, any_of, declared, key
+from equipoise.mechanism.parts.rolling_bearings import RollingBearing
 
 JOINTS = ("pin", "slider")
 """Kinds of joints that hold bodies together, which no coupling is."""
-OF_PIN = ("radius", "torsional_damping", "drag_torque")
+OF_PIN = ("radius", "torsional_damping", "drag_torque", "width", "bearing")
 OF_SLIDER = ("guide_length", "damping", "drag_force")
 RUBBING = ("friction", "damping", "torsional_damping", "drag_force", "drag_torque")
 """Keys of which each alone makes a joint resist its motion."""
+APART = ("radius", "width", "bearing", "stiffness")
+"""Keys that have nothing to do with friction."""
 
 
 def family_of(kind: str) -> str:
@@ -32,11 +35,13 @@ class JointProperties(Frozen):
 
     called = to_say("{what} of joint {number}")
     file_order = (
-        "joint", "radius", "stiffness", "friction", "static_friction", "stribeck_speed",
-        "guide_length", "damping", "torsional_damping", "drag_force", "drag_torque",
+        "joint", "radius", "width", "bearing", "stiffness", "friction", "static_friction",
+        "stribeck_speed", "guide_length", "damping", "torsional_damping", "drag_force",
+        "drag_torque",
     )  # fmt: skip
-    conditions: ClassVar[Conditions] = any_of("radius", "stiffness", *RUBBING) | {
+    conditions: ClassVar[Conditions] = any_of("radius", "stiffness", "bearing", *RUBBING) | {
         "dependentRequired": {
+            "width": ["radius"],
             "static_friction": ["friction", "stribeck_speed"],
             "stribeck_speed": ["static_friction"],
             "guide_length": ["friction"],
@@ -102,11 +107,31 @@ class JointProperties(Frozen):
         example="0.05 N m",
         at_least=0,
     )
+    width: float | None = key(
+        "length",
+        "of a plain bearing: the force on the pin presses on `width` times its diameter",
+        default=None,
+        example="14 mm",
+        above=0,
+    )
+    bearing: RollingBearing | None = key(
+        Table(RollingBearing), "rolling bearing in the pin, whose life is computed", default=None
+    )
 
     @property
     def rubs(self) -> bool:
         """Whether the joint resists its motion."""
         return any(getattr(self, name) for name in (*RUBBING, "static_friction"))
+
+    @property
+    def says(self) -> bool:
+        """Whether it says anything of its joint, be it not a friction of 0."""
+        return self.rubs or any(getattr(self, name) is not None for name in APART)
+
+    @property
+    def without_friction(self) -> JointProperties:
+        """The same of a joint that moves freely."""
+        return JointProperties(self.joint, **{name: getattr(self, name) for name in APART})
 
 
 def wrong_joint(where: str, one: JointProperties, families: Iterable[str]) -> Iterator[ModelError]:
@@ -117,8 +142,10 @@ def wrong_joint(where: str, one: JointProperties, families: Iterable[str]) -> It
     if not one.joint.startswith((*(f"{family}." for family in families),)):
         told = Note("got {joint!r}; give a joint as joints.B", joint=one.joint)
         yield ModelError(f"{where}.joint", told)
-    if one.radius is None and one.stiffness is None and one.friction is None and not one.rubs:
-        yield ModelError(where, Note("give radius, stiffness or friction of the joint"))
+    if not one.says and one.friction is None:
+        yield ModelError(where, Note("give radius, stiffness, bearing or friction of the joint"))
+    if one.width is not None and one.radius is None:
+        yield ModelError(f"{where}.radius", Note("missing; a width goes with the pin's radius"))
     yield from _wrong_friction(where, one)
 
 
@@ -147,6 +174,9 @@ def wrong_of_kind(
 
     in_slot : whether it is a pin in a slot.
     """
+    if in_slot and (one.bearing or one.width) is not None:
+        told = Note("a pin in a slot has no bearing whose load is computed; leave it out")
+        yield ModelError(f"{where}.{'bearing' if one.bearing else 'width'}", told)
     if in_slot and one.rubs:
         told = Note("friction of a pin in a slot is not computed; leave it out")
         yield ModelError(where, told)

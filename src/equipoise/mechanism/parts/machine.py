@@ -361,9 +361,8 @@ class Machine(Driven, Displayed, Frozen):
 
     def without_friction(self) -> Machine:
         """Return the machine whose joints move freely."""
-        free = (JointProperties(one.joint, one.radius, one.stiffness)
-                for one in self.joints if (one.radius, one.stiffness) != (None, None))  # fmt: skip
-        return self._same_motion(replace(self, joints=tuple(free)))
+        free = (one.without_friction for one in self.joints)
+        return self._same_motion(replace(self, joints=tuple(one for one in free if one.says)))
 
     def with_balance(self, balance: Balance | None) -> Machine:
         """Return the machine with another plan of what may be changed, or with none."""

@@ -1,0 +1,119 @@
+"""Life of rolling bearings in joints, from the force in each over a whole cycle.
+
+ISO 281: of many equal bearings 90 % turn L10 = (C / P)^p million times under a load P.  Where load
+and speed change, each part of a turn uses up its share of the life, so that
+
+    P^p = int F^p |w| dt / int |w| dt,
+
+with w the speed of one ring against the other: a joint that swings counts by the way that it turns.
+Lives scatter as a Weibull distribution with three parameters, in units of L10 (Shigley's Mechanical
+Engineering Design, chapter 11):
+
+    R(x) = exp(-((x - x0) / (theta - x0))^b).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import exp, log, pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.i18n import to_say
+from equipoise.mechanism.dynamics.forces import Forces
+from equipoise.mechanism.dynamics.pin_bearings import joint_properties, ring_speed
+from equipoise.mechanism.kinematics.stroke_figures import figure
+from equipoise.mechanism.parts.rolling_bearings import RollingBearing
+
+MILLION = 1e6
+LEAST, SCALE, SHAPE = 0.02, 4.439, 1.483
+"""x0, theta - x0 and b of the lives of rolling bearings, in units of L10."""
+
+
+@dataclass(frozen=True)
+class BearingLife:
+    """Figures of a rolling bearing over a whole cycle of even speed.
+
+    equivalent_load : the even load of the same life, with the load factor, N.
+    speed : mean of the size of the speed of one ring against the other, rad/s.
+    basic_life : that 9 of 10 bearings reach, s; None without a load or where it does not turn.
+    basic_turns : the same in turns of one ring against the other.
+    rated_life : that the wanted share of bearings reaches, s.
+    reached : share of bearings that reach the wanted life; None where none is wanted.
+    needed_rating : dynamic rating of the bearing that reaches it as reliably as wanted, N.
+    static_safety : static rating over the largest load.
+    """
+
+    equivalent_load: float = figure(to_say("equivalent load"), "force")
+    speed: float = figure(to_say("mean speed of one ring against the other"), "angular speed")
+    basic_life: float | None = figure(to_say("life that 90 % reach (L10)"), "time")
+    basic_turns: float | None = figure(to_say("turns in that life"))
+    rated_life: float | None = figure(to_say("life at the wanted reliability"), "time")
+    reached: float | None = figure(to_say("share that reaches the wanted life"))
+    needed_rating: float | None = figure(to_say("dynamic rating needed"), "force")
+    static_safety: float | None = figure(to_say("static safety"))
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data in SI units."""
+        return dict(vars(self))
+
+
+def life_share(reliability: float) -> float:
+    """Life, in units of L10, that a share of bearings reaches."""
+    return float(LEAST + SCALE * log(1 / reliability) ** (1 / SHAPE))
+
+
+def reliability_of(share: float) -> float:
+    """Share of bearings that reaches a life in units of L10."""
+    return exp(-((max(share - LEAST, 0.0) / SCALE) ** SHAPE))
+
+
+def bearing_life(
+    bearing: RollingBearing, load: float, speed: float, largest: float | None = None
+) -> BearingLife:
+    """Life of a bearing under an equivalent load, N, without its load factor.
+
+    speed : mean of its size, rad/s, of one ring against the other.
+    largest : load, N, against which the static rating is held; the equivalent one if None.
+    """
+    load, peak = load * bearing.load_factor, (load if largest is None else largest)
+    peak *= bearing.load_factor
+    static = bearing.static_rating
+    safety = static / peak if static is not None and peak > 0 else None
+    wanted = None if bearing.life is None else bearing.life * speed / (2 * pi * MILLION)
+    if not (load > 0 and speed > 0):
+        reached, needed = (None, None) if wanted is None else (1.0, 0.0)
+        return BearingLife(load, speed, None, None, None, reached, needed, safety)
+    millions = (bearing.dynamic_rating / load) ** bearing.exponent
+    basic = millions * MILLION * 2 * pi / speed
+    share = life_share(bearing.reliability)
+    reached, needed = None, None
+    if wanted is not None:
+        reached = reliability_of(wanted / millions)
+        needed = load * (wanted / share) ** (1 / bearing.exponent)
+    return BearingLife(
+        load, speed, basic, millions * MILLION, share * basic, reached, needed, safety
+    )
+
+
+def bearing_lives(forces: Forces) -> Mapping[str, BearingLife]:
+    """Figures of rolling bearings by joint; none where the crank is not turned evenly, or the
+    crank angles are not those of a whole cycle.
+    """
+    motion = forces.motion
+    if not motion.whole_cycle or motion.acceleration or not motion.speed:
+        return {}
+    found = {}
+    for name, (reaction, one) in joint_properties(motion).items():
+        if one.bearing is not None and name in forces.joints:
+            size, p = forces.joints[name].size, one.bearing.exponent
+            turning = np.abs(ring_speed(motion, reaction))
+            speed, top = float(motion.mean(turning)), float(np.max(size))
+            load = 0.0
+            if speed > 0 and top > 0:  # scaled, as a small force to a high power is 0
+                mean = float(motion.mean((size / top) ** p * turning)) / speed
+                load = top * mean ** (1 / p)
+            found[name] = bearing_life(one.bearing, load, speed, top)
+    return found

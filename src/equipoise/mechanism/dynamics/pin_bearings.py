@@ -1,0 +1,56 @@
+"""Bearings in pins: how fast they turn, and what presses in plain ones."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from equipoise.mechanism.assembly.named_joints import given_properties
+from equipoise.mechanism.assembly.steps import Array, Reaction
+from equipoise.mechanism.dynamics.reactions import JointForce
+from equipoise.mechanism.kinematics.motion import Motion
+from equipoise.mechanism.kinematics.rubbing import STILL
+from equipoise.mechanism.parts.joint_properties import JointProperties
+
+
+def ring_speed(motion: Motion, reaction: Reaction) -> Array:
+    """Speed (N,) of one body of a pin against the other, rad/s; 0 where it rests."""
+    turns = [motion.state[f"w({body})"] for body in (reaction.on, reaction.by)]
+    rate = np.broadcast_to(np.asarray(turns[0] - turns[1], float), motion.crank_angle.shape)
+    return np.where(np.abs(rate) > STILL, rate, 0.0) * motion.speed
+
+
+def joint_properties(motion: Motion) -> dict[str, tuple[Reaction, JointProperties]]:
+    """Joints of which the file says something, by name."""
+    if not motion.machine.joints:
+        return {}
+    linkage = motion.linkage
+    names = {one.force: name for name, one in linkage.named_reactions}
+    given = given_properties(linkage.machine, linkage.joints, linkage.reactions)
+    return {names[reaction.force]: (reaction, one) for _, reaction, one in given
+            if reaction.force in names}  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class PlainBearing:
+    """A plain bearing over the crank angle.
+
+    pressure : (N,) force over width times diameter, Pa.
+    pressure_speed : (N,) that times the sliding speed, Pa m/s.
+    """
+
+    pressure: Array
+    pressure_speed: Array
+
+
+def plain_bearings(motion: Motion, joints: Mapping[str, JointForce]) -> Mapping[str, PlainBearing]:
+    """Plain bearings by joint: pins whose radius and width are given."""
+    found = {}
+    for name, (reaction, one) in joint_properties(motion).items():
+        if one.width is not None and one.radius is not None and name in joints:
+            pressure = joints[name].size / (one.width * 2 * one.radius)
+            sliding = np.abs(ring_speed(motion, reaction)) * one.radius
+            found[name] = PlainBearing(pressure, pressure * sliding)
+    return found

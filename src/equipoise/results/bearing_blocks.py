@@ -1,0 +1,60 @@
+"""What an analysis shows of bearings in joints: life of rolling ones, pressure in plain ones."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from equipoise.i18n import say
+from equipoise.mechanism.outputs.spoken import joint_named
+from equipoise.quantities import percent
+from equipoise.results.blocks import Block, Cell, Column, Table, Value
+from equipoise.results.machine_blocks import largest
+
+if TYPE_CHECKING:
+    from equipoise.results.analysis import Analysis
+
+
+def bearing_blocks(analysis: Analysis) -> Iterator[Block]:
+    """Tables of rolling and of plain bearings, where there are any."""
+    if analysis.rolling_bearings:
+        yield _rolling(analysis)
+    if analysis.resolved.forces.plain_bearings:
+        yield _plain(analysis)
+
+
+def _rolling(analysis: Analysis) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for name, one in analysis.rolling_bearings.items():
+        reached = None if one.reached is None else f"{percent(one.reached)} %"
+        numbers = (one.basic_life, one.rated_life, one.needed_rating, one.static_safety)
+        life, rated, rating, safety = (None if x is None else Value(x) for x in numbers)
+        load, speed = Value(one.equivalent_load), Value(one.speed)
+        rows.append((joint_named(name), load, speed, life, rated, reached, rating, safety))
+    columns = [
+        "",
+        Column(say("equivalent load"), "force"),
+        Column(say("mean speed"), "angular speed", "rpm"),
+        Column(say("life that 90 % reach (L10)"), "time", "h"),
+        Column(say("life at the wanted reliability"), "time", "h"),
+        say("share that reaches the wanted life"),
+        Column(say("dynamic rating needed"), "force"),
+        say("static safety"),
+    ]
+    shown = [k for k in range(len(columns)) if any(row[k] is not None for row in rows)]
+    title = say("Rolling bearings in joints")
+    return Table.of(title, [columns[k] for k in shown], ([row[k] for k in shown] for row in rows))
+
+
+def _plain(analysis: Analysis) -> Table:
+    motion, rows = analysis.resolved.motion, []
+    for name, one in analysis.resolved.forces.plain_bearings.items():
+        pressure, warms = (motion.figures(x) for x in (one.pressure, one.pressure_speed))
+        rows.append((joint_named(name), largest(pressure), largest(warms), Value(warms.mean)))
+    columns = (
+        "",
+        Column(say("largest pressure"), "modulus"),
+        Column(say("largest pressure times speed"), "pressure times speed"),
+        Column(say("mean"), "pressure times speed"),
+    )
+    return Table.of(say("Plain bearings in joints; largest with its crank angle"), columns, rows)

@@ -1,0 +1,34 @@
+"""Figures of parts of a machine, by kind and name: JSON, studies, page and documentation follow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from equipoise.mechanism.dynamics.bearing_life import BearingLife
+from equipoise.mechanism.dynamics.cam_contacts import CamFigures
+from equipoise.mechanism.kinematics.stroke_figures import declared_figures
+from equipoise.quantities import Dimension
+
+if TYPE_CHECKING:
+    from equipoise.results.analysis import Analysis
+
+NAMED_FIGURES: dict[str, type] = {"cams": CamFigures, "rolling_bearings": BearingLife}
+"""Classes with declared figures by attribute of an `Analysis`, which maps names to them, and key
+of the JSON object."""
+
+
+def dimensions_by_path() -> dict[str, Dimension | None]:
+    """Dimension of each figure by a regular expression for its path."""
+    return {
+        rf"{table}\..*\.{one.name}": one.metadata["dimension"]
+        for table, of in NAMED_FIGURES.items()
+        for one in declared_figures(of)
+    }
+
+
+def figures_by_name(analysis: Analysis) -> Iterator[tuple[str, str, Any]]:
+    """Key of the JSON object, name and figures of each part that has some."""
+    for table in NAMED_FIGURES:
+        for name, figures in getattr(analysis, table).items():
+            yield table, name, figures

@@ -1,0 +1,146 @@
+"""Bearings in joints: life of rolling ones, pressure of plain ones, and where both are reported."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from math import pi
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import ModelError
+from equipoise.mechanism.parts.joint_properties import JointProperties
+from equipoise.mechanism.parts.rolling_bearings import RollingBearing
+from equipoise.results.blocks import Table
+from equipoise.schema.files import json_text, to_csv
+from equipoise.studies.figures import dimension_of
+from surface.running import equipoise
+from unit.schema.samples import survives
+
+CATALOGUE = RollingBearing("25.5 kN", "15 kN", life="2000 h", reliability=0.95)
+RADIUS, WIDTH = 0.012, 0.02
+
+
+def engine(kind: Any = "ball") -> eq.Machine:
+    """A slider-crank whose crank pin is plain, and whose piston pin, which swings, rolls."""
+    bearing = replace(CATALOGUE, kind=kind)
+    joints = (
+        JointProperties("joints.B", radius=RADIUS, width=WIDTH, bearing=bearing),
+        JointProperties("joints.C", bearing=bearing),
+    )
+    return replace(eq.load("slider-crank-engine"), joints=joints, balance=None)
+
+
+@pytest.mark.parametrize("kind", ["ball", "roller"])
+def test_life_uses_up_step_by_step(kind: str) -> None:
+    """Second route: Miner's rule in small steps of time, each at the life that its load has."""
+    machine = replace(engine(kind), loads=())  # without the gas, whose force jumps
+    fine = eq.analyze(machine, 1440)
+    found = fine.rolling_bearings
+    period = 2 * pi / abs(machine.drive.speed)
+    rod = fine.motion.links["rod"].angular_velocity
+    crank = fine.motion.links["crank"].angular_velocity
+    for name, turning in {"B": rod - crank, "C": rod}.items():
+        force = fine.forces.joints[name].size
+        life = 1e6 * (25.5e3 / force) ** (3 if kind == "ball" else 10 / 3)
+        turned = np.abs(turning) * period / len(force) / (2 * pi)
+        assert found[name].basic_life == pytest.approx(period / np.sum(turned / life), rel=1e-9)
+        assert found[name].basic_turns == pytest.approx(
+            found[name].basic_life / period * np.sum(turned), rel=1e-9
+        )
+        assert found[name].static_safety == pytest.approx(15e3 / np.max(force), rel=1e-9)
+
+
+def test_a_bearing_of_the_rating_that_is_needed_reaches_the_life_that_is_wanted() -> None:
+    machine = engine()
+    needed = eq.analyze(machine).rolling_bearings["C"].needed_rating
+    enough = machine.with_number(("joints", "2", "bearing", "dynamic_rating"), needed)
+    found = eq.analyze(enough).rolling_bearings["C"]
+    assert found.rated_life == pytest.approx(2000 * 3600.0)
+    assert found.reached == pytest.approx(0.95)
+
+
+def test_a_bearing_without_load_or_turning_has_no_life() -> None:
+    slow = eq.analyze(engine(), speed=0.0)
+    assert slow.rolling_bearings == {}
+    assert eq.analyze(engine(), [0.0, 0.1]).rolling_bearings == {}
+    free = engine()
+    for link in free.links:
+        free = free.with_link(link, mass=0.0, inertia=0.0)
+    free = replace(free, gravity=(0.0, 0.0), loads=())
+    found = eq.analyze(free).rolling_bearings["B"]
+    assert (found.basic_life, found.reached, found.needed_rating) == (None, 1.0, 0.0)
+
+
+def test_pressure_of_a_plain_bearing() -> None:
+    found = eq.analyze(engine(), 60)
+    pressure = found.outputs["joints.B.pressure"].values
+    np.testing.assert_allclose(pressure, found.forces.joints["B"].size / (WIDTH * 2 * RADIUS))
+    links = found.motion.links
+    turning = links["rod"].angular_velocity - links["crank"].angular_velocity
+    np.testing.assert_allclose(
+        found.outputs["joints.B.pressure_speed"].values, pressure * np.abs(turning) * RADIUS
+    )
+    assert "joints.B.pressure [Pa]" in to_csv(found).partition("\n")[0]
+
+
+def test_they_change_neither_motion_nor_forces_and_survive() -> None:
+    machine, bare = engine(), replace(engine(), joints=())
+    text = survives(machine)
+    assert 'bearing.dynamic_rating = "25500 N"' in text
+    given, free = (eq.analyze(one, 36) for one in (machine, bare))
+    np.testing.assert_array_equal(given.forces.joints["B"].value, free.forces.joints["B"].value)
+    assert machine.without_friction() == machine
+
+
+def test_they_are_reported_everywhere() -> None:
+    machine = engine()
+    found = eq.analyze(machine, 90)
+    told = json.loads(json_text(found.to_dict()))["rolling_bearings"]["C"]
+    assert told["basic_life"] == found.rolling_bearings["C"].basic_life
+    assert dimension_of(machine, "analyze", "rolling_bearings.C.basic_life") == "time"
+    assert dimension_of(machine, "analyze", "joints.B.pressure.max") == "modulus"
+    titles = [one.title for one in found.blocks() if isinstance(one, Table)]
+    assert "Rolling bearings in joints" in titles
+    assert "Plain bearings in joints; largest with its crank angle" in titles
+
+
+def test_check_prints_them(tmp_path: Any) -> None:
+    eq.save(engine(), tmp_path / "engine.toml")
+    out = equipoise("check", str(tmp_path / "engine.toml")).out
+    assert "joints.C, ball bearing of 25.50 kN, for 2000 h" in out
+    assert "joints.B, radius 12.00 mm, width 20.00 mm" in out
+
+
+RATED = "joints[1].bearing"
+WRONG: list[tuple[dict[str, Any], str]] = [
+    ({"joint": "joints.B", "width": 0.02}, "joints[1].radius: missing; a width goes with"),
+    ({"joint": "joints.piston on frame", "bearing": CATALOGUE}, f"{RATED}: 'joints.piston on"),
+    ({"joint": "joints.B", "bearing": RollingBearing(0.0)}, f"{RATED}.dynamic_rating: got 0 N"),
+    (
+        {"joint": "joints.B", "bearing": RollingBearing(1.0, reliability=1.0)},
+        f"{RATED}.reliability: got 1; give less than 1",
+    ),
+    (
+        {"joint": "joints.B", "bearing": RollingBearing(1.0, kind="needle")},  # type: ignore[arg-type]
+        f"{RATED}.kind: got 'needle'; give 'ball' or 'roller'",
+    ),
+]
+
+
+@pytest.mark.parametrize(("given", "sentence"), WRONG)
+def test_what_is_no_such_bearing_is_refused(given: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        eq.mechanism.assemble(replace(engine(), joints=(JointProperties(**given),)))
+    assert str(caught.value).startswith(sentence)
+
+
+def test_a_pin_in_a_slot_has_none() -> None:
+    machine = eq.load("baler-pickup")
+    slot = next(iter(machine.riders))
+    given = JointProperties(f"joints.{slot}", bearing=CATALOGUE)
+    with pytest.raises(ModelError, match=r"joints\[1\]\.bearing: a pin in a slot has no bearing"):
+        eq.mechanism.assemble(replace(machine, joints=(given,)))
