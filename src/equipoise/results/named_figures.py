@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from equipoise.mechanism.dynamics.bearing_life import BearingLife
 from equipoise.mechanism.dynamics.cam_contacts import CamFigures
 from equipoise.mechanism.kinematics.stroke_figures import declared_figures
 from equipoise.quantities import Dimension
-
-if TYPE_CHECKING:
-    from equipoise.results.analysis import Analysis
 
 NAMED_FIGURES: dict[str, type] = {"cams": CamFigures, "rolling_bearings": BearingLife}
 """Classes with declared figures by attribute of an `Analysis`, which maps names to them, and key
@@ -27,8 +24,8 @@ def dimensions_by_path() -> dict[str, Dimension | None]:
     }
 
 
-def figures_by_name(analysis: Analysis) -> Iterator[tuple[str, str, Any]]:
-    """Key of the JSON object, name and figures of each part that has some."""
+def figures_by_name(analysis: Any) -> Iterator[tuple[str, str, Any]]:
+    """Key of the JSON object, name and figures of each part of an `Analysis` that has some."""
     for table in NAMED_FIGURES:
         for name, figures in getattr(analysis, table).items():
             yield table, name, figures
